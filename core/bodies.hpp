@@ -1,0 +1,38 @@
+#pragma once
+// The bodies of a scene as they are at the start: read-only initial data, numbered from left to right. Chains take from
+// here what they hold; bodies of a row that the front has not reached are in no chain, only here.
+
+#include <cstdint>
+
+#include "cradle/core/real.hpp"
+
+namespace cradle {
+
+using BodyIndex = std::int64_t;
+
+struct GapRange {
+  BodyIndex first, last;  // a gap is numbered by the body on its left; empty if last < first
+};
+
+template <Real T> class Bodies {
+ public:
+  virtual ~Bodies() = default;
+
+  virtual BodyIndex count() const = 0;
+  virtual T position(BodyIndex body) const = 0;
+  virtual T velocity(BodyIndex body) const = 0;
+  virtual T mass(BodyIndex body) const = 0;
+  virtual bool identical_masses() const = 0;
+
+  // Distance and closing speed of `body` and the next one, without the cancellation of a difference of positions.
+  virtual T gap(BodyIndex body) const = 0;
+  virtual T closing_speed(BodyIndex body) const = 0;
+
+  // The gaps that a chain must hold from the start. The others have closing speed 0 and lie inside a row: nothing can
+  // happen there before a neighbouring gap has had a contact.
+  virtual GapRange gaps_in_motion() const { return {0, count() - 2}; }
+
+  virtual T kinetic_energy() const = 0;
+};
+
+}  // namespace cradle

@@ -1,0 +1,73 @@
+#pragma once
+// Inelastic collapse: infinitely many contacts in a finite time, at a place where the intervals between contacts shrink
+// by a constant factor per cycle. What a run does about it is a declared policy:
+//
+//   cutoff   contacts below the law's velocity cut-off are elastic (the paper's way; nothing happens here)
+//   stop     exact dynamics; stop when the collapse time is settled, or when a gap falls below a given size
+//
+// The watch extrapolates the collapse time: with d the interval since the last contact at the same gap and r its ratio
+// to the one before, t_c = t + d r/(1 - r) (Aitken's delta-squared for a geometric sequence). It is settled when it
+// moved by less than the type's resolution of time, twice running.
+
+#include <unordered_map>
+
+#include "cradle/core/configuration.hpp"
+
+namespace cradle {
+
+enum class CollapsePolicy { cutoff, stop };
+
+// What is known of a collapse when the run stops.
+template <Real T> struct CollapseReport {
+  Pair<T> time;         // extrapolated t_c
+  T uncertainty{0};     // of t_c: its last movement, at least the type's resolution
+  T last_contact{0};    // time of the last contact made
+  T interval{0};        // between the last two contacts at the same gap
+  T ratio{1};           // of successive intervals there
+  T gap{0};             // smallest gap beside the last contact
+  BodyIndex body = -1;  // the body on the left of the gap of the last contact
+  bool extrapolated = false;
+};
+
+template <Real T> class CollapseWatch {
+ public:
+  // Takes note of a contact next to a small gap; true when the collapse time is settled.
+  bool settled(BodyIndex body, const Pair<T>& time, const T& gap, const T& elapsed) {
+    History& h = histories_[body];
+    const T interval = h.contacts > 0 ? difference(time, h.last) : T(0);
+    const T resolution = std::numeric_limits<T>::epsilon() * magnitude(elapsed);
+    report_.last_contact = time.value();
+    report_.gap = gap;
+    report_.body = body;
+    if (h.contacts > 1 && interval > T(0) && interval < h.interval) {
+      const T ratio = interval / h.interval;
+      const Pair<T> estimate = time + T(interval * ratio / (T(1) - ratio));
+      const T moved = magnitude(difference(estimate, h.estimate));
+      h.steady = h.extrapolated && moved < resolution / T(2) ? h.steady + 1 : 0;
+      h.estimate = estimate;
+      h.extrapolated = true;
+      report_ = {estimate, moved > resolution ? moved : resolution, time.value(), interval, ratio, gap, body, true};
+    } else {
+      h.extrapolated = false;
+      h.steady = 0;
+    }
+    h.interval = interval;
+    h.last = time;
+    ++h.contacts;
+    return h.steady >= 2;
+  }
+
+  const CollapseReport<T>& report() const { return report_; }
+
+ private:
+  struct History {
+    int contacts = 0, steady = 0;
+    bool extrapolated = false;
+    Pair<T> last, estimate;
+    T interval{0};
+  };
+  std::unordered_map<BodyIndex, History> histories_;
+  CollapseReport<T> report_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,64 @@
+#pragma once
+// A chain as it stands at one time, for whoever reads it: positions and velocities put together from the chain's own
+// coordinates, and the gaps and closing speeds themselves, since positions cannot resolve a collapsing core.
+// Lengths, speeds and masses in units of the scene.
+
+#include <vector>
+
+#include "cradle/core/bodies.hpp"
+#include "cradle/core/law.hpp"
+
+namespace cradle {
+
+template <Real T> struct Configuration {
+  T time{0};
+  std::vector<BodyIndex> index;  // n bodies from left to right, by their number at the start
+  std::vector<T> x, v, m;        // n
+  std::vector<T> gap;            // n - 1, between neighbours
+  std::vector<T> closing_speed;  // n - 1, u_left - u_right
+
+  // What the sum of all gaps (closing speeds) misses of the distance (velocity difference) of the two outermost bodies,
+  // whose flight is known on its own: the accumulated rounding of the run. It is spread over the positions and
+  // velocities given here. Zero by construction where positions are the coordinates.
+  T closure_gap{0};
+  T closure_speed{0};
+};
+
+// A place and time in a run that a report names.
+template <Real T> struct Incident {
+  T time{0};
+  BodyIndex body = -1;  // the body on the left of the gap
+  T gap{0};
+};
+
+// What could not be resolved, and how often; nothing is clamped or skipped.
+template <Real T> struct Account {
+  // Gaps closed to zero, or below it by no more than rounding, at a contact next to them: three bodies met. The tie
+  // rule (earlier time, then further left) decides the outcome.
+  std::uint64_t simultaneous = 0;
+  // Gaps found negative beyond rounding: a contact came too late in the order of events.
+  std::uint64_t order_lost = 0;
+  Incident<T> first_order_lost;
+  // Positions only: gaps next to a contact below 1e6 units in the last place of the position.
+  std::uint64_t unresolved = 0;
+  Incident<T> first_unresolved;
+};
+
+// Why a contact wants a closer look; a set of bits.
+using Notice = unsigned;
+namespace notice {
+inline constexpr Notice none = 0;
+inline constexpr Notice crowded = 1;  // the flight before it was short against the time since the origin
+inline constexpr Notice tight = 2;    // it left a gap below the floor beside it
+inline constexpr Notice cramped = 4;  // the chain has no slot for the next body of a row
+}  // namespace notice
+
+// What a chain reports of a contact: the law's outcome and the next contacts of the three gaps involved, as queue
+// times.
+template <Real T> struct Collision {
+  Outcome<T> outcome;
+  double due_left, due, due_right;
+  Notice notice;
+};
+
+}  // namespace cradle

@@ -1,0 +1,114 @@
+#pragma once
+// The event queue: one key per gap, updated in place, the next gap at the root of a binary tree of minima.
+//
+// A key is a 64-bit integer: the bits of the non-negative double "time of the next contact, from the window's origin",
+// whose low bits are replaced by the gap's slot. Integer order is then time order to a relative resolution of 2^(bits -
+// 52), and the root names the next gap without a descent. What the keys cannot tell apart is the caller's to decide,
+// exactly: `contested` says when, `for_each_before` lists the candidates. Keys made from a rounded time (wide scalar
+// types) may be off by one unit: `slack` widens both by that.
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace cradle {
+
+using Slot = std::size_t;
+
+class EventQueue {
+ public:
+  using Key = std::uint64_t;
+
+  static constexpr double never = std::numeric_limits<double>::infinity();
+
+  // Slots 0 to slots - 1. The two at either end stay empty: an update touches the neighbours of its slot.
+  explicit EventQueue(std::size_t slots, bool exact_keys, int least_bits = 3)
+      : leaves_(std::size_t{1} << std::max<int>(least_bits, static_cast<int>(std::bit_width(slots - 1)))),
+        mask_(leaves_ - 1), slack_(exact_keys ? 0 : leaves_), tree_(2 * leaves_, key(never, 0)) {}
+
+  std::size_t slots() const { return leaves_; }
+  Key next() const { return tree_[1]; }
+  Slot slot(Key key) const { return key & mask_; }
+
+  // A negative time (an event left behind when the origin moved) has its sign bit set and would sort last: it comes
+  // first.
+  Key key(double due, Slot slot) const {
+    return (static_cast<Key>(std::max<std::int64_t>(std::bit_cast<std::int64_t>(due), 0)) & ~mask_) | slot;
+  }
+
+  // Keys below `certainly_before(t)` are of contacts before t, keys above `possibly_before(t)` of contacts after it.
+  Key certainly_before(double t) const {
+    const Key k = key(t, 0);
+    return k > slack_ ? k - slack_ : 0;
+  }
+  Key possibly_before(double t) const { return key(t, mask_) + slack_; }
+
+  // Whether a gap up to two away from that of `root` has a key too close to tell which comes first.
+  bool contested(Key root) const {
+    const Key* leaf = &tree_[leaves_ + slot(root)];
+    const Key bound = (root | mask_) + slack_;
+    return (leaf[-2] <= bound) | (leaf[-1] <= bound) | (leaf[1] <= bound) | (leaf[2] <= bound);
+  }
+  bool close(Key a, Slot b) const { return tree_[leaves_ + b] <= (a | mask_) + slack_; }
+  Key key_of(Slot s) const { return tree_[leaves_ + s]; }
+
+  // Sets the times of three neighbouring gaps. Their paths to the root are two neighbouring paths that soon meet.
+  // Branches are on the shape of the tree only: which of two times is the smaller cannot be predicted.
+  void replace(Slot s, double left_due, double due, double right_due) {
+    Key* const tree = tree_.data();
+    const std::size_t leaf = leaves_ + s;
+    const Key left = key(left_due, s - 1), own = key(due, s), right = key(right_due, s + 1);
+    tree[leaf - 1] = left;
+    tree[leaf] = own;
+    tree[leaf + 1] = right;
+    const bool own_with_left = leaf & 1;
+    const Key other = tree[own_with_left ? leaf + 2 : leaf - 2];
+    std::size_t a = (leaf - 1) >> 1, b = a + 1;
+    Key least_a = own_with_left ? std::min(left, own) : std::min(left, other);
+    Key least_b = own_with_left ? std::min(right, other) : std::min(own, right);
+    tree[a] = least_a;
+    tree[b] = least_b;
+    while ((a >> 1) != (b >> 1)) {
+      const Key beside_a = tree[a ^ 1], beside_b = tree[b ^ 1];
+      least_a = std::min(least_a, beside_a);
+      least_b = std::min(least_b, beside_b);
+      a >>= 1;
+      b >>= 1;
+      tree[a] = least_a;
+      tree[b] = least_b;
+    }
+    a >>= 1;
+    least_a = std::min(least_a, least_b);
+    tree[a] = least_a;
+    while (a > 1) {
+      least_a = std::min(least_a, tree[a ^ 1]);
+      a >>= 1;
+      tree[a] = least_a;
+    }
+  }
+
+  // Sets one time without telling the tree; `rebuild` once all are set.
+  void set(Slot s, double due) { tree_[leaves_ + s] = key(due, s); }
+  void rebuild() {
+    for (std::size_t node = leaves_ - 1; node > 0; --node) tree_[node] = std::min(tree_[2 * node], tree_[2 * node + 1]);
+  }
+
+  // Calls visit(slot) for every slot whose key is at most `bound`, from left to right; visits nothing else of the tree.
+  template <class Visit> void for_each_before(Key bound, Visit visit, std::size_t node = 1) const {
+    if (tree_[node] > bound) return;
+    if (node >= leaves_) return visit(static_cast<Slot>(node - leaves_));
+    for_each_before(bound, visit, 2 * node);
+    for_each_before(bound, visit, 2 * node + 1);
+  }
+
+ private:
+  std::size_t leaves_;
+  Key mask_;
+  Key slack_;
+  std::vector<Key> tree_;  // tree_[1] the root, tree_[leaves_ + s] the key of slot s
+};
+
+}  // namespace cradle

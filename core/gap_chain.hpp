@@ -1,0 +1,371 @@
+#pragma once
+// The chain in gaps and closing speeds: for neighbours l, r the gap g >= 0, the closing speed w = u_l - u_r and the
+// local time at which g was last brought up to date. A contact hands an impulse J from left to right and changes three
+// gaps:
+//
+//   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
+//
+// Nothing is ever a difference of positions, so gaps keep their relative precision down to underflow, however small
+// they are against the size of the system. Times are offsets from a moving origin; what the offset of a gap not touched
+// since loses when the origin moves is kept beside it (`lag`), so that no gap is rounded by a move.
+//
+// Rows are streamed: of a row, only the body next to the outermost one that has collided is held. Velocities and
+// positions come from the two anchors: the bodies that end the active zone, whose flight is known, or integrated once
+// all have collided.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/clock.hpp"
+#include "cradle/core/configuration.hpp"
+#include "cradle/core/event_queue.hpp"
+
+namespace cradle {
+
+template <Real T> struct Gap { T gap{1}, closing{-1}, time{0}; };
+// In double the time of the next contact is its own key: it is kept, which saves a division when it comes.
+template <> struct alignas(32) Gap<double> { double gap = 1, closing = -1, time = 0, due = EventQueue::never; };
+
+template <Real T> struct IdenticalMasses {
+  explicit IdenticalMasses(const Bodies<T>& bodies) : mass(bodies.mass(0)) {}
+  T mass;
+  void resize(std::size_t) {}
+  void set(Slot, const T&) {}
+  const T& operator[](Slot) const { return mass; }
+  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing) const { return law(closing, mass); }
+};
+
+template <Real T> struct IndividualMasses {
+  explicit IndividualMasses(const Bodies<T>&) {}
+  std::vector<T> masses;  // of the body on the left of each slot
+  void resize(std::size_t slots) { masses.assign(slots, T(1)); }
+  void set(Slot s, const T& mass) { masses[s] = mass; }
+  const T& operator[](Slot s) const { return masses[s]; }
+  template <class Law> Outcome<T> outcome(const Law& law, Slot s, const T& closing) const {
+    return law(closing, masses[s], masses[s + 1]);
+  }
+};
+
+template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
+ public:
+  static constexpr bool keys_are_exact = std::same_as<T, double>;
+
+  // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
+  // start.
+  GapChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
+      : bodies_(std::move(bodies)), clock_(start), masses_(*bodies_) {
+    const GapRange held = hold_all ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
+    lay_out(held.first, held.last, [&](BodyIndex body) { return load(body, T(0)); });
+  }
+
+  // ---- times: what a chain calls a local time is an offset from its origin
+  const Clock<T>& clock() const { return clock_; }
+  T local_time(const T& time) const { return clock_.offset(time); }
+  double queue_time(const T& local) const { return to_double(local); }
+
+  // ---- slots: the gaps held are first() to last()
+  std::size_t slots() const { return gaps_.size(); }
+  Slot first() const { return first_; }
+  Slot last() const { return last_; }
+  BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) + body_of_slot_0_; }
+  BodyIndex collided_bodies() const {
+    return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;
+  }
+
+  // Local time of the next contact of a gap that is closing.
+  T due(Slot s) const {
+    const Gap<T>& g = gaps_[s];
+    if constexpr (keys_are_exact)
+      return g.due;
+    else {
+      const T flown = g.time + g.gap / g.closing;
+      return is_negative(g.time) ? T(flown + lag_[s]) : flown;
+    }
+  }
+  double queue_due(Slot s) const {
+    if constexpr (keys_are_exact)
+      return gaps_[s].due;
+    else
+      return gaps_[s].closing > T(0) ? to_double(due(s)) : EventQueue::never;
+  }
+
+  // ---- events
+  template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
+    Gap<T>& pair = gaps_[s];
+    const Outcome<T> outcome = masses_.outcome(law, s, pair.closing);
+    Notice notice = time - pair.time < time * crowded_ ? notice::crowded : notice::none;
+    if ((s <= front_left_) | (s >= front_right_)) [[unlikely]]
+      notice |= widen(s, time, outcome);
+
+    if (time < pair.time) [[unlikely]]  // a gap's local time never goes back
+      pair.gap = -outcome.closing * (pair.time - time);
+    else {
+      pair.gap = T(0);
+      pair.time = time;
+    }
+    pair.closing = outcome.closing;
+    if (is_negative(pair.time)) [[unlikely]]
+      lag_[s] = T(0);
+    if constexpr (keys_are_exact) pair.due = EventQueue::never;
+
+    notice |= kick(s - 1, time, outcome.to_left);
+    notice |= kick(s + 1, time, outcome.to_right);
+    return {outcome, predict(s - 1), EventQueue::never, predict(s + 1), notice};
+  }
+
+  // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
+  // times they are told in.
+  T move_origin(const T& local) {
+    clock_.move_origin(local);
+    for (Slot s = first_; s <= last_; ++s) {
+      Gap<T>& g = gaps_[s];
+      const Pair<T> moved = two_sum(g.time, T(-local));
+      g.time = moved.high;
+      lag_[s] += moved.low;
+      if constexpr (keys_are_exact) g.due = g.closing > 0 ? g.time + g.gap / g.closing + lag_[s] : EventQueue::never;
+    }
+    for (Anchor* anchor : {&left_, &right_}) anchor->time = anchor->time - local;
+    return T(0);
+  }
+
+  // True when the next contact at an end could find no slot for the body that it sets free.
+  bool cramped() const {
+    return (body(first_) > 0 && first_ <= 2) || (body(last_) + 2 < bodies_->count() && last_ + 3 >= slots());
+  }
+  void make_room() {
+    const std::vector<Gap<T>> gaps = std::move(gaps_);
+    const std::vector<T> lag = std::move(lag_);
+    const BodyIndex from = body(first_);
+    const Slot first = first_, fronts[2] = {front_left_, front_right_};
+    const bool collided = front_left_ <= front_right_;
+    lay_out(from, body(last_), [&](BodyIndex b) {
+      const Slot old = static_cast<Slot>(b - from) + first;
+      lag_[static_cast<Slot>(b - body_of_slot_0_)] = lag[old];
+      return gaps[old];
+    });
+    if (collided) front_left_ = fronts[0] - first + first_, front_right_ = fronts[1] - first + first_;
+  }
+
+  // Contacts that leave a gap below `floor` beside them are noticed as tight.
+  void set_floor(const T& floor) { floor_ = floor; }
+  // The smaller gap next to a contact, as of its local time; an end of the line counts as far away.
+  T nearest_gap(Slot s) const {
+    const T far = std::numeric_limits<T>::max();
+    const T on_left = s > first_ ? gaps_[s - 1].gap : far, on_right = s < last_ ? gaps_[s + 1].gap : far;
+    return on_left < on_right ? on_left : on_right;
+  }
+  const Account<T>& account() const { return account_; }
+
+  // ---- reading, at a local time not before the last contact
+  T gap_at(Slot s, const T& time) const {
+    const Gap<T>& g = gaps_[s];
+    const T flown = time - g.time;
+    return g.gap - g.closing * (is_negative(g.time) ? T(flown - lag_[s]) : flown);
+  }
+  // Positions of the outermost bodies that have collided; only once there are some.
+  T front_left(const T& time) const {
+    const Pair<T> x = flight(left_, time).x;
+    return (body(front_left_) > left_.body ? x + gap_at(front_left_ - 1, time) : x).value();
+  }
+  T front_right(const T& time) const {
+    const Pair<T> x = flight(right_, time).x;
+    return (body(front_right_) + 1 < right_.body ? x - gap_at(front_right_ + 1, time) : x).value();
+  }
+
+  // The bodies that have collided and the next one on each side; all that are held before the first contact.
+  Configuration<T> configuration(const T& time) const;
+
+ private:
+  // A body whose flight is known: as at the start (not collided), or from its last contact.
+  struct Anchor {
+    BodyIndex body = 0;
+    bool collided = false;
+    Pair<T> x, v, time;
+  };
+  struct Flight {
+    Pair<T> x;
+    Pair<T> v;
+  };
+
+  Flight flight(const Anchor& a, const T& time) const {
+    if (a.collided) return {a.x + T(a.v.value() * difference(Pair<T>{time, T(0)}, a.time)), a.v};
+    const T v = bodies_->velocity(a.body);
+    return {two_sum(bodies_->position(a.body), T(v * clock_.elapsed(time))), {v, T(0)}};
+  }
+  void turn(Anchor& a, const T& time, const T& gain) {
+    const Flight now = flight(a, time);
+    a = {a.body, true, now.x, now.v + gain, {time, T(0)}};
+  }
+
+  Gap<T> load(BodyIndex body, const T& time) const {
+    Gap<T> g;
+    g.gap = bodies_->gap(body);
+    g.closing = bodies_->closing_speed(body);
+    g.time = time;
+    if constexpr (keys_are_exact) g.due = g.closing > 0 ? time + g.gap / g.closing : EventQueue::never;
+    return g;
+  }
+
+  // Puts the gaps of bodies from..to in the middle of slots enough for the zone to grow by half on either side.
+  template <class Make> void lay_out(BodyIndex from, BodyIndex to, Make make) {
+    const BodyIndex held = to - from + 1, growth = held / 2 + 8;
+    const BodyIndex room_left = std::min(from, growth) + 2;
+    const BodyIndex room_right = std::min(bodies_->count() - 2 - to, growth) + 2;
+    gaps_.assign(static_cast<std::size_t>(room_left + held + room_right), Gap<T>{});
+    lag_.assign(gaps_.size(), T(0));
+    masses_.resize(gaps_.size());
+    body_of_slot_0_ = from - room_left;
+    first_ = static_cast<Slot>(room_left);
+    last_ = first_ + static_cast<Slot>(held) - 1;
+    for (BodyIndex b = from; b <= to; ++b) gaps_[static_cast<Slot>(b - body_of_slot_0_)] = make(b);
+    for (BodyIndex b = from; b <= to + 1; ++b) masses_.set(static_cast<Slot>(b - body_of_slot_0_), bodies_->mass(b));
+    if (front_right_ < front_left_) left_.body = from, right_.body = to + 1;
+  }
+
+  // A contact at an end of the active zone: takes in the next body there, or, at an end of the line, follows the last
+  // one.
+  Notice widen(Slot s, const T& time, const Outcome<T>& outcome) {
+    if (s <= front_left_) {
+      front_left_ = s;
+      if (body(s) > 0) {
+        if (s == first_) {
+          gaps_[--first_] = load(body(s) - 1, time);
+          masses_.set(first_, bodies_->mass(body(first_)));
+        }
+        left_.body = body(s) - 1;
+      } else {
+        left_.body = body(s);
+        turn(left_, time, T(-outcome.to_left));
+        seal(s - 1, time, outcome.to_left);
+      }
+    }
+    if (s >= front_right_) {
+      front_right_ = s;
+      if (body(s) + 2 < bodies_->count()) {
+        if (s == last_) {
+          gaps_[++last_] = load(body(s) + 1, time);
+          masses_.set(last_ + 1, bodies_->mass(body(last_) + 1));
+        }
+        right_.body = body(s) + 2;
+      } else {
+        right_.body = body(s) + 1;
+        turn(right_, time, outcome.to_right);
+        seal(s + 1, time, outcome.to_right);
+      }
+    }
+    return cramped() ? notice::cramped : notice::none;
+  }
+
+  // There is no gap beyond the last body: what stands in its slot keeps opening, whatever it is handed.
+  void seal(Slot s, const T& time, const T& handed) {
+    gaps_[s] = Gap<T>{};
+    gaps_[s].closing = -(handed + handed) - T(1);
+    gaps_[s].time = time;
+    lag_[s] = T(0);
+  }
+
+  // Brings a gap up to date and adds to its closing speed.
+  Notice kick(Slot s, const T& time, const T& gain) {
+    Gap<T>& g = gaps_[s];
+    T flown = time - g.time;
+    if (is_negative(g.time)) [[unlikely]]
+      flown -= lag_[s];
+    if (is_negative(flown)) [[unlikely]]  // keeps its local time: as if it had had the new speed since the contact
+      g.gap += gain * flown;
+    else {
+      g.gap -= g.closing * flown;
+      if (is_negative(g.time)) [[unlikely]]
+        lag_[s] = T(0);
+      g.time = time;
+    }
+    g.closing += gain;
+    if (g.gap < floor_) [[unlikely]]
+      return note(s, time, flown);
+    return notice::none;
+  }
+
+  Notice note(Slot s, const T& time, const T& flown) {
+    const Gap<T>& g = gaps_[s];
+    if (g.gap > T(0)) return notice::tight;
+    // Times are rounded in units of the offset, the way flown in units of the way.
+    const T rounding =
+        T(16) * std::numeric_limits<T>::epsilon() * magnitude(g.closing) * (magnitude(time) + magnitude(flown));
+    if (-g.gap > rounding) {
+      if (account_.order_lost++ == 0) account_.first_order_lost = {clock_.time(time), body(s), g.gap};
+    } else {
+      ++account_.simultaneous;
+    }
+    return notice::tight;
+  }
+
+  // Queue time of the next contact of a gap touched just now. Wide types: a rounded time will do, the queue knows.
+  double predict(Slot s) {
+    Gap<T>& g = gaps_[s];
+    if constexpr (keys_are_exact) {
+      // Whether a gap closes cannot be predicted: choose by bits, where a positive number is a positive integer.
+      const auto bits = std::bit_cast<std::uint64_t>(g.time + g.gap / g.closing);
+      const auto opening = std::uint64_t{0} - (std::bit_cast<std::int64_t>(g.closing) <= 0);
+      return g.due =
+                 std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
+    } else {
+      if (!(g.closing > T(0))) return EventQueue::never;
+      const double rounded = to_double(g.time) + to_double(g.gap) / to_double(g.closing);
+      return std::isfinite(rounded) && !is_negative(g.time) ? rounded : to_double(due(s));
+    }
+  }
+
+  std::vector<Gap<T>> gaps_;
+  std::vector<T> lag_;  // local time of gap s is gaps_[s].time + lag_[s]; not zero only if gaps_[s].time < 0
+  Slot first_ = 0, last_ = 0;
+  Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;  // gaps of the outermost contacts so far
+  BodyIndex body_of_slot_0_ = 0;
+  T floor_{0};
+  T crowded_ = T(1) / T(std::int64_t{1} << 20);  // share of the offset below which a flight wants a nearer origin
+  std::shared_ptr<const Bodies<T>> bodies_;
+  Clock<T> clock_;
+  Masses masses_;
+  Anchor left_, right_;
+  Account<T> account_;
+};
+
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configuration(const T& time) const {
+  const bool collided = front_left_ <= front_right_;
+  const Slot from = collided && front_left_ > first_ ? front_left_ - 1 : first_;
+  const Slot to = collided && front_right_ < last_ ? front_right_ + 1 : last_;
+  const auto n = static_cast<std::size_t>(to + 2 - from);
+
+  Configuration<T> c;
+  c.time = clock_.time(time);
+  for (Slot s = from; s <= to + 1; ++s) {
+    c.index.push_back(body(s));
+    c.m.push_back(masses_[s]);
+  }
+  CompensatedSum<T> way, slowing;
+  std::vector<T> ways{T(0)}, slowings{T(0)};  // from the left anchor to each body
+  for (Slot s = from; s <= to; ++s) {
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(gaps_[s].closing);
+    way.add(c.gap.back());
+    slowing.add(c.closing_speed.back());
+    ways.push_back(way.value());
+    slowings.push_back(slowing.value());
+  }
+  const Flight left = flight(left_, time), right = flight(right_, time);
+  c.closure_gap = difference(right.x, left.x) - way.value();
+  c.closure_speed = difference(left.v, right.v) - slowing.value();
+  const T stretch = way.value() > T(0) ? T(c.closure_gap / way.value()) : T(0);
+  for (std::size_t j = 0; j < n; ++j) {
+    c.x.push_back((left.x + T(ways[j] + stretch * ways[j])).value());
+    const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(static_cast<std::int64_t>(n - 1))) : T(0);
+    c.v.push_back((left.v - T(slowings[j] + share * c.closure_speed)).value());
+  }
+  return c;
+}
+
+}  // namespace cradle

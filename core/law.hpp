@@ -1,0 +1,81 @@
+#pragma once
+// Collision laws: closing speed and masses in, outcome out; pure functions of values.
+//
+//   w   closing speed u_l - u_r > 0 of the two bodies in contact
+//   m   their masses, mu = m_l m_r / (m_l + m_r) the reduced mass
+//
+// Inelastic law (paper, section II and III): w' = -eps w, energy lost mu w^2 (1 - eps^2)/2; below the velocity cut-off
+// delta the contact is elastic. The closing speed handed to the neighbours, w - w', is formed such that the sum of all
+// closing speeds is kept: for eps >= 1/2 the impulse comes first and w' = w - (its effect) is exact; below, w' = -eps w
+// comes first because there the difference would cancel.
+
+#include <cstdint>
+
+#include "cradle/core/real.hpp"
+
+namespace cradle {
+
+enum class Event : std::uint8_t { bounce, pass, merge };
+
+// Outcome of a contact, in closing speeds: the pair's own after it, and what the gaps on either side gain.
+template <Real T> struct Outcome {
+  T closing;      // w' of the pair, <= 0
+  T to_left;      // J / m_l, gained by the gap on the left
+  T to_right;     // J / m_r, gained by the gap on the right
+  T energy_lost;  // >= 0
+  bool below_cutoff = false;
+  Event event = Event::bounce;
+};
+
+template <Real T> class Inelastic {
+ public:
+  // restitution in [0, 1], cutoff >= 0 in units of speed (0: the plain law).
+  Inelastic(const T& restitution, const T& cutoff)
+      : restitution_(restitution), cutoff_(cutoff), half_sum_((T(1) + restitution) / T(2)),
+        lost_((T(1) - restitution) * (T(1) + restitution) / T(2)), soft_(restitution * T(2) < T(1)) {}
+
+  // Two bodies of the same mass.
+  Outcome<T> operator()(const T& w, const T& mass) const {
+    const bool elastic = w < cutoff_;
+    const T after = closing_after(w, elastic);
+    const T handed = soft_ ? T((w - after) / T(2)) : T(share(elastic) * w);
+    return {after, handed, handed, energy_lost(w, mass / T(2), elastic), elastic};
+  }
+
+  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
+    const bool elastic = w < cutoff_;
+    const T total_mass = mass_left + mass_right;
+    const T after = closing_after(w, elastic);
+    const T handed = soft_ ? T(w - after) : T(T(2) * (share(elastic) * w));
+    // The lighter body takes the larger part: form that one by subtraction, so that both parts add up to w - w'.
+    const bool left_lighter = mass_left < mass_right;
+    const T small = handed * ((left_lighter ? mass_left : mass_right) / total_mass);
+    const T large = handed - small;
+    return {after, left_lighter ? large : small, left_lighter ? small : large,
+            energy_lost(w, mass_left * (mass_right / total_mass), elastic), elastic};
+  }
+
+  const T& restitution() const { return restitution_; }
+  const T& cutoff() const { return cutoff_; }
+
+ private:
+  // Choices between two numbers at hand, not between two computations: late in a collapse they cannot be predicted.
+  const T& share(bool elastic) const { return elastic ? one_ : half_sum_; }
+  T closing_after(const T& w, bool elastic) const {
+    if (soft_) return -((elastic ? one_ : restitution_) * w);
+    const T handed = share(elastic) * w;
+    return w - (handed + handed);
+  }
+  T energy_lost(const T& w, const T& reduced_mass, bool elastic) const {
+    return (elastic ? zero_ : lost_) * reduced_mass * (w * w);
+  }
+
+  T restitution_;
+  T cutoff_;
+  T half_sum_;  // (1 + eps) / 2
+  T lost_;      // (1 - eps)(1 + eps) / 2, the share of mu w^2 that is lost
+  T one_{1}, zero_{0};
+  bool soft_;  // eps < 1/2
+};
+
+}  // namespace cradle

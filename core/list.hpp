@@ -1,0 +1,55 @@
+#pragma once
+// Bodies given one by one: positions, velocities and, where they differ, masses.
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/bodies.hpp"
+
+namespace cradle {
+
+template <Real T> class List final : public Bodies<T> {
+ public:
+  // One velocity per position; masses likewise, or none where all are 1. Throws std::invalid_argument when lengths
+  // differ, when positions do not increase in the working precision or when a mass is not positive.
+  List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {})
+      : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)) {
+    if (x_.empty()) throw std::invalid_argument("no bodies: list at least one");
+    if (v_.size() != x_.size() || (!m_.empty() && m_.size() != x_.size()))
+      throw std::invalid_argument("lists of different lengths: give one velocity and one mass per position");
+    for (std::size_t i = 0; i + 1 < x_.size(); ++i)
+      if (!(x_[i] < x_[i + 1]))
+        throw std::invalid_argument(
+            "bodies " + std::to_string(i) + " and " + std::to_string(i + 1) +
+            " are not in order in the working precision: sort them by position, or use more digits");
+    for (std::size_t i = 0; i < m_.size(); ++i) {
+      if (!(m_[i] > T(0)))
+        throw std::invalid_argument("body " + std::to_string(i) + " has no positive mass: give it one");
+      identical_ = identical_ && m_[i] == m_[0];
+    }
+  }
+
+  BodyIndex count() const override { return static_cast<BodyIndex>(x_.size()); }
+  T position(BodyIndex body) const override { return x_[at(body)]; }
+  T velocity(BodyIndex body) const override { return v_[at(body)]; }
+  T mass(BodyIndex body) const override { return m_.empty() ? T(1) : m_[at(body)]; }
+  bool identical_masses() const override { return identical_; }
+  T gap(BodyIndex body) const override { return x_[at(body) + 1] - x_[at(body)]; }
+  T closing_speed(BodyIndex body) const override { return v_[at(body)] - v_[at(body) + 1]; }
+
+  T kinetic_energy() const override {
+    CompensatedSum<T> twice;
+    for (BodyIndex body = 0; body < count(); ++body) twice.add(mass(body) * velocity(body) * velocity(body));
+    return twice.value() / T(2);
+  }
+
+ private:
+  static std::size_t at(BodyIndex body) { return static_cast<std::size_t>(body); }
+
+  std::vector<T> x_, v_, m_;
+  bool identical_ = true;
+};
+
+}  // namespace cradle

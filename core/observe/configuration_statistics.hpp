@@ -1,0 +1,42 @@
+#pragma once
+// Numbers read off a configuration: sums that check the run's ledger, and the spread of its gaps.
+
+#include <algorithm>
+
+#include "cradle/core/configuration.hpp"
+
+namespace cradle {
+
+// Kinetic energy summed over all bodies of the scene: the direct sum that the ledger is checked against.
+template <Real T> T kinetic_energy(const Configuration<T>& c, const Bodies<T>& bodies) {
+  CompensatedSum<T> twice, twice_before;  // of the bodies in the configuration, now and at the start
+  for (std::size_t j = 0; j < c.x.size(); ++j) {
+    twice.add(c.m[j] * c.v[j] * c.v[j]);
+    const T v = bodies.velocity(c.index[j]);
+    twice_before.add(bodies.mass(c.index[j]) * v * v);
+  }
+  return bodies.kinetic_energy() + (twice.value() - twice_before.value()) / T(2);
+}
+
+// Momentum that the bodies of a configuration have gained since the start; zero but for rounding.
+template <Real T> T momentum_gained(const Configuration<T>& c, const Bodies<T>& bodies) {
+  CompensatedSum<T> gained;
+  for (std::size_t j = 0; j < c.x.size(); ++j) {
+    gained.add(c.m[j] * c.v[j]);
+    gained.add(-bodies.mass(c.index[j]) * bodies.velocity(c.index[j]));
+  }
+  return gained.value();
+}
+
+template <Real T> struct GapStatistics { T least{0}, median{0}; };
+
+// Of the gaps of a configuration with at least two bodies.
+template <Real T> GapStatistics<T> gap_statistics(const Configuration<T>& c) {
+  std::vector<T> gaps = c.gap;
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  const T median = *middle;
+  return {*std::min_element(gaps.begin(), gaps.end()), median};
+}
+
+}  // namespace cradle

@@ -1,0 +1,100 @@
+#pragma once
+// Profiles over bins of equal width: number and mass density, mass-weighted mean velocity and its variance (the
+// granular temperature), and number density and velocity of right- and left-movers apart (the paper's rho±, u±; Figs. 2
+// b, c, 6, 7). Lengths, speeds, masses in units of the scene; float64, since a bin holds many bodies. Bins without
+// bodies have density 0 and no velocity (NaN).
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "cradle/core/configuration.hpp"
+
+namespace cradle {
+
+struct Profile {
+  double time = 0;
+  std::vector<double> x;  // bin centres; all arrays have one entry per bin
+  std::vector<double> velocity, density, mass_density, temperature;
+  std::vector<double> density_right, velocity_right, density_left, velocity_left;
+};
+
+struct BinRange {
+  double from, to;
+};
+
+namespace detail {
+
+// Sums of one bin; a body at rest counts as neither right- nor left-mover.
+struct Bin {
+  double mass = 0, momentum = 0, twice_energy = 0, count = 0;
+  double right = 0, right_speed = 0, left = 0, left_speed = 0;
+
+  void add(double v, double m) {
+    count += 1;
+    mass += m;
+    momentum += m * v;
+    twice_energy += m * v * v;
+    if (v > 0) right += 1, right_speed += v;
+    if (v < 0) left += 1, left_speed += v;
+  }
+};
+
+inline double mean(double sum, double weight) {
+  return weight > 0 ? sum / weight : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace detail
+
+// Bodies that the fronts have not reached are counted too where the range extends to them: they fly as at the start.
+// Throws std::invalid_argument for an empty range or no bins.
+template <Real T>
+Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range,
+                std::size_t bins) {
+  if (!(range.from < range.to) || bins == 0)
+    throw std::invalid_argument("profile without extent: give a range that increases and at least one bin");
+  const double width = (range.to - range.from) / static_cast<double>(bins);
+  std::vector<detail::Bin> sums(bins);
+  const auto enter = [&](double x, double v, double m) {
+    const double place = std::floor((x - range.from) / width);
+    if (place >= 0 && place < static_cast<double>(bins)) sums[static_cast<std::size_t>(place)].add(v, m);
+  };
+  for (std::size_t j = 0; j < c.x.size(); ++j) enter(to_double(c.x[j]), to_double(c.v[j]), to_double(c.m[j]));
+
+  const auto fly = [&](BodyIndex body) {
+    return to_double(T(bodies.position(body) + bodies.velocity(body) * elapsed));
+  };
+  const auto enter_free = [&](BodyIndex body, double x) {
+    enter(x, to_double(bodies.velocity(body)), to_double(bodies.mass(body)));
+  };
+  for (BodyIndex body = c.index.front() - 1; body >= 0; --body) {
+    const double x = fly(body);
+    if (x < range.from) break;
+    enter_free(body, x);
+  }
+  for (BodyIndex body = c.index.back() + 1; body < bodies.count(); ++body) {
+    const double x = fly(body);
+    if (x >= range.to) break;
+    enter_free(body, x);
+  }
+
+  Profile p;
+  p.time = to_double(c.time);
+  for (std::size_t b = 0; b < bins; ++b) {
+    const detail::Bin& s = sums[b];
+    const double velocity = detail::mean(s.momentum, s.mass);
+    p.x.push_back(range.from + (static_cast<double>(b) + 0.5) * width);
+    p.velocity.push_back(velocity);
+    p.density.push_back(s.count / width);
+    p.mass_density.push_back(s.mass / width);
+    p.temperature.push_back(detail::mean(s.twice_energy, s.mass) - velocity * velocity);
+    p.density_right.push_back(s.right / width);
+    p.velocity_right.push_back(detail::mean(s.right_speed, s.right));
+    p.density_left.push_back(s.left / width);
+    p.velocity_left.push_back(detail::mean(s.left_speed, s.left));
+  }
+  return p;
+}
+
+}  // namespace cradle

@@ -1,0 +1,146 @@
+#pragma once
+// The chain in absolute positions and velocities, as conventional event-driven programs keep it: every body has a
+// position, a velocity and the time of its last contact, and the next contact of neighbours is predicted from
+// differences of positions in absolute time. Plain on purpose: no streaming, no tuning. It is the reference twin of the
+// chain in gaps and one of the two sides of every comparison of precision; in a collapsing core its differences lose
+// their digits, which it keeps account of.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/clock.hpp"
+#include "cradle/core/configuration.hpp"
+#include "cradle/core/event_queue.hpp"
+
+namespace cradle {
+
+template <Real T> class PositionChain {
+ public:
+  static constexpr bool keys_are_exact = false;
+
+  PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start) : start_(start), origin_(start) {
+    for (BodyIndex b = 0; b < bodies->count(); ++b)
+      bodies_.push_back({bodies->position(b), bodies->velocity(b), start, bodies->mass(b)});
+    due_.assign(slots(), T(0));
+    closing_.assign(slots(), T(0));
+    for (Slot s = first(); s <= last(); ++s) predict(s, start);
+  }
+
+  // ---- times: absolute; only the queue's keys are told from an origin that moves
+  T local_time(const T& time) const { return time; }
+  double queue_time(const T& time) const { return to_double(T(time - origin_)); }
+  Clock<T> clock() const { return Clock<T>(T(0)); }
+
+  // ---- slots: two empty ones at either end
+  std::size_t slots() const { return bodies_.size() + 3; }
+  Slot first() const { return 2; }
+  Slot last() const { return bodies_.size(); }
+  BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) - 2; }
+  BodyIndex collided_bodies() const {
+    return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;
+  }
+
+  const T& due(Slot s) const { return due_[s]; }
+  double queue_due(Slot s) const { return closing_[s] > T(0) ? queue_time(due_[s]) : EventQueue::never; }
+
+  template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
+    Particle &left = at(s), &right = at(s + 1);
+    advance(left, time);
+    advance(right, time);
+    right.x = left.x;
+    const Outcome<T> outcome = left.m == right.m ? law(closing_[s], left.m) : law(closing_[s], left.m, right.m);
+    left.v -= outcome.to_left;
+    right.v += outcome.to_right;
+    front_left_ = std::min(front_left_, s);
+    front_right_ = std::max(front_right_, s);
+
+    Notice notice = notice::none;
+    predict(s, time);
+    if (s > first()) notice |= resolve(s - 1, time);
+    if (s < last()) notice |= resolve(s + 1, time);
+    return {outcome, queue_due(s - 1), queue_due(s), queue_due(s + 1), notice};
+  }
+
+  T move_origin(const T& local) { return origin_ = local; }
+  bool cramped() const { return false; }
+  void make_room() {}
+
+  void set_floor(const T& floor) { floor_ = floor; }
+  T nearest_gap(Slot s) const {
+    const T far = std::numeric_limits<T>::max();
+    const T time = at(s).time;
+    const T on_left = s > first() ? gap_at(s - 1, time) : far, on_right = s < last() ? gap_at(s + 1, time) : far;
+    return on_left < on_right ? on_left : on_right;
+  }
+  const Account<T>& account() const { return account_; }
+
+  T gap_at(Slot s, const T& time) const { return place(at(s + 1), time) - place(at(s), time); }
+  T front_left(const T& time) const { return place(at(front_left_), time); }
+  T front_right(const T& time) const { return place(at(front_right_ + 1), time); }
+
+  Configuration<T> configuration(const T& time) const {
+    const bool collided = front_left_ <= front_right_;
+    const Slot from = collided && front_left_ > first() ? front_left_ - 1 : first();
+    const Slot to = collided && front_right_ < last() ? front_right_ + 1 : last();
+    Configuration<T> c;
+    c.time = time;
+    for (Slot s = from; s <= to + 1; ++s) {
+      c.index.push_back(body(s));
+      c.m.push_back(at(s).m);
+      c.x.push_back(place(at(s), time));
+      c.v.push_back(at(s).v);
+    }
+    for (Slot s = from; s <= to; ++s) {
+      c.gap.push_back(gap_at(s, time));
+      c.closing_speed.push_back(at(s).v - at(s + 1).v);
+    }
+    return c;
+  }
+
+ private:
+  struct Particle {
+    T x, v, time, m;
+  };
+
+  Particle& at(Slot s) { return bodies_[s - 2]; }  // the body on the left of a gap
+  const Particle& at(Slot s) const { return bodies_[s - 2]; }
+
+  static T place(const Particle& p, const T& time) { return p.x + p.v * (time - p.time); }
+  static void advance(Particle& p, const T& time) {
+    p.x = place(p, time);
+    p.time = time;
+  }
+
+  void predict(Slot s, const T& now) {
+    closing_[s] = at(s).v - at(s + 1).v;
+    due_[s] = closing_[s] > T(0) ? T(now + gap_at(s, now) / closing_[s]) : T(0);
+  }
+
+  // Predicts the next contact of a gap beside one that has just closed, and judges whether positions still resolve it.
+  Notice resolve(Slot s, const T& time) {
+    predict(s, time);
+    const T gap = gap_at(s, time), epsilon = std::numeric_limits<T>::epsilon();
+    const T x_left = magnitude(at(s).x), x_right = magnitude(at(s + 1).x);
+    const T unit = epsilon * (x_left < x_right ? x_right : x_left);
+    const T rounding = T(16) * (unit + epsilon * magnitude(time) * (magnitude(at(s).v) + magnitude(at(s + 1).v)));
+    if (gap < unit * T(1000000) && account_.unresolved++ == 0) account_.first_unresolved = {time, body(s), gap};
+    if (!(gap > T(0))) {
+      if (-gap > rounding) {
+        if (account_.order_lost++ == 0) account_.first_order_lost = {time, body(s), gap};
+      } else {
+        ++account_.simultaneous;
+      }
+    }
+    return gap < floor_ ? notice::tight : notice::none;
+  }
+
+  std::vector<Particle> bodies_;
+  std::vector<T> due_, closing_;
+  T floor_{0};
+  T start_, origin_;
+  Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;
+  Account<T> account_;
+};
+
+}  // namespace cradle

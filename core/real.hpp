@@ -1,0 +1,80 @@
+#pragma once
+// What the engine asks of a number: the four operations, an order, exact construction from integers and an explicit
+// conversion to double (for queue keys and float64 output, never for the dynamics). Literals are written T(2);
+// mathematical functions, needed by the wet law and by theory only, are found by argument-dependent lookup.
+//
+// Here too: error-free addition (Knuth's TwoSum, six operations, any magnitudes) and the compensated sum built on it.
+
+#include <concepts>
+#include <cstdint>
+#include <limits>
+
+namespace cradle {
+
+template <class T>
+concept Real = std::copyable<T> && std::totally_ordered<T> && std::constructible_from<T, int> &&
+    std::constructible_from<T, std::int64_t> && std::numeric_limits<T>::is_specialized &&
+    requires(const T a, const T b, T c) {
+  { a + b } -> std::convertible_to<T>;
+  { a - b } -> std::convertible_to<T>;
+  { a* b } -> std::convertible_to<T>;
+  { a / b } -> std::convertible_to<T>;
+  { -a } -> std::convertible_to<T>;
+  c += a;
+  c -= a;
+  c *= a;
+  c /= a;
+  { static_cast<double>(a) } -> std::same_as<double>;
+};
+
+template <Real T> double to_double(const T& x) { return static_cast<double>(x); }
+
+template <Real T> bool is_negative(const T& x) { return x < T(0); }
+
+template <Real T> T magnitude(const T& x) { return is_negative(x) ? T(-x) : x; }
+
+// An unevaluated sum high + low, |low| at most half a unit in the last place of high.
+template <Real T> struct Pair {
+  T high{0};
+  T low{0};
+
+  T value() const { return high + low; }
+};
+
+// a + b without error.
+template <Real T> Pair<T> two_sum(const T& a, const T& b) {
+  const T sum = a + b;
+  const T b_seen = sum - a;
+  const T a_seen = sum - b_seen;
+  const T error = (a - a_seen) + (b - b_seen);
+  return {sum, error};
+}
+
+template <Real T> Pair<T> operator+(const Pair<T>& a, const T& b) {
+  const Pair<T> sum = two_sum(a.high, b);
+  return two_sum(sum.high, T(sum.low + a.low));
+}
+
+template <Real T> Pair<T> operator-(const Pair<T>& a, const T& b) { return a + T(-b); }
+
+// (a - b) rounded once where the leading parts cancel, as they do for neighbouring times and positions.
+template <Real T> T difference(const Pair<T>& a, const Pair<T>& b) {
+  const Pair<T> leading = two_sum(a.high, T(-b.high));
+  return leading.high + (leading.low + (a.low - b.low));
+}
+
+// Sum of many terms, each addition's error kept: exact to about 2 epsilon + n epsilon^2 times the sum of magnitudes.
+template <Real T> struct CompensatedSum {
+  T sum{0};
+  T errors{0};
+
+  void add(const T& term) {
+    const Pair<T> next = two_sum(sum, term);
+    sum = next.high;
+    errors += next.low;
+  }
+  T value() const { return sum + errors; }
+  Pair<T> pair() const { return two_sum(sum, errors); }
+};
+
+}  // namespace cradle

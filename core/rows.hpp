@@ -1,0 +1,118 @@
+#pragma once
+// Two rows of bodies of unit mass that run into each other (the paper's Riemann problem, section II): the left one of
+// velocity u_l and spacing l_l = 1/n_l, the right one of u_r and l_r, a body of any mass between them where the scene
+// has one. The first bodies are half a spacing from the origin. Every body of a row is displaced by a random multiple
+// of 2^-28 of the spacing, so that every scalar type and both representations start from the same places.
+
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "cradle/core/bodies.hpp"
+#include "cradle/core/counter_rng.hpp"
+
+namespace cradle {
+
+template <Real T> struct Row {
+  BodyIndex count;
+  T velocity;
+  T spacing;
+};
+
+template <Real T> struct CentralBody {
+  T mass;
+  T velocity;
+};
+
+// Displacement of a body in units of 2^-28 of the spacing, below 2^27 in size: bodies stay in order.
+using Displacement = std::function<std::int64_t(BodyIndex)>;
+
+inline constexpr std::int64_t displacement_unit = std::int64_t{1} << 28;
+
+// Uniform in plus/minus `perturbation` spacings, 0 <= perturbation < 1/2.
+inline Displacement uniform_displacement(double perturbation, std::uint64_t seed, std::uint64_t replica) {
+  if (!(perturbation >= 0 && perturbation < 0.5))
+    throw std::invalid_argument("perturbation out of range: give a number from 0 to below 0.5 (in spacings)");
+  const auto bound = static_cast<std::int64_t>(std::floor(perturbation * static_cast<double>(displacement_unit)));
+  return [=](BodyIndex body) {
+    return uniform_integer(random_bits(seed, replica, static_cast<std::uint64_t>(body)), bound);
+  };
+}
+
+template <Real T> class Rows final : public Bodies<T> {
+ public:
+  Rows(Row<T> left, Row<T> right, std::optional<CentralBody<T>> centre, Displacement displacement)
+      : left_(std::move(left)), right_(std::move(right)), centre_(std::move(centre)),
+        displacement_(std::move(displacement)), left_unit_(left_.spacing / T(displacement_unit)),
+        right_unit_(right_.spacing / T(displacement_unit)) {
+    if (left_.count < 1 || right_.count < 1)
+      throw std::invalid_argument("a row without bodies: give each at least one");
+    if (!(left_.spacing > T(0) && right_.spacing > T(0)))
+      throw std::invalid_argument("a row's spacing is not positive: give a positive number");
+    if (!(left_.velocity > right_.velocity))
+      throw std::invalid_argument("the rows do not approach each other: make the left one faster");
+    if (centre_ && (centre_->velocity > left_.velocity || centre_->velocity < right_.velocity))
+      throw std::invalid_argument("the central body runs away from a row: give it a speed between those of the rows");
+    if (centre_ && !(centre_->mass > T(0)))
+      throw std::invalid_argument("central mass is not positive: give a positive one");
+  }
+
+  BodyIndex count() const override { return left_.count + right_.count + (centre_ ? 1 : 0); }
+  T mass(BodyIndex body) const override { return is_centre(body) ? centre_->mass : T(1); }
+  bool identical_masses() const override { return !centre_ || centre_->mass == T(1); }
+
+  T velocity(BodyIndex body) const override {
+    return body < left_.count ? left_.velocity : is_centre(body) ? centre_->velocity : right_.velocity;
+  }
+
+  T position(BodyIndex body) const override {
+    if (is_centre(body)) return T(0);
+    return body < left_.count ? T(T(place(body)) * left_unit_) : T(T(place(body)) * right_unit_);
+  }
+
+  T gap(BodyIndex body) const override {
+    const bool from_left = body < left_.count, to_left = body + 1 < left_.count;
+    if (from_left == to_left && !is_centre(body)) {
+      const std::int64_t units = displacement_unit + displacement_(body + 1) - displacement_(body);
+      return T(units) * (from_left ? left_unit_ : right_unit_);
+    }
+    // Across the centre both distances from the origin are positive: their sum does not cancel.
+    if (left_.spacing == right_.spacing && !centre_) return T(place(body + 1) - place(body)) * left_unit_;
+    return position(body + 1) - position(body);
+  }
+
+  T closing_speed(BodyIndex body) const override { return velocity(body) - velocity(body + 1); }
+
+  GapRange gaps_in_motion() const override { return {left_.count - 1, left_.count - (centre_ ? 0 : 1)}; }
+
+  T kinetic_energy() const override {
+    const T rows =
+        T(left_.count) * left_.velocity * left_.velocity + T(right_.count) * right_.velocity * right_.velocity;
+    return (centre_ ? T(rows + centre_->mass * centre_->velocity * centre_->velocity) : rows) / T(2);
+  }
+
+ private:
+  bool is_centre(BodyIndex body) const { return centre_ && body == left_.count; }
+
+  // Position in units of 2^-28 of the row's spacing.
+  std::int64_t place(BodyIndex body) const {
+    const BodyIndex half_steps =
+        body < left_.count ? 2 * (body - left_.count) + 1 : 2 * (body - left_.count - (centre_ ? 1 : 0)) + 1;
+    return half_steps * (displacement_unit / 2) + displacement_(body);
+  }
+
+  Row<T> left_, right_;
+  std::optional<CentralBody<T>> centre_;
+  Displacement displacement_;
+  T left_unit_, right_unit_;
+};
+
+// The paper's symmetric shock: `particles` bodies, half of them in each row, closing in at plus and minus `speed`.
+template <Real T>
+Rows<T> symmetric_rows(BodyIndex particles, const T& speed, const T& spacing, Displacement displacement) {
+  return {{particles / 2, speed, spacing}, {particles / 2, T(-speed), spacing}, std::nullopt, std::move(displacement)};
+}
+
+}  // namespace cradle

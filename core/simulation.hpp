@@ -1,0 +1,188 @@
+#pragma once
+// The event loop: take the next contact, let the chain apply the law, tell the queue about the three gaps concerned,
+// enter the loss in the ledger. Scalar, law and chain are types; everything else happens in `review`, off the hot path.
+//
+// The order of contacts is (exact time, position in the line). Contacts at gaps that are neither the same nor
+// neighbours nor share a gap between them commute exactly, so only those up to two gaps away are compared beyond what
+// the queue's keys tell.
+//
+// Nothing depends on how often or until when `advance` is called: same initial state, same contacts, same bits.
+
+#include <functional>
+#include <utility>
+
+#include "cradle/core/collapse.hpp"
+#include "cradle/core/event_queue.hpp"
+#include "cradle/core/law.hpp"
+
+namespace cradle {
+
+enum class Status {
+  reached,     // all contacts up to the time asked for are made
+  collapsed,   // policy stop: inelastic collapse, see collapse()
+  exhausted,   // a gap is about to underflow, or time stands still: the scalar type resolves no more
+  interrupted  // the caller's `interrupt` said so
+};
+
+struct Counts {
+  std::uint64_t contacts = 0;  // all of them: those below the cut-off and merges included
+  std::uint64_t below_cutoff = 0;
+  std::uint64_t merges = 0;
+  std::uint64_t close_calls = 0;  // contacts whose order the queue's keys could not tell from a neighbour's
+  std::uint64_t origin_moves = 0;
+};
+
+template <Real T> struct Policy {
+  CollapsePolicy collapse = CollapsePolicy::cutoff;
+  T stop_gap{0};  // policy stop: go on until a gap is below this; 0: until the collapse time is settled
+  std::function<bool()> interrupt;  // asked now and then; true ends the run after the current contact
+};
+
+template <Real T, class Law, class Chain> class Simulation {
+ public:
+  Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
+      : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
+        queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits) {
+    fill_queue();
+    const T epsilon = std::numeric_limits<T>::epsilon();  // 0: exact arithmetic, which knows no underflow
+    underflow_ = epsilon > T(0) ? T(std::numeric_limits<T>::min() / epsilon) : T(0);
+    watch_below_ = policy_.collapse == CollapsePolicy::stop && chain_.last() >= chain_.first()
+                       ? T(smallest_gap() / T(64))
+                       : underflow_;
+    if (watch_below_ < policy_.stop_gap) watch_below_ = policy_.stop_gap;
+    chain_.set_floor(watch_below_);
+  }
+
+  // Makes every contact at times <= until. Except for `reached`, the run ends with the contact that was made last.
+  Status advance(const T& until) {
+    T horizon = chain_.local_time(until);
+    auto before = queue_.certainly_before(chain_.queue_time(horizon));
+    for (;;) {
+      const auto next = queue_.next();
+      Slot s = queue_.slot(next);
+      if (next >= before) [[unlikely]] {
+        if (!earliest_until(horizon, s)) return Status::reached;
+      } else if (queue_.contested(next)) [[unlikely]] {
+        s = earliest_near(next);
+      }
+      const T time = chain_.due(s);
+      const Collision<T> collision = chain_.collide(law_, s, time);
+      queue_.replace(s, collision.due_left, collision.due, collision.due_right);
+      lost_.add(collision.outcome.energy_lost);
+      counts_.below_cutoff += collision.outcome.below_cutoff;
+      if (++counts_.contacts == next_review_ || collision.notice != notice::none) [[unlikely]] {
+        const Status status = review(s, time, collision.notice);
+        if (status != Status::reached) return status;
+        horizon = chain_.local_time(until);
+        before = queue_.certainly_before(chain_.queue_time(horizon));
+      }
+    }
+  }
+
+  const Law& law() const { return law_; }
+  const Chain& chain() const { return chain_; }
+  const Counts& counts() const { return counts_; }
+  T energy_lost() const { return lost_.value(); }
+  T last_contact_time() const { return chain_.clock().time(last_contact_); }
+  const CollapseReport<T>& collapse() const { return watch_.report(); }
+
+ private:
+  T smallest_gap() const {
+    T least = chain_.gap_at(chain_.first(), chain_.local_time(chain_.clock().start()));
+    for (Slot s = chain_.first(); s <= chain_.last(); ++s) {
+      const T gap = chain_.gap_at(s, chain_.local_time(chain_.clock().start()));
+      if (gap < least) least = gap;
+    }
+    return least;
+  }
+
+  void fill_queue() {
+    queue_ = EventQueue(chain_.slots(), Chain::keys_are_exact, least_queue_bits_);
+    for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
+    queue_.rebuild();
+  }
+
+  // Of contacts too close for the keys: the first by exact time, then from the left, among those that do not commute.
+  Slot earliest_near(EventQueue::Key root) {
+    Slot s = queue_.slot(root);
+    ++counts_.close_calls;
+    for (;;) {
+      Slot first = s;
+      for (const Slot other : {s - 2, s - 1, s + 1, s + 2})
+        if (queue_.close(root, other) && earlier(other, first)) first = other;
+      if (first == s) return s;
+      s = first;
+    }
+  }
+  bool earlier(Slot a, Slot b) const {
+    const T time_a = chain_.due(a), time_b = chain_.due(b);
+    return time_a < time_b || (time_a == time_b && a < b);
+  }
+
+  // The first contact at a time <= horizon, where keys alone cannot tell; false if there is none.
+  bool earliest_until(const T& horizon, Slot& first) const {
+    bool found = false;
+    queue_.for_each_before(queue_.possibly_before(chain_.queue_time(horizon)), [&](Slot s) {
+      if (chain_.due(s) <= horizon && (!found || earlier(s, first))) first = s, found = true;
+    });
+    return found;
+  }
+
+  // Looks after everything that is not a contact. What it does depends on the history of contacts only.
+  Status review(Slot s, const T& time, Notice notice) {
+    last_contact_ = time;
+    Status status = Status::reached;
+    if (notice & notice::tight) status = judge(s, time);
+    if (notice & notice::cramped) {
+      chain_.make_room();
+      fill_queue();
+    }
+    if (time > reviewed_) progress_ = counts_.contacts;
+    reviewed_ = time;
+    const auto active = static_cast<std::uint64_t>(chain_.collided_bodies());
+    if (counts_.contacts - progress_ > 4096 + active * active) return Status::exhausted;
+    const bool crowded = (notice & notice::crowded) && 16 * (counts_.contacts - last_move_) >= active;
+    if (counts_.contacts >= next_review_ || crowded) {
+      move_origin(time);
+      // A move costs as much as a few contacts per gap: rare in a large zone, with every contact in a few-body
+      // collapse.
+      next_review_ = counts_.contacts + std::min(32 * active + 16, active * active / 8 + 1);
+      if (status == Status::reached && policy_.interrupt && policy_.interrupt()) status = Status::interrupted;
+    }
+    return status;
+  }
+
+  void move_origin(const T& time) {
+    reviewed_ = chain_.move_origin(time);
+    last_move_ = counts_.contacts;
+    ++counts_.origin_moves;
+    for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
+    queue_.rebuild();
+  }
+
+  Status judge(Slot s, const T& time) {
+    const T gap = chain_.nearest_gap(s);
+    if (policy_.collapse == CollapsePolicy::stop) {
+      const bool settled =
+          watch_.settled(chain_.body(s), chain_.clock().stamp(time), gap, chain_.clock().elapsed(time));
+      if (policy_.stop_gap > T(0) ? gap > T(0) && gap < policy_.stop_gap : settled) return Status::collapsed;
+    }
+    return gap > T(0) && gap < underflow_ ? Status::exhausted : Status::reached;
+  }
+
+  Law law_;
+  Chain chain_;
+  Policy<T> policy_;
+  int least_queue_bits_;
+  EventQueue queue_;
+  Counts counts_;
+  CompensatedSum<T> lost_;
+  std::uint64_t next_review_ = 1, last_move_ = 0;
+  std::uint64_t progress_ = 0;  // contacts made when time was last seen to advance
+  T reviewed_{0};               // local time at the last review
+  T last_contact_{0};
+  T watch_below_{0}, underflow_{0};
+  CollapseWatch<T> watch_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,25 @@
+# Compiler options that every target shares. Results must have the same bits on every build, so contraction of
+# multiply-adds is off and anything that lets the compiler rearrange arithmetic is refused.
+
+string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
+foreach(_flags CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${_type})
+  if("${${_flags}}" MATCHES "-(ffast-math|Ofast|funsafe-math-optimizations|fassociative-math|freciprocal-math|ffinite-math-only|fno-signed-zeros)")
+    message(FATAL_ERROR "fast-math rearranges floating-point arithmetic (found ${CMAKE_MATCH_0} in ${_flags}): "
+                        "remove it, Cradle's error bounds and its reproducibility depend on exact IEEE operations")
+  endif()
+endforeach()
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+add_library(cradle_options INTERFACE)
+target_compile_features(cradle_options INTERFACE cxx_std_20)
+target_compile_options(cradle_options INTERFACE -ffp-contract=off)
+
+# Private to the project's own sources: warnings and the machine's instruction set.
+add_library(cradle_build INTERFACE)
+target_link_libraries(cradle_build INTERFACE cradle_options)
+target_compile_options(cradle_build INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+                       $<$<BOOL:${CRADLE_WERROR}>:-Werror> $<$<BOOL:${CRADLE_ARCH}>:-march=${CRADLE_ARCH}>)

@@ -1,0 +1,42 @@
+// Exact decimal literals. A number in a scene is a decimal in the working precision, so its text is kept as written:
+// read through a double, 0.999 would not be 0.999 in wider types, 1e-400 would be 0 and digits past the 17th lost.
+// Comparisons are exact, on the text, for any number of digits and any exponent of up to 18 digits.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cradle::tools {
+
+/// The canonical form of a finite decimal literal: no underscores, no leading '+', a digit on both sides of the point
+/// ("+1_000" gives "1000", ".5" gives "0.5"); else as written. Nothing where `text` is not one (inf and nan included).
+std::optional<std::string> canonical_decimal(std::string_view text);
+
+/// Exact comparison of two canonical decimals.
+std::strong_ordering compare_decimals(std::string_view a, std::string_view b);
+
+/// The integer a canonical decimal stands for (2e7, 8000.0 too), where it is one and fits.
+std::optional<std::uint64_t> decimal_integer(std::string_view text);
+
+/// Whether its value is a whole number, of any size and sign.
+bool is_whole(std::string_view text);
+
+struct Decimal {
+  std::string text = "0";  // canonical
+  double value = 0;        // nearest double; 0 or infinity where out of its range: never a source for wider types
+
+  Decimal() = default;
+  /// From a canonical or canonicalisable literal; throws std::invalid_argument otherwise.
+  explicit Decimal(std::string_view literal);
+
+  // Equal in value: 1 and 1.0 are the same number in every working precision.
+  friend bool operator==(const Decimal& a, const Decimal& b) { return compare_decimals(a.text, b.text) == 0; }
+  friend std::strong_ordering operator<=>(const Decimal& a, const Decimal& b) {
+    return compare_decimals(a.text, b.text);
+  }
+};
+
+}  // namespace cradle::tools

@@ -31,10 +31,11 @@ template <Real T> struct CollapseReport {
 
 template <Real T> class CollapseWatch {
  public:
-  // Takes note of a contact next to a small gap; true when the collapse time is settled.
-  bool settled(BodyIndex body, const Pair<T>& time, const T& gap, const T& elapsed) {
+  // Takes note of a contact next to a small gap; true when the collapse time is settled. `local` is the time as an
+  // offset, which resolves intervals that the full time no longer does.
+  bool settled(BodyIndex body, const Pair<T>& time, const T& local, const T& gap, const T& elapsed) {
     History& h = histories_[body];
-    const T interval = h.contacts > 0 ? difference(time, h.last) : T(0);
+    const T interval = h.contacts > 0 ? T(local - h.last) : T(0);
     const T resolution = std::numeric_limits<T>::epsilon() * magnitude(elapsed);
     report_.last_contact = time.value();
     report_.gap = gap;
@@ -52,9 +53,13 @@ template <Real T> class CollapseWatch {
       h.steady = 0;
     }
     h.interval = interval;
-    h.last = time;
+    h.last = local;
     ++h.contacts;
     return h.steady >= 2;
+  }
+
+  void origin_moved(const T& by) {
+    for (auto& [body, history] : histories_) history.last -= by;
   }
 
   const CollapseReport<T>& report() const { return report_; }
@@ -63,8 +68,8 @@ template <Real T> class CollapseWatch {
   struct History {
     int contacts = 0, steady = 0;
     bool extrapolated = false;
-    Pair<T> last, estimate;
-    T interval{0};
+    Pair<T> estimate;
+    T last{0}, interval{0};
   };
   std::unordered_map<BodyIndex, History> histories_;
   CollapseReport<T> report_;

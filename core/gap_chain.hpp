@@ -95,6 +95,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       return gaps_[s].closing > T(0) ? to_double(due(s)) : EventQueue::never;
   }
 
+  const T& closing(Slot s) const { return gaps_[s].closing; }
+
   // ---- events
   template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
     Gap<T>& pair = gaps_[s];

@@ -44,6 +44,8 @@ template <Real T> class PositionChain {
   const T& due(Slot s) const { return due_[s]; }
   double queue_due(Slot s) const { return closing_[s] > T(0) ? queue_time(due_[s]) : EventQueue::never; }
 
+  const T& closing(Slot s) const { return closing_[s]; }
+
   template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
     Particle &left = at(s), &right = at(s + 1);
     advance(left, time);

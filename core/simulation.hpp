@@ -8,7 +8,10 @@
 //
 // Nothing depends on how often or until when `advance` is called: same initial state, same contacts, same bits.
 
+#include <concepts>
+#include <cstddef>
 #include <functional>
+#include <type_traits>
 #include <utility>
 
 #include "cradle/core/collapse.hpp"
@@ -30,6 +33,14 @@ struct Counts {
   std::uint64_t merges = 0;
   std::uint64_t close_calls = 0;  // contacts whose order the queue's keys could not tell from a neighbour's
   std::uint64_t origin_moves = 0;
+};
+
+// A contact as an observer sees it, before the law acts.
+template <Real T> struct Contact {
+  BodyIndex left;  // by its number at the start; the other is the next one
+  Pair<T> time;
+  T interval;  // since the contact before it, wherever that was: resolves what differences of times cannot
+  T closing_speed;
 };
 
 template <Real T> struct Policy {
@@ -54,7 +65,9 @@ template <Real T, class Law, class Chain> class Simulation {
   }
 
   // Makes every contact at times <= until. Except for `reached`, the run ends with the contact that was made last.
-  Status advance(const T& until) {
+  // An observer is told of every contact, observer(const Contact<T>&); without one there is nothing to pay.
+  template <class Observer = std::nullptr_t> Status advance(const T& until, Observer&& observer = nullptr) {
+    constexpr bool observed = !std::same_as<std::remove_cvref_t<Observer>, std::nullptr_t>;
     T horizon = chain_.local_time(until);
     auto before = queue_.certainly_before(chain_.queue_time(horizon));
     for (;;) {
@@ -66,6 +79,10 @@ template <Real T, class Law, class Chain> class Simulation {
         s = earliest_near(next);
       }
       const T time = chain_.due(s);
+      if constexpr (observed) {
+        observer(Contact<T>{chain_.body(s), chain_.clock().stamp(time), time - previous_, chain_.closing(s)});
+        previous_ = time;
+      }
       const Collision<T> collision = chain_.collide(law_, s, time);
       queue_.replace(s, collision.due_left, collision.due, collision.due_right);
       lost_.add(collision.outcome.energy_lost);
@@ -140,7 +157,8 @@ template <Real T, class Law, class Chain> class Simulation {
     if (time > reviewed_) progress_ = counts_.contacts;
     reviewed_ = time;
     const auto active = static_cast<std::uint64_t>(chain_.collided_bodies());
-    if (counts_.contacts - progress_ > 4096 + active * active) return Status::exhausted;
+    // Many bodies may meet at one time, n(n - 1)/2 contacts if elastic; more than that, and time stands still.
+    if (counts_.contacts - progress_ > 64 + 4 * active * active) return Status::exhausted;
     const bool crowded = (notice & notice::crowded) && 16 * (counts_.contacts - last_move_) >= active;
     if (counts_.contacts >= next_review_ || crowded) {
       move_origin(time);
@@ -153,7 +171,8 @@ template <Real T, class Law, class Chain> class Simulation {
   }
 
   void move_origin(const T& time) {
-    reviewed_ = chain_.move_origin(time);
+    last_contact_ = previous_ = reviewed_ = chain_.move_origin(time);
+    watch_.origin_moved(time - reviewed_);
     last_move_ = counts_.contacts;
     ++counts_.origin_moves;
     for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
@@ -164,7 +183,7 @@ template <Real T, class Law, class Chain> class Simulation {
     const T gap = chain_.nearest_gap(s);
     if (policy_.collapse == CollapsePolicy::stop) {
       const bool settled =
-          watch_.settled(chain_.body(s), chain_.clock().stamp(time), gap, chain_.clock().elapsed(time));
+          watch_.settled(chain_.body(s), chain_.clock().stamp(time), time, gap, chain_.clock().elapsed(time));
       if (policy_.stop_gap > T(0) ? gap > T(0) && gap < policy_.stop_gap : settled) return Status::collapsed;
     }
     return gap > T(0) && gap < underflow_ ? Status::exhausted : Status::reached;
@@ -180,7 +199,8 @@ template <Real T, class Law, class Chain> class Simulation {
   std::uint64_t next_review_ = 1, last_move_ = 0;
   std::uint64_t progress_ = 0;  // contacts made when time was last seen to advance
   T reviewed_{0};               // local time at the last review
-  T last_contact_{0};
+  T last_contact_{0};           // local times of the last contact: at the last review, and as observed
+  T previous_{0};
   T watch_below_{0}, underflow_{0};
   CollapseWatch<T> watch_;
 };

@@ -33,7 +33,7 @@ struct Decimal {
   explicit Decimal(std::string_view literal);
 
   // Equal in value: 1 and 1.0 are the same number in every working precision.
-  friend bool operator==(const Decimal& a, const Decimal& b) { return compare_decimals(a.text, b.text) == 0; }
+  friend bool operator==(const Decimal& a, const Decimal& b) { return std::is_eq(compare_decimals(a.text, b.text)); }
   friend std::strong_ordering operator<=>(const Decimal& a, const Decimal& b) {
     return compare_decimals(a.text, b.text);
   }

@@ -58,11 +58,11 @@ std::string range_words(const Interval& range, const Scene& scene) {
 bool within(const Interval& range, const std::string& number, const Scene& scene) {
   if (range.lower != "-inf") {
     const auto order = compare_decimals(number, bound_value(range.lower, scene));
-    if (range.lower_open ? order <= 0 : order < 0) return false;
+    if (range.lower_open ? std::is_lteq(order) : std::is_lt(order)) return false;
   }
   if (range.upper == "inf") return true;
   const auto order = compare_decimals(number, bound_value(range.upper, scene));
-  return range.upper_open ? order < 0 : order <= 0;
+  return range.upper_open ? std::is_lt(order) : std::is_lteq(order);
 }
 
 std::vector<std::string_view> choices_of(const Field& field) {

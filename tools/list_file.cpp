@@ -46,15 +46,15 @@ void add_body(const std::vector<std::string_view>& cells, const Place& place, Bo
   const auto x = decimal_of(cells[0], place, "x");
   if (!bodies.x.empty()) {
     const auto order = compare_decimals(x, bodies.x.back());
-    if (order <= 0)
-      throw Error({place.source, place.line, "x"}, order == 0 ? "coincident bodies" : "not increasing",
+    if (std::is_lteq(order))
+      throw Error({place.source, place.line, "x"}, std::is_eq(order) ? "coincident bodies" : "not increasing",
                   fmt::format("{} after {}", x, bodies.x.back()), "give the bodies in order of increasing x");
   }
   bodies.x.push_back(x);
   bodies.v.push_back(decimal_of(cells[1], place, "v"));
   if (cells.size() == 2) return;
   const auto m = decimal_of(cells[2], place, "m");
-  if (compare_decimals(m, "0") <= 0)
+  if (std::is_lteq(compare_decimals(m, "0")))
     throw Error({place.source, place.line, "m"}, "out of range", m, "give a mass above 0");
   bodies.m.push_back(m);
 }

@@ -6,7 +6,8 @@ What is drawn follows from what the file holds, never from its name:
   structure  four nested zooms into a core that positions cannot resolve (Fig. 3)
   energy     energy and contacts against time (Fig. 4)
   bodies     paths of a few bodies, and how their gaps or intervals shrink
-The first that applies goes to OUT (.png, .pdf or .svg; default FILE with .png), the others to OUT with -structure, -energy.
+The first that applies goes to OUT (.png, .pdf or .svg; default FILE with .png), the others to OUT with -structure and
+-energy before the extension.
 Two rows are drawn in the paper's units, x/l, v/2u0, t 2u0/l, E/(m (2u0)^2) (m = 1); other scenes as they are.
 Exit status: 0 done, 2 bad arguments, 4 a file could not be read or written. Same file, same bytes.
 """
@@ -141,11 +142,14 @@ class Theory:
         points = self._pick(quantity, True)
         return np.array([t for t, _ in points]), np.array([value for _, value in points])
 
-    def equation(self, quantity):
-        """How the table cites it, as `Eq. (7)`."""
-        cited = next((row[4] for row in self.rows if row[0] == quantity), "")
-        number = re.search(r"\d+", cited)
-        return f"Eq. ({number[0]})" if number else cited or quantity
+    def equation(self, *quantities):
+        """How the table cites them, as `Eq. (7)` or `Eqs. (4), (5)`; without a number, as it stands."""
+        cited = [next((row[4] for row in self.rows if row[0] == quantity), "") or quantity for quantity in quantities]
+        numbers = [re.search(r"\d+", text) for text in cited]
+        if not all(numbers):
+            return ", ".join(dict.fromkeys(cited))
+        numbers = list(dict.fromkeys(f"({number[0]})" for number in numbers))
+        return ("Eqs. " if len(numbers) > 1 else "Eq. ") + ", ".join(numbers)
 
     def number(self, quantity):
         points = self._pick(quantity, False)
@@ -188,10 +192,12 @@ class Units:
 def style():
     plt.rcdefaults()
     plt.rcParams.update({
-        "font.family": "DejaVu Sans", "font.size": 9, "axes.labelsize": 9, "legend.fontsize": 7.5, "axes.linewidth": 0.7,
+        "font.family": "DejaVu Sans", "font.size": 9, "axes.labelsize": 9, "legend.fontsize": 7.5,
+        "axes.linewidth": 0.7,
         "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
         "legend.frameon": True, "legend.framealpha": 0.85, "legend.edgecolor": "none", "lines.linewidth": 1.2,
-        "figure.dpi": 100, "savefig.dpi": 200, "svg.hashsalt": "cradle", "pdf.fonttype": 42, "axes.formatter.limits": (-4, 5),
+        "axes.prop_cycle": plt.cycler(color=[BLUE, ORANGE, GREEN, RED, "#CC79A7", "#56B4E9", "k"]), "figure.dpi": 100,
+        "savefig.dpi": 200, "svg.hashsalt": "cradle", "pdf.fonttype": 42, "axes.formatter.limits": (-4, 5),
     })
 
 
@@ -255,7 +261,8 @@ def draw_shock(result, theory, units):
     colour = dict(zip(times, shades(len(times))))
     name = {time: rf"$t={time / units.t:.5g}$" for time in times}
     panels = "abc"[:bool(snapshots) + 2 * bool(profiles)]
-    figure, axes = plt.subplots(len(panels), 1, sharex=True, figsize=(6.4, 2.5 * len(panels) + 0.5), layout="constrained")
+    figure, axes = plt.subplots(len(panels), 1, sharex=True, figsize=(6.4, 2.5 * len(panels) + 0.5),
+                                layout="constrained")
     axes = list(np.atleast_1d(axes))
     for letter, ax in zip(panels, axes):
         panel_letter(ax, letter)
@@ -268,11 +275,15 @@ def draw_shock(result, theory, units):
         for group in profiles:
             label = None if group["time"] in named else name[group["time"]]
             x, mean = merged(group)
-            axes[0].plot(x / units.x, mean / units.v, "-", lw=1.1, marker=".", ms=3, color=colour[group["time"]], label=label)
+            if 2 * len(x) <= np.count_nonzero(group["density"]) + 1:
+                axes[0].set_title(f"bins with fewer than {BIN_BODIES} bodies merged", loc="right", fontsize=7)
+            axes[0].plot(x / units.x, mean / units.v, "-", lw=1.1, marker=".", ms=3, color=colour[group["time"]],
+                         label=label)
             axes[1].plot(group["x"] / units.x, group["density"] * units.x, drawstyle="steps-mid", lw=1.1,
                          color=colour[group["time"]])
         draw_slope(axes[0], profiles, theory, units)
-        axes[0].set_ylabel(units.label(r"mean velocity $\langle v\rangle$", r"mean velocity $\langle v\rangle\,/\,2u_0$"))
+        axes[0].set_ylabel(units.label(r"mean velocity $\langle v\rangle$",
+                                       r"mean velocity $\langle v\rangle\,/\,2u_0$"))
         axes[1].set_ylabel(units.label("density", r"density $\rho\,/\,\rho_0$"))
         beside(axes[0])
         filled = np.concatenate([p["density"][p["density"] > 0] for p in profiles])
@@ -298,10 +309,10 @@ def draw_velocities(ax, snapshots, theory, units, colour, name):
     if len(front) and len(speed):
         speed = np.interp(time, speed_time, speed)
         known = (time <= max(group["time"] for group in snapshots)) & (front >= 0)
-        cited = [theory.equation(quantity) for quantity in ("front_velocity", "front_position")]
+        cited = theory.equation("front_velocity", "front_position")
         for sign in (1, -1):
             ax.plot(sign * front[known] / units.x, sign * speed[known] / units.v, "k--", lw=1,
-                    label="front, " + ", ".join(dict.fromkeys(cited)) if sign > 0 else None)
+                    label="front, " + cited if sign > 0 else None)
     ax.set_ylabel(units.velocity_label())
     legend = beside(ax)
     for handle in getattr(legend, "legend_handles", None) or legend.legendHandles:
@@ -338,11 +349,19 @@ def distances(gap, body):
 
 
 def densest(gap, bodies):
-    """The body in the middle of the narrowest run of so many bodies, and that run's width."""
-    total = np.concatenate([[0.0], np.cumsum(gap)])
-    first = int(np.argmin(total[bodies - 1:] - total[:len(total) - bodies + 1]))
-    # the sum over the whole chain found the place; its width is summed afresh, from small gaps only
-    return first + bodies // 2, float(np.sum(gap[first:first + bodies - 1]))
+    """The body in the middle of the narrowest run of so many bodies (at least 2), and that run's width.
+
+    Differences of one running sum would lose the small gaps behind the large: each window is the end of one block plus
+    the beginning of the next, both summed from small terms only.
+    """
+    size = bodies - 1
+    blocks = np.concatenate([gap, np.zeros(-len(gap) % size)]).reshape(-1, size)
+    ends = np.cumsum(blocks[:, ::-1], axis=1)[:, ::-1].ravel()
+    starts = np.cumsum(blocks, axis=1).ravel()
+    first = np.arange(len(gap) - size + 1)
+    width = ends[first] + np.where(first % size == 0, 0.0, starts[first + size - 1])
+    best = int(np.argmin(width))
+    return best + bodies // 2, float(width[best])
 
 
 def draw_structure(snapshot, units):
@@ -353,7 +372,11 @@ def draw_structure(snapshot, units):
     x = distances(gap, body)
     whole, core = 1.05 * max(-x[0], x[-1]), 1.05 * max(width / 2, -x[body - inmost // 2], x[body + (inmost - 1) // 2])
     boxes = []
-    for half in whole * (core / whole) ** (np.arange(4) / 3):
+    steps = np.arange(4) / 3
+    # between equal ratios of width and equal ratios of number: a collapsed core would leave middle panels empty
+    held = (len(x) * (inmost / len(x)) ** steps).astype(int)
+    by_number = np.sort(np.abs(x))[held - 1] * 1.05
+    for half in np.sqrt(whole * (core / whole) ** steps * by_number):
         inside = np.abs(x) <= half
         # the first panel shows all; in the others a few fast bodies passing by would hide the rest
         low, high = np.quantile(v[inside], (0.01, 0.99) if boxes else (0, 1))
@@ -361,21 +384,28 @@ def draw_structure(snapshot, units):
         boxes.append((half, low - pad, high + pad, inside))
     reference = rf"x_{{{int(snapshot['index'][body])}}}"
     figure, axes = plt.subplots(2, 2, figsize=(7.2, 5.6), layout="constrained")
+    dotted = False
     for k, ax in enumerate(axes.flat):
         half, low, high, inside = boxes[k]
         size = np.clip(1.6 * (3000 / inside.sum()) ** 0.25, 1.6, 4)
         ax.plot(x[inside] / units.x, v[inside] / units.v, ".", color=BLUE, ms=size, mew=0, rasterized=True)
         ax.set(xlim=(-half / units.x, half / units.x), ylim=(low / units.v, high / units.v))
         if k < 3:
-            half, low, high, _ = boxes[k + 1]
-            ax.add_patch(plt.Rectangle((-half / units.x, low / units.v), 2 * half / units.x, (high - low) / units.v,
-                                       fill=False, ec=RED, lw=1.2, zorder=3))
+            inner, bottom, top, _ = boxes[k + 1]
+            wide, tall = max(inner, 0.012 * half), max(top - bottom, 0.024 * (high - low))  # never too small to see
+            enlarged = wide > inner or tall > top - bottom
+            ax.add_patch(plt.Rectangle((-wide / units.x, ((bottom + top - tall) / 2) / units.v), 2 * wide / units.x,
+                                       tall / units.v, fill=False, ec=RED, lw=1.2, zorder=3,
+                                       ls=":" if enlarged else "-"))
+            dotted = dotted or enlarged
         ax.set(xlabel=units.label(rf"$x-{reference}$", rf"$(x-{reference})\,/\,l$"), ylabel=units.velocity_label())
         ax.ticklabel_format(axis="both", style="sci", scilimits=(-2, 3), useMathText=True)
         ax.set_title(rf"$\bf({'abcd'[k]})$  {int(inside.sum())} bodies", fontsize=8, loc="right")
     length = units.label("", r"$\,l$")
-    figure.suptitle(rf"$t={snapshot['time'] / units.t:.6g}$,  ${reference}={snapshot['x'][body] / units.x:.6g}${length},  "
-                    f"smallest gap {gap.min() / units.x:.1e}{length};  rectangle: the next panel", fontsize=9)
+    place = snapshot["x"][body] / units.x
+    figure.suptitle(rf"$t={snapshot['time'] / units.t:.6g}$,  ${reference}={place:.6g}${length},  "
+                    f"smallest gap {gap.min() / units.x:.1e}{length};  rectangle: the next panel"
+                    + (" (dotted: drawn larger)" if dotted else ""), fontsize=9)
     return figure
 
 
@@ -456,13 +486,15 @@ def draw_bodies(result, units):
     if shrinking:
         count = np.arange(1, len(result.events["interval"]) + 1)
         for name, mark, colour in (("interval", "o", BLUE), ("closing_speed", "^", ORANGE)):
-            axes[2].semilogy(count, np.where(result.events[name] > 0, result.events[name], np.nan), mark, ms=3, color=colour,
+            value = result.events[name]
+            axes[2].semilogy(count, np.where(value > 0, value, np.nan), mark, ms=3, color=colour,
                              label=name.replace("_", " "))
         axes[2].set(xlabel="contact", ylabel="interval, closing speed")
         axes[2].legend(loc="best")
     elif gaps:
         for pair in range(min(len(s["gap"]) for s in result.snapshots)):
-            points = np.array([(s["time"], s["gap"][pair]) for s in result.snapshots if s["gap"][pair] > 0]).reshape(-1, 2)
+            points = [(s["time"], s["gap"][pair]) for s in result.snapshots if s["gap"][pair] > 0]
+            points = np.array(points).reshape(-1, 2)
             axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-", ms=3, label=f"gap {pair}")
         axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
         axes[2].legend(loc="best")
@@ -521,7 +553,8 @@ def main(arguments=None):
         options = parser.parse_args(arguments)
         base, extension = os.path.splitext(options.out or os.path.splitext(options.file)[0] + ".png")
         if extension.lower() not in (".png", ".pdf", ".svg"):
-            raise PlotError(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg", BAD_INPUT)
+            raise PlotError(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg",
+                            BAD_INPUT)
         load_modules()
         style()
         result, theory = read_result(options.file), Theory(options.theory)

@@ -26,16 +26,18 @@ struct BinRange {
 
 namespace detail {
 
-// Sums of one bin; a body at rest counts as neither right- nor left-mover.
+// One bin, filled body by body; mean and variance by West's update, since late temperatures are small against v^2.
+// A body at rest counts as neither right- nor left-mover.
 struct Bin {
-  double mass = 0, momentum = 0, twice_energy = 0, count = 0;
+  double count = 0, mass = 0, velocity = 0, scatter = 0;
   double right = 0, right_speed = 0, left = 0, left_speed = 0;
 
   void add(double v, double m) {
     count += 1;
     mass += m;
-    momentum += m * v;
-    twice_energy += m * v * v;
+    const double from_mean = v - velocity;
+    velocity += from_mean * (m / mass);
+    scatter += m * from_mean * (v - velocity);
     if (v > 0) right += 1, right_speed += v;
     if (v < 0) left += 1, left_speed += v;
   }
@@ -81,14 +83,14 @@ Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& ela
 
   Profile p;
   p.time = to_double(c.time);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t b = 0; b < bins; ++b) {
     const detail::Bin& s = sums[b];
-    const double velocity = detail::mean(s.momentum, s.mass);
     p.x.push_back(range.from + (static_cast<double>(b) + 0.5) * width);
-    p.velocity.push_back(velocity);
+    p.velocity.push_back(s.count > 0 ? s.velocity : nan);
     p.density.push_back(s.count / width);
     p.mass_density.push_back(s.mass / width);
-    p.temperature.push_back(detail::mean(s.twice_energy, s.mass) - velocity * velocity);
+    p.temperature.push_back(detail::mean(s.scatter, s.mass));
     p.density_right.push_back(s.right / width);
     p.velocity_right.push_back(detail::mean(s.right_speed, s.right));
     p.density_left.push_back(s.left / width);

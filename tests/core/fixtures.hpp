@@ -1,0 +1,96 @@
+#pragma once
+// Initial states that several tests share, and the runs made from them. Both fixtures perturb their bodies by a hash
+// (the finaliser of splitmix64) and are exact in double: every scalar type starts from the same numbers.
+//
+//   rmix    x_i = i + (h & 0x3FF)/2048,  v_i = (((h >> 20) & 0x3FFF) - 8192)/8192
+//   rshock  x_i = (2 i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28,  v = +u0 for i < N/2, else -u0
+
+#include <memory>
+#include <vector>
+
+#include "cradle/core/gap_chain.hpp"
+#include "cradle/core/law.hpp"
+#include "cradle/core/list.hpp"
+#include "cradle/core/position_chain.hpp"
+#include "cradle/core/rows.hpp"
+#include "cradle/core/simulation.hpp"
+
+namespace cradle::test {
+
+template <class T> using Scene = std::shared_ptr<const Bodies<T>>;
+template <class T> using GapRun = Simulation<T, Inelastic<T>, GapChain<T>>;
+template <class T> using MassRun = Simulation<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>;
+template <class T> using PositionRun = Simulation<T, Inelastic<T>, PositionChain<T>>;
+
+inline std::uint64_t hash(BodyIndex i) {
+  std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
+  return z ^ (z >> 31);
+}
+
+inline std::int64_t bits_of(BodyIndex body, int shift, std::uint64_t mask) {
+  return static_cast<std::int64_t>((hash(body) >> shift) & mask);
+}
+
+template <class T> Scene<T> list(std::vector<T> x, std::vector<T> v, std::vector<T> m = {}) {
+  return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m));
+}
+
+template <class T> Scene<T> rmix(BodyIndex n) {
+  std::vector<T> x, v;
+  for (BodyIndex i = 0; i < n; ++i) {
+    x.push_back(T(i) + T(bits_of(i, 0, 0x3FF)) / T(2048));
+    v.push_back(T(bits_of(i, 20, 0x3FFF) - 8192) / T(8192));
+  }
+  return list(std::move(x), std::move(v));
+}
+
+inline std::int64_t rshock_displacement(BodyIndex body) { return bits_of(body, 0, 0x3FFFF) - 131072; }
+
+// Rows of unit spacing closing in at plus and minus `speed`.
+template <class T> Scene<T> rshock(BodyIndex n, const T& speed) {
+  return std::make_shared<Rows<T>>(symmetric_rows<T>(n, speed, T(1), rshock_displacement));
+}
+template <class T> Scene<T> rshock(BodyIndex n) { return rshock(n, T(T(1) / T(2))); }
+
+// The same bodies, held as a list without any knowledge of rows.
+template <class T> Scene<T> as_list(const Bodies<T>& bodies) {
+  std::vector<T> x, v, m;
+  for (BodyIndex b = 0; b < bodies.count(); ++b) {
+    x.push_back(bodies.position(b));
+    v.push_back(bodies.velocity(b));
+    m.push_back(bodies.mass(b));
+  }
+  return list(std::move(x), std::move(v), std::move(m));
+}
+
+struct Options {
+  bool hold_all = false;
+  int least_queue_bits = 3;
+};
+
+template <class T>
+GapRun<T> gap_run(const Scene<T>& bodies, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
+                  Options options = {}) {
+  return {law, GapChain<T>(bodies, start, options.hold_all), std::move(policy), options.least_queue_bits};
+}
+
+template <class T>
+MassRun<T> mass_run(const Scene<T>& bodies, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
+                    Options options = {}) {
+  return {law, GapChain<T, IndividualMasses<T>>(bodies, start, options.hold_all), std::move(policy),
+          options.least_queue_bits};
+}
+
+template <class T>
+PositionRun<T> position_run(const Scene<T>& bodies, const Inelastic<T>& law, Policy<T> policy = {},
+                            const T& start = T(0)) {
+  return {law, PositionChain<T>(bodies, start), std::move(policy)};
+}
+
+template <class Run, class T> auto configuration_at(const Run& run, const T& time) {
+  return run.chain().configuration(run.chain().local_time(time));
+}
+
+}  // namespace cradle::test

@@ -1,0 +1,59 @@
+#pragma once
+// The event loop in its plainest form, twin of Simulation: no queue, no keys, no ties by rounding. Before every contact
+// all gaps are looked through for the least exact time, the leftmost of equal ones; the origin of time may be moved
+// after any number of contacts. Made one contact at a time, which the real loop cannot be.
+
+#include <optional>
+#include <utility>
+
+#include "cradle/core/configuration.hpp"
+#include "cradle/core/event_queue.hpp"
+
+namespace cradle::test {
+
+template <class T> struct Contact {
+  BodyIndex body;   // on the left of the gap
+  Pair<T> time;     // of the scene
+  T local_time;     // as the chain called it
+  T closing_speed;  // before the contact
+  T nearest_gap;    // beside it
+};
+
+template <class T, class Law, class Chain> class SlowLoop {
+ public:
+  SlowLoop(Law law, Chain chain, int contacts_per_move = 1)
+      : law_(std::move(law)), chain_(std::move(chain)), contacts_per_move_(contacts_per_move) {}
+
+  const Chain& chain() const { return chain_; }
+
+  // The gap that closes next; none when all bodies part.
+  std::optional<Slot> next() const {
+    std::optional<Slot> first;
+    for (Slot s = chain_.first(); s <= chain_.last(); ++s)
+      if (chain_.queue_due(s) != EventQueue::never && (!first || chain_.due(s) < chain_.due(*first))) first = s;
+    return first;
+  }
+
+  Contact<T> collide(Slot s) {
+    const T time = chain_.due(s);
+    const BodyIndex body = chain_.body(s);
+    const Collision<T> collision = chain_.collide(law_, s, time);
+    Contact<T> contact{body, chain_.clock().stamp(time), time, before(collision.outcome), chain_.nearest_gap(s)};
+    if (collision.notice & notice::cramped) chain_.make_room();
+    if (++since_move_ == contacts_per_move_) {
+      chain_.move_origin(time);
+      since_move_ = 0;
+    }
+    return contact;
+  }
+
+ private:
+  // The neighbours gain what the pair loses.
+  static T before(const Outcome<T>& o) { return o.closing + o.to_left + o.to_right; }
+
+  Law law_;
+  Chain chain_;
+  int contacts_per_move_, since_move_ = 0;
+};
+
+}  // namespace cradle::test

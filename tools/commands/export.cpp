@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/result.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct Options {
+  std::string file, folder;
+};
+
+// One line per row, as many digits as it takes to read the same number back. Columns that are shorter (gaps of n
+// bodies) leave their last fields empty; attributes come first, as comments.
+std::string csv(const Group& group) {
+  std::string text;
+  for (const auto& [name, value] : group.attributes)
+    text += std::visit([&](const auto& v) { return fmt::format("# {} = {}\n", name, v); }, value);
+  std::size_t rows = 0;
+  for (const auto& column : group.columns) {
+    text += (&column == &group.columns.front() ? "" : ",") + column.name;
+    rows = std::max(rows, column.size());
+  }
+  if (!group.columns.empty()) text += '\n';
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (const auto& column : group.columns) {
+      if (&column != &group.columns.front()) text += ',';
+      if (row < column.size())
+        std::visit([&](const auto& v) { fmt::format_to(std::back_inserter(text), "{}", v[row]); }, column.values);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+Exit export_result(const Options& options) {
+  const Result result = read_result(options.file);
+  for (const auto& group : result.groups) {
+    const std::filesystem::path file = std::filesystem::path(options.folder) / (group.name + ".csv");
+    std::error_code error;
+    std::filesystem::create_directories(file.parent_path(), error);
+    std::ofstream stream(file, std::ios::binary);
+    stream << csv(group) << std::flush;
+    if (!stream)
+      throw Error({file.string(), 0, ""}, "could not be written", "", "give another --to DIR, or make room on the disk",
+                  Exit::io);
+    fmt::print("{}\n", file.string());
+  }
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Action& action) {
+  auto* command = program.add_subcommand("export", "a result as CSV, one file per group");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->file, "result file")->required();
+  command->add_option("--to", options->folder, "folder to write to; made where it is missing")->required();
+  command->callback([&action, options] { action = [options] { return export_result(*options); }; });
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,108 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/plot_script.hpp"
+#include "cradle/tools/result.hpp"
+#include "cradle/tools/theory_table.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct Options {
+  std::string file, output;
+};
+
+// A file that is gone when its owner is.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::string_view text)
+      : path_((std::filesystem::temp_directory_path() / "cradle-XXXXXX").string()) {
+    const int file = ::mkstemp(path_.data());
+    bool written = file >= 0;
+    while (written && !text.empty()) {
+      const auto count = ::write(file, text.data(), text.size());
+      written = count > 0;
+      if (written) text.remove_prefix(static_cast<std::size_t>(count));
+    }
+    if (file >= 0) ::close(file);
+    if (!written) throw Error({path_, 0, ""}, "no temporary file", "", "make room on the disk or set TMPDIR", Exit::io);
+  }
+  ~TemporaryFile() { ::unlink(path_.c_str()); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// Runs a program found on the path and returns its exit status, 127 if there is none.
+int execute(const std::vector<std::string>& words, bool silent) {
+  std::vector<char*> arguments;
+  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (silent) {
+      const int nowhere = ::open("/dev/null", O_WRONLY);
+      ::dup2(nowhere, STDOUT_FILENO);
+      ::dup2(nowhere, STDERR_FILENO);
+    }
+    ::execvp(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  if (child < 0 || ::waitpid(child, &status, 0) < 0 || !WIFEXITED(status)) return 127;
+  return WEXITSTATUS(status);
+}
+
+// The first Python that has what pictures need; python3 may be one without.
+std::string find_python() {
+  std::vector<std::string> candidates{"python3", "/usr/bin/python3"};
+  if (const char* chosen = std::getenv("CRADLE_PYTHON")) candidates.insert(candidates.begin(), chosen);
+  for (const auto& python : candidates)
+    if (execute({python, "-c", "import h5py, matplotlib"}, true) == 0) return python;
+  throw Error({}, "no Python with h5py and matplotlib", fmt::format("tried {}", fmt::join(candidates, ", ")),
+              "install python3-h5py and python3-matplotlib (Debian's names), or set CRADLE_PYTHON to one that has them",
+              Exit::io);
+}
+
+Exit plot(const Options& options) {
+  const Result result = read_result(options.file);
+  const Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", options.file), options.file);
+  const std::string output =
+      options.output.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.output;
+  const TemporaryFile script(plot_script());
+  std::vector<std::string> words{find_python(), script.path(), options.file, "-o", output};
+  std::optional<TemporaryFile> theory;
+  if (scene.law.type == LawType::inelastic) {
+    theory.emplace(predictions_csv(predictions(scene)));
+    words.insert(words.end(), {"--theory", theory->path()});
+  }
+  const int status = execute(words, false);
+  if (status != 0 && status != static_cast<int>(Exit::bad_input) && status != static_cast<int>(Exit::io))
+    throw Error({options.file, 0, ""}, "the picture could not be made", fmt::format("status {}", status),
+                "see the message above", Exit::io);
+  return static_cast<Exit>(status);
+}
+
+}  // namespace
+
+void add_plot(CLI::App& program, Action& action) {
+  auto* command = program.add_subcommand("plot", "the pictures of a result file; PNG, PDF or SVG by extension");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->file, "result file")->required();
+  command->add_option("-o,--output", options->output, "picture (default: FILE with .png)");
+  command->callback([&action, options] { action = [options] { return plot(*options); }; });
+}
+
+}  // namespace cradle::tools

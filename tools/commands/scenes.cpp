@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/scene_fields.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct Options {
+  std::string name;
+  bool keys = false;
+};
+
+Exit scenes(const Options& options) {
+  if (options.keys) {
+    fmt::print("{}", describe_fields());
+    return Exit::done;
+  }
+  for (const auto& scene : bundled_scenes()) {
+    if (options.name.empty())
+      fmt::print("{:<12}{}\n", scene.name, parse_scene(scene.text, std::string(scene.name)).title);
+    if (options.name != scene.name) continue;
+    fmt::print("{}", scene.text);
+    return Exit::done;
+  }
+  if (options.name.empty()) return Exit::done;
+  throw Error({}, "no bundled scene of this name", options.name, "see `cradle scenes` for those there are");
+}
+
+}  // namespace
+
+void add_scenes(CLI::App& program, Action& action) {
+  auto* command = program.add_subcommand("scenes", "list the bundled scenes; print one");
+  const auto options = std::make_shared<Options>();
+  command->add_option("NAME", options->name, "the scene to print");
+  command->add_flag("--keys", options->keys, "every key of a scene file: type, unit, default, range, meaning");
+  command->callback([&action, options] { action = [options] { return scenes(*options); }; });
+}
+
+}  // namespace cradle::tools

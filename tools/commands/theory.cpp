@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/theory_table.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct Options : CommonOptions {
+  bool csv = false;
+};
+
+Exit theory(const Options& options) {
+  const auto table = predictions(options.read());
+  if (options.csv) {
+    fmt::print("{}", predictions_csv(table));
+    return Exit::done;
+  }
+  fmt::print("{:<28}{:<18}{:<12}{:>12}  {}\n", "quantity", "equation", "form", "t", "value");
+  // Curves at a few times only: --csv has them all.
+  std::size_t shown = 0;
+  for (const auto& p : table) {
+    if (p.t && (p.form == "printed" || shown++ % 250 != 0)) continue;
+    fmt::print("{:<28}{:<18}{:<12}{:>12}  {:.15g}\n", p.quantity, p.equation, p.form,
+               p.t ? fmt::format("{:.6g}", *p.t) : "", p.value);
+  }
+  fmt::print(
+      "\nforms: discrete: the exact recursion; continuous: the paper's formula, corrected where it is misprinted.\n"
+      "Misprints: (6), first line, lacks a factor u0; (7) must carry a plus sign. As printed: form `printed` in "
+      "--csv.\n");
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_theory(CLI::App& program, Action& action) {
+  auto* command = program.add_subcommand("theory", "the paper's predictions for a scene, with equation numbers");
+  const auto options = std::make_shared<Options>();
+  add_common_options(*command, *options);
+  command->add_flag("--csv", options->csv, "all curves, as CSV: quantity,equation,form,t,value");
+  command->callback([&action, options] { action = [options] { return theory(*options); }; });
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,168 @@
+# shellcheck shell=bash
+# What quickstart.sh and test.sh share; both source it. `set_up program|tests` sees to it that everything needed to
+# build the program (and its tests) is there: it looks for what is missing and installs that with apt, as root or
+# through sudo. Where that cannot be done it lists what is missing with the names other sources know it by and stops.
+# If nothing is missing nothing is installed and no network, root or apt is needed. `step` runs a command and, if it
+# fails, stops with what to do.
+
+preset=release
+build=build/$preset
+
+# for | what | looked for as | Debian, Ubuntu | conda-forge | Spack
+needs() {
+  cat <<'TABLE'
+program | C++20 compiler        | compiler                     | g++                 | cxx-compiler    | gcc
+program | CMake 3.25 or newer   | cmake 3.25                   | cmake               | cmake           | cmake
+program | Ninja (or make)       | generator                    | ninja-build         | ninja           | ninja
+program | Boost headers         | header boost/multiprecision/mpfr.hpp | libboost-dev | libboost-headers | boost
+program | oneTBB                | header oneapi/tbb/version.h  | libtbb-dev          | tbb-devel       | intel-oneapi-tbb
+program | toml++                | header toml++/toml.h         | libtomlplusplus-dev | tomlplusplus    | tomlplusplus
+program | CLI11                 | header CLI/CLI.hpp           | libcli11-dev        | cli11           | cli11
+program | fmt                   | header fmt/format.h          | libfmt-dev          | fmt             | fmt
+program | HDF5                  | header hdf5.h                | libhdf5-dev         | hdf5            | hdf5
+program | MPFR                  | header mpfr.h                | libmpfr-dev         | mpfr            | mpfr
+program | GMP                   | header gmp.h                 | libgmp-dev          | gmp             | gmp
+program | Python 3              | command python3              | python3             | python          | python
+program | Matplotlib            | python matplotlib            | python3-matplotlib  | matplotlib-base | py-matplotlib
+program | h5py                  | python h5py                  | python3-h5py        | h5py            | py-h5py
+tests   | GoogleTest            | header gtest/gtest.h         | libgtest-dev        | gtest           | googletest
+tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev    | benchmark       | benchmark
+TABLE
+}
+
+# step WHAT WHAT_TO_DO COMMAND...
+step() {
+  local what=$1 remedy=$2 status=0
+  shift 2
+  echo "== $what"
+  "$@" || status=$?
+  ((status == 0)) && return
+  echo "${0##*/}: $what failed ($1 ended with status $status): $remedy" >&2
+  exit 1
+}
+
+has_compiler() {
+  "${CXX:-c++}" -std=c++20 -fsyntax-only -x c++ - 2>/dev/null <<'CODE'
+#include <bit>
+#include <concepts>
+static_assert(std::bit_cast<unsigned>(1.0f) != 0 && std::integral<int>);
+CODE
+}
+
+has_cmake() {
+  local found
+  found=$(cmake --version 2>/dev/null | sed -n '1s/[^0-9]*//p') && [[ -n $found ]] &&
+    [[ $(printf '%s\n' "$1" "$found" | sort -V | head -n 1) == "$1" ]]
+}
+
+# A header in the compiler's, the environment's (modules, conda, Spack) or Debian's folders.
+has_header() {
+  local folder folders prefix prefixes
+  IFS=: read -ra folders <<<"${CPATH:-}:${CPLUS_INCLUDE_PATH:-}"
+  IFS=':;' read -ra prefixes <<<"${CMAKE_PREFIX_PATH:-}:${CONDA_PREFIX:-}:${HDF5_ROOT:-}:${BOOST_ROOT:-}:${TBBROOT:-}"
+  for prefix in "${prefixes[@]}" /usr/local /usr; do folders+=("${prefix:+$prefix/include}"); done
+  for folder in "${folders[@]}" /usr/include/*-linux-gnu /usr/include/hdf5/serial; do
+    if [[ -n $folder && -f $folder/$1 ]]; then return 0; fi
+  done
+  return 1
+}
+
+# Plotting takes the first of these interpreters that has what it needs.
+has_python_module() {
+  local python
+  for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
+    if [[ -n $python ]] && "$python" -c "import $1" >/dev/null 2>&1; then return 0; fi
+  done
+  return 1
+}
+
+has() {
+  case $1 in
+    compiler) has_compiler ;;
+    cmake) has_cmake "$2" ;;
+    generator) command -v ninja >/dev/null || command -v make >/dev/null ;;
+    header) has_header "$2" ;;
+    command) command -v "$2" >/dev/null ;;
+    python) has_python_module "$2" ;;
+  esac
+}
+
+# Fills the arrays missing, debian, conda, spack with what program (or, as well, tests) lacks.
+look_for() {
+  local group what probe deb forge spk
+  missing=() debian=() conda=() spack=()
+  while IFS='|' read -r group what probe deb forge spk; do
+    if [[ $1 == program && ${group// /} == tests ]]; then continue; fi
+    # shellcheck disable=SC2086  # a probe is a word and its argument
+    if has $probe; then continue; fi
+    read -r what <<<"$what"
+    missing+=("$what")
+    debian+=("${deb// /}") conda+=("${forge// /}") spack+=("${spk// /}")
+  done < <(needs)
+}
+
+list_missing_and_stop() {
+  local i
+  {
+    echo "${0##*/}: $1."
+    echo "Missing:"
+    for i in "${!missing[@]}"; do printf '  %-22s (Debian: %s)\n' "${missing[i]}" "${debian[i]}"; done
+    echo "Get it from one of these, then run this again:"
+    echo "  Debian 12, Ubuntu 24.04 or newer, as root:  apt-get install ${debian[*]}"
+    echo "  conda, no root needed:  conda install -c conda-forge ${conda[*]}"
+    echo "  Spack:                  spack install ${spack[*]}, then spack load the same"
+    echo "  environment modules:    module spider NAME for each of ${spack[*]}; names differ from site to site"
+    echo "If it is there, in a place not looked at: export CMAKE_PREFIX_PATH=/that/place (CXX for the compiler)."
+  } >&2
+  exit 1
+}
+
+# as_root COMMAND...: directly or through sudo, which asks for a password only at a terminal.
+as_root() {
+  if ((EUID == 0)); then
+    env DEBIAN_FRONTEND=noninteractive "$@"
+  elif [[ -t 0 ]]; then
+    sudo env DEBIAN_FRONTEND=noninteractive "$@"
+  else
+    sudo -n env DEBIAN_FRONTEND=noninteractive "$@"
+  fi
+}
+
+apt_get() {
+  as_root apt-get -qq -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 "$@"
+}
+
+# set_up program|tests
+set_up() {
+  local missing debian conda spack
+  look_for "$1"
+  ((${#missing[@]})) || return 0
+  command -v apt-get >/dev/null || list_missing_and_stop "something is missing and there is no apt to install it with"
+  ((EUID == 0)) || command -v sudo >/dev/null ||
+    list_missing_and_stop "something is missing and only root can install it (no sudo found)"
+  echo "== installing with apt: ${debian[*]}"
+  apt_get update || list_missing_and_stop "apt-get update failed (status $?, see above)"
+  apt_get install -y --no-install-recommends "${debian[@]}" ||
+    list_missing_and_stop "apt-get install failed (status $?, see above)"
+  look_for "$1"
+  ((${#missing[@]} == 0)) || list_missing_and_stop "apt has installed its packages, but this is missing still or too old"
+}
+
+# configure OPTIONS...: the preset's build tree, with the generator that it has or else with what is there.
+configure() {
+  local cached
+  if cached=$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' "$build/CMakeCache.txt" 2>/dev/null) && [[ -n $cached ]]; then
+    set -- -G "$cached" "$@"
+  elif ! command -v ninja >/dev/null; then
+    set -- -G "Unix Makefiles" "$@"
+  fi
+  step "configuring $build" "see CMake's message above; if the compiler, a library or the folder has moved since the \
+last time, remove $build and run this again" \
+    cmake --preset "$preset" "$@"
+}
+
+compile() {
+  step "building $build on $(nproc) processors" "see the first error above; if memory ran out, build with fewer \
+processes: cmake --build --preset $preset -j1" \
+    cmake --build --preset "$preset" -j "$(nproc)" "$@"
+}

@@ -1,0 +1,26 @@
+// The paper's predictions for a scene as one table, from which `cradle theory` and the curves on the pictures come.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cradle/tools/scene.hpp"
+
+namespace cradle::tools {
+
+struct Prediction {
+  std::string quantity;     // front_position, energy, ...
+  std::string equation;     // in the paper: "(5)"
+  std::string form;         // continuous, discrete; printed: as the paper prints it, where that is a misprint
+  std::optional<double> t;  // for curves
+  double value;
+};
+
+/// Throws Error for a scene that the paper's section IV says nothing about.
+std::vector<Prediction> predictions(const Scene& scene);
+
+/// Long-format CSV: quantity,equation,form,t,value; t empty for single numbers.
+std::string predictions_csv(const std::vector<Prediction>& table);
+
+}  // namespace cradle::tools

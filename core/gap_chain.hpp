@@ -54,6 +54,7 @@ template <Real T> struct IndividualMasses {
 
 template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
  public:
+  using Scalar = T;
   static constexpr bool keys_are_exact = std::same_as<T, double>;
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the

@@ -17,6 +17,7 @@ namespace cradle {
 
 template <Real T> class PositionChain {
  public:
+  using Scalar = T;
   static constexpr bool keys_are_exact = false;
 
   PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start) : start_(start), origin_(start) {

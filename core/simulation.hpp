@@ -205,4 +205,7 @@ template <Real T, class Law, class Chain> class Simulation {
   CollapseWatch<T> watch_;
 };
 
+template <class Law, class Chain> Simulation(Law, Chain) -> Simulation<typename Chain::Scalar, Law, Chain>;
+template <class Law, class Chain, Real T> Simulation(Law, Chain, Policy<T>) -> Simulation<T, Law, Chain>;
+
 }  // namespace cradle

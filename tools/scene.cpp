@@ -130,6 +130,27 @@ void drop_replaced_series(Entries& entries, std::string_view assignment) {
   });
 }
 
+// A run cut to another span on the command line keeps those of the file's output times that lie in it: what is asked
+// for on the command line itself is still refused there.
+void drop_times_cut_off(Entries& entries) {
+  const auto bound = [&](const char* key) -> std::optional<Decimal> {
+    const auto entry = entries.find(key);
+    if (entry == entries.end() || entry->second.place.source != "--set") return std::nullopt;
+    const auto literal = canonical_decimal(entry->second.text);
+    return literal ? std::optional(Decimal(*literal)) : std::nullopt;
+  };
+  const auto start = bound("run.start"), until = bound("run.until");
+  for (const char* key : {"output.series.times", "output.snapshots", "output.profiles.times"}) {
+    const auto entry = entries.find(key);
+    if (entry == entries.end() || entry->second.place.source == "--set") continue;
+    const auto dropped = std::erase_if(entry->second.items, [&](const Value& item) {
+      const auto literal = canonical_decimal(item.text);
+      return literal && ((start && Decimal(*literal) < *start) || (until && Decimal(*literal) > *until));
+    });
+    if (dropped > 0 && entry->second.items.empty()) entries.erase(entry);
+  }
+}
+
 std::string bundled_names() {
   std::string names;
   for (const BundledScene& scene : bundled_scenes()) names.append(names.empty() ? "" : ", ").append(scene.name);
@@ -148,6 +169,7 @@ Scene parse_scene(std::string_view text, const std::string& source_name, const s
     drop_replaced_series(entries, assignment);
     apply_override(entries, assignment);
   }
+  drop_times_cut_off(entries);
   Scene scene;
   const std::filesystem::path path(source_name);
   scene.name = path.stem().string();

@@ -11,7 +11,7 @@
 
 namespace cradle::test {
 
-template <class T> struct Contact {
+template <class T> struct Step {
   BodyIndex body;   // on the left of the gap
   Pair<T> time;     // of the scene
   T local_time;     // as the chain called it
@@ -19,8 +19,10 @@ template <class T> struct Contact {
   T nearest_gap;    // beside it
 };
 
-template <class T, class Law, class Chain> class SlowLoop {
+template <class Law, class Chain> class SlowLoop {
  public:
+  using T = typename Chain::Scalar;
+
   SlowLoop(Law law, Chain chain, int contacts_per_move = 1)
       : law_(std::move(law)), chain_(std::move(chain)), contacts_per_move_(contacts_per_move) {}
 
@@ -34,23 +36,20 @@ template <class T, class Law, class Chain> class SlowLoop {
     return first;
   }
 
-  Contact<T> collide(Slot s) {
+  Step<T> collide(Slot s) {
     const T time = chain_.due(s);
-    const BodyIndex body = chain_.body(s);
+    Step<T> step{chain_.body(s), chain_.clock().stamp(time), time, chain_.closing(s), T(0)};
     const Collision<T> collision = chain_.collide(law_, s, time);
-    Contact<T> contact{body, chain_.clock().stamp(time), time, before(collision.outcome), chain_.nearest_gap(s)};
+    step.nearest_gap = chain_.nearest_gap(s);
     if (collision.notice & notice::cramped) chain_.make_room();
     if (++since_move_ == contacts_per_move_) {
       chain_.move_origin(time);
       since_move_ = 0;
     }
-    return contact;
+    return step;
   }
 
  private:
-  // The neighbours gain what the pair loses.
-  static T before(const Outcome<T>& o) { return o.closing + o.to_left + o.to_right; }
-
   Law law_;
   Chain chain_;
   int contacts_per_move_, since_move_ = 0;

@@ -257,6 +257,15 @@ TEST(Scene, TimesAreSortedAndWithinTheRun) {
                      "s.toml:10: output.profiles.range: not a range (found an array of 1 "));
 }
 
+TEST(Scene, RunCutShortOnTheCommandLineKeepsTheTimesWithinIt) {
+  const std::string scene = good + "[output]\nsnapshots = [1, 50, 6000]\nprofiles.times = [6000]";
+  EXPECT_EQ(texts(parse(scene, {"run.until=100"}).output.snapshots), (Strings{"1", "50"}));
+  EXPECT_TRUE(parse(scene, {"run.until=100"}).output.profiles.times.empty());
+  EXPECT_EQ(texts(parse(scene, {"run.until=100", "run.start=2"}).output.snapshots), (Strings{"50"}));
+  EXPECT_TRUE(
+      begins(message(scene, {"run.until=100", "output.snapshots=[200]"}), "--set output.snapshots: out of range"));
+}
+
 TEST(Scene, GeneralRows) {
   const std::string head = "law.type = 'sticky'\nrun.until = 9\ninitial.type = 'rows'\n";
   const std::string left = "[initial.left]\nparticles = 3\nspeed = 1\n";

@@ -1,0 +1,178 @@
+// The other commands, and what becomes of bad input: one message with file, line and key, and the documented status.
+
+#include <string>
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+
+namespace cradle::tests {
+namespace {
+
+class Commands : public ProgramTest {
+ protected:
+  void make_small_result() const {
+    ASSERT_EQ(
+        shell("cradle run fig2 --quiet --set initial.particles=200 --set run.until=60 --set output.snapshots=[20,60] "
+              "--set output.profiles.times=[30] --set output.series.points=5 -o small.h5")
+            .status,
+        0);
+  }
+};
+
+TEST_F(Commands, InfoTellsSceneTimesAndCounts) {
+  make_small_result();
+  const Printed info = shell("cradle info small.h5");
+  EXPECT_EQ(info.status, 0) << info.err;
+  for (const auto* text : {"reached the end", "initial.particles = 200", "/snapshots/0001", "time = 60", "energy"})
+    EXPECT_NE(info.out.find(text), std::string::npos) << text << "\n" << info.out;
+  EXPECT_EQ(info.out.find("initial.seed"), std::string::npos) << "defaults only with --all";
+  EXPECT_NE(shell("cradle info small.h5 --all").out.find("initial.seed = 1"), std::string::npos);
+}
+
+TEST_F(Commands, ExportWritesOneFilePerGroupWithFullDigits) {
+  make_small_result();
+  ASSERT_EQ(shell("cradle export small.h5 --to csv").status, 0);
+  const std::string series = contents(folder / "csv/series.csv");
+  EXPECT_EQ(std::count(series.begin(), series.end(), '\n'), 6) << "a head line and five samples";
+  EXPECT_NE(series.find("time"), std::string::npos);
+  const std::string snapshot = contents(folder / "csv/snapshots/0001.csv");
+  EXPECT_EQ(snapshot.substr(0, 2), "# ");
+  EXPECT_NE(snapshot.find("# time = 60"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder / "csv/profiles/0000.csv"));
+}
+
+TEST_F(Commands, TheoryKnowsTheTurnoverOfTheFront) {
+  const Printed csv = shell("cradle theory fig2 --csv");
+  EXPECT_EQ(csv.status, 0) << csv.err;
+  EXPECT_NE(csv.out.find("turnover_time,(4) = 0,continuous,,19"), std::string::npos);
+  EXPECT_NE(csv.out.find("maximal_front,x_max,continuous,,386.4477"), std::string::npos);
+  EXPECT_NE(csv.out.find("maximal_front,max(x_n - x_0),discrete,,386.447771"), std::string::npos);
+  EXPECT_NE(shell("cradle theory fig2").out.find("misprinted"), std::string::npos);
+}
+
+TEST_F(Commands, ScenesAreListedAndPrinted) {
+  const Printed list = shell("cradle scenes");
+  for (const auto* name : {"fig2", "fig3", "fig4", "collapse3"}) {
+    EXPECT_NE(list.out.find(name), std::string::npos) << name;
+    const Printed text = shell(std::string("cradle scenes ") + name + " > copy.toml && cradle check copy.toml");
+    EXPECT_EQ(text.status, 0) << text.err;
+  }
+  EXPECT_EQ(shell("cradle scenes nothing").status, 2);
+}
+
+TEST_F(Commands, CheckTellsEffectiveValuesAndCost) {
+  const Printed check = shell("cradle check fig2 --set run.until=100");
+  EXPECT_EQ(check.status, 0) << check.err;
+  for (const auto* text : {"law.restitution = 0.999", "run.until = 100", "contacts: about", "memory: about"})
+    EXPECT_NE(check.out.find(text), std::string::npos) << text;
+  EXPECT_FALSE(std::filesystem::exists(folder / "fig2.h5"));
+}
+
+TEST_F(Commands, PlotMakesPicturesInEveryFormat) {
+  make_small_result();
+  for (const auto* name : {"small.png", "small.pdf", "small.svg"}) {
+    const Printed plot = shell(std::string("cradle plot small.h5 -o ") + name);
+    EXPECT_EQ(plot.status, 0) << plot.err;
+    EXPECT_GT(contents(folder / name).size(), 10000U) << name;
+  }
+}
+
+TEST_F(Commands, VersionNamesCompilerAndScalarTypes) {
+  const Printed version = shell("cradle --version");
+  EXPECT_EQ(version.status, 0);
+  for (const auto* text : {"cradle 0.", "compiler", "-ffp-contract=off", "double"})
+    EXPECT_NE(version.out.find(text), std::string::npos) << text;
+}
+
+// ---- bad input
+
+constexpr const char* good_scene = R"([law]
+type = "inelastic"
+restitution = 0.9
+[initial]
+type = "list"
+file = "bodies.csv"
+[run]
+until = 10
+)";
+
+struct BadInput {
+  const char* name;
+  const char* replace;  // in the good scene
+  const char* by;
+  const char* bodies;
+  int status;
+  const char* message;  // begins what is printed after "cradle: "
+};
+
+void PrintTo(const BadInput& bad, std::ostream* stream) { *stream << bad.message; }
+
+class BadInputs : public Commands, public testing::WithParamInterface<BadInput> {};
+
+TEST_P(BadInputs, EndInOneMessageAndTheDocumentedStatus) {
+  const BadInput& bad = GetParam();
+  std::string scene = good_scene;
+  if (*bad.replace) scene.replace(scene.find(bad.replace), std::string(bad.replace).size(), bad.by);
+  write("scene.toml", scene);
+  if (bad.bodies) write("bodies.csv", bad.bodies);
+  const Printed run = shell("cradle run scene.toml");
+  EXPECT_EQ(run.status, bad.status);
+  EXPECT_EQ(run.err.rfind(std::string("cradle: ") + bad.message, 0), 0U) << run.err;
+  EXPECT_NE(run.err.find("): "), std::string::npos) << "what is wrong (what was found): what to do\n" << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "scene.h5"));
+}
+
+constexpr const char* good_bodies = "x,v\n0,1\n1,0\n";
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, BadInputs,
+    testing::Values(BadInput{"UnknownKey", "restitution = 0.9", "restitution = 0.9\nresitution = 0.8", good_bodies, 2,
+                             "scene.toml:4: law.resitution: "},
+                    BadInput{"WrongType", "until = 10", "until = \"soon\"", good_bodies, 2,
+                             "scene.toml:8: run.until: "},
+                    BadInput{"OutOfRange", "0.9", "1.5", good_bodies, 2,
+                             "scene.toml:3: law.restitution: out of range (found 1.5): "},
+                    BadInput{"NaN", "0.9", "nan", good_bodies, 2, "scene.toml:3: law.restitution: "},
+                    BadInput{"Infinity", "until = 10", "until = inf", good_bodies, 2, "scene.toml:8: run.until: "},
+                    BadInput{"NotToml", "[run]", "[run", good_bodies, 2, "scene.toml:7: "},
+                    BadInput{"BodiesOutOfOrder", "", "", "x,v\n1,0\n0,1\n", 2, "bodies.csv:3: "},
+                    BadInput{"BodiesCoincident", "", "", "x,v\n0,1\n1,0\n1.0,0\n", 2, "bodies.csv:4: "},
+                    BadInput{"BodyNotANumber", "", "", "x,v\n0,1\n1,nan\n", 2, "bodies.csv:3: "},
+                    BadInput{"ListMissing", "", "", nullptr, 4, "bodies.csv: "}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
+TEST_F(Commands, MissingFilesAndUnwritableOutputAreStatus4) {
+  const std::vector<std::string> commands{"cradle run nothing.toml",
+                                          "cradle info nothing.h5",
+                                          "cradle plot nothing.h5",
+                                          "cradle export nothing.h5 --to csv",
+                                          "cradle run fig2 -o no/such/folder/a.h5",
+                                          "cradle run fig2 -o .",
+                                          "echo junk > junk.h5; cradle info junk.h5"};
+  for (const auto& command : commands) {
+    const Printed run = shell(command);
+    EXPECT_EQ(run.status, 4) << command << "\n" << run.err;
+    EXPECT_EQ(run.err.rfind("cradle: ", 0), 0U) << command << "\n" << run.err;
+  }
+}
+
+TEST_F(Commands, TruncatedResultIsRefused) {
+  make_small_result();
+  const Printed info = shell("head -c 3000 small.h5 > cut.h5; cradle info cut.h5");
+  EXPECT_EQ(info.status, 4);
+  EXPECT_NE(info.err.find("cut.h5"), std::string::npos) << info.err;
+}
+
+TEST_F(Commands, BadCommandLinesAreStatus2) {
+  for (const auto* command :
+       {"cradle", "cradle walk fig2", "cradle run", "cradle run fig2 --sett a=1", "cradle export a.h5",
+        "cradle run fig2 --set law.restitution", "cradle run fig2 --set run.precision=float16",
+        "cradle run fig2 --set law.type=wet --set law.restitution= --set law.cutoff= --set law.loss=1"}) {
+    const Printed run = shell(command);
+    EXPECT_EQ(run.status, 2) << command << "\n" << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+}
+
+}  // namespace
+}  // namespace cradle::tests

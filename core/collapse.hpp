@@ -36,7 +36,7 @@ template <Real T> class CollapseWatch {
   bool settled(BodyIndex body, const Pair<T>& time, const T& local, const T& gap, const T& elapsed) {
     History& h = histories_[body];
     const T interval = h.contacts > 0 ? T(local - h.last) : T(0);
-    const T resolution = std::numeric_limits<T>::epsilon() * magnitude(elapsed);
+    const T resolution = T(std::numeric_limits<T>::epsilon()) * magnitude(elapsed);
     report_.last_contact = time.value();
     report_.gap = gap;
     report_.body = body;

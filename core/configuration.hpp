@@ -48,9 +48,10 @@ template <Real T> struct Account {
 using Notice = unsigned;
 namespace notice {
 inline constexpr Notice none = 0;
-inline constexpr Notice crowded = 1;  // the flight before it was short against the time since the origin
-inline constexpr Notice tight = 2;    // it left a gap below the floor beside it
-inline constexpr Notice cramped = 4;  // the chain has no slot for the next body of a row
+inline constexpr Notice crowded = 1;   // the flight before it was short against the time since the origin, 2^-20 of it
+inline constexpr Notice pressing = 8;  // so short, 2^-40, that time loses its digits unless the origin moves now
+inline constexpr Notice tight = 2;     // it left a gap below the floor beside it
+inline constexpr Notice cramped = 4;   // the chain has no slot for the next body of a row
 }  // namespace notice
 
 // What a chain reports of a contact: the law's outcome and the next contacts of the three gaps involved, as queue

@@ -5,7 +5,7 @@
 // whose low bits are replaced by the gap's slot. Integer order is then time order to a relative resolution of 2^(bits -
 // 52), and the root names the next gap without a descent. What the keys cannot tell apart is the caller's to decide,
 // exactly: `contested` says when, `for_each_before` lists the candidates. Keys made from a rounded time (wide scalar
-// types) may be off by one unit: `slack` widens both by that.
+// types) may be off by two units: `slack` widens both by that.
 
 #include <algorithm>
 #include <bit>
@@ -27,7 +27,7 @@ class EventQueue {
   // Slots 0 to slots - 1. The two at either end stay empty: an update touches the neighbours of its slot.
   explicit EventQueue(std::size_t slots, bool exact_keys, int least_bits = 3)
       : leaves_(std::size_t{1} << std::max<int>(least_bits, static_cast<int>(std::bit_width(slots - 1)))),
-        mask_(leaves_ - 1), slack_(exact_keys ? 0 : leaves_), tree_(2 * leaves_, key(never, 0)) {}
+        mask_(leaves_ - 1), slack_(exact_keys ? 0 : 2 * leaves_), tree_(2 * leaves_, key(never, 0)) {}
 
   std::size_t slots() const { return leaves_; }
   Key next() const { return tree_[1]; }

@@ -33,12 +33,14 @@ template <Real T> struct Gap { T gap{1}, closing{-1}, time{0}; };
 template <> struct alignas(32) Gap<double> { double gap = 1, closing = -1, time = 0, due = EventQueue::never; };
 
 template <Real T> struct IdenticalMasses {
-  explicit IdenticalMasses(const Bodies<T>& bodies) : mass(bodies.mass(0)) {}
-  T mass;
+  explicit IdenticalMasses(const Bodies<T>& bodies) : mass(bodies.mass(0)), reduced_mass(mass / T(2)) {}
+  T mass, reduced_mass;
   void resize(std::size_t) {}
   void set(Slot, const T&) {}
   const T& operator[](Slot) const { return mass; }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing) const { return law(closing, mass); }
+  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing) const {
+    return law(closing, reduced_mass);
+  }
 };
 
 template <Real T> struct IndividualMasses {
@@ -68,7 +70,15 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // ---- times: what a chain calls a local time is an offset from its origin
   const Clock<T>& clock() const { return clock_; }
   T local_time(const T& time) const { return clock_.offset(time); }
-  double queue_time(const T& local) const { return to_double(local); }
+  double queue_time(const T& local) const {
+    if constexpr (WiderRange<T>) {
+      long exponent = 0;
+      const double mantissa = split(local, exponent);
+      return scale(mantissa, exponent + shift_);
+    } else {
+      return to_double(local);
+    }
+  }
 
   // ---- slots: the gaps held are first() to last()
   std::size_t slots() const { return gaps_.size(); }
@@ -102,7 +112,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
     Gap<T>& pair = gaps_[s];
     const Outcome<T> outcome = masses_.outcome(law, s, pair.closing);
-    Notice notice = time - pair.time < time * crowded_ ? notice::crowded : notice::none;
+    Notice notice = short_flight(time, pair.time);
     if ((s <= front_left_) | (s >= front_right_)) [[unlikely]]
       notice |= widen(s, time, outcome);
 
@@ -134,6 +144,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       if constexpr (keys_are_exact) g.due = g.closing > 0 ? g.time + g.gap / g.closing + lag_[s] : EventQueue::never;
     }
     for (Anchor* anchor : {&left_, &right_}) anchor->time = anchor->time - local;
+    if constexpr (WiderRange<T>) choose_shift();
     return T(0);
   }
 
@@ -295,10 +306,10 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 
   Notice note(Slot s, const T& time, const T& flown) {
     const Gap<T>& g = gaps_[s];
-    if (g.gap > T(0)) return notice::tight;
+    if (is_positive(g.gap)) return notice::tight;
     // Times are rounded in units of the offset, the way flown in units of the way.
     const T rounding =
-        T(16) * std::numeric_limits<T>::epsilon() * magnitude(g.closing) * (magnitude(time) + magnitude(flown));
+        T(16) * T(std::numeric_limits<T>::epsilon()) * magnitude(g.closing) * (magnitude(time) + magnitude(flown));
     if (-g.gap > rounding) {
       if (account_.order_lost++ == 0) account_.first_order_lost = {clock_.time(time), body(s), g.gap};
     } else {
@@ -317,10 +328,44 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       return g.due =
                  std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
     } else {
-      if (!(g.closing > T(0))) return EventQueue::never;
-      const double rounded = to_double(g.time) + to_double(g.gap) / to_double(g.closing);
-      return std::isfinite(rounded) && !is_negative(g.time) ? rounded : to_double(due(s));
+      if (!is_positive(g.closing)) return EventQueue::never;
+      if (is_negative(g.time)) [[unlikely]]
+        return queue_time(due(s));
+      if constexpr (WiderRange<T>) {
+        long of_gap = 0, of_closing = 0;
+        const double gap = split(g.gap, of_gap), closing = split(g.closing, of_closing);
+        return queue_time(g.time) + scale(gap / closing, of_gap - of_closing + shift_);
+      } else {
+        const double rounded = to_double(g.time) + to_double(g.gap) / to_double(g.closing);
+        return std::isfinite(rounded) ? rounded : queue_time(due(s));
+      }
     }
+  }
+
+  // Whether the flight since the gap was last touched is short against the time since the origin.
+  Notice short_flight(const T& time, const T& before) const {
+    if constexpr (keys_are_exact) {
+      const T flown = time - before;
+      if (!(flown < time * 0x1p-20)) [[likely]]
+        return notice::none;
+      return flown < time * 0x1p-40 ? notice::crowded | notice::pressing : notice::crowded;
+    } else {
+      const double flown = queue_time(T(time - before)), offset = queue_time(time);
+      if (!(flown < offset * 0x1p-20)) return notice::none;
+      return flown < offset * 0x1p-40 ? notice::crowded | notice::pressing : notice::crowded;
+    }
+  }
+
+  // Queue times are local times in units of 2^-shift, such that the next contact is within the range of double.
+  void choose_shift() {
+    long least = std::numeric_limits<long>::max();
+    for (Slot s = first_; s <= last_; ++s) {
+      if (!is_positive(gaps_[s].closing)) continue;
+      const T next = due(s);
+      long exponent = 0;
+      if (split(next, exponent) > 0) least = std::min(least, exponent);
+    }
+    shift_ = least < -500 || (least > 500 && least < std::numeric_limits<long>::max()) ? -least : 0;
   }
 
   std::vector<Gap<T>> gaps_;
@@ -329,7 +374,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;  // gaps of the outermost contacts so far
   BodyIndex body_of_slot_0_ = 0;
   T floor_{0};
-  T crowded_ = T(1) / T(std::int64_t{1} << 20);  // share of the offset below which a flight wants a nearer origin
+  long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
   std::shared_ptr<const Bodies<T>> bodies_;
   Clock<T> clock_;
   Masses masses_;

@@ -34,12 +34,12 @@ template <Real T> class Inelastic {
       : restitution_(restitution), cutoff_(cutoff), half_sum_((T(1) + restitution) / T(2)),
         lost_((T(1) - restitution) * (T(1) + restitution) / T(2)), soft_(restitution * T(2) < T(1)) {}
 
-  // Two bodies of the same mass.
-  Outcome<T> operator()(const T& w, const T& mass) const {
+  // Two bodies of the same mass m: mu = m/2.
+  Outcome<T> operator()(const T& w, const T& reduced_mass) const {
     const bool elastic = w < cutoff_;
     const T after = closing_after(w, elastic);
     const T handed = soft_ ? T((w - after) / T(2)) : T(share(elastic) * w);
-    return {after, handed, handed, energy_lost(w, mass / T(2), elastic), elastic};
+    return {after, handed, handed, energy_lost(w, reduced_mass, elastic), elastic};
   }
 
   Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {

@@ -52,7 +52,8 @@ template <Real T> class PositionChain {
     advance(left, time);
     advance(right, time);
     right.x = left.x;
-    const Outcome<T> outcome = left.m == right.m ? law(closing_[s], left.m) : law(closing_[s], left.m, right.m);
+    const Outcome<T> outcome =
+        left.m == right.m ? law(closing_[s], T(left.m / T(2))) : law(closing_[s], left.m, right.m);
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
     front_left_ = std::min(front_left_, s);

@@ -5,6 +5,8 @@
 //
 // Here too: error-free addition (Knuth's TwoSum, six operations, any magnitudes) and the compensated sum built on it.
 
+#include <bit>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -29,9 +31,32 @@ concept Real = std::copyable<T> && std::totally_ordered<T> && std::constructible
 
 template <Real T> double to_double(const T& x) { return static_cast<double>(x); }
 
+// Types that have a quicker way than a comparison overload these beside themselves.
 template <Real T> bool is_negative(const T& x) { return x < T(0); }
+template <Real T> bool is_positive(const T& x) { return x > T(0); }
 
 template <Real T> T magnitude(const T& x) { return is_negative(x) ? T(-x) : x; }
+
+// 2^exponent x as a double, rounded by a few units, within the range of double (larger numbers become its largest).
+// Types whose range is wider than double's say `double split(x, long& exponent)`: x = mantissa 2^exponent, |mantissa|
+// in [1/2, 1] or 0.
+inline double scale(double mantissa, long exponent) {
+  if (exponent > 1000) return mantissa > 0 ? std::numeric_limits<double>::max() : -std::numeric_limits<double>::max();
+  if (exponent < -1000) return 0;
+  return mantissa * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+}
+
+inline double split(long double x, long& exponent) {
+  int e = 0;
+  const auto mantissa = static_cast<double>(std::frexp(x, &e));
+  exponent = e;
+  return mantissa;
+}
+
+template <class T>
+concept WiderRange = requires(const T x, long exponent) {
+  { split(x, exponent) } -> std::same_as<double>;
+};
 
 // An unevaluated sum high + low, |low| at most half a unit in the last place of high.
 template <Real T> struct Pair {

@@ -49,14 +49,29 @@ template <Real T> struct Policy {
   std::function<bool()> interrupt;  // asked now and then; true ends the run after the current contact
 };
 
+// Sum of the energies lost: compensated where the type has no digits to spare for 1e12 terms.
+template <Real T> class Ledger {
+ public:
+  void add(const T& loss) {
+    if constexpr (compensated)
+      sum_.add(loss);
+    else
+      sum_.sum += loss;
+  }
+  T value() const { return sum_.value(); }
+
+ private:
+  static constexpr bool compensated = std::same_as<T, float> || std::same_as<T, double> || std::same_as<T, long double>;
+  CompensatedSum<T> sum_;
+};
+
 template <Real T, class Law, class Chain> class Simulation {
  public:
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits) {
     fill_queue();
-    const T epsilon = std::numeric_limits<T>::epsilon();  // 0: exact arithmetic, which knows no underflow
-    underflow_ = epsilon > T(0) ? T(std::numeric_limits<T>::min() / epsilon) : T(0);
+    underflow_ = std::numeric_limits<T>::min();  // 0 in exact arithmetic, which knows no underflow
     watch_below_ = policy_.collapse == CollapsePolicy::stop && chain_.last() >= chain_.first()
                        ? T(smallest_gap() / T(64))
                        : underflow_;
@@ -159,7 +174,8 @@ template <Real T, class Law, class Chain> class Simulation {
     const auto active = static_cast<std::uint64_t>(chain_.collided_bodies());
     // Many bodies may meet at one time, n(n - 1)/2 contacts if elastic; more than that, and time stands still.
     if (counts_.contacts - progress_ > 64 + 4 * active * active) return Status::exhausted;
-    const bool crowded = (notice & notice::crowded) && 16 * (counts_.contacts - last_move_) >= active;
+    const bool crowded =
+        (notice & notice::pressing) || ((notice & notice::crowded) && 16 * (counts_.contacts - last_move_) >= active);
     if (counts_.contacts >= next_review_ || crowded) {
       move_origin(time);
       // A move costs as much as a few contacts per gap: rare in a large zone, with every contact in a few-body
@@ -195,7 +211,7 @@ template <Real T, class Law, class Chain> class Simulation {
   int least_queue_bits_;
   EventQueue queue_;
   Counts counts_;
-  CompensatedSum<T> lost_;
+  Ledger<T> lost_;
   std::uint64_t next_review_ = 1, last_move_ = 0;
   std::uint64_t progress_ = 0;  // contacts made when time was last seen to advance
   T reviewed_{0};               // local time at the last review

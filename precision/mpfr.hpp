@@ -1,0 +1,138 @@
+#pragma once
+// MPFR numbers of a precision chosen at run time, held in place: the limbs are part of the object, so that a number is
+// made, copied and dropped without the heap, and a chain's numbers lie side by side in memory. `Limbs` is the room for
+// them (64 bits each); the precision itself is one value per process, set before the first number is made and before
+// any thread starts. All operations round to nearest.
+
+#include <mpfr.h>
+
+#include <array>
+#include <bit>
+#include <compare>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace cradle {
+
+// The working precision of every Mpfr number, in bits.
+class MpfrPrecision {
+ public:
+  // What `digits` decimal digits take, and a bit to spare.
+  static mpfr_prec_t bits_for(unsigned digits) { return static_cast<mpfr_prec_t>(digits) * 3322 / 1000 + 2; }
+  static mpfr_prec_t bits() { return bits_; }
+  static void set_bits(mpfr_prec_t bits) { bits_ = bits; }
+  static int limbs() { return static_cast<int>((bits_ + GMP_NUMB_BITS - 1) / GMP_NUMB_BITS); }
+
+ private:
+  static inline mpfr_prec_t bits_ = 53;
+};
+
+template <int Limbs> class Mpfr {
+ public:
+  static constexpr mpfr_prec_t room = Limbs * GMP_NUMB_BITS;
+
+  Mpfr() { mpfr_custom_init_set(&v_, MPFR_ZERO_KIND, 0, MpfrPrecision::bits(), limbs_.data()); }
+  explicit Mpfr(int i) : Mpfr() { mpfr_set_si(&v_, i, MPFR_RNDN); }
+  explicit Mpfr(std::int64_t i) : Mpfr() { mpfr_set_sj(&v_, i, MPFR_RNDN); }
+  explicit Mpfr(double x) : Mpfr() { mpfr_set_d(&v_, x, MPFR_RNDN); }
+  // From a decimal literal that has been checked to be one.
+  explicit Mpfr(const char* literal) : Mpfr() { mpfr_strtofr(&v_, literal, nullptr, 10, MPFR_RNDN); }
+
+  Mpfr(const Mpfr& x) noexcept { take(x); }
+  Mpfr& operator=(const Mpfr& x) noexcept {
+    if (this != &x) take(x);
+    return *this;
+  }
+  ~Mpfr() = default;
+
+  explicit operator double() const { return mpfr_get_d(&v_, MPFR_RNDN); }
+  mpfr_srcptr get() const { return &v_; }
+
+  friend Mpfr operator-(const Mpfr& x) {
+    Mpfr negative(x);
+    negative.v_._mpfr_sign = -negative.v_._mpfr_sign;
+    return negative;
+  }
+  friend Mpfr operator+(const Mpfr& x, const Mpfr& y) { return make(mpfr_add, x, y); }
+  friend Mpfr operator-(const Mpfr& x, const Mpfr& y) { return make(mpfr_sub, x, y); }
+  friend Mpfr operator*(const Mpfr& x, const Mpfr& y) { return make(mpfr_mul, x, y); }
+  friend Mpfr operator/(const Mpfr& x, const Mpfr& y) { return make(mpfr_div, x, y); }
+  Mpfr& operator+=(const Mpfr& y) { return mpfr_add(&v_, &v_, &y.v_, MPFR_RNDN), *this; }
+  Mpfr& operator-=(const Mpfr& y) { return mpfr_sub(&v_, &v_, &y.v_, MPFR_RNDN), *this; }
+  Mpfr& operator*=(const Mpfr& y) { return mpfr_mul(&v_, &v_, &y.v_, MPFR_RNDN), *this; }
+  Mpfr& operator/=(const Mpfr& y) { return mpfr_div(&v_, &v_, &y.v_, MPFR_RNDN), *this; }
+
+  friend bool operator==(const Mpfr& x, const Mpfr& y) { return mpfr_equal_p(&x.v_, &y.v_) != 0; }
+  friend std::partial_ordering operator<=>(const Mpfr& x, const Mpfr& y) {
+    if (mpfr_unordered_p(&x.v_, &y.v_)) return std::partial_ordering::unordered;
+    return mpfr_cmp(&x.v_, &y.v_) <=> 0;
+  }
+  friend bool operator<(const Mpfr& x, const Mpfr& y) { return mpfr_less_p(&x.v_, &y.v_) != 0; }
+
+  friend bool is_negative(const Mpfr& x) { return x.v_._mpfr_sign < 0 && !mpfr_zero_p(&x.v_); }
+  friend bool is_positive(const Mpfr& x) { return x.v_._mpfr_sign > 0 && !mpfr_zero_p(&x.v_); }
+
+  friend Mpfr sqrt(const Mpfr& x) {
+    Mpfr root;
+    mpfr_sqrt(&root.v_, &x.v_, MPFR_RNDN);
+    return root;
+  }
+  friend Mpfr ldexp(const Mpfr& x, long exponent) {
+    Mpfr scaled;
+    mpfr_mul_2si(&scaled.v_, &x.v_, exponent, MPFR_RNDN);
+    return scaled;
+  }
+
+  // x = mantissa 2^exponent, mantissa in [1/2, 1] or 0: read off the leading limb, good to 2^-52.
+  friend double split(const Mpfr& x, long& exponent) {
+    if (!mpfr_regular_p(&x.v_)) {
+      exponent = 0;
+      return mpfr_zero_p(&x.v_) ? 0.0 : mpfr_get_d(&x.v_, MPFR_RNDN);
+    }
+    exponent = x.v_._mpfr_exp;
+    const auto leading = x.limbs_[static_cast<std::size_t>((x.v_._mpfr_prec - 1) / GMP_NUMB_BITS)];
+    const double mantissa = static_cast<double>(leading >> 1) * 0x1p-63;  // signed conversion: one instruction
+    return x.v_._mpfr_sign < 0 ? -mantissa : mantissa;
+  }
+
+ private:
+  template <class Operation> static Mpfr make(Operation operation, const Mpfr& x, const Mpfr& y) {
+    Mpfr result;
+    operation(&result.v_, &x.v_, &y.v_, MPFR_RNDN);
+    return result;
+  }
+
+  void take(const Mpfr& x) noexcept {
+    v_ = x.v_;
+    v_._mpfr_d = limbs_.data();
+    if constexpr (Limbs <= 4)
+      limbs_ = x.limbs_;
+    else
+      std::memcpy(limbs_.data(), x.limbs_.data(), static_cast<std::size_t>(MpfrPrecision::limbs()) * sizeof(mp_limb_t));
+  }
+
+  __mpfr_struct v_;
+  std::array<mp_limb_t, static_cast<std::size_t>(Limbs)> limbs_;
+};
+
+}  // namespace cradle
+
+template <int Limbs> class std::numeric_limits<cradle::Mpfr<Limbs>> {
+  using T = cradle::Mpfr<Limbs>;
+
+ public:
+  static constexpr bool is_specialized = true, is_signed = true, is_integer = false, is_exact = false;
+  static constexpr bool has_infinity = true, has_quiet_NaN = true, is_iec559 = false, is_bounded = true;
+  static constexpr int radix = 2;
+  // digits are a run-time choice: see MpfrPrecision.
+  static constexpr long min_exponent = -(1L << 30) + 2, max_exponent = (1L << 30) - 1;
+  static T epsilon() { return ldexp(T(1), 1 - cradle::MpfrPrecision::bits()); }
+  // Above the least exponent by more than the precision: differences of larger numbers are exact or rounded, never
+  // zero.
+  static T min() { return ldexp(T(1), min_exponent + (1L << 20)); }
+  static T max() { return ldexp(T(1), max_exponent - 1); }
+  static T lowest() { return -max(); }
+};

@@ -9,10 +9,15 @@
 //
 // The bounds hold while nothing underflows, that is, while results stay above 2^-969: that is numeric_limits::min().
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <string_view>
+
+#include "cradle/precision/text.hpp"
 
 namespace cradle {
 
@@ -121,4 +126,30 @@ template <> class std::numeric_limits<cradle::double_double> {
   static constexpr cradle::double_double quiet_NaN() {
     return cradle::double_double(std::numeric_limits<double>::quiet_NaN());
   }
+};
+
+// Through a type with room for any sum of two doubles (from 2^1024 down to 2^-1074): each way is rounded once.
+template <> inline constexpr std::string_view cradle::scalar_name<cradle::double_double> = "double-double";
+
+template <> struct cradle::Text<cradle::double_double> {
+  static double_double from(std::string_view literal) {
+    const Exact exact(checked_literal(literal));
+    const auto high = static_cast<double>(exact);
+    return std::isfinite(high) ? double_double::sum(high, static_cast<double>(Exact(exact - high)))
+                               : double_double(high);
+  }
+
+  static std::string to(const double_double& x) {
+    const Exact exact = Exact(x.high()) + x.low();
+    // High and low may be far apart: take digits until they are all told.
+    for (int digits = 32;; digits += 8) {
+      std::string text = exact.str(digits);
+      if (digits > 700 || from(text) == x) return text;
+    }
+  }
+
+ private:
+  using Exact =
+      boost::multiprecision::number<boost::multiprecision::cpp_bin_float<2200, boost::multiprecision::digit_base_2>,
+                                    boost::multiprecision::et_off>;
 };

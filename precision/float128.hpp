@@ -10,6 +10,10 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <string_view>
+
+#include "cradle/precision/text.hpp"
 
 namespace cradle {
 
@@ -97,4 +101,20 @@ template <> class std::numeric_limits<cradle::float128> {
   static T lowest() { return -max(); }
   static T infinity() { return T(std::numeric_limits<double>::infinity()); }
   static T quiet_NaN() { return T::from(nanq("")); }
+};
+
+template <> inline constexpr std::string_view cradle::scalar_name<cradle::float128> = "float128";
+
+template <> struct cradle::Text<cradle::float128> {
+  static float128 from(std::string_view literal) {
+    return float128::from(strtoflt128(checked_literal(literal).c_str(), nullptr));
+  }
+  static std::string to(const float128& x) {
+    char buffer[64];
+    for (int digits = 33; digits < 37; ++digits) {  // 36 tell any two numbers apart
+      quadmath_snprintf(buffer, sizeof buffer, "%.*Qg", digits, x.value());
+      if (from(buffer) == x) break;
+    }
+    return buffer;
+  }
 };

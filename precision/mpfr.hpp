@@ -14,6 +14,10 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+
+#include "cradle/precision/mpfr_text.hpp"
+#include "cradle/precision/text.hpp"
 
 namespace cradle {
 
@@ -21,7 +25,7 @@ namespace cradle {
 class MpfrPrecision {
  public:
   // What `digits` decimal digits take, and a bit to spare.
-  static mpfr_prec_t bits_for(unsigned digits) { return static_cast<mpfr_prec_t>(digits) * 3322 / 1000 + 2; }
+  static constexpr mpfr_prec_t bits_for(unsigned digits) { return static_cast<mpfr_prec_t>(digits) * 3322 / 1000 + 2; }
   static mpfr_prec_t bits() { return bits_; }
   static void set_bits(mpfr_prec_t bits) { bits_ = bits; }
   static int limbs() { return static_cast<int>((bits_ + GMP_NUMB_BITS - 1) / GMP_NUMB_BITS); }
@@ -32,7 +36,8 @@ class MpfrPrecision {
 
 template <int Limbs> class Mpfr {
  public:
-  static constexpr mpfr_prec_t room = Limbs * GMP_NUMB_BITS;
+  // What fits: 8 limbs hold 153 digits, 56 hold 1078.
+  static constexpr bool holds(unsigned digits) { return MpfrPrecision::bits_for(digits) <= Limbs * GMP_NUMB_BITS; }
 
   Mpfr() { mpfr_custom_init_set(&v_, MPFR_ZERO_KIND, 0, MpfrPrecision::bits(), limbs_.data()); }
   explicit Mpfr(int i) : Mpfr() { mpfr_set_si(&v_, i, MPFR_RNDN); }
@@ -135,4 +140,11 @@ template <int Limbs> class std::numeric_limits<cradle::Mpfr<Limbs>> {
   static T min() { return ldexp(T(1), min_exponent + (1L << 20)); }
   static T max() { return ldexp(T(1), max_exponent - 1); }
   static T lowest() { return -max(); }
+};
+
+template <int Limbs> inline constexpr std::string_view cradle::scalar_name<cradle::Mpfr<Limbs>> = "mpfr";
+
+template <int Limbs> struct cradle::Text<cradle::Mpfr<Limbs>> {
+  static Mpfr<Limbs> from(std::string_view literal) { return Mpfr<Limbs>(checked_literal(literal).c_str()); }
+  static std::string to(const Mpfr<Limbs>& x) { return mpfr_text(x.get(), 0); }
 };

@@ -14,6 +14,36 @@ namespace cradle {
 
 template <class T> struct Text;
 
+// What scenes call the type.
+template <class T> inline constexpr std::string_view scalar_name = "";
+template <> inline constexpr std::string_view scalar_name<double> = "double";
+template <> inline constexpr std::string_view scalar_name<long double> = "long double";
+
+// The literal, if it is a finite decimal one (1, -0.5, 2e-400); throws std::invalid_argument otherwise. Libraries that
+// read numbers leniently are given nothing else.
+inline std::string checked_literal(std::string_view literal) {
+  const auto fail = [&] {
+    throw std::invalid_argument("not a number (" + std::string(literal) + "): give a decimal literal");
+  };
+  std::size_t at = 0, digits = 0;
+  const auto skip_digits = [&] {
+    for (; at < literal.size() && literal[at] >= '0' && literal[at] <= '9'; ++at) ++digits;
+  };
+  const auto skip_sign = [&] { at += at < literal.size() && (literal[at] == '+' || literal[at] == '-'); };
+  skip_sign();
+  skip_digits();
+  if (at < literal.size() && literal[at] == '.') ++at, skip_digits();
+  if (digits == 0) fail();
+  if (at < literal.size() && (literal[at] == 'e' || literal[at] == 'E')) {
+    ++at, skip_sign();
+    digits = 0;
+    skip_digits();
+    if (digits == 0) fail();
+  }
+  if (at != literal.size()) fail();
+  return std::string(literal);
+}
+
 namespace detail {
 
 // The standard types: std::from_chars and std::to_chars are exact in both directions and know no locale.
@@ -21,10 +51,9 @@ template <class T> struct StandardText {
   // Throws std::invalid_argument for anything but a finite decimal literal. Beyond the type's range: 0 or infinity.
   static T from(std::string_view literal) {
     T value{};
-    const std::string_view digits = literal.starts_with('+') ? literal.substr(1) : literal;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
-      throw std::invalid_argument("not a number (" + std::string(literal) + "): give a decimal literal");
+    const std::string text = checked_literal(literal);
+    const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
+    const auto error = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
     if (error == std::errc::result_out_of_range) {
       const auto exponent = digits.find_first_of("eE");
       const bool small = exponent == std::string_view::npos ? digits.find_first_of("123456789") > digits.find('.')

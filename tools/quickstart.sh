@@ -23,8 +23,9 @@ step "plotting out/fig2.h5" "see the message above; the result itself is complet
 cat <<DONE
 
 Made:
-  $cradle        the program; $cradle --help lists its commands
-  out/fig2.h5                       the result: velocities and profiles at several times, energy, contacts
-  $(ls -m out/fig2*.png)            pictures of it: compare with Fig. 2 of the paper
-Next: $cradle scenes lists the scenes that come with it; tools/test.sh runs the tests.
+  out/fig2.h5    the result: velocities and profiles at several times, energy, contacts
+  $(ls -m out/fig2*.png)
+                 pictures of it; compare the first with Fig. 2 of the paper
+  $cradle
+                 the program: --help lists its commands, scenes the scenes that come with it
 DONE

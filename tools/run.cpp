@@ -2,216 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
+#include <type_traits>
 
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/position_chain.hpp"
-#include "cradle/tools/interrupt.hpp"
-#include "cradle/tools/recorder.hpp"
-#include "cradle/tools/schedule.hpp"
-#include "cradle/tools/version.hpp"
+#include "cradle/tools/in_precision.hpp"
 
 namespace cradle::tools {
 
+// Compiled once per scalar type, in a source of its own: instances/ of the build tree.
+template <class T> RunOutcome run_in(const Scene& scene, Progress::Show show);
+
 namespace {
-
-std::string place(BodyIndex left) { return fmt::format("between bodies {} and {}", left, left + 1); }
-
-// The collapse report: times with all digits of the type.
-template <Real T> std::string collapse_report(const CollapseReport<T>& r, const Counts& counts) {
-  const std::string t_c = to_text(r.time.value());
-  std::string text = r.extrapolated
-                         ? fmt::format("inelastic collapse at t_c = {} +- {:.1g}\n", t_c, to_double(r.uncertainty))
-                         : std::string("a gap fell below run.stop_gap; no collapse time could be extrapolated\n");
-  text +=
-      fmt::format("  last contact   t = {}, number {}, {}\n", to_text(r.last_contact), counts.contacts, place(r.body));
-  text += fmt::format("  smallest gap   {:.6e} beside it\n", to_double(r.gap));
-  if (r.extrapolated)
-    text += fmt::format("  intervals      {:.6e}, shrinking by {:.12g} from one contact there to the next\n",
-                        to_double(r.interval), to_double(r.ratio));
-  text += "  to go on       give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
-  return text;
-}
-
-template <Real T> std::string account_warning(const Account<T>& account, Coordinates coordinates) {
-  std::string text;
-  if (account.order_lost > 0)
-    text +=
-        fmt::format("order of contacts lost ({} times, first at t = {} {}, gap {:.3e}): use more digits (run.precision)"
-                    "{}\n",
-                    account.order_lost, to_text(account.first_order_lost.time), place(account.first_order_lost.body),
-                    to_double(account.first_order_lost.gap),
-                    coordinates == Coordinates::absolute ? " or run.coordinates = \"gaps\"" : "");
-  if (account.unresolved > 0)
-    text += fmt::format(
-        "gaps below 1e6 units in the last place of x ({} contacts, first at t = {} {}, gap {:.3e}): results that "
-        "depend on such gaps cannot be trusted; use run.coordinates = \"gaps\" or more digits\n",
-        account.unresolved, to_text(account.first_unresolved.time), place(account.first_unresolved.body),
-        to_double(account.first_unresolved.gap));
-  if (account.simultaneous > 0)
-    text += fmt::format("three bodies met within rounding ({} contacts): the tie rule decided their order; perturb the "
-                        "initial state where that matters\n",
-                        account.simultaneous);
-  return text;
-}
-
-// ---- one run with everything fixed that the hot loop is a template of
-
-template <Real T, class Simulation> class SceneRun {
- public:
-  SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Simulation simulation,
-           Progress& progress)
-      : scene_(scene), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
-        simulation_(std::move(simulation)), progress_(progress), plan_(schedule<T>(scene)) {}
-
-  RunOutcome operator()() {
-    Status status = Status::reached;
-    for (const T& stop : plan_.stops) {
-      status = scene_.output.events ? simulation_.advance(stop, events_) : simulation_.advance(stop);
-      if (status != Status::reached) break;
-      look(stop);
-      progress_.tell(to_double(stop), simulation_.counts().contacts);
-    }
-    if (status != Status::reached) record_end(simulation_.last_contact_time());
-    return finish(status);
-  }
-
- private:
-  static bool take(const std::vector<T>& times, std::size_t& next, const T& time) {
-    if (next >= times.size() || times[next] != time) return false;
-    ++next;
-    return true;
-  }
-
-  void look(const T& time) {
-    if (take(plan_.series, next_series_, time)) series_.add(sample(simulation_, energy_, time));
-    const bool snapshot = take(plan_.snapshots, next_snapshot_, time),
-               profiled = take(plan_.profiles, next_profile_, time);
-    if (!snapshot && !profiled) return;
-    const Configuration<T> now = simulation_.chain().configuration(simulation_.chain().local_time(time));
-    if (snapshot) snapshots_.push_back(snapshot_table(now, numbered("snapshots", snapshots_.size())));
-    if (profiled) record_profile(now, time);
-  }
-
-  void record_profile(const Configuration<T>& now, const T& time) {
-    const auto& wanted = scene_.output.profiles;
-    const T elapsed = time - number<T>(scene_.run.start);
-    BinRange range{to_double(now.x.front()), to_double(now.x.back())};
-    if (!wanted.range.empty())
-      range = {wanted.range[0].value, wanted.range[1].value};
-    else if (simulation_.chain().collided_bodies() > 1) {
-      const T local = simulation_.chain().local_time(time);
-      range = {to_double(T(simulation_.chain().front_left(local))),
-               to_double(T(simulation_.chain().front_right(local)))};
-    }
-    if (!(range.from < range.to)) range.to = range.from + 1;  // all in one place: one length around it
-    profiles_.push_back(
-        profile_table(profile(now, *bodies_, elapsed, range, wanted.bins), numbered("profiles", profiles_.size())));
-  }
-
-  // A run that ends early leaves its last state.
-  void record_end(const T& time) {
-    series_.add(sample(simulation_, energy_, time));
-    snapshots_.push_back(snapshot_table(simulation_.chain().configuration(simulation_.chain().local_time(time)),
-                                        numbered("snapshots", snapshots_.size())));
-  }
-
-  static std::string numbered(const char* folder, std::size_t number) {
-    return fmt::format("{}/{:04}", folder, number);
-  }
-
-  RunOutcome finish(Status status) {
-    const auto& account = simulation_.chain().account();
-    const Counts& counts = simulation_.counts();
-    RunOutcome end;
-    std::string outcome = "reached the end";
-    end.warning = account_warning(account, scene_.run.coordinates);
-    switch (status) {
-    case Status::reached:
-      if (account.order_lost > 0) outcome = "order of contacts lost", end.status = Exit::lost;
-      break;
-    case Status::collapsed:
-      outcome = "inelastic collapse", end.status = Exit::collapse;
-      end.report = collapse_report(simulation_.collapse(), counts);
-      break;
-    case Status::exhausted:
-      outcome = "resolution exhausted", end.status = Exit::lost;
-      end.warning += fmt::format("resolution exhausted (t = {}, {} contacts): time or a gap can get no smaller in {}; "
-                                 "use {}a law.cutoff, or collapse = \"stop\"\n",
-                                 to_text(simulation_.last_contact_time()), counts.contacts, precision_name(scene_.run),
-                                 scene_.run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "");
-      break;
-    case Status::interrupted:
-      outcome = "interrupted";
-      end.status = noted_signal() == SIGINT ? Exit::interrupted : Exit::terminated;
-      break;
-    }
-    end.result.attributes = {{"format_version", std::uint64_t{1}},
-                             {"cradle_version", std::string(version)},
-                             {"scene", effective_toml(scene_)},
-                             {"name", scene_.name},
-                             {"precision", precision_name(scene_.run)},
-                             {"outcome", outcome},
-                             {"simultaneous_contacts", account.simultaneous},
-                             {"order_lost", account.order_lost},
-                             {"unresolved_gaps", account.unresolved},
-                             {"close_calls", counts.close_calls}};
-    end.result.groups.push_back(std::move(series_).table());
-    for (auto* groups : {&snapshots_, &profiles_})
-      for (auto& group : *groups) end.result.groups.push_back(std::move(group));
-    if (scene_.output.events) end.result.groups.push_back(std::move(events_).table());
-    if (status == Status::collapsed) end.result.groups.push_back(collapse_table());
-    return end;
-  }
-
-  Group collapse_table() const {
-    const auto& r = simulation_.collapse();
-    return {"collapse",
-            {{"time", to_double(T(r.time.value()))},
-             {"uncertainty", to_double(r.uncertainty)},
-             {"last_contact", to_double(r.last_contact)},
-             {"interval", to_double(r.interval)},
-             {"ratio", to_double(r.ratio)},
-             {"gap", to_double(r.gap)},
-             {"body", static_cast<std::uint64_t>(r.body)}},
-            {}};
-  }
-
-  const Scene& scene_;
-  std::shared_ptr<const cradle::Bodies<T>> bodies_;
-  T energy_;
-  Simulation simulation_;
-  Progress& progress_;
-  Schedule<T> plan_;
-  std::size_t next_series_ = 0, next_snapshot_ = 0, next_profile_ = 0;
-  SeriesRecorder<T> series_;
-  EventRecorder<T> events_;
-  std::vector<Group> snapshots_, profiles_;
-};
-
-// ---- from names to types
-
-template <Real T, class Chain>
-RunOutcome run_on(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Chain chain,
-                  Progress& progress) {
-  Policy<T> policy;
-  if (scene.run.collapse == CollapsePolicy::stop) policy.collapse = cradle::CollapsePolicy::stop;
-  if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
-  policy.interrupt = [] { return noted_signal() != 0; };
-  using Engine = Simulation<T, Inelastic<T>, Chain>;
-  Engine engine(Inelastic<T>(number<T>(scene.law.restitution), number<T>(scene.law.cutoff)), std::move(chain), policy);
-  return SceneRun<T, Engine>(scene, std::move(bodies), std::move(engine), progress)();
-}
-
-template <Real T> RunOutcome run_in(const Scene& scene, Progress::Show show) {
-  const auto bodies = initial_bodies<T>(scene);
-  const T start = number<T>(scene.run.start);
-  Progress progress(show, scene.run.start.value, scene.run.until.value);
-  if (scene.run.coordinates == Coordinates::absolute)
-    return run_on<T>(scene, bodies, PositionChain<T>(bodies, start), progress);
-  if (bodies->identical_masses()) return run_on<T>(scene, bodies, GapChain<T>(bodies, start), progress);
-  return run_on<T>(scene, bodies, GapChain<T, IndividualMasses<T>>(bodies, start), progress);
-}
 
 [[noreturn]] void not_built(const std::string& key, const std::string& found, const std::string& built) {
   throw Error({"", 0, key}, "not in this build", found, "choose " + built);
@@ -219,20 +19,27 @@ template <Real T> RunOutcome run_in(const Scene& scene, Progress::Show show) {
 
 }  // namespace
 
-std::string precision_name(const Run& run) {
+ScalarChoice scalar_choice(const Run& run) {
   switch (run.precision) {
   case Precision::double_:
-    return "double";
+    return {"double", 0};
   case Precision::long_double:
-    return "long double";
+    return {"long double", 0};
   case Precision::double_double:
-    return "double-double";
+    return {"double-double", 0};
   case Precision::float128:
-    return "float128";
+    return {"float128", 0};
+  case Precision::cpp_bin_float:
+    return {"cpp_bin_float", 0};
   case Precision::mpfr:
-    return fmt::format("mpfr, {} digits", run.digits);
+    return {"mpfr", static_cast<unsigned>(run.digits)};
   }
-  return "";
+  return {};
+}
+
+std::string precision_name(const Run& run) {
+  const ScalarChoice choice = scalar_choice(run);
+  return choice.digits > 0 ? fmt::format("{}, {} digits", choice.name, choice.digits) : choice.name;
 }
 
 void check_built(const Scene& scene) {
@@ -241,14 +48,12 @@ void check_built(const Scene& scene) {
   if (scene.initial.type == InitialType::ring) not_built("initial.type", "ring", "rows or list");
   if (scene.run.collapse == CollapsePolicy::contact_time) not_built("run.collapse", "contact-time", "cutoff or stop");
   if (scene.run.collapse == CollapsePolicy::merge) not_built("run.collapse", "merge", "cutoff or stop");
-  if (scene.run.precision != Precision::double_ && scene.run.precision != Precision::long_double)
-    not_built("run.precision", precision_name(scene.run), "double or long double");
+  in_precision<void>(scene, [](auto) {});
 }
 
 RunOutcome run_scene(const Scene& scene, Progress::Show progress) {
   check_built(scene);
-  if (scene.run.precision == Precision::long_double) return run_in<long double>(scene, progress);
-  return run_in<double>(scene, progress);
+  return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, progress); });
 }
 
 }  // namespace cradle::tools

@@ -22,7 +22,7 @@ namespace cradle::tools {
 enum class LawType { inelastic, wet, sticky };
 enum class InitialType { rows, ring, list };
 enum class Velocities { gaussian, uniform };
-enum class Precision { double_, long_double, double_double, float128, mpfr };
+enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
 enum class Coordinates { gaps, absolute };
 enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Spacing { linear, log };

@@ -82,6 +82,7 @@ class Checks {
     Decimal largest("1.7976931348623157e308");
     switch (scene_.run.precision) {
     case Precision::mpfr:
+    case Precision::cpp_bin_float:
       return;
     case Precision::long_double:
     case Precision::float128:

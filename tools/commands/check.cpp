@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/in_precision.hpp"
 #include "cradle/tools/list_file.hpp"
 #include "cradle/tools/run.hpp"
 #include "cradle/tools/schedule.hpp"

@@ -33,6 +33,17 @@ template <Real T> class Bodies {
   virtual GapRange gaps_in_motion() const { return {0, count() - 2}; }
 
   virtual T kinetic_energy() const = 0;
+  virtual T momentum() const = 0;
+  virtual T total_mass() const = 0;
+  virtual T least_mass() const = 0;
+  // Position of the centre of mass; takes all bodies.
+  T centre_of_mass() const {
+    CompensatedSum<T> moment;
+    for (BodyIndex body = 0; body < count(); ++body) moment.add(mass(body) * position(body));
+    return moment.value() / total_mass();
+  }
+  // Bounds the square of any speed to come, by a factor 2: energy is never gained.
+  T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }
 };
 
 }  // namespace cradle

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cradle/core/bodies.hpp"
+#include "cradle/core/event_queue.hpp"
 #include "cradle/core/law.hpp"
 
 namespace cradle {
@@ -60,6 +61,7 @@ template <Real T> struct Collision {
   Outcome<T> outcome;
   double due_left, due, due_right;
   Notice notice;
+  Slot left, right;  // of the gaps on either side
 };
 
 }  // namespace cradle

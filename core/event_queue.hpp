@@ -4,7 +4,7 @@
 // A key is a 64-bit integer: the bits of the non-negative double "time of the next contact, from the window's origin",
 // whose low bits are replaced by the gap's slot. Integer order is then time order to a relative resolution of 2^(bits -
 // 52), and the root names the next gap without a descent. What the keys cannot tell apart is the caller's to decide,
-// exactly: `contested` says when, `for_each_before` lists the candidates. Keys made from a rounded time (wide scalar
+// exactly: `close` says when, `for_each_before` lists the candidates. Keys made from a rounded time (wide scalar
 // types) may be off by two units: `slack` widens both by that.
 
 #include <algorithm>
@@ -46,12 +46,7 @@ class EventQueue {
   }
   Key possibly_before(double t) const { return key(t, mask_) + slack_; }
 
-  // Whether a gap up to two away from that of `root` has a key too close to tell which comes first.
-  bool contested(Key root) const {
-    const Key* leaf = &tree_[leaves_ + slot(root)];
-    const Key bound = (root | mask_) + slack_;
-    return (leaf[-2] <= bound) | (leaf[-1] <= bound) | (leaf[1] <= bound) | (leaf[2] <= bound);
-  }
+  // Whether the key of slot b is too close to that of `a` to tell which comes first.
   bool close(Key a, Slot b) const { return tree_[leaves_ + b] <= (a | mask_) + slack_; }
   Key key_of(Slot s) const { return tree_[leaves_ + s]; }
 
@@ -90,10 +85,27 @@ class EventQueue {
     }
   }
 
+  // The same for gaps that are neighbours on the line but not in the tree: left < s < right, or around the end of a
+  // ring.
+  void replace(Slot left, double left_due, Slot s, double due, Slot right, double right_due) {
+    if (left + 1 == s && s + 1 == right) return replace(s, left_due, due, right_due);
+    set(left, left_due);
+    set(right, right_due);
+    set(s, due);
+    std::size_t from = (leaves_ + std::min({left, s, right})) >> 1, to = (leaves_ + std::max({left, s, right})) >> 1;
+    if (to - from > 16) {
+      for (const Slot each : {left, s, right}) climb((leaves_ + each) >> 1);
+      return;
+    }
+    for (; from != to; from >>= 1, to >>= 1)
+      for (std::size_t node = from; node <= to; ++node) refresh(node);
+    climb(from);
+  }
+
   // Sets one time without telling the tree; `rebuild` once all are set.
   void set(Slot s, double due) { tree_[leaves_ + s] = key(due, s); }
   void rebuild() {
-    for (std::size_t node = leaves_ - 1; node > 0; --node) tree_[node] = std::min(tree_[2 * node], tree_[2 * node + 1]);
+    for (std::size_t node = leaves_ - 1; node > 0; --node) refresh(node);
   }
 
   // Calls visit(slot) for every slot whose key is at most `bound`, from left to right; visits nothing else of the tree.
@@ -105,6 +117,11 @@ class EventQueue {
   }
 
  private:
+  void refresh(std::size_t node) { tree_[node] = std::min(tree_[2 * node], tree_[2 * node + 1]); }
+  void climb(std::size_t node) {
+    for (; node > 0; node >>= 1) refresh(node);
+  }
+
   std::size_t leaves_;
   Key mask_;
   Key slack_;

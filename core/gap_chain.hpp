@@ -84,6 +84,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   std::size_t slots() const { return gaps_.size(); }
   Slot first() const { return first_; }
   Slot last() const { return last_; }
+  Slot left(Slot s) const { return s - 1; }
+  Slot right(Slot s) const { return s + 1; }
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) + body_of_slot_0_; }
   BodyIndex collided_bodies() const {
     return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;
@@ -129,7 +131,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 
     notice |= kick(s - 1, time, outcome.to_left);
     notice |= kick(s + 1, time, outcome.to_right);
-    return {outcome, predict(s - 1), EventQueue::never, predict(s + 1), notice};
+    return {outcome, predict(s - 1), EventQueue::never, predict(s + 1), notice, s - 1, s + 1};
   }
 
   // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the

@@ -4,11 +4,16 @@
 //   w   closing speed u_l - u_r > 0 of the two bodies in contact
 //   m   their masses, mu = m_l m_r / (m_l + m_r) the reduced mass
 //
+// A law is called with w and the masses and says what the two bodies do: bounce, pass through each other (Newton's
+// cradle: the one that was left comes out on the right) or merge. Bodies lose J/m_l and gain J/m_r for an impulse J
+// from left to right.
+//
 // Inelastic law (paper, section II and III): w' = -eps w, energy lost mu w^2 (1 - eps^2)/2; below the velocity cut-off
 // delta the contact is elastic. The closing speed handed to the neighbours, w - w', is formed such that the sum of all
 // closing speeds is kept: for eps >= 1/2 the impulse comes first and w' = w - (its effect) is exact; below, w' = -eps w
 // comes first because there the difference would cancel.
 
+#include <cmath>
 #include <cstdint>
 
 #include "cradle/core/real.hpp"
@@ -76,6 +81,54 @@ template <Real T> class Inelastic {
   T lost_;      // (1 - eps)(1 + eps) / 2, the share of mu w^2 that is lost
   T one_{1}, zero_{0};
   bool soft_;  // eps < 1/2
+};
+
+// Inelastic law whose bodies stick below a closing speed (collapse policy `merge`).
+template <Real T> class InelasticMerging {
+ public:
+  InelasticMerging(const Inelastic<T>& law, const T& merge_speed) : law_(law), merge_speed_(merge_speed) {}
+
+  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
+    return w < merge_speed_ ? merged(w, mass_left, mass_right) : law_(w, mass_left, mass_right);
+  }
+
+  // They go on as one: all relative kinetic energy mu w^2/2 is lost.
+  static Outcome<T> merged(const T& w, const T& mass_left, const T& mass_right) {
+    const T total_mass = mass_left + mass_right;
+    const T to_right = w * (mass_left / total_mass);
+    return {T(0), w * (mass_right / total_mass), to_right, mass_right * to_right * w / T(2), false, Event::merge};
+  }
+
+ private:
+  Inelastic<T> law_;
+  T merge_speed_;
+};
+
+// Sticky law: every contact merges.
+template <Real T> struct Sticky {
+  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
+    return InelasticMerging<T>::merged(w, mass_left, mass_right);
+  }
+};
+
+// Wet law (paper, section II): a contact costs E_loss, the bodies pass through each other; if their relative kinetic
+// energy mu w^2/2 does not exceed it, they merge. With w_c = sqrt(2 E_loss/mu): w' = sqrt((w - w_c)(w + w_c)), since
+// w^2 - w_c^2 loses half the digits at the threshold, and J = 2 E_loss/(w + w'), never mu (w - w').
+template <Real T> class Wet {
+ public:
+  explicit Wet(const T& loss) : loss_(loss), twice_loss_(loss + loss) {}
+
+  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
+    using std::sqrt;
+    const T critical = sqrt(T(twice_loss_ * ((mass_left + mass_right) / (mass_left * mass_right))));
+    if (!(w > critical)) return InelasticMerging<T>::merged(w, mass_left, mass_right);
+    const T after = sqrt(T((w - critical) * (w + critical)));
+    const T impulse = twice_loss_ / (w + after);
+    return {-after, impulse / mass_left, impulse / mass_right, loss_, false, Event::pass};
+  }
+
+ private:
+  T loss_, twice_loss_;
 };
 
 }  // namespace cradle

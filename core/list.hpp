@@ -1,6 +1,7 @@
 #pragma once
 // Bodies given one by one: positions, velocities and, where they differ, masses.
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -44,6 +45,17 @@ template <Real T> class List final : public Bodies<T> {
     for (BodyIndex body = 0; body < count(); ++body) twice.add(mass(body) * velocity(body) * velocity(body));
     return twice.value() / T(2);
   }
+  T momentum() const override {
+    CompensatedSum<T> sum;
+    for (BodyIndex body = 0; body < count(); ++body) sum.add(mass(body) * velocity(body));
+    return sum.value();
+  }
+  T total_mass() const override {
+    CompensatedSum<T> sum;
+    for (BodyIndex body = 0; body < count(); ++body) sum.add(mass(body));
+    return sum.value();
+  }
+  T least_mass() const override { return m_.empty() ? T(1) : *std::min_element(m_.begin(), m_.end()); }
 
  private:
   static std::size_t at(BodyIndex body) { return static_cast<std::size_t>(body); }

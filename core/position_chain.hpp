@@ -37,6 +37,8 @@ template <Real T> class PositionChain {
   std::size_t slots() const { return bodies_.size() + 3; }
   Slot first() const { return 2; }
   Slot last() const { return bodies_.size(); }
+  Slot left(Slot s) const { return s - 1; }
+  Slot right(Slot s) const { return s + 1; }
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) - 2; }
   BodyIndex collided_bodies() const {
     return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;
@@ -63,7 +65,7 @@ template <Real T> class PositionChain {
     predict(s, time);
     if (s > first()) notice |= resolve(s - 1, time);
     if (s < last()) notice |= resolve(s + 1, time);
-    return {outcome, queue_due(s - 1), queue_due(s), queue_due(s + 1), notice};
+    return {outcome, queue_due(s - 1), queue_due(s), queue_due(s + 1), notice, s - 1, s + 1};
   }
 
   T move_origin(const T& local) { return origin_ = local; }

@@ -92,6 +92,15 @@ template <Real T> class Rows final : public Bodies<T> {
         T(left_.count) * left_.velocity * left_.velocity + T(right_.count) * right_.velocity * right_.velocity;
     return (centre_ ? T(rows + centre_->mass * centre_->velocity * centre_->velocity) : rows) / T(2);
   }
+  T momentum() const override {
+    const T rows = T(left_.count) * left_.velocity + T(right_.count) * right_.velocity;
+    return centre_ ? T(rows + centre_->mass * centre_->velocity) : rows;
+  }
+  T total_mass() const override {
+    const T rows = T(left_.count + right_.count);
+    return centre_ ? T(rows + centre_->mass) : rows;
+  }
+  T least_mass() const override { return centre_ && centre_->mass < T(1) ? centre_->mass : T(1); }
 
  private:
   bool is_centre(BodyIndex body) const { return centre_ && body == left_.count; }

@@ -90,7 +90,7 @@ template <Real T, class Law, class Chain> class Simulation {
       Slot s = queue_.slot(next);
       if (next >= before) [[unlikely]] {
         if (!earliest_until(horizon, s)) return Status::reached;
-      } else if (queue_.contested(next)) [[unlikely]] {
+      } else if (contested(next, s)) [[unlikely]] {
         s = earliest_near(next);
       }
       const T time = chain_.due(s);
@@ -99,9 +99,10 @@ template <Real T, class Law, class Chain> class Simulation {
         previous_ = time;
       }
       const Collision<T> collision = chain_.collide(law_, s, time);
-      queue_.replace(s, collision.due_left, collision.due, collision.due_right);
+      queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
       lost_.add(collision.outcome.energy_lost);
       counts_.below_cutoff += collision.outcome.below_cutoff;
+      counts_.merges += collision.outcome.event == Event::merge;
       if (++counts_.contacts == next_review_ || collision.notice != notice::none) [[unlikely]] {
         const Status status = review(s, time, collision.notice);
         if (status != Status::reached) return status;
@@ -134,14 +135,22 @@ template <Real T, class Law, class Chain> class Simulation {
     queue_.rebuild();
   }
 
+  // Whether a gap up to two away has a key too close to tell which comes first.
+  bool contested(EventQueue::Key root, Slot s) const {
+    const Slot p = chain_.left(s), n = chain_.right(s);
+    return queue_.close(root, p) | queue_.close(root, n) | queue_.close(root, chain_.left(p)) |
+           queue_.close(root, chain_.right(n));
+  }
+
   // Of contacts too close for the keys: the first by exact time, then from the left, among those that do not commute.
   Slot earliest_near(EventQueue::Key root) {
     Slot s = queue_.slot(root);
     ++counts_.close_calls;
     for (;;) {
       Slot first = s;
-      for (const Slot other : {s - 2, s - 1, s + 1, s + 2})
-        if (queue_.close(root, other) && earlier(other, first)) first = other;
+      for (const Slot other :
+           {chain_.left(chain_.left(s)), chain_.left(s), chain_.right(s), chain_.right(chain_.right(s))})
+        if (other != s && queue_.close(root, other) && earlier(other, first)) first = other;
       if (first == s) return s;
       s = first;
     }

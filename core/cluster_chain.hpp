@@ -1,0 +1,394 @@
+#pragma once
+// The chain for laws whose bodies merge or pass through each other: gaps and body velocities, for any masses.
+// Velocities are told in the frame in which the total momentum vanishes: a heavy cluster's kick of 1e-8 is lost in a
+// closing speed of order one, and the drift of their sum integrates into the gaps; added to the cluster's own small
+// velocity it is kept.
+//
+// A cell holds a body and the gap between it and the next one. When two bodies merge, the cell of the right one is
+// vacated and links pass over it; vacant cells are dropped when the chain is laid out anew. Seen by places on the line,
+// bodies that pass exchange cells. Gaps, local times and the streaming of rows are as in gap_chain.hpp.
+//
+// Positions come from a body at an end that has not collided, else from the centre of mass, which moves uniformly.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/clock.hpp"
+#include "cradle/core/configuration.hpp"
+#include "cradle/core/event_queue.hpp"
+
+namespace cradle {
+
+template <Real T> class ClusterChain {
+ public:
+  using Scalar = T;
+  static constexpr bool keys_are_exact = std::same_as<T, double>;
+
+  // Holds the bodies at the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every
+  // body.
+  ClusterChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
+      : bodies_(std::move(bodies)), clock_(start), frame_(bodies_->momentum() / bodies_->total_mass()) {
+    const GapRange held = hold_all ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
+    std::vector<Cell> cells;
+    for (BodyIndex b = held.first; b <= held.last + 1; ++b) cells.push_back(load(b, T(0)));
+    unheld_left_ = held.first;
+    unheld_right_ = bodies_->count() - held.last - 2;
+    lay_out(cells, std::vector<T>(cells.size(), T(0)));
+  }
+
+  // ---- times: offsets from the chain's origin
+  const Clock<T>& clock() const { return clock_; }
+  T local_time(const T& time) const { return clock_.offset(time); }
+  double queue_time(const T& local) const { return to_double(local); }
+
+  // ---- slots: cells held are first() to last(), vacant ones among them; the last one's gap is none
+  std::size_t slots() const { return cells_.size(); }
+  Slot first() const { return first_; }
+  Slot last() const { return last_; }
+  Slot left(Slot s) const { return cells_[s].left; }
+  Slot right(Slot s) const { return cells_[s].right; }
+  BodyIndex body(Slot s) const { return cells_[s].body; }
+  BodyIndex collided_bodies() const { return active_; }
+
+  T due(Slot s) const {
+    const Cell& c = cells_[s];
+    if constexpr (keys_are_exact)
+      return c.due;
+    else {
+      const T flown = c.time + c.gap / closing(s);
+      return is_negative(c.time) ? T(flown + lag_[s]) : flown;
+    }
+  }
+  double queue_due(Slot s) const {
+    if (vacant(s)) return EventQueue::never;
+    if constexpr (keys_are_exact)
+      return cells_[s].due;
+    else
+      return is_positive(closing(s)) ? queue_time(due(s)) : EventQueue::never;
+  }
+  T closing(Slot s) const { return cells_[s].velocity - cells_[cells_[s].right].velocity; }
+
+  // ---- events
+  template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
+    Cell& l = cells_[s];
+    const Outcome<T> outcome = law(closing(s), l.mass, cells_[l.right].mass);
+    Notice notice = short_flight(time, l.time);
+    if ((s <= front_left_) | (l.right >= front_right_)) [[unlikely]]
+      notice |= widen(s, time);
+    const Slot p = l.left, n = l.right;
+    Cell& r = cells_[n];
+    const T late_left = settle(p, time), late_right = settle(n, time);
+    const bool behind = time < l.time;  // a gap's local time never goes back
+    const T opened = behind ? T(-outcome.closing * (l.time - time)) : T(0);
+
+    const T before_left = l.velocity, before_right = r.velocity;
+    const T slowed = before_left - outcome.to_left, sped = before_right + outcome.to_right;
+    Slot beyond = n;  // the cell that has the gap right of the contact
+    if (outcome.event == Event::merge) {
+      notice |= absorb_right(s, l.mass < r.mass ? sped : slowed);  // the heavier one's velocity hardly changes
+      beyond = s;
+    } else {
+      l.gap = opened;
+      if (!behind) l.time = time;
+      if (is_negative(l.time)) [[unlikely]]
+        lag_[s] = T(0);
+      const bool pass = outcome.event == Event::pass;
+      l.velocity = pass ? sped : slowed;
+      r.velocity = pass ? slowed : sped;
+      if (pass) {
+        std::swap(l.mass, r.mass);
+        std::swap(l.body, r.body);
+      }
+    }
+    // What came too late for a neighbour's local time acts as if it had been there since.
+    if (is_negative(late_left)) [[unlikely]]
+      cells_[p].gap += (before_left - l.velocity) * late_left;
+    if (is_negative(late_right)) [[unlikely]]
+      cells_[beyond].gap += (cells_[beyond].velocity - before_right) * late_right;
+    notice |= inspect(p, time) | inspect(beyond, time);
+    return {outcome, predict(p), predict(s), beyond == n ? predict(n) : EventQueue::never, notice, p, n};
+  }
+
+  T move_origin(const T& local) {
+    clock_.move_origin(local);
+    for (Slot s = first_; s <= last_; ++s) {
+      if (vacant(s)) continue;
+      Cell& c = cells_[s];
+      const Pair<T> moved = two_sum(c.time, T(-local));
+      c.time = moved.high;
+      lag_[s] += moved.low;
+      if constexpr (keys_are_exact) c.due = closing(s) > 0 ? c.time + c.gap / closing(s) + lag_[s] : EventQueue::never;
+    }
+    return T(0);
+  }
+
+  // True when the next contact at an end could find no cell for the body that it sets free, or most cells are vacant.
+  bool cramped() const {
+    return (unheld_left_ > 0 && end_left_ <= 2) || (unheld_right_ > 0 && end_right_ + 3 >= slots()) ||
+           2 * vacated_ > last_ - first_ + 256;
+  }
+  void make_room() {
+    std::vector<Cell> cells;
+    std::vector<T> lag;
+    Slot fronts[2] = {front_left_, front_right_};
+    const bool collided = front_left_ <= front_right_;
+    for (Slot s = first_;; s = cells_[s].right) {
+      for (int side : {0, 1})
+        if (s == (side ? front_right_ : front_left_)) fronts[side] = cells.size();
+      cells.push_back(cells_[s]);
+      lag.push_back(lag_[s]);
+      if (s == last_) break;
+    }
+    lay_out(cells, lag);
+    if (collided) front_left_ = first_ + fronts[0], front_right_ = first_ + fronts[1];
+  }
+
+  void set_floor(const T& floor) { floor_ = floor; }
+  T nearest_gap(Slot s) const {
+    const T far = std::numeric_limits<T>::max();
+    const Slot p = cells_[s].left, n = cells_[s].right;
+    const T on_left = p == end_left_ ? far : cells_[p].gap,
+            on_right = n == last_ || n == end_right_ ? far : cells_[n].gap;
+    return on_left < on_right ? on_left : on_right;
+  }
+  const Account<T>& account() const { return account_; }
+
+  // ---- reading, at a local time not before the last contact
+  T gap_at(Slot s, const T& time) const {
+    const Cell& c = cells_[s];
+    const T flown = time - c.time;
+    return c.gap - closing(s) * (is_negative(c.time) ? T(flown - lag_[s]) : flown);
+  }
+  // Positions of the outermost bodies that have collided; only once there are some.
+  T front_left(const T& time) const { return configuration(time).x[first_ < front_left_ ? 1 : 0]; }
+  T front_right(const T& time) const {
+    const auto c = configuration(time);
+    return c.x[c.x.size() - (last_ > front_right_ ? 2 : 1)];
+  }
+  // The bodies that have collided and the next one on each side; all that are held before the first contact.
+  Configuration<T> configuration(const T& time) const;
+
+ private:
+  struct Cell {
+    T gap{1}, time{0}, velocity{0}, mass{1};
+    double due = EventQueue::never;  // where keys are exact
+    Slot left = 0, right = 0;
+    BodyIndex body = 0;
+  };
+
+  bool vacant(Slot s) const { return cells_[s].right == s; }
+
+  Cell load(BodyIndex b, const T& time) const {
+    Cell c;
+    if (b + 1 < bodies_->count()) c.gap = bodies_->gap(b);
+    c.time = time;
+    c.velocity = bodies_->velocity(b) - frame_;
+    c.mass = bodies_->mass(b);
+    c.body = b;
+    return c;
+  }
+
+  // Puts the cells, without vacant ones, in the middle of slots enough for the zone to grow by half on either side.
+  void lay_out(const std::vector<Cell>& cells, const std::vector<T>& lag) {
+    const auto growth = static_cast<BodyIndex>(std::max<std::size_t>(cells.size() / 2, 64));
+    const auto room_left = static_cast<Slot>(std::min(unheld_left_, growth)) + 3;
+    const auto room_right = static_cast<Slot>(std::min(unheld_right_, growth)) + 3;
+    cells_.assign(room_left + cells.size() + room_right, Cell{});
+    for (Slot s = 0; s < cells_.size(); ++s) cells_[s].left = cells_[s].right = s;
+    lag_.assign(cells_.size(), T(0));
+    first_ = room_left;
+    last_ = first_ + cells.size() - 1;
+    vacated_ = 0;
+    for (Slot s = first_; s <= last_; ++s) {
+      cells_[s] = cells[s - first_];
+      lag_[s] = lag[s - first_];
+      cells_[s].left = s - 1;
+      cells_[s].right = s + 1;
+    }
+    place_end(first_ - 1, first_);
+    place_end(last_ + 1, last_);
+    if constexpr (keys_are_exact)
+      for (Slot s = first_; s <= last_; ++s)
+        cells_[s].due = closing(s) > 0 ? cells_[s].time + cells_[s].gap / closing(s) + lag_[s] : EventQueue::never;
+  }
+
+  // Beyond the bodies held something runs away, faster than any body can: no speed exceeds sqrt(2E/m) <= 1 + 2E/m.
+  void place_end(Slot s, Slot beside) {
+    const T fastest = T(1) + T(2) * bodies_->energy_over_least_mass();
+    cells_[s] = Cell{};
+    lag_[s] = T(0);
+    const bool on_left = s < beside;
+    cells_[s].velocity = on_left ? T(-(fastest + fastest)) : T(fastest + fastest);
+    cells_[s].left = on_left ? s : beside;
+    cells_[s].right = on_left ? beside : s;
+    (on_left ? cells_[beside].left : cells_[beside].right) = s;
+    (on_left ? end_left_ : end_right_) = s;
+  }
+
+  // A contact at an end of the active zone: takes in the next body there, if there is one.
+  Notice widen(Slot s, const T& time) {
+    const Slot n = cells_[s].right;
+    const bool begun = front_left_ <= front_right_;
+    const auto count = [&](Slot from, Slot to) {  // cells held from one to before the other
+      BodyIndex cells = 0;
+      for (; from != to; from = cells_[from].right) ++cells;
+      return cells;
+    };
+    if (!begun)
+      active_ = 2;
+    else
+      active_ += (s < front_left_ ? count(s, front_left_) : 0) + (n > front_right_ ? count(front_right_, n) : 0);
+    if (!begun || s < front_left_) front_left_ = s;
+    if (!begun || n > front_right_) front_right_ = n;
+    if (s == first_ && unheld_left_ > 0) {
+      first_ = end_left_;
+      cells_[first_] = load(--unheld_left_, time);
+      lag_[first_] = T(0);
+      cells_[first_].right = s;
+      cells_[s].left = first_;
+      place_end(first_ - 1, first_);
+    }
+    if (n == last_ && unheld_right_ > 0) {
+      last_ = end_right_;
+      // The gap right of n was not one before: it is as at the start.
+      cells_[n].gap = bodies_->gap(cells_[n].body);
+      cells_[n].time = time;
+      lag_[n] = T(0);
+      cells_[last_] = load(bodies_->count() - unheld_right_--, time);
+      lag_[last_] = T(0);
+      cells_[last_].left = n;
+      cells_[n].right = last_;
+      place_end(last_ + 1, last_);
+    }
+    return cramped() ? notice::cramped : notice::none;
+  }
+
+  // The bodies at s and right of it go on as one, in the cell s.
+  Notice absorb_right(Slot s, const T& velocity) {
+    Cell& l = cells_[s];
+    const Slot n = l.right;
+    Cell& r = cells_[n];
+    if (l.mass < r.mass) l.body = r.body;
+    l.velocity = velocity;
+    l.mass += r.mass;
+    l.gap = r.gap;
+    l.time = r.time;
+    lag_[s] = lag_[n];
+    l.right = r.right;
+    cells_[l.right].left = s;
+    r.right = n;
+    if constexpr (keys_are_exact) r.due = EventQueue::never;
+    if (last_ == n) last_ = s;
+    if (front_right_ == n) front_right_ = s;
+    --active_;
+    ++vacated_;
+    return 2 * vacated_ > last_ - first_ + 256 ? notice::cramped : notice::none;
+  }
+
+  // Brings a gap up to date; where the local time is ahead of the contact it stays, and how far is returned (negative).
+  T settle(Slot s, const T& time) {
+    Cell& c = cells_[s];
+    T flown = time - c.time;
+    if (is_negative(c.time)) [[unlikely]]
+      flown -= lag_[s];
+    if (is_negative(flown)) [[unlikely]]
+      return flown;
+    c.gap -= closing(s) * flown;
+    if (is_negative(c.time)) [[unlikely]]
+      lag_[s] = T(0);
+    c.time = time;
+    return T(0);
+  }
+
+  Notice inspect(Slot s, const T& time) {
+    const Cell& c = cells_[s];
+    if (!(c.gap < floor_)) [[likely]]
+      return notice::none;
+    if (is_positive(c.gap)) return notice::tight;
+    const T rounding = T(16) * T(std::numeric_limits<T>::epsilon()) * magnitude(closing(s)) * magnitude(time);
+    if (-c.gap > rounding) {
+      if (account_.order_lost++ == 0) account_.first_order_lost = {clock_.time(time), c.body, c.gap};
+    } else {
+      ++account_.simultaneous;
+    }
+    return notice::tight;
+  }
+
+  double predict(Slot s) {
+    Cell& c = cells_[s];
+    const T w = closing(s);
+    if constexpr (keys_are_exact) {
+      // Whether a gap closes cannot be predicted: choose by bits, where a positive number is a positive integer.
+      const auto bits = std::bit_cast<std::uint64_t>(c.time + c.gap / w);
+      const auto opening = std::uint64_t{0} - (std::bit_cast<std::int64_t>(w) <= 0);
+      return c.due =
+                 std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
+    } else {
+      if (!is_positive(w)) return EventQueue::never;
+      const double rounded = to_double(c.time) + to_double(c.gap) / to_double(w);
+      return std::isfinite(rounded) && !is_negative(c.time) ? rounded : queue_time(due(s));
+    }
+  }
+
+  Notice short_flight(const T& time, const T& before) const {
+    const double flown = queue_time(T(time - before)), offset = queue_time(time);
+    if (!(flown < offset * 0x1p-20)) [[likely]]
+      return notice::none;
+    return flown < offset * 0x1p-40 ? notice::crowded | notice::pressing : notice::crowded;
+  }
+
+  std::vector<Cell> cells_;
+  std::vector<T> lag_;  // as in gap_chain.hpp
+  Slot first_ = 0, last_ = 0, end_left_ = 0, end_right_ = 0;
+  Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;  // outermost bodies that have collided
+  std::size_t vacated_ = 0;                                               // since the last layout
+  BodyIndex unheld_left_ = 0, unheld_right_ = 0, active_ = 0;
+  T floor_{0};
+  std::shared_ptr<const Bodies<T>> bodies_;
+  Clock<T> clock_;
+  T frame_;  // velocity of the centre of mass
+  Account<T> account_;
+};
+
+template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time) const {
+  const bool collided = front_left_ <= front_right_;
+  const Slot from = collided && front_left_ > first_ ? cells_[front_left_].left : first_;
+  const Slot to = collided && front_right_ < last_ ? cells_[front_right_].right : last_;
+  Configuration<T> c;
+  c.time = clock_.time(time);
+  CompensatedSum<T> way, moment, mass;
+  std::vector<T> ways;
+  for (Slot s = from;; s = cells_[s].right) {
+    const Cell& cell = cells_[s];
+    c.index.push_back(cell.body);
+    c.m.push_back(cell.mass);
+    c.v.push_back(cell.velocity + frame_);
+    ways.push_back(way.value());
+    moment.add(cell.mass * ways.back());
+    mass.add(cell.mass);
+    if (s == to) break;
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(closing(s));
+    way.add(c.gap.back());
+  }
+  const auto fly = [&](BodyIndex b) {
+    return two_sum(bodies_->position(b), T(bodies_->velocity(b) * clock_.elapsed(time)));
+  };
+  Pair<T> leftmost;
+  if (!collided || from != front_left_)
+    leftmost = fly(cells_[from].body);
+  else if (to != front_right_)
+    leftmost = fly(cells_[to].body) - way.value();
+  else
+    leftmost = two_sum(bodies_->centre_of_mass(), T(frame_ * clock_.elapsed(time))) - T(moment.value() / mass.value());
+  for (const T& w : ways) c.x.push_back((leftmost + w).value());
+  return c;
+}
+
+}  // namespace cradle

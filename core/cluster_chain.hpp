@@ -362,6 +362,10 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
   const Slot to = collided && front_right_ < last_ ? cells_[front_right_].right : last_;
   Configuration<T> c;
   c.time = clock_.time(time);
+  // A body that has not collided is still itself; where all at an end have, they are those from the end of the line.
+  const bool free_left = !collided || from != front_left_, free_right = !collided || to != front_right_;
+  c.from = free_left ? cells_[from].body : 0;
+  c.to = free_right ? cells_[to].body : bodies_->count() - 1;
   CompensatedSum<T> way, moment, mass;
   std::vector<T> ways;
   for (Slot s = from;; s = cells_[s].right) {

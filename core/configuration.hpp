@@ -13,6 +13,7 @@ namespace cradle {
 
 template <Real T> struct Configuration {
   T time{0};
+  BodyIndex from = 0, to = -1;   // the bodies at the start that are in here, merged or not
   std::vector<BodyIndex> index;  // n bodies from left to right, by their number at the start
   std::vector<T> x, v, m;        // n
   std::vector<T> gap;            // n - 1, between neighbours

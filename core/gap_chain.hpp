@@ -41,6 +41,9 @@ template <Real T> struct IdenticalMasses {
   template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing) const {
     return law(closing, reduced_mass);
   }
+  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing, bool rested) const {
+    return law(closing, reduced_mass, rested);
+  }
 };
 
 template <Real T> struct IndividualMasses {
@@ -51,6 +54,9 @@ template <Real T> struct IndividualMasses {
   const T& operator[](Slot s) const { return masses[s]; }
   template <class Law> Outcome<T> outcome(const Law& law, Slot s, const T& closing) const {
     return law(closing, masses[s], masses[s + 1]);
+  }
+  template <class Law> Outcome<T> outcome(const Law& law, Slot s, const T& closing, bool rested) const {
+    return law(closing, masses[s], masses[s + 1], rested);
   }
 };
 
@@ -113,7 +119,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // ---- events
   template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
     Gap<T>& pair = gaps_[s];
-    const Outcome<T> outcome = masses_.outcome(law, s, pair.closing);
+    const Outcome<T> outcome = law.remembers()
+                                   ? masses_.outcome(law, s, pair.closing, rested(s, time, law.contact_time()))
+                                   : masses_.outcome(law, s, pair.closing);
     Notice notice = short_flight(time, pair.time);
     if ((s <= front_left_) | (s >= front_right_)) [[unlikely]]
       notice |= widen(s, time, outcome);
@@ -143,6 +151,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       const Pair<T> moved = two_sum(g.time, T(-local));
       g.time = moved.high;
       lag_[s] += moved.low;
+      if (!last_contact_.empty()) last_contact_[s] -= local;
       if constexpr (keys_are_exact) g.due = g.closing > 0 ? g.time + g.gap / g.closing + lag_[s] : EventQueue::never;
     }
     for (Anchor* anchor : {&left_, &right_}) anchor->time = anchor->time - local;
@@ -156,12 +165,16 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
   void make_room() {
     const std::vector<Gap<T>> gaps = std::move(gaps_);
-    const std::vector<T> lag = std::move(lag_);
+    const std::vector<T> lag = std::move(lag_), last_contact = std::move(last_contact_);
     const BodyIndex from = body(first_);
     const Slot first = first_, fronts[2] = {front_left_, front_right_};
     const bool collided = front_left_ <= front_right_;
     lay_out(from, body(last_), [&](BodyIndex b) {
       const Slot old = static_cast<Slot>(b - from) + first;
+      if (!last_contact.empty()) {
+        last_contact_.resize(gaps_.size(), longest_ago_);
+        last_contact_[static_cast<Slot>(b - body_of_slot_0_)] = last_contact[old];
+      }
       lag_[static_cast<Slot>(b - body_of_slot_0_)] = lag[old];
       return gaps[old];
     });
@@ -286,6 +299,18 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     lag_[s] = T(0);
   }
 
+  // Whether both bodies of the gap have had their last contact longer ago than that. Remembers this one.
+  bool rested(Slot s, const T& time, const T& contact_time) {
+    if (last_contact_.empty()) {
+      longest_ago_ = clock_.offset(clock_.start()) - contact_time - T(1);
+      last_contact_.assign(gaps_.size(), longest_ago_);
+    }
+    bool all = true;
+    for (const Slot each : {s - 1, s, s + 1}) all = all && time - last_contact_[each] > contact_time;
+    last_contact_[s] = time;
+    return all;
+  }
+
   // Brings a gap up to date and adds to its closing speed.
   Notice kick(Slot s, const T& time, const T& gain) {
     Gap<T>& g = gaps_[s];
@@ -371,7 +396,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   std::vector<Gap<T>> gaps_;
-  std::vector<T> lag_;  // local time of gap s is gaps_[s].time + lag_[s]; not zero only if gaps_[s].time < 0
+  std::vector<T> last_contact_;  // local time of the last contact at each gap; empty unless the law remembers
+  T longest_ago_{0};             // what stands there for none
+  std::vector<T> lag_;           // local time of gap s is gaps_[s].time + lag_[s]; not zero only if gaps_[s].time < 0
   Slot first_ = 0, last_ = 0;
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;  // gaps of the outermost contacts so far
   BodyIndex body_of_slot_0_ = 0;
@@ -396,6 +423,8 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configurat
     c.index.push_back(body(s));
     c.m.push_back(masses_[s]);
   }
+  c.from = body(from);
+  c.to = body(to) + 1;
   CompensatedSum<T> way, slowing;
   std::vector<T> ways{T(0)}, slowings{T(0)};  // from the left anchor to each body
   for (Slot s = from; s <= to; ++s) {

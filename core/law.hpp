@@ -34,21 +34,24 @@ template <Real T> struct Outcome {
 
 template <Real T> class Inelastic {
  public:
-  // restitution in [0, 1], cutoff >= 0 in units of speed (0: the plain law).
-  Inelastic(const T& restitution, const T& cutoff)
+  // restitution in [0, 1]; cutoff >= 0, a speed (0: the plain law); contact_time >= 0: contacts are elastic too where
+  // one of the bodies has had another one less than that before (TC model: Luding and McNamara 1998,
+  // doi 10.1007/s100350050017).
+  explicit Inelastic(const T& restitution, const T& cutoff = T(0), const T& contact_time = T(0))
       : restitution_(restitution), cutoff_(cutoff), half_sum_((T(1) + restitution) / T(2)),
-        lost_((T(1) - restitution) * (T(1) + restitution) / T(2)), soft_(restitution * T(2) < T(1)) {}
+        lost_((T(1) - restitution) * (T(1) + restitution) / T(2)), soft_(restitution * T(2) < T(1)),
+        contact_time_(contact_time), remembers_(contact_time > T(0)) {}
 
   // Two bodies of the same mass m: mu = m/2.
-  Outcome<T> operator()(const T& w, const T& reduced_mass) const {
-    const bool elastic = w < cutoff_;
+  Outcome<T> operator()(const T& w, const T& reduced_mass, bool rested = true) const {
+    const bool elastic = w < cutoff_ || !rested;
     const T after = closing_after(w, elastic);
     const T handed = soft_ ? T((w - after) / T(2)) : T(share(elastic) * w);
     return {after, handed, handed, energy_lost(w, reduced_mass, elastic), elastic};
   }
 
-  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
-    const bool elastic = w < cutoff_;
+  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right, bool rested = true) const {
+    const bool elastic = w < cutoff_ || !rested;
     const T total_mass = mass_left + mass_right;
     const T after = closing_after(w, elastic);
     const T handed = soft_ ? T(w - after) : T(T(2) * (share(elastic) * w));
@@ -62,6 +65,11 @@ template <Real T> class Inelastic {
 
   const T& restitution() const { return restitution_; }
   const T& cutoff() const { return cutoff_; }
+
+  // Whether outcomes depend on when the bodies last had a contact: `rested` says that it was longer ago than
+  // contact_time().
+  bool remembers() const { return remembers_; }
+  const T& contact_time() const { return contact_time_; }
 
  private:
   // Choices between two numbers at hand, not between two computations: late in a collapse they cannot be predicted.
@@ -81,6 +89,8 @@ template <Real T> class Inelastic {
   T lost_;      // (1 - eps)(1 + eps) / 2, the share of mu w^2 that is lost
   T one_{1}, zero_{0};
   bool soft_;  // eps < 1/2
+  T contact_time_;
+  bool remembers_;
 };
 
 // Inelastic law whose bodies stick below a closing speed (collapse policy `merge`).

@@ -91,6 +91,8 @@ template <Real T> class PositionChain {
     const Slot to = collided && front_right_ < last() ? front_right_ + 1 : last();
     Configuration<T> c;
     c.time = time;
+    c.from = body(from);
+    c.to = body(to) + 1;
     for (Slot s = from; s <= to + 1; ++s) {
       c.index.push_back(body(s));
       c.m.push_back(at(s).m);
@@ -106,7 +108,9 @@ template <Real T> class PositionChain {
 
  private:
   struct Particle {
-    T x, v, time, m;
+    T x, v, time, m;  // time: of the last contact, or the start
+    bool collided = false;
+    bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
   };
 
   Particle& at(Slot s) { return bodies_[s - 2]; }  // the body on the left of a gap
@@ -116,6 +120,7 @@ template <Real T> class PositionChain {
   static void advance(Particle& p, const T& time) {
     p.x = place(p, time);
     p.time = time;
+    p.collided = true;
   }
 
   void predict(Slot s, const T& now) {

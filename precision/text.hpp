@@ -4,7 +4,10 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
+#include <locale>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -55,11 +58,10 @@ template <class T> struct StandardText {
     const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
     const auto error = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
     if (error == std::errc::result_out_of_range) {
-      const auto exponent = digits.find_first_of("eE");
-      const bool small = exponent == std::string_view::npos ? digits.find_first_of("123456789") > digits.find('.')
-                                                            : digits.substr(exponent + 1).starts_with('-');
-      const T size = small ? T(0) : std::numeric_limits<T>::infinity();
-      return digits.starts_with('-') ? -size : size;
+      // Too large, too small, or (long double, libstdc++) merely subnormal: streams tell which.
+      std::istringstream stream(text);
+      stream.imbue(std::locale::classic());
+      if (!(stream >> value)) value = std::copysign(std::numeric_limits<T>::infinity(), value);
     }
     return value;
   }

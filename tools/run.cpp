@@ -43,11 +43,10 @@ std::string precision_name(const Run& run) {
 }
 
 void check_built(const Scene& scene) {
-  if (scene.law.type != LawType::inelastic)
-    not_built("law.type", scene.law.type == LawType::wet ? "wet" : "sticky", "inelastic");
   if (scene.initial.type == InitialType::ring) not_built("initial.type", "ring", "rows or list");
-  if (scene.run.collapse == CollapsePolicy::contact_time) not_built("run.collapse", "contact-time", "cutoff or stop");
-  if (scene.run.collapse == CollapsePolicy::merge) not_built("run.collapse", "merge", "cutoff or stop");
+  const bool merging = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
+  if (merging && scene.run.coordinates == Coordinates::absolute)
+    not_built("run.coordinates", "absolute with bodies that merge", "gaps");
   in_precision<void>(scene, [](auto) {});
 }
 

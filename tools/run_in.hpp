@@ -6,6 +6,7 @@
 
 #include <csignal>
 
+#include "cradle/core/cluster_chain.hpp"
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/position_chain.hpp"
 #include "cradle/tools/interrupt.hpp"
@@ -37,7 +38,8 @@ template <Real T> std::string collapse_report(const CollapseReport<T>& r, const 
       fmt::format("  last contact   t = {}, number {}, {}\n", to_text(r.last_contact), counts.contacts, place(r.body));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));
   if (r.extrapolated)
-    text += fmt::format("  intervals      {}, shrinking by {:.12g} from one contact there to the next\n", brief(r.interval), to_double(r.ratio));
+    text += fmt::format("  intervals      {}, shrinking by {:.12g} from one contact there to the next\n",
+                        brief(r.interval), to_double(r.ratio));
   text += "  to go on       give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
   return text;
 }
@@ -198,26 +200,38 @@ template <Real T, class Simulation> class SceneRun {
 
 // ---- from names to types
 
-template <Real T, class Chain>
-RunOutcome run_on(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Chain chain,
+template <Real T, class Law, class Chain>
+RunOutcome run_on(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Law law, Chain chain,
                   Progress& progress) {
   Policy<T> policy;
-  if (scene.run.collapse == CollapsePolicy::stop) policy.collapse = cradle::CollapsePolicy::stop;
+  // Elastic bodies do not collapse, those that stick cannot.
+  if (scene.run.collapse == CollapsePolicy::stop && scene.law.type == LawType::inelastic &&
+      scene.law.restitution < Decimal("1"))
+    policy.collapse = cradle::CollapsePolicy::stop;
   if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
   policy.interrupt = [] { return noted_signal() != 0; };
-  using Engine = Simulation<T, Inelastic<T>, Chain>;
-  Engine engine(Inelastic<T>(number<T>(scene.law.restitution), number<T>(scene.law.cutoff)), std::move(chain), policy);
-  return SceneRun<T, Engine>(scene, std::move(bodies), std::move(engine), progress)();
+  using Engine = Simulation<T, Law, Chain>;
+  return SceneRun<T, Engine>(scene, std::move(bodies), Engine(std::move(law), std::move(chain), policy), progress)();
 }
 
 template <class T> RunOutcome run_in(const Scene& scene, Progress::Show show) {
   const auto bodies = initial_bodies<T>(scene);
   const T start = number<T>(scene.run.start);
   Progress progress(show, scene.run.start.value, scene.run.until.value);
+  if (scene.law.type == LawType::wet)
+    return run_on<T>(scene, bodies, Wet<T>(number<T>(scene.law.loss)), ClusterChain<T>(bodies, start), progress);
+  if (scene.law.type == LawType::sticky || scene.run.collapse == CollapsePolicy::merge) {
+    const bool sticky = scene.law.type == LawType::sticky;
+    const InelasticMerging<T> law(Inelastic<T>(sticky ? T(0) : number<T>(scene.law.restitution)),
+                                  sticky ? std::numeric_limits<T>::max() : number<T>(scene.run.merge_speed));
+    return run_on<T>(scene, bodies, law, ClusterChain<T>(bodies, start), progress);
+  }
+  const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff),
+                         scene.run.collapse == CollapsePolicy::contact_time ? number<T>(scene.run.contact_time) : T(0));
   if (scene.run.coordinates == Coordinates::absolute)
-    return run_on<T>(scene, bodies, PositionChain<T>(bodies, start), progress);
-  if (bodies->identical_masses()) return run_on<T>(scene, bodies, GapChain<T>(bodies, start), progress);
-  return run_on<T>(scene, bodies, GapChain<T, IndividualMasses<T>>(bodies, start), progress);
+    return run_on<T>(scene, bodies, law, PositionChain<T>(bodies, start), progress);
+  if (bodies->identical_masses()) return run_on<T>(scene, bodies, law, GapChain<T>(bodies, start), progress);
+  return run_on<T>(scene, bodies, law, GapChain<T, IndividualMasses<T>>(bodies, start), progress);
 }
 
 }  // namespace cradle::tools

@@ -10,21 +10,16 @@ namespace cradle {
 // Kinetic energy summed over all bodies of the scene: the direct sum that the ledger is checked against.
 template <Real T> T kinetic_energy(const Configuration<T>& c, const Bodies<T>& bodies) {
   CompensatedSum<T> twice, twice_before;  // of the bodies in the configuration, now and at the start
-  for (std::size_t j = 0; j < c.x.size(); ++j) {
-    twice.add(c.m[j] * c.v[j] * c.v[j]);
-    const T v = bodies.velocity(c.index[j]);
-    twice_before.add(bodies.mass(c.index[j]) * v * v);
-  }
+  for (std::size_t j = 0; j < c.x.size(); ++j) twice.add(c.m[j] * c.v[j] * c.v[j]);
+  for (BodyIndex b = c.from; b <= c.to; ++b) twice_before.add(bodies.mass(b) * bodies.velocity(b) * bodies.velocity(b));
   return bodies.kinetic_energy() + (twice.value() - twice_before.value()) / T(2);
 }
 
 // Momentum that the bodies of a configuration have gained since the start; zero but for rounding.
 template <Real T> T momentum_gained(const Configuration<T>& c, const Bodies<T>& bodies) {
   CompensatedSum<T> gained;
-  for (std::size_t j = 0; j < c.x.size(); ++j) {
-    gained.add(c.m[j] * c.v[j]);
-    gained.add(-bodies.mass(c.index[j]) * bodies.velocity(c.index[j]));
-  }
+  for (std::size_t j = 0; j < c.x.size(); ++j) gained.add(c.m[j] * c.v[j]);
+  for (BodyIndex b = c.from; b <= c.to; ++b) gained.add(-bodies.mass(b) * bodies.velocity(b));
   return gained.value();
 }
 

@@ -70,12 +70,12 @@ Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& ela
   const auto enter_free = [&](BodyIndex body, double x) {
     enter(x, to_double(bodies.velocity(body)), to_double(bodies.mass(body)));
   };
-  for (BodyIndex body = c.index.front() - 1; body >= 0; --body) {
+  for (BodyIndex body = c.from - 1; body >= 0; --body) {
     const double x = fly(body);
     if (x < range.from) break;
     enter_free(body, x);
   }
-  for (BodyIndex body = c.index.back() + 1; body < bodies.count(); ++body) {
+  for (BodyIndex body = c.to + 1; body < bodies.count(); ++body) {
     const double x = fly(body);
     if (x >= range.to) break;
     enter_free(body, x);

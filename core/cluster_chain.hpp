@@ -151,7 +151,7 @@ template <Real T> class ClusterChain {
 
   void set_floor(const T& floor) { floor_ = floor; }
   T nearest_gap(Slot s) const {
-    const T far = std::numeric_limits<T>::max();
+    const T far = far_away<T>();
     const Slot p = cells_[s].left, n = cells_[s].right;
     const T on_left = p == end_left_ ? far : cells_[p].gap,
             on_right = n == last_ || n == end_right_ ? far : cells_[n].gap;

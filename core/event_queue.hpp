@@ -46,8 +46,11 @@ class EventQueue {
   }
   Key possibly_before(double t) const { return key(t, mask_) + slack_; }
 
-  // Whether the key of slot b is too close to that of `a` to tell which comes first.
-  bool close(Key a, Slot b) const { return tree_[leaves_ + b] <= (a | mask_) + slack_; }
+  // Whether the key of slot b (the least key of several slots) is too close to that of `a` to tell which comes first.
+  bool close(Key a, Slot b) const { return key_of(b) <= (a | mask_) + slack_; }
+  bool close(Key a, Slot b, Slot c, Slot d, Slot e) const {
+    return std::min(std::min(key_of(b), key_of(c)), std::min(key_of(d), key_of(e))) <= (a | mask_) + slack_;
+  }
   Key key_of(Slot s) const { return tree_[leaves_ + s]; }
 
   // Sets the times of three neighbouring gaps. Their paths to the root are two neighbouring paths that soon meet.

@@ -185,7 +185,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   void set_floor(const T& floor) { floor_ = floor; }
   // The smaller gap next to a contact, as of its local time; an end of the line counts as far away.
   T nearest_gap(Slot s) const {
-    const T far = std::numeric_limits<T>::max();
+    const T far = far_away<T>();
     const T on_left = s > first_ ? gaps_[s - 1].gap : far, on_right = s < last_ ? gaps_[s + 1].gap : far;
     return on_left < on_right ? on_left : on_right;
   }
@@ -373,9 +373,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Notice short_flight(const T& time, const T& before) const {
     if constexpr (keys_are_exact) {
       const T flown = time - before;
-      if (!(flown < time * 0x1p-20)) [[likely]]
-        return notice::none;
-      return flown < time * 0x1p-40 ? notice::crowded | notice::pressing : notice::crowded;
+      return notice::crowded * (flown < time * 0x1p-20) | notice::pressing * (flown < time * 0x1p-40);
     } else {
       const double flown = queue_time(T(time - before)), offset = queue_time(time);
       if (!(flown < offset * 0x1p-20)) return notice::none;

@@ -74,7 +74,7 @@ template <Real T> class PositionChain {
 
   void set_floor(const T& floor) { floor_ = floor; }
   T nearest_gap(Slot s) const {
-    const T far = std::numeric_limits<T>::max();
+    const T far = far_away<T>();
     const T time = at(s).time;
     const T on_left = s > first() ? gap_at(s - 1, time) : far, on_right = s < last() ? gap_at(s + 1, time) : far;
     return on_left < on_right ? on_left : on_right;

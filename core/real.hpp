@@ -37,6 +37,12 @@ template <Real T> bool is_positive(const T& x) { return x > T(0); }
 
 template <Real T> T magnitude(const T& x) { return is_negative(x) ? T(-x) : x; }
 
+// Larger than any length of a scene. Exact types have no largest number and call it 0.
+template <Real T> T far_away() {
+  const T largest = std::numeric_limits<T>::max();
+  return is_positive(largest) ? largest : T(std::numeric_limits<std::int64_t>::max());
+}
+
 // 2^exponent x as a double, rounded by a few units, within the range of double (larger numbers become its largest).
 // Types whose range is wider than double's say `double split(x, long& exponent)`: x = mantissa 2^exponent, |mantissa|
 // in [1/2, 1] or 0.

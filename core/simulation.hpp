@@ -37,7 +37,7 @@ struct Counts {
 
 // A contact as an observer sees it, before the law acts.
 template <Real T> struct Contact {
-  BodyIndex left;  // by its number at the start; the other is the next one
+  BodyIndex left, right;  // by their numbers at the start
   Pair<T> time;
   T interval;  // since the contact before it, wherever that was: resolves what differences of times cannot
   T closing_speed;
@@ -47,6 +47,7 @@ template <Real T> struct Policy {
   CollapsePolicy collapse = CollapsePolicy::cutoff;
   T stop_gap{0};  // policy stop: go on until a gap is below this; 0: until the collapse time is settled
   std::function<bool()> interrupt;  // asked now and then; true ends the run after the current contact
+  std::function<void(const T& time, const Counts&)> progress;  // told now and then
 };
 
 // Sum of the energies lost: compensated where the type has no digits to spare for 1e12 terms.
@@ -95,7 +96,8 @@ template <Real T, class Law, class Chain> class Simulation {
       }
       const T time = chain_.due(s);
       if constexpr (observed) {
-        observer(Contact<T>{chain_.body(s), chain_.clock().stamp(time), time - previous_, chain_.closing(s)});
+        observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.clock().stamp(time), time - previous_,
+                            chain_.closing(s)});
         previous_ = time;
       }
       const Collision<T> collision = chain_.collide(law_, s, time);
@@ -138,8 +140,7 @@ template <Real T, class Law, class Chain> class Simulation {
   // Whether a gap up to two away has a key too close to tell which comes first.
   bool contested(EventQueue::Key root, Slot s) const {
     const Slot p = chain_.left(s), n = chain_.right(s);
-    return queue_.close(root, p) | queue_.close(root, n) | queue_.close(root, chain_.left(p)) |
-           queue_.close(root, chain_.right(n));
+    return queue_.close(root, chain_.left(p), p, n, chain_.right(n));
   }
 
   // Of contacts too close for the keys: the first by exact time, then from the left, among those that do not commute.
@@ -190,6 +191,7 @@ template <Real T, class Law, class Chain> class Simulation {
       // A move costs as much as a few contacts per gap: rare in a large zone, with every contact in a few-body
       // collapse.
       next_review_ = counts_.contacts + std::min(32 * active + 16, active * active / 8 + 1);
+      if (policy_.progress) policy_.progress(chain_.clock().time(reviewed_), counts_);
       if (status == Status::reached && policy_.interrupt && policy_.interrupt()) status = Status::interrupted;
     }
     return status;

@@ -26,7 +26,7 @@ class double_double {
   constexpr double_double() = default;
   constexpr explicit double_double(int i) : high_(i) {}
   constexpr explicit double_double(std::int64_t i)
-      : high_(static_cast<double>(i)), low_(static_cast<double>(i - nearest(high_))) {}
+      : high_(static_cast<double>(i)), low_(static_cast<double>(i - nearest(high_)) - (high_ == 0x1p63 ? 1 : 0)) {}
   constexpr explicit double_double(double x) : high_(x) {}
   // The sum of two doubles, whatever their sizes.
   static constexpr double_double sum(double a, double b) { return two_sum(a, b); }
@@ -85,7 +85,7 @@ class double_double {
  private:
   constexpr double_double(double high, double low) : high_(high), low_(low) {}
 
-  // 2^63 as a double stands for an integer out of range: the largest is as near.
+  // 2^63 is one beyond the range.
   static constexpr std::int64_t nearest(double x) {
     return x >= 0x1p63 ? std::numeric_limits<std::int64_t>::max() : static_cast<std::int64_t>(x);
   }

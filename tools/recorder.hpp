@@ -97,7 +97,7 @@ template <Real T> class EventRecorder {
  public:
   void operator()(const Contact<T>& c) {
     left_.push_back(static_cast<std::uint64_t>(c.left));
-    right_.push_back(static_cast<std::uint64_t>(c.left + 1));
+    right_.push_back(static_cast<std::uint64_t>(c.right));
     const T time = c.time.value();
     high_.push_back(to_double(time));
     low_.push_back(to_double(difference(c.time, Pair<T>{T(rounded(time)), T(0)})));

@@ -9,7 +9,7 @@
 namespace cradle::tools {
 
 // Compiled once per scalar type, in a source of its own: instances/ of the build tree.
-template <class T> RunOutcome run_in(const Scene& scene, Progress::Show show);
+template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options);
 
 namespace {
 
@@ -50,9 +50,9 @@ void check_built(const Scene& scene) {
   in_precision<void>(scene, [](auto) {});
 }
 
-RunOutcome run_scene(const Scene& scene, Progress::Show progress) {
+RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
   check_built(scene);
-  return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, progress); });
+  return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, options); });
 }
 
 }  // namespace cradle::tools

@@ -1,7 +1,9 @@
 // One run of a scene: initial state, engine, observers, result.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "cradle/tools/errors.hpp"
 #include "cradle/tools/progress.hpp"
@@ -10,11 +12,26 @@
 
 namespace cradle::tools {
 
+/// One sample of a run that is compared with others: what they must agree in, numbers with all their digits.
+struct TraceSample {
+  double time = 0;
+  std::uint64_t digest = 0;  // of the contacts so far, see core/observe/trace.hpp
+  std::uint64_t contacts = 0, merges = 0;
+  std::string energy, front;  // front: the right one, empty before the first contact
+};
+
+struct RunOptions {
+  Progress::Show progress = Progress::Show::on_terminal;
+  bool trace = false;  // take trace samples at the times of the series
+};
+
 struct RunOutcome {
   Result result;
   Exit status = Exit::done;
   std::string report;   // of a collapse, for standard output; else empty
   std::string warning;  // what was not resolved, for standard error; else empty
+  std::vector<TraceSample> trace;
+  std::string collapse_time;  // where the run stopped at a collapse
 };
 
 /// "double", "mpfr, 50 digits", ...
@@ -24,6 +41,6 @@ std::string precision_name(const Run& run);
 void check_built(const Scene& scene);
 
 /// Runs the scene in its precision, coordinates and law. Throws Error for what this build cannot do.
-RunOutcome run_scene(const Scene& scene, Progress::Show progress);
+RunOutcome run_scene(const Scene& scene, const RunOptions& options);
 
 }  // namespace cradle::tools

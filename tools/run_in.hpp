@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <csignal>
+#include <functional>
 
 #include "cradle/core/cluster_chain.hpp"
 #include "cradle/core/gap_chain.hpp"
+#include "cradle/core/observe/trace.hpp"
 #include "cradle/core/position_chain.hpp"
 #include "cradle/tools/interrupt.hpp"
 #include "cradle/tools/recorder.hpp"
@@ -69,14 +71,16 @@ template <Real T> std::string account_warning(const Account<T>& account, Coordin
 template <Real T, class Simulation> class SceneRun {
  public:
   SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Simulation simulation,
-           Progress& progress)
-      : scene_(scene), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
+           const RunOptions& options, Progress& progress)
+      : scene_(scene), options_(options), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
         simulation_(std::move(simulation)), progress_(progress), plan_(schedule<T>(scene)) {}
 
   RunOutcome operator()() {
+    if (scene_.output.events) observer_ = [this](const Contact<T>& c) { events_(c); };
+    if (options_.trace) observer_ = [this](const Contact<T>& c) { trace_.contact(c.left, c.right); };
     Status status = Status::reached;
     for (const T& stop : plan_.stops) {
-      status = scene_.output.events ? simulation_.advance(stop, events_) : simulation_.advance(stop);
+      status = observer_ ? simulation_.advance(stop, observer_) : simulation_.advance(stop);
       if (status != Status::reached) break;
       look(stop);
       progress_.tell(to_double(stop), simulation_.counts().contacts);
@@ -93,7 +97,7 @@ template <Real T, class Simulation> class SceneRun {
   }
 
   void look(const T& time) {
-    if (take(plan_.series, next_series_, time)) series_.add(sample(simulation_, energy_, time));
+    if (take(plan_.series, next_series_, time)) record_sample(time);
     const bool snapshot = take(plan_.snapshots, next_snapshot_, time),
                profiled = take(plan_.profiles, next_profile_, time);
     if (!snapshot && !profiled) return;
@@ -118,9 +122,17 @@ template <Real T, class Simulation> class SceneRun {
         profile_table(profile(now, *bodies_, elapsed, range, wanted.bins), numbered("profiles", profiles_.size())));
   }
 
+  void record_sample(const T& time) {
+    const Sample<T> now = sample(simulation_, energy_, time);
+    series_.add(now);
+    if (options_.trace)
+      trace_samples_.push_back({to_double(time), trace_.digest(), now.counts.contacts, now.counts.merges,
+                                to_text(now.energy), now.front_right ? to_text(*now.front_right) : std::string()});
+  }
+
   // A run that ends early leaves its last state.
   void record_end(const T& time) {
-    series_.add(sample(simulation_, energy_, time));
+    record_sample(time);
     snapshots_.push_back(snapshot_table(simulation_.chain().configuration(simulation_.chain().local_time(time)),
                                         numbered("snapshots", snapshots_.size())));
   }
@@ -169,7 +181,11 @@ template <Real T, class Simulation> class SceneRun {
     for (auto* groups : {&snapshots_, &profiles_})
       for (auto& group : *groups) end.result.groups.push_back(std::move(group));
     if (scene_.output.events) end.result.groups.push_back(std::move(events_).table());
-    if (status == Status::collapsed) end.result.groups.push_back(collapse_table());
+    if (status == Status::collapsed) {
+      end.result.groups.push_back(collapse_table());
+      end.collapse_time = to_text(T(simulation_.collapse().time.value()));
+    }
+    end.trace = std::move(trace_samples_);
     return end;
   }
 
@@ -187,6 +203,7 @@ template <Real T, class Simulation> class SceneRun {
   }
 
   const Scene& scene_;
+  const RunOptions& options_;
   std::shared_ptr<const cradle::Bodies<T>> bodies_;
   T energy_;
   Simulation simulation_;
@@ -195,6 +212,9 @@ template <Real T, class Simulation> class SceneRun {
   std::size_t next_series_ = 0, next_snapshot_ = 0, next_profile_ = 0;
   SeriesRecorder<T> series_;
   EventRecorder<T> events_;
+  Trace trace_;
+  std::vector<TraceSample> trace_samples_;
+  std::function<void(const Contact<T>&)> observer_;
   std::vector<Group> snapshots_, profiles_;
 };
 
@@ -202,7 +222,7 @@ template <Real T, class Simulation> class SceneRun {
 
 template <Real T, class Law, class Chain>
 RunOutcome run_on(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Law law, Chain chain,
-                  Progress& progress) {
+                  const RunOptions& options, Progress& progress) {
   Policy<T> policy;
   // Elastic bodies do not collapse, those that stick cannot.
   if (scene.run.collapse == CollapsePolicy::stop && scene.law.type == LawType::inelastic &&
@@ -210,28 +230,33 @@ RunOutcome run_on(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> b
     policy.collapse = cradle::CollapsePolicy::stop;
   if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
   policy.interrupt = [] { return noted_signal() != 0; };
+  policy.progress = [&progress](const T& time, const Counts& counts) {
+    progress.tell(to_double(time), counts.contacts);
+  };
   using Engine = Simulation<T, Law, Chain>;
-  return SceneRun<T, Engine>(scene, std::move(bodies), Engine(std::move(law), std::move(chain), policy), progress)();
+  Engine engine(std::move(law), std::move(chain), policy);
+  return SceneRun<T, Engine>(scene, std::move(bodies), std::move(engine), options, progress)();
 }
 
-template <class T> RunOutcome run_in(const Scene& scene, Progress::Show show) {
+template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {
   const auto bodies = initial_bodies<T>(scene);
   const T start = number<T>(scene.run.start);
-  Progress progress(show, scene.run.start.value, scene.run.until.value);
+  Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
   if (scene.law.type == LawType::wet)
-    return run_on<T>(scene, bodies, Wet<T>(number<T>(scene.law.loss)), ClusterChain<T>(bodies, start), progress);
+    return run_on<T>(scene, bodies, Wet<T>(number<T>(scene.law.loss)), ClusterChain<T>(bodies, start), options,
+                     progress);
   if (scene.law.type == LawType::sticky || scene.run.collapse == CollapsePolicy::merge) {
     const bool sticky = scene.law.type == LawType::sticky;
     const InelasticMerging<T> law(Inelastic<T>(sticky ? T(0) : number<T>(scene.law.restitution)),
                                   sticky ? std::numeric_limits<T>::max() : number<T>(scene.run.merge_speed));
-    return run_on<T>(scene, bodies, law, ClusterChain<T>(bodies, start), progress);
+    return run_on<T>(scene, bodies, law, ClusterChain<T>(bodies, start), options, progress);
   }
   const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff),
                          scene.run.collapse == CollapsePolicy::contact_time ? number<T>(scene.run.contact_time) : T(0));
   if (scene.run.coordinates == Coordinates::absolute)
-    return run_on<T>(scene, bodies, law, PositionChain<T>(bodies, start), progress);
-  if (bodies->identical_masses()) return run_on<T>(scene, bodies, law, GapChain<T>(bodies, start), progress);
-  return run_on<T>(scene, bodies, law, GapChain<T, IndividualMasses<T>>(bodies, start), progress);
+    return run_on<T>(scene, bodies, law, PositionChain<T>(bodies, start), options, progress);
+  if (bodies->identical_masses()) return run_on<T>(scene, bodies, law, GapChain<T>(bodies, start), options, progress);
+  return run_on<T>(scene, bodies, law, GapChain<T, IndividualMasses<T>>(bodies, start), options, progress);
 }
 
 }  // namespace cradle::tools

@@ -38,5 +38,6 @@ void add_export(CLI::App& program, Action& action);
 void add_theory(CLI::App& program, Action& action);
 void add_scenes(CLI::App& program, Action& action);
 void add_plot(CLI::App& program, Action& action);
+void add_trust(CLI::App& program, Action& action);
 
 }  // namespace cradle::tools

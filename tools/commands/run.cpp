@@ -35,9 +35,9 @@ Exit run(const Options& options) {
   check_writable(output);
   note_signals();
   const auto started = std::chrono::steady_clock::now();
-  const RunOutcome end = run_scene(scene, options.progress ? Progress::Show::always
-                                          : options.quiet  ? Progress::Show::never
-                                                           : Progress::Show::on_terminal);
+  const RunOutcome end = run_scene(scene, {options.progress ? Progress::Show::always
+                                           : options.quiet  ? Progress::Show::never
+                                                            : Progress::Show::on_terminal});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   // An existing file is replaced only by a run that went its way; one cut short leaves what it has beside it.
   const bool cut = end.status == Exit::interrupted || end.status == Exit::terminated;

@@ -47,9 +47,9 @@ class EventQueue {
   Key possibly_before(double t) const { return key(t, mask_) + slack_; }
 
   // Whether the key of slot b (the least key of several slots) is too close to that of `a` to tell which comes first.
-  bool close(Key a, Slot b) const { return key_of(b) <= (a | mask_) + slack_; }
+  bool close(Key a, Slot b) const { return key_of(b) <= no_later_than(a); }
   bool close(Key a, Slot b, Slot c, Slot d, Slot e) const {
-    return std::min(std::min(key_of(b), key_of(c)), std::min(key_of(d), key_of(e))) <= (a | mask_) + slack_;
+    return std::min(std::min(key_of(b), key_of(c)), std::min(key_of(d), key_of(e))) <= no_later_than(a);
   }
   Key key_of(Slot s) const { return tree_[leaves_ + s]; }
 
@@ -111,16 +111,19 @@ class EventQueue {
     for (std::size_t node = leaves_ - 1; node > 0; --node) refresh(node);
   }
 
-  // Calls visit(slot) for every slot whose key is at most `bound`, from left to right; visits nothing else of the tree.
-  template <class Visit> void for_each_before(Key bound, Visit visit, std::size_t node = 1) const {
-    if (tree_[node] > bound) return;
-    if (node >= leaves_) return visit(static_cast<Slot>(node - leaves_));
-    for_each_before(bound, visit, 2 * node);
-    for_each_before(bound, visit, 2 * node + 1);
-  }
+  // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; looks at
+  // nothing else of the tree. Returns whether all were visited.
+  template <class Visit> bool for_each_before(Key bound, Visit visit) const { return visit_before(bound, visit, 1); }
+  // The largest key that may belong to the same time as `key`.
+  Key no_later_than(Key key) const { return (key | mask_) + slack_; }
 
  private:
   void refresh(std::size_t node) { tree_[node] = std::min(tree_[2 * node], tree_[2 * node + 1]); }
+  template <class Visit> bool visit_before(Key bound, Visit& visit, std::size_t node) const {
+    if (tree_[node] > bound) return true;
+    if (node >= leaves_) return visit(static_cast<Slot>(node - leaves_));
+    return visit_before(bound, visit, 2 * node) && visit_before(bound, visit, 2 * node + 1);
+  }
   void climb(std::size_t node) {
     for (; node > 0; node >>= 1) refresh(node);
   }

@@ -111,7 +111,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     if constexpr (keys_are_exact)
       return gaps_[s].due;
     else
-      return gaps_[s].closing > T(0) ? to_double(due(s)) : EventQueue::never;
+      return gaps_[s].closing > T(0) ? queue_time(due(s)) : EventQueue::never;
   }
 
   const T& closing(Slot s) const { return gaps_[s].closing; }

@@ -46,8 +46,8 @@ template <Real T> struct Contact {
 template <Real T> struct Policy {
   CollapsePolicy collapse = CollapsePolicy::cutoff;
   T stop_gap{0};  // policy stop: go on until a gap is below this; 0: until the collapse time is settled
-  std::function<bool()> interrupt;  // asked now and then; true ends the run after the current contact
-  std::function<void(const T& time, const Counts&)> progress;  // told now and then
+  std::function<bool()> interrupt = {};  // asked now and then; true ends the run after the current contact
+  std::function<void(const T& time, const Counts&)> progress = {};  // told now and then
 };
 
 // Sum of the energies lost: compensated where the type has no digits to spare for 1e12 terms.
@@ -143,12 +143,20 @@ template <Real T, class Law, class Chain> class Simulation {
     return queue_.close(root, chain_.left(p), p, n, chain_.right(n));
   }
 
-  // Of contacts too close for the keys: the first by exact time, then from the left, among those that do not commute.
+  // Of contacts too close for the keys: the first by exact time, then from the left. Where very many are (a lattice),
+  // the first among those that do not commute with it.
   Slot earliest_near(EventQueue::Key root) {
-    Slot s = queue_.slot(root);
+    constexpr int many = 64;
+    int candidates = 0;
+    Slot s = queue_.slot(root), first = s;
     ++counts_.close_calls;
+    if (queue_.for_each_before(queue_.no_later_than(root), [&](Slot other) {
+          if (other != first && earlier(other, first)) first = other;
+          return ++candidates < many;
+        }))
+      return first;
     for (;;) {
-      Slot first = s;
+      first = s;
       for (const Slot other :
            {chain_.left(chain_.left(s)), chain_.left(s), chain_.right(s), chain_.right(chain_.right(s))})
         if (other != s && queue_.close(root, other) && earlier(other, first)) first = other;
@@ -166,6 +174,7 @@ template <Real T, class Law, class Chain> class Simulation {
     bool found = false;
     queue_.for_each_before(queue_.possibly_before(chain_.queue_time(horizon)), [&](Slot s) {
       if (chain_.due(s) <= horizon && (!found || earlier(s, first))) first = s, found = true;
+      return true;
     });
     return found;
   }

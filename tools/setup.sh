@@ -14,7 +14,7 @@ needs() {
 program | C++20 compiler        | compiler                     | g++                 | cxx-compiler    | gcc
 program | CMake 3.25 or newer   | cmake 3.25                   | cmake               | cmake           | cmake
 program | Ninja (or make)       | generator                    | ninja-build         | ninja           | ninja
-program | Boost headers         | header boost/multiprecision/mpfr.hpp | libboost-dev | libboost-headers | boost
+program | Boost headers         | header boost/multiprecision/cpp_bin_float.hpp | libboost-dev| libboost-headers | boost
 program | oneTBB                | header oneapi/tbb/version.h  | libtbb-dev          | tbb-devel       | intel-oneapi-tbb
 program | toml++                | header toml++/toml.h         | libtomlplusplus-dev | tomlplusplus    | tomlplusplus
 program | CLI11                 | header CLI/CLI.hpp           | libcli11-dev        | cli11           | cli11

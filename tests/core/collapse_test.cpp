@@ -41,7 +41,7 @@ Scene<double> three_bodies() { return list<double>({0, 1, 3}, {1, 0, -1}); }
 
 // Contacts until the gap left beside one is below `least`.
 std::vector<Step<double>> contacts_down_to(double least, double restitution, const Scene<double>& bodies) {
-  SlowLoop loop(Inelastic<double>(restitution, 0), GapChain<double>(bodies, 0));
+  SlowLoop loop(Inelastic<double>(restitution), GapChain<double>(bodies, 0));
   std::vector<Step<double>> steps;
   do {
     const auto s = loop.next();
@@ -125,7 +125,7 @@ TEST(Collapse, UnequalMasses) {
   const double restitution = .1;
   const std::vector<double> m{3, 1, 2};
   const auto bodies = list<double>({0, 1, 3}, {1, 0, -1}, m);
-  SlowLoop loop(Inelastic<double>(restitution, 0), GapChain<double, IndividualMasses<double>>(bodies, 0));
+  SlowLoop loop(Inelastic<double>(restitution), GapChain<double, IndividualMasses<double>>(bodies, 0));
   const Wide eps = restitution, to_right = (1 + eps) * 3 / 4, to_left = (1 + eps) * 2 / 3;
   const Wide r = sqrt(Wide(to_right / to_left)), a = sqrt(Wide(to_right * to_left));
   const Wide slow = (a - sqrt(Wide(a * a - 4 * eps))) / 2;
@@ -156,7 +156,7 @@ TEST(Collapse, FourBodiesInTheCheckerboardPattern) {
               {.1, "1.53471469049059024590594831142126492903216"}};
   for (const auto& row : rows) {
     const auto bodies = list<double>({0, 1, 3, 4}, {1.5, .5, -.5, -1.5});
-    SlowLoop loop(Inelastic<double>(row.restitution, 0), GapChain<double>(bodies, 0));
+    SlowLoop loop(Inelastic(row.restitution), GapChain<double>(bodies, 0));
     Step<double> last{};
     for (int cycle = 0; cycle < 100; ++cycle) {
       for (const BodyIndex body : {0, 2, 1}) {

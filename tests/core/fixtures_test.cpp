@@ -47,21 +47,20 @@ void expect_in_both_chains(const Scene<double>& bodies, const Inelastic<double>&
 }
 
 TEST(Fixtures, MixedVelocities) {
-  expect_in_both_chains(rmix<double>(32), {.9375, 0.},
-                        {{1, 5, 0, 6.63748402689816430211},
-                         {10, 66, 0, 4.69922643744171297629},
-                         {1000, 188, 0, 4.09494449933385114261}});
+  expect_in_both_chains(
+      rmix<double>(32), Inelastic(.9375, 0.),
+      {{1, 5, 0, 6.63748402689816430211}, {10, 66, 0, 4.69922643744171297629}, {1000, 188, 0, 4.09494449933385114261}});
 }
 
 TEST(Fixtures, ShockWithMostContactsBelowTheCutoff) {
-  expect_in_both_chains(rshock<double>(200), {.9, 1e-3},
+  expect_in_both_chains(rshock<double>(200), Inelastic(.9, 1e-3),
                         {{20, 129, 0, 22.3629699142628695777},
                          {50, 933, 0, 18.8195198282875660365},
                          {100, 430496, 344471, 12.5000032613865101}});
 }
 
 TEST(Fixtures, ShockOfThePapersFigure2) {
-  expect_in_both_chains(rshock<double>(8000), {.999, 1e-5},
+  expect_in_both_chains(rshock<double>(8000), Inelastic(.999, 1e-5),
                         {{999.5, 384155, 0, 887.274363235560075},
                          {1999, 1299216, 0, 738.145120941488556},
                          {4000, 4685816, 0, 492.025770085541422},

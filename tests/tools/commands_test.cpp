@@ -167,7 +167,7 @@ TEST_F(Commands, BadCommandLinesAreStatus2) {
   for (const auto* command :
        {"cradle", "cradle walk fig2", "cradle run", "cradle run fig2 --sett a=1", "cradle export a.h5",
         "cradle run fig2 --set law.restitution", "cradle run fig2 --set run.precision=float16",
-        "cradle run fig2 --set law.type=wet --set law.restitution= --set law.cutoff= --set law.loss=1"}) {
+        "cradle run fig2 --set initial.type=ring"}) {
     const Printed run = shell(command);
     EXPECT_EQ(run.status, 2) << command << "\n" << run.err;
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;

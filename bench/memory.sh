@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Peak resident memory of the program for two rows of 8000 and of 2e7 bodies, run until t = 1000: rows are streamed, so
+# memory follows the active zone and the two must be about the same. Prints both and their ratio.
+#   bench/memory.sh [PROGRAM]      (default: build/release/tools/cradle)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cradle=${1:-build/release/tools/cradle}
+[[ -x $cradle ]] || { echo "no program (looked for $cradle): build it first, e.g. with tools/quickstart.sh" >&2; exit 1; }
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# Runs the program and prints the largest resident size it had, in kB.
+peak() {
+  python3 - "$@" <<'PYTHON'
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True, stdout=sys.stderr)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+PYTHON
+}
+
+run() {
+  peak "$cradle" run fig2 --quiet --set "initial.particles=$1" --set run.until=1000 --set 'output.snapshots=[500, 1000]' \
+    --set 'output.profiles.times=[500, 1000]' -o "$scratch/$1.h5"
+}
+
+small=$(run 8000)
+large=$(run 2e7)
+echo "N = 8000: $small kB    N = 2e7: $large kB    ratio $(python3 -c "print(f'{$large / $small:.3f}')")"

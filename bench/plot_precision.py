@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Picture of run time against error: plot_precision.py CSV OUT.png, with the CSV of bench_precision.
+
+Panels: (a) three-body collapse, (b) shock into the collapsed cluster, (c) time reversal, (d) speed on the long shock.
+One marker per representation, one colour per type; the line is the Pareto front: nothing is both faster and nearer (by
+half a digit).
+Errors run from 1 (no digit is right) to 1e-200 on an axis that is linear in the square root of the digits.
+"""
+import csv
+import sys
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+
+COLOURS = {"double": "#0072B2", "long double": "#56B4E9", "double-double": "#D55E00", "float128": "#E69F00",
+           "mpfr 20": "#B9DEB0", "mpfr 34": "#7CC47F", "mpfr 50": "#3DA35D", "mpfr 100": "#1B7A3D",
+           "mpfr 200": "#0B4A22", "cpp_bin_float": "#9467BD"}
+NAMES = {"cpp_bin_float": "cpp_bin_float 100"}
+BARS = {"double": "double (16 digits)", "tuned_heap": "conventional double, tuned heap",
+        "indexed_heap": "conventional double, indexed heap", "long double": "long double (19)",
+        "double-double": "double-double (31)", "float128": "float128 (34)"} | NAMES
+MARKERS = {"gaps": "o", "absolute": "s"}
+DIGIT_TICKS = [0, 1, 5, 10, 16, 31, 50, 75, 100, 150, 200]
+# representation, type, offset in points, alignment
+WIDE_LABELS = [("gaps", "double-double", -4, -13, "center"), ("gaps", "float128", 4, 11, "left"),
+               ("gaps", "mpfr 50", -9, -5, "right"), ("gaps", "mpfr 100", -9, -5, "right"),
+               ("gaps", "mpfr 200", -9, -4, "right")]
+
+
+def read(path):
+    """{(scene, representation, type): {(quantity, time): value}}"""
+    found = {}
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            engine = found.setdefault((row["scene"], row["representation"], row["type"]), {})
+            engine[row["quantity"], row["t"]] = float(row["value"])
+    return found
+
+
+def scatter(axes, points, unit, shown):
+    """points: (representation, type, cost, error). Draws them with the Pareto front."""
+    digits = [-np.log10(error) for *_, error in points]
+    best, front = -1.0, []
+    for (*_, cost, _), d in sorted(zip(points, digits), key=lambda p: (p[0][2], -p[1])):
+        if d > best + 0.5:
+            best = d
+            front.append((cost, d))
+    axes.plot(*zip(*front), color="0.55", lw=1.2, zorder=1)
+    for (representation, kind, cost, _), d in zip(points, digits):
+        axes.scatter(cost, d, marker=MARKERS[representation], color=COLOURS[kind], s=64, zorder=3,
+                     edgecolor="black" if representation == "gaps" else "0.35", linewidth=0.8)
+    for representation, kind, dx, dy, align in shown:
+        at = [(p[2], d) for p, d in zip(points, digits) if p[:2] == (representation, kind)][0]
+        axes.annotate(kind if representation == "gaps" else f"{kind}, absolute", at, (dx, dy), ha=align, va="center",
+                      textcoords="offset points", fontsize=8.5, color="0.2")
+    axes.set_xscale("log")
+    axes.set_yscale("function", functions=(lambda d: np.sqrt(np.maximum(d, 0)), lambda s: s ** 2))
+    axes.set_yticks(DIGIT_TICKS, ["1" if d == 0 else f"$10^{{-{d}}}$" for d in DIGIT_TICKS])
+    axes.set_ylim(250, 0)
+    axes.set_xlabel(unit)
+    axes.grid(color="0.92")
+    axes.set_axisbelow(True)
+
+
+def main(source, target):
+    found = read(source)
+    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10.5, "figure.dpi": 100})
+    figure, ((a, b), (c, d)) = plt.subplots(2, 2, figsize=(12.4, 10.6))
+
+    def points(scene, cost, quantity, time=""):
+        return [(representation, kind, cost(values), max(values[quantity, time], 1e-240))
+                for (name, representation, kind), values in found.items()
+                if name == scene and (quantity, time) in values]
+
+    def per_contact(values):
+        return values["ns_per_contact", ""]
+
+    scatter(a, points("three", lambda v: v["ns_per_contact", ""] * v["contacts", ""] / 1e3, "time_error"),
+            "microseconds for the whole run", [
+                ("gaps", "double", 2, -13, "center"), ("absolute", "double", -4, 12, "left"),
+                ("gaps", "double-double", -6, -10, "right"), ("gaps", "mpfr 50", -9, -5, "right"),
+                ("gaps", "mpfr 100", -9, -5, "right"), ("gaps", "mpfr 200", -9, -4, "right")])
+    a.set_title("(a) collapse time of three bodies, against 12/7")
+    a.set_ylabel("relative error")
+
+    end = max((time for (name, *_), values in found.items() if name == "shock"
+               for quantity, time in values if quantity == "gap_error"), key=float)
+    scatter(b, points("shock", per_contact, "gap_error", end), "nanoseconds per contact", [
+        ("gaps", "double", 2, -13, "center"), ("absolute", "double", 9, 0, "left"), *WIDE_LABELS])
+    contacts = found["shock", "gaps", "double"]["contacts", ""]
+    b.set_title(f"(b) median gap in the collapsed shock, N = 1000, t = {end},\n"
+                f"after {contacts / 1e6:.1f} million contacts")
+
+    scatter(c, points("reversal", per_contact, "position_error"), "nanoseconds per contact", [
+        ("gaps", "double", 2, -13, "center"), *WIDE_LABELS])
+    c.set_title("(c) positions of an elastic gas, there and back")
+    c.set_ylabel("error")
+
+    order = ["double", "tuned_heap", "indexed_heap"] + list(COLOURS)[1:]
+    labels = []
+    for y, kind in enumerate(order):
+        labels.append(BARS.get(kind, kind))
+        for representation, height in (("gaps", -0.2), ("absolute", 0.2), ("conventional", 0)):
+            values = found.get(("speed", representation, kind))
+            if not values:
+                continue
+            rate = 1e3 / values["ns_per_contact", ""]
+            plain = representation == "conventional"
+            d.barh(y + height, rate, 0.5 if plain else 0.38, color="0.6" if plain else COLOURS[kind],
+                   hatch="////" if representation == "absolute" else None, edgecolor="white", lw=0)
+            d.annotate(f"{rate:.1f}" if rate >= 1 else f"{rate:.2f}", (rate, y + height), (3, 0),
+                       textcoords="offset points", va="center", fontsize=8)
+    d.set_xscale("log")
+    d.set_xlim(0.2, 60)
+    d.set_xticks([0.3, 1, 3, 10, 30], ["0.3", "1", "3", "10", "30"])
+    d.minorticks_off()
+    d.set_yticks(range(len(order)), labels)
+    d.invert_yaxis()
+    d.set_xlabel("million contacts per second, one core")
+    d.set_title("(d) shock of N = 8000 to t = 4000; hatched: absolute positions")
+    d.grid(color="0.92", axis="x")
+    d.set_axisbelow(True)
+
+    handles = [Line2D([], [], ls="", marker="o", ms=8, mfc=colour, mec="black", label=NAMES.get(kind, kind))
+               for kind, colour in COLOURS.items()]
+    handles += [Line2D([], [], ls="", marker="o", ms=8, mfc="white", mec="black", label="gaps"),
+                Line2D([], [], ls="", marker="s", ms=8, mfc="white", mec="0.35", label="absolute positions"),
+                Line2D([], [], color="0.55", label="Pareto front")]
+    figure.legend(handles=handles, loc="lower center", ncol=7, frameon=False)
+    figure.tight_layout(rect=(0, 0.06, 1, 1), h_pad=2)
+    figure.savefig(target, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    main(sys.argv[1], sys.argv[2])

@@ -1,0 +1,126 @@
+#pragma once
+// Inelastic collapse of three and four equal bodies in the checkerboard pattern: collapse time and gaps are known
+// exactly. In units of the initial gap and closing speed,
+//
+//   three  x = (0, 1, 3),    v = (1, 0, -1),           eps = .05:  t_c = 12/7
+//   four   x = (0, 1, 3, 4), v = (3, 1, -1, -3)/2,     eps = .15:  t_c = 11/7; the outer gaps close together
+//
+// With p the closing speed of the gap that closes, q and g those of the other kind, and c = 2 where both outer gaps
+// push the middle one, else 1:  q -> q + c (1 + eps) p/2,  p -> -eps p,  and the next contact comes after g/q.
+
+#include "precision/engines.hpp"
+
+namespace precision {
+
+struct CollapseScene {
+  std::string name;
+  std::vector<int> positions, velocities_doubled;
+  const char* restitution;
+  int time_numerator;  // of t_c = numerator/7
+  Wide time() const { return Wide(time_numerator) / 7; }
+  bool outer_together() const { return positions.size() == 4; }
+};
+
+inline std::vector<CollapseScene> collapse_scenes() {
+  return {{"three", {0, 1, 3}, {2, 0, -2}, "0.05", 12}, {"four", {0, 1, 3, 4}, {3, 1, -1, -3}, "0.15", 11}};
+}
+
+struct CollapseOutcome {
+  std::uint64_t contacts = 0;  // made until the collapse time is settled (policy stop); `seconds` are for these
+  double seconds = 0;
+  double extrapolated = 1;           // relative error of the collapse time as settled
+  double claimed = 1;                // what the engine says of it
+  double summed = 1;                 // and as the sum of all intervals between contacts that the type resolves
+  std::uint64_t contacts_right = 0;  // in the right order and with the gap right to 1e-6
+};
+
+inline constexpr std::uint64_t most_contacts = 2000;  // where counting right ones ends
+
+template <class Chain> Run<Chain> prepare(const CollapseScene& scene, cradle::Policy<typename Chain::Scalar> policy) {
+  using T = typename Chain::Scalar;
+  std::vector<T> x, v;
+  for (const int position : scene.positions) x.push_back(T(position));
+  for (const int doubled : scene.velocities_doubled) v.push_back(T(doubled) / T(2));
+  return {cradle::Inelastic<T>(cradle::from_text<T>(scene.restitution), T(0)),
+          Chain(std::make_shared<cradle::List<T>>(std::move(x), std::move(v)), T(0)), std::move(policy)};
+}
+
+// The exact sequence, one step per half cycle.
+class ExactCollapse {
+ public:
+  explicit ExactCollapse(const CollapseScene& scene)
+      : restitution_(scene.restitution), together_(scene.outer_together()) {}
+
+  bool outer() const { return outer_; }  // which kind closes: the outer gaps (of three bodies, the left one)
+  const Wide& gap() const { return gap_; }
+  void step() {
+    const Wide flight = gap_ / closing_;
+    gap_ = first_ ? Wide(2 - flight) : Wide(-other_ * flight);  // what the other gap has opened to since it closed
+    first_ = false;
+    const Wide pushed = other_ + (outer_ && together_ ? 2 : 1) * (1 + restitution_) / 2 * closing_;
+    other_ = -restitution_ * closing_;
+    closing_ = pushed;
+    outer_ = !outer_;
+  }
+
+ private:
+  Wide restitution_, gap_{1}, closing_{1}, other_{1};
+  bool together_, outer_ = true, first_ = true;
+};
+
+// Follows a collapse for as long as the type resolves it. Counts the contacts until one comes out of turn or finds a
+// gap that is not right to 1e-6; the time of the last contact is the sum of all intervals.
+template <class Chain> void follow(const CollapseScene& scene, CollapseOutcome& outcome) {
+  using T = typename Chain::Scalar;
+  std::uint64_t right = 0, seen = 0;
+  bool wrong = false;
+  cradle::Policy<T> policy;
+  policy.interrupt = [&] { return seen >= most_contacts; };
+  Run<Chain> run = prepare<Chain>(scene, policy);
+  ExactCollapse exact(scene);
+  unsigned closed = 0;  // gaps closed in this half cycle, as bits
+  run.advance(T(2), [&](const cradle::Contact<T>& contact) {
+    ++seen;
+    const unsigned outer = scene.outer_together() ? 0b101 : 0b001, all = exact.outer() ? outer : 0b010;
+    const unsigned own = 1U << contact.left;
+    if (wrong || !(own & all & ~closed)) {
+      wrong = true;
+      return;
+    }
+    if (closed == 0) {
+      const cradle::Slot slot = run.chain().first() + static_cast<cradle::Slot>(contact.left);
+      const T gap = run.chain().gap_at(slot, T(run.chain().due(slot) - contact.interval));
+      wrong = !(relative_error(widen(gap), exact.gap()) < 1e-6);
+    }
+    right += !wrong;
+    closed |= own;
+    if (closed == all) {
+      exact.step();
+      closed = 0;
+    }
+  });
+  outcome.contacts_right = std::min(right, most_contacts);
+  outcome.summed = relative_error(widen(run.last_contact_time()), scene.time());
+}
+
+inline CollapseOutcome measure(const Engine& engine, const CollapseScene& scene) {
+  return with_chain<CollapseOutcome>(engine, [&]<class Chain>(std::type_identity<Chain>) {
+    using T = typename Chain::Scalar;
+    CollapseOutcome outcome;
+    cradle::Policy<T> stop;
+    stop.collapse = cradle::CollapsePolicy::stop;
+    outcome.seconds = best_seconds([&] {
+      Run<Chain> run = prepare<Chain>(scene, stop);
+      run.advance(T(2));
+      outcome.contacts = run.counts().contacts;
+      if (!run.collapse().extrapolated) return;
+      const auto& found = run.collapse();
+      outcome.extrapolated = relative_error(widen(found.time.high) + widen(found.time.low), scene.time());
+      outcome.claimed = relative_error(scene.time() + widen(found.uncertainty), scene.time());
+    });
+    follow<Chain>(scene, outcome);
+    return outcome;
+  });
+}
+
+}  // namespace precision

@@ -1,0 +1,123 @@
+#pragma once
+// The engines compared: every scalar type in both representations, and how far their numbers are from others. Numbers
+// of different types meet in `Wide`, 240 digits, to which all of them convert without rounding that matters here.
+
+#include <ctime>
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/gap_chain.hpp"
+#include "cradle/core/law.hpp"
+#include "cradle/core/list.hpp"
+#include "cradle/core/position_chain.hpp"
+#include "cradle/core/rows.hpp"
+#include "cradle/core/simulation.hpp"
+#include "cradle/precision/scalars.hpp"
+
+namespace precision {
+
+using cradle::BodyIndex;
+
+// ---- engines
+
+struct Engine {
+  cradle::ScalarChoice scalar;
+  bool gaps;
+
+  std::string representation() const { return gaps ? "gaps" : "absolute"; }
+  std::string type() const {
+    return scalar.digits > 0 ? scalar.name + " " + std::to_string(scalar.digits) : scalar.name;
+  }
+  std::string name() const {
+    std::string name = representation() + "/" + type();
+    std::replace(name.begin(), name.end(), ' ', '_');
+    return name;
+  }
+};
+
+inline std::vector<cradle::ScalarChoice> scalars() {
+  return {{"double"},       {"long double"}, {"double-double"},
+#ifdef CRADLE_WITH_FLOAT128
+          {"float128"},
+#endif
+#ifdef CRADLE_WITH_MPFR
+          {"mpfr", 20},     {"mpfr", 34},    {"mpfr", 50},      {"mpfr", 100}, {"mpfr", 200},
+#endif
+          {"cpp_bin_float"}};
+}
+
+// The widest there is up to so many digits, in gaps: what the others are held against.
+inline Engine reference([[maybe_unused]] unsigned digits) {
+#ifdef CRADLE_WITH_MPFR
+  return {{"mpfr", digits}, true};
+#else
+  return {{"cpp_bin_float"}, true};
+#endif
+}
+
+// Calls f(std::type_identity<Chain>) with the engine's chain.
+template <class Result, template <class> class Masses = cradle::IdenticalMasses, class F>
+Result with_chain(const Engine& engine, F f) {
+  return cradle::with_scalar<Result>(engine.scalar, [&]<class T>(std::type_identity<T>) -> Result {
+    if (engine.gaps) return f(std::type_identity<cradle::GapChain<T, Masses<T>>>{});
+    return f(std::type_identity<cradle::PositionChain<T>>{});
+  });
+}
+
+template <class Chain>
+using Run = cradle::Simulation<typename Chain::Scalar, cradle::Inelastic<typename Chain::Scalar>, Chain>;
+
+// ---- numbers of all types
+
+using Wide =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<800, boost::multiprecision::digit_base_2>,
+                                  boost::multiprecision::et_off>;
+
+inline Wide widen(double x) { return Wide(x); }
+inline Wide widen(long double x) { return Wide(x); }
+inline Wide widen(const cradle::double_double& x) { return Wide(x.high()) + x.low(); }
+template <class T> Wide widen(const T& x) { return Wide(cradle::to_text(x)); }
+
+// |value - exact| / |exact|, at most 1: no digit is right.
+inline double relative_error(const Wide& value, const Wide& exact) {
+  return std::min(static_cast<double>(Wide(abs(Wide(value - exact)) / abs(exact))), 1.0);
+}
+
+// Finaliser of splitmix64.
+inline std::uint64_t hash(std::uint64_t i) {
+  std::uint64_t z = i + 0x9E3779B97F4A7C15;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
+  return z ^ (z >> 31);
+}
+
+// ---- time, of the thread: what else the machine does disturbs less
+
+inline double thread_seconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Seconds of one call of f, the least of several trials; calls that take long are made once.
+template <class F> double best_seconds(F f) {
+  const auto seconds_of = [&](int calls) {
+    const double start = thread_seconds();
+    for (int i = 0; i < calls; ++i) f();
+    return (thread_seconds() - start) / calls;
+  };
+  double best = seconds_of(1);
+  if (best > 1) return best;
+  const int calls = std::max(1, static_cast<int>(0.05 / best));
+  for (int trial = 0; trial < 4; ++trial) best = std::min(best, seconds_of(calls));
+  return best;
+}
+
+}  // namespace precision

@@ -1,0 +1,142 @@
+#pragma once
+// The paper's shock, from the first contact into the collapsed cluster: two rows close in at speeds 1/2 and -1/2,
+// velocity cut-off 1e-5, every body displaced by a hash of its number. Two things are asked of an engine:
+//
+//   errors   of energy, front and gaps (median of their relative errors) at given times
+//   order    the first contact out of order. The digests of two runs' traces are sampled at many times; the runs
+//            disagree from the first sample on from which digests differ for good (a sample between two runs' times of
+//            one contact differs only for the moment)
+
+#include <optional>
+
+#include "cradle/core/observe/trace.hpp"
+#include "precision/engines.hpp"
+
+namespace precision {
+
+struct ShockScene {
+  std::string name;
+  BodyIndex bodies;
+  const char* restitution;
+  std::vector<double> times;  // when errors are asked for; the run ends with the last
+  std::uint64_t contacts;     // of the whole run: sets how far apart samples are
+};
+
+template <class T> std::shared_ptr<const cradle::Rows<T>> rows(BodyIndex bodies) {
+  const auto displacement = [](BodyIndex i) {
+    return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
+  };
+  return std::make_shared<cradle::Rows<T>>(cradle::symmetric_rows<T>(bodies, T(1) / T(2), T(1), displacement));
+}
+
+template <class Chain> Run<Chain> prepare(const ShockScene& scene) {
+  using T = typename Chain::Scalar;
+  return {cradle::Inelastic<T>(cradle::from_text<T>(scene.restitution), cradle::from_text<T>("1e-5")),
+          Chain(rows<T>(scene.bodies), T(0))};
+}
+
+// ---- errors
+
+struct ShockState {
+  std::uint64_t contacts = 0;
+  Wide energy, front;
+  BodyIndex first = 0;     // body on the left of the first gap
+  std::vector<Wide> gaps;  // of the bodies that have collided, and the next on either side
+};
+
+template <class Chain> ShockState read(const Run<Chain>& run, const ShockScene& scene, double time) {
+  const auto local = run.chain().local_time(typename Chain::Scalar(time));
+  const auto configuration = run.chain().configuration(local);
+  ShockState state{run.counts().contacts,
+                   Wide(scene.bodies) / 8 - widen(run.energy_lost()),
+                   widen(run.chain().front_right(local)),
+                   configuration.index.front(),
+                   {}};
+  for (const auto& gap : configuration.gap) state.gaps.push_back(widen(gap));
+  return state;
+}
+
+struct ShockErrors {
+  double energy, front, gaps;
+};
+
+inline ShockErrors errors(const ShockState& state, const ShockState& exact) {
+  std::vector<double> gaps;
+  for (std::size_t k = 0; k < exact.gaps.size(); ++k) {
+    const BodyIndex j = exact.first + static_cast<BodyIndex>(k) - state.first;
+    const bool held = j >= 0 && j < static_cast<BodyIndex>(state.gaps.size());
+    gaps.push_back(held ? relative_error(state.gaps[static_cast<std::size_t>(j)], exact.gaps[k]) : 1);
+  }
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return {relative_error(state.energy, exact.energy), relative_error(state.front, exact.front), *middle};
+}
+
+// ---- order
+
+inline constexpr std::uint64_t samples = 4000;
+
+// Sampling times: one in so many contacts, as gaps in double make them, halfway to the next contact; and the end.
+inline std::vector<double> sampling_times(const ShockScene& scene) {
+  std::vector<double> times;
+  std::uint64_t made = 0;
+  const std::uint64_t stride = scene.contacts / samples;
+  auto simulation = prepare<cradle::GapChain<double>>(scene);
+  simulation.advance(scene.times.back(), [&](const cradle::Contact<double>& contact) {
+    if (++made % stride == 0) times.push_back(contact.time.value() - contact.interval / 2);
+  });
+  times.push_back(scene.times.back());
+  return times;
+}
+
+struct Sample {
+  double time;
+  std::uint64_t digest, contacts;
+};
+
+// The last sample in which both sums agree; nothing if that is the end of both runs.
+inline std::optional<Sample> last_agreement(const std::vector<Sample>& a, const std::vector<Sample>& b) {
+  std::size_t k = std::min(a.size(), b.size());
+  if (a[k - 1].digest == b[k - 1].digest) return std::nullopt;
+  while (k > 0 && a[k - 1].digest != b[k - 1].digest) --k;
+  return k > 0 ? a[k - 1] : Sample{0, 0, 0};
+}
+
+// ---- runs
+
+struct ShockRun {
+  double seconds = 0;  // tracing included
+  std::vector<ShockState> states;
+  std::vector<Sample> samples;
+};
+
+// With sampling times the run is traced, without it is as a user's.
+inline ShockRun run(const Engine& engine, const ShockScene& scene, const std::vector<double>& sampling = {}) {
+  return with_chain<ShockRun>(engine, [&]<class Chain>(std::type_identity<Chain>) {
+    using T = typename Chain::Scalar;
+    ShockRun result;
+    Run<Chain> simulation = prepare<Chain>(scene);
+    cradle::Trace trace;
+    const auto advance = [&](double until) {
+      if (sampling.empty())
+        simulation.advance(T(until));
+      else
+        simulation.advance(T(until),
+                           [&](const cradle::Contact<T>& contact) { trace.contact(contact.left, contact.right); });
+    };
+    auto next = sampling.begin();
+    for (const double time : scene.times) {
+      const double start = thread_seconds();
+      for (; next != sampling.end() && *next <= time; ++next) {
+        advance(*next);
+        result.samples.push_back({*next, trace.digest(), simulation.counts().contacts});
+      }
+      advance(time);
+      result.seconds += thread_seconds() - start;
+      result.states.push_back(read(simulation, scene, time));
+    }
+    return result;
+  });
+}
+
+}  // namespace precision

@@ -1,0 +1,76 @@
+#pragma once
+// The better conventional engine: a binary heap with one entry per gap that knows where each gap's entry is, so that a
+// new prediction replaces the old one in place (increase or decrease key). No stale events; the heap never grows. Laid
+// out as textbooks do: gaps in heap order, the place of each gap, the key of each gap.
+
+#include <utility>
+
+#include "line.hpp"
+
+namespace twins {
+
+class IndexedHeapEngine {
+ public:
+  IndexedHeapEngine(const cradle::Bodies<double>& bodies, Law law)
+      : line_(bodies, law), heap_(line_.gaps()), place_(line_.gaps()), due_(line_.gaps()) {
+    const auto size = static_cast<std::uint32_t>(heap_.size());
+    for (std::uint32_t i = 0; i < size; ++i) {
+      heap_[i] = place_[i] = i;
+      due_[i] = line_.due(i, 0);
+    }
+    for (std::uint32_t p = size / 2; p-- > 0;) sink(p);
+  }
+
+  // Makes every contact at times <= until.
+  void advance(double until) {
+    while (due_[heap_.front()] <= until) {
+      const std::uint32_t i = heap_.front();
+      const double time = due_[i];
+      line_.collide(i, time);
+      ++contacts_;
+      update(i, never);
+      if (i > 0) update(i - 1, line_.due(i - 1, time));
+      if (i + 1 < line_.gaps()) update(i + 1, line_.due(i + 1, time));
+    }
+  }
+
+  std::uint64_t contacts() const { return contacts_; }
+
+ private:
+  void update(std::uint32_t gap, double time) {
+    const bool sooner = time < due_[gap];
+    due_[gap] = time;
+    if (sooner)
+      rise(place_[gap]);
+    else
+      sink(place_[gap]);
+  }
+
+  void rise(std::uint32_t p) {
+    for (; p > 0 && before(p, (p - 1) / 2); p = (p - 1) / 2) exchange(p, (p - 1) / 2);
+  }
+
+  void sink(std::uint32_t p) {
+    const auto size = static_cast<std::uint32_t>(heap_.size());
+    for (std::uint32_t child; (child = 2 * p + 1) < size; p = child) {
+      if (child + 1 < size && before(child + 1, child)) ++child;
+      if (!before(child, p)) break;
+      exchange(p, child);
+    }
+  }
+
+  bool before(std::uint32_t p, std::uint32_t q) const { return due_[heap_[p]] < due_[heap_[q]]; }
+  void exchange(std::uint32_t p, std::uint32_t q) {
+    std::swap(heap_[p], heap_[q]);
+    place_[heap_[p]] = p;
+    place_[heap_[q]] = q;
+  }
+
+  Line line_;
+  std::vector<std::uint32_t> heap_;   // gaps
+  std::vector<std::uint32_t> place_;  // of each gap in the heap
+  std::vector<double> due_;           // of each gap
+  std::uint64_t contacts_ = 0;
+};
+
+}  // namespace twins

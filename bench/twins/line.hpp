@@ -1,0 +1,67 @@
+#pragma once
+// Bodies on a line as a conventional event-driven program keeps them: absolute positions and velocities in double, each
+// body advanced only when it takes part in a contact. Equal masses; inelastic law with a velocity cut-off. The two
+// engines beside this file differ in how they find the next contact and in nothing else.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "cradle/core/bodies.hpp"
+
+namespace twins {
+
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+struct Law {
+  double restitution;
+  double cutoff;  // closing speed below which contacts are elastic
+};
+
+class Line {
+ public:
+  Line(const cradle::Bodies<double>& bodies, Law law) : law_(law) {
+    bodies_.reserve(static_cast<std::size_t>(bodies.count()));
+    for (cradle::BodyIndex b = 0; b < bodies.count(); ++b)
+      bodies_.push_back({bodies.position(b), bodies.velocity(b), 0});
+  }
+
+  std::size_t gaps() const { return bodies_.size() - 1; }
+
+  // Time of the next contact of bodies i and i + 1, as seen at the time `now`.
+  double due(std::size_t i, double now) const {
+    const Body &left = bodies_[i], &right = bodies_[i + 1];
+    const double closing = left.v - right.v;
+    if (!(closing > 0)) return never;
+    return now + std::max(right.at(now) - left.at(now), 0.0) / closing;  // rounding can make the gap negative
+  }
+
+  // Contact of bodies i and i + 1.
+  void collide(std::size_t i, double time) {
+    Body &left = bodies_[i], &right = bodies_[i + 1];
+    left.advance(time);
+    right.advance(time);
+    right.x = left.x;
+    const double closing = left.v - right.v;
+    const double impulse = (1 + (closing < law_.cutoff ? 1 : law_.restitution)) / 2 * closing;
+    left.v -= impulse;
+    right.v += impulse;
+  }
+
+ private:
+  struct Body {
+    double x, v, time;  // x is the position at `time`
+    double at(double t) const { return x + v * (t - time); }
+    void advance(double t) {
+      x = at(t);
+      time = t;
+    }
+  };
+
+  Law law_;
+  std::vector<Body> bodies_;
+};
+
+}  // namespace twins

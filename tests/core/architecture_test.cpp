@@ -1,0 +1,111 @@
+// The layers, checked on the sources: core/ includes nothing but the standard library and itself, no input or output,
+// no threads (ensemble.hpp alone may know oneTBB), nothing of Boost; it speaks of the scalar through the Real concept
+// only, so no std:: mathematics on it, except that found by `using` as a fallback for built-in types; every header
+// stands alone in being guarded and opened by a comment.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#ifndef CRADLE_SOURCE_DIR
+#define CRADLE_SOURCE_DIR "."
+#endif
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Line {
+  std::string file;
+  int number;
+  std::string text;
+};
+
+bool is_comment(const std::string& text) {
+  const auto start = text.find_first_not_of(" \t");
+  return start != std::string::npos && text.compare(start, 2, "//") == 0;
+}
+
+std::vector<fs::path> headers(const std::string& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(CRADLE_SOURCE_DIR) / folder))
+    if (entry.path().extension() == ".hpp" || entry.path().extension() == ".cpp") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<Line> code(const std::string& folder) {
+  std::vector<Line> lines;
+  for (const fs::path& file : headers(folder)) {
+    std::ifstream in(file);
+    std::string text;
+    for (int number = 1; std::getline(in, text); ++number)
+      if (!is_comment(text)) lines.push_back({file.lexically_relative(CRADLE_SOURCE_DIR).string(), number, text});
+  }
+  return lines;
+}
+
+std::string place(const Line& line) { return line.file + ':' + std::to_string(line.number) + ": " + line.text; }
+
+TEST(Architecture, CoreIncludesTheStandardLibraryAndItselfOnly) {
+  const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  const std::regex own(R"(cradle/core/.*)"), standard(R"([a-z_]+)"), threads(R"(tbb/.*|oneapi/.*)");
+  const std::vector<std::string> forbidden{"iostream", "fstream", "sstream",      "cstdio",
+                                           "ostream",  "istream", "thread",       "mutex",
+                                           "atomic",   "future",  "shared_mutex", "condition_variable",
+                                           "execution"};
+  int found = 0;
+  for (const Line& line : code("core")) {
+    std::smatch match;
+    if (!std::regex_search(line.text, match, include)) continue;
+    ++found;
+    const std::string name = match[1];
+    const bool ensemble = line.file == "core/ensemble.hpp";
+    EXPECT_TRUE(std::regex_match(name, own) || std::regex_match(name, standard) ||
+                (ensemble && std::regex_match(name, threads)))
+        << place(line);
+    EXPECT_TRUE(ensemble || std::find(forbidden.begin(), forbidden.end(), name) == forbidden.end()) << place(line);
+  }
+  EXPECT_GT(found, 50) << "sources are looked for in " << CRADLE_SOURCE_DIR;
+}
+
+TEST(Architecture, PrecisionDoesNotKnowTheTools) {
+  for (const Line& line : code("precision"))
+    EXPECT_EQ(line.text.find("#include \"cradle/tools/"), std::string::npos) << place(line);
+}
+
+// Theory says `using std::sqrt;` and then calls sqrt unqualified, as does the wet law; the rest needs none. What works
+// on double by declaration (mantissas, bins, displacements) is named here.
+TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
+  const std::regex maths(
+      R"(std::(abs|fabs|sqrt|cbrt|pow|exp|exp2|log|log2|log10|log1p|expm1|sin|cos|tan|atan|atan2|hypot|fma|floor|ceil|round|min|max|isnan|isfinite|ldexp|frexp)\b)");
+  const std::vector<std::string> on_double{"core/counter_rng.hpp", "core/observe/profile.hpp", "core/rows.hpp",
+                                           "core/event_queue.hpp"};
+  const std::regex known(R"(^\s*using std::|std::(min|max)(<|\()|std::isfinite\(rounded\)|std::frexp\(x, &e\))");
+  for (const Line& line : code("core")) {
+    if (std::find(on_double.begin(), on_double.end(), line.file) != on_double.end()) continue;
+    EXPECT_FALSE(std::regex_search(line.text, maths) && !std::regex_search(line.text, known)) << place(line);
+  }
+}
+
+TEST(Architecture, EveryHeaderIsGuardedAndOpensWithItsIdea) {
+  for (const std::string folder : {"core", "precision"}) {
+    for (const fs::path& file : headers(folder)) {
+      if (file.extension() != ".hpp") continue;
+      std::ifstream in(file);
+      std::string first, second, text;
+      std::getline(in, first);
+      std::getline(in, second);
+      bool guarded = first == "#pragma once";
+      while (!guarded && std::getline(in, text)) guarded = text == "#pragma once";
+      EXPECT_TRUE(guarded) << file;
+      EXPECT_TRUE(is_comment(first) || is_comment(second)) << file;
+    }
+  }
+}
+
+}  // namespace

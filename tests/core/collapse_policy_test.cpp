@@ -1,0 +1,179 @@
+// What a run does about inelastic collapse, on three bodies whose collapse time t_c is known in closed form (McNamara
+// and Young, Phys. Fluids A 4, 496 (1992)). Proves: policy stop settles t_c to 15 digits from contacts that a plain
+// clock can still tell apart, two thirds of them where the collapse is slow, or follows the collapse down to any gap
+// asked for; without a policy, and in absolute positions, the run ends by itself, says why, and keeps account of what
+// it could not resolve.
+#include <gtest/gtest.h>
+
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace {
+
+using namespace cradle;
+using namespace cradle::test;
+
+struct Reference {
+  double restitution, collapse_time;
+  std::uint64_t passes_e16, passes_e34, passes_e100;  // contact at which the gap is first below 1e-16, ...
+  std::uint64_t plain_clock_stops;                    // last contact that moves it, in double
+};
+const Reference references[] = {{.05, 12. / 7, 18, 38, 111, 31},
+                                {.01, 1.6736937682559527405521559675475, 11, 21, 61, 13},
+                                {1. / 16, 1.7377984054260977582367587110959, 22, 45, 133, 49}};
+
+Scene<double> three_bodies() { return list<double>({0, 1, 3}, {1, 0, -1}); }
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+class CollapsePolicies : public testing::TestWithParam<Reference> {
+ protected:
+  Inelastic<double> law() const { return Inelastic(GetParam().restitution); }
+  auto stopping_run(double stop_gap) const {
+    return gap_run(three_bodies(), law(), {CollapsePolicy::stop, stop_gap, {}});
+  }
+};
+INSTANTIATE_TEST_SUITE_P(ThreeBodies, CollapsePolicies, testing::ValuesIn(references));
+
+TEST_P(CollapsePolicies, PlainClockStandsStillEarly) {
+  double t = 0;
+  std::uint64_t contacts = 0, moved_last = 0;
+  auto run = stopping_run(1e-100);
+  run.advance(2, [&](const Contact<double>& contact) {
+    ++contacts;
+    if (t + contact.interval > t) moved_last = contacts;
+    t += contact.interval;
+  });
+  EXPECT_EQ(moved_last, GetParam().plain_clock_stops);
+}
+
+TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
+  auto run = stopping_run(0);
+  ASSERT_EQ(run.advance(1e6), Status::collapsed);
+  const CollapseReport<double>& report = run.collapse();
+  ASSERT_TRUE(report.extrapolated);
+  // Settled when it moved by less than half the resolution of time twice running: each of the two steps and the
+  // remainder, which falls by lam-/lam+ < 1/2 a contact, are below one resolution together.
+  EXPECT_NEAR(report.time.value(), GetParam().collapse_time, 2 * epsilon * GetParam().collapse_time);
+  EXPECT_LE(std::abs(report.time.value() - GetParam().collapse_time), report.uncertainty);
+  EXPECT_LE(report.uncertainty, 2 * epsilon * GetParam().collapse_time);
+  EXPECT_LE(run.counts().contacts, GetParam().plain_clock_stops);
+  // Intervals between contacts at the same gap span two contacts.
+  const double plus_minus = 1 + GetParam().restitution, a = plus_minus / 2;
+  const double root = std::sqrt(a * a - 4 * GetParam().restitution), factor = (a - root) / (a + root);
+  EXPECT_NEAR(report.ratio, factor * factor, .01 * factor * factor);
+  EXPECT_EQ(report.last_contact, run.last_contact_time());
+  EXPECT_LE(report.last_contact, report.time.value());
+}
+
+TEST_P(CollapsePolicies, StopAtAGapMakesExactlyTheContactsItTakes) {
+  const std::pair<double, std::uint64_t> decades[] = {
+      {1e-16, GetParam().passes_e16}, {1e-34, GetParam().passes_e34}, {1e-100, GetParam().passes_e100}};
+  for (const auto& [gap, contacts] : decades) {
+    auto run = stopping_run(gap);
+    ASSERT_EQ(run.advance(1e6), Status::collapsed) << gap;
+    EXPECT_EQ(run.counts().contacts, contacts) << gap;
+    EXPECT_LT(run.collapse().gap, gap);
+    EXPECT_GT(run.collapse().gap, 0) << gap;
+  }
+}
+
+TEST_P(CollapsePolicies, StopReachesGapsAtTheEndOfTheRange) {
+  auto run = stopping_run(1e-290);
+  ASSERT_EQ(run.advance(1e6), Status::collapsed);
+  EXPECT_LT(run.collapse().gap, 1e-290);
+  EXPECT_GT(run.collapse().gap, 1e-290 / 256);  // a contact takes it down by lam- > 1/50
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+TEST_P(CollapsePolicies, WithoutAPolicyTheRunEndsWhereGapsUnderflow) {
+  auto run = gap_run(three_bodies(), law());
+  ASSERT_EQ(run.advance(1e6), Status::exhausted);
+  const double underflow = std::numeric_limits<double>::min() / epsilon;
+  const double gap = run.chain().nearest_gap(run.chain().first()) < run.chain().nearest_gap(run.chain().last())
+                         ? run.chain().nearest_gap(run.chain().first())
+                         : run.chain().nearest_gap(run.chain().last());
+  EXPECT_LT(gap, underflow);
+  EXPECT_NEAR(run.last_contact_time(), GetParam().collapse_time, 2 * epsilon * GetParam().collapse_time);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+TEST_P(CollapsePolicies, CutoffLetsTheBodiesPart) {
+  // Below the cut-off the three bodies are elastic and separate after at most three more contacts.
+  auto run = gap_run(three_bodies(), Inelastic<double>(GetParam().restitution, 1e-5));
+  ASSERT_EQ(run.advance(1e6), Status::reached);
+  EXPECT_GT(run.counts().below_cutoff, 0U);
+  EXPECT_LE(run.counts().below_cutoff, 3U);
+}
+
+TEST_P(CollapsePolicies, InterruptEndsTheRunAfterTheCurrentContact) {
+  std::uint64_t asked = 0;
+  auto run = gap_run(three_bodies(), law(), {CollapsePolicy::cutoff, 0, [&] { return ++asked == 5; }});
+  ASSERT_EQ(run.advance(1e6), Status::interrupted);
+  EXPECT_EQ(asked, 5U);
+  EXPECT_GE(run.counts().contacts, 5U);
+  const auto made = run.counts().contacts;
+  // Goes on where it stopped.
+  ASSERT_EQ(run.advance(1e6), Status::exhausted);
+  EXPECT_GT(run.counts().contacts, made);
+}
+
+// Positions near 1 resolve gaps of 1e-16 only: the run must end nonetheless, with an account of it.
+TEST_P(CollapsePolicies, PositionsEndWithAnAccount) {
+  for (const CollapsePolicy policy : {CollapsePolicy::cutoff, CollapsePolicy::stop}) {
+    auto run = position_run(three_bodies(), law(), {policy, 0, {}});
+    const Status status = run.advance(1e6);
+    EXPECT_TRUE(status == Status::exhausted || status == Status::collapsed) << static_cast<int>(status);
+    const Account<double>& account = run.chain().account();
+    EXPECT_GT(account.unresolved, 0U);
+    EXPECT_LT(account.first_unresolved.gap, 1e6 * epsilon * 2);
+    EXPECT_GT(account.first_unresolved.time, 1);
+    EXPECT_LE(account.first_unresolved.time, GetParam().collapse_time + 2 * epsilon);
+  }
+}
+
+// Three bodies at one place at one time, soft enough to collapse: contacts follow each other without end while time
+// stands still. The run must notice, whatever the policy.
+TEST(CollapsePolicies, TripleCollisionWithoutEndIsNoticed) {
+  const auto bodies = list<double>({0, 1, 2}, {1, 0, -1});
+  for (const CollapsePolicy policy : {CollapsePolicy::cutoff, CollapsePolicy::stop}) {
+    auto run = gap_run<double>(bodies, Inelastic(.05), {policy, 0, {}});
+    EXPECT_EQ(run.advance(2), Status::exhausted);
+    EXPECT_EQ(run.last_contact_time(), 1);
+    EXPECT_GT(run.chain().account().simultaneous, 0U);
+    auto in_positions = position_run<double>(bodies, Inelastic(.05), {policy, 0, {}});
+    EXPECT_EQ(in_positions.advance(2), Status::exhausted);
+  }
+}
+
+TEST(CollapsePolicies, TripleCollisionThatEndsIsResolvedFromTheLeft) {
+  // eps = .5: p_n = 1, 7/4, 13/16, -17/64 for left, right, left: by hand from p_{n+1} = 3/4 p_n - p_{n-1}/2.
+  auto run = gap_run<double>(list<double>({0, 1, 2}, {1, 0, -1}), Inelastic(.5));
+  std::vector<std::pair<BodyIndex, double>> contacts;
+  ASSERT_EQ(run.advance(2, [&](const Contact<double>& c) { contacts.emplace_back(c.left, c.closing_speed); }),
+            Status::reached);
+  const std::vector<std::pair<BodyIndex, double>> expected{{0, 1}, {1, 1.75}, {0, .8125}};
+  EXPECT_EQ(contacts, expected);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+// A light body between two heavy ones: its closing speed tends to the heavy ones' speed over 1 - eps and never falls
+// below the cut-off, while the gaps shrink by a constant factor a contact, 1e5 contacts long.
+TEST(CollapsePolicies, CutoffDoesNotEndEveryCollapse) {
+  auto run = mass_run<double>(list<double>({0, 1, 3}, {1, 0, -1}, {1e6, 1, 1e6}), Inelastic(.8, 1e-4));
+  EXPECT_EQ(run.advance(2), Status::exhausted);
+  EXPECT_EQ(run.counts().below_cutoff, 0U);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+// Two rows at eps = .9: the first collapse comes a little after 2/(1 - (4/pi) atan sqrt eps) = 59.66 bodies are
+// engaged, one per unit of time; an independent event-driven N-body program sees the first contacts below a tiny
+// cut-off at t = 62 to 65.
+TEST(CollapsePolicies, StopFindsTheFirstCollapseOfTwoRows) {
+  auto run = gap_run(rshock<double>(200), Inelastic(.9), {CollapsePolicy::stop, 0, {}});
+  ASSERT_EQ(run.advance(1e6), Status::collapsed);
+  EXPECT_TRUE(run.collapse().extrapolated);
+  EXPECT_GT(run.collapse().time.value(), 62);
+  EXPECT_LT(run.collapse().time.value(), 65);
+}
+
+}  // namespace

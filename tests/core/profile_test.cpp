@@ -1,0 +1,134 @@
+// Profiles over bins and the row of the time series. Proves, on configurations whose numbers are known: every body in
+// range is counted once, unreached bodies of the rows included; means are weighted by mass; the temperature is the
+// variance of the velocity to all digits, also where it is small against the velocity squared.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/profile.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace {
+
+using namespace cradle;
+using namespace cradle::test;
+
+double total(const std::vector<double>& density, double width) {
+  return width * std::accumulate(density.begin(), density.end(), 0.);
+}
+
+TEST(Profile, OfAKnownConfiguration) {
+  // Bins [0, 2) and [2, 4); the body at 5 is outside, the one at rest moves neither way.
+  const auto bodies = list<double>({0, .5, 1.5, 2, 3, 5}, {1, 3, -1, 0, 4, 9}, {1, 2, 1, 6, 2, 1});
+  const MassRun<double> run = mass_run(bodies, Inelastic(.5));
+  const Profile p = profile(configuration_at(run, 0.), *bodies, 0., {0, 4}, 2);
+  EXPECT_EQ(p.x, (std::vector<double>{1, 3}));
+  EXPECT_EQ(p.density, (std::vector<double>{1.5, 1}));
+  EXPECT_EQ(p.mass_density, (std::vector<double>{2, 4}));
+  EXPECT_DOUBLE_EQ(p.velocity[0], 6. / 4);
+  EXPECT_DOUBLE_EQ(p.velocity[1], 8. / 8);
+  EXPECT_DOUBLE_EQ(p.temperature[0], (1 + 18 + 1) / 4. - 1.5 * 1.5);
+  EXPECT_DOUBLE_EQ(p.temperature[1], 32. / 8 - 1);
+  EXPECT_EQ(p.density_right, (std::vector<double>{1, .5}));
+  EXPECT_EQ(p.density_left, (std::vector<double>{.5, 0}));
+  EXPECT_EQ(p.velocity_right, (std::vector<double>{2, 4}));
+  EXPECT_EQ(p.velocity_left[0], -1);
+  EXPECT_TRUE(std::isnan(p.velocity_left[1]));
+}
+
+TEST(Profile, EmptyBinsHaveNoVelocity) {
+  const auto bodies = list<double>({0, 1}, {0, 0});
+  const Profile p = profile(configuration_at(gap_run(bodies, Inelastic(.5)), 0.), *bodies, 0., {10, 20}, 3);
+  for (std::size_t b = 0; b < 3; ++b) {
+    EXPECT_EQ(p.density[b], 0);
+    EXPECT_EQ(p.mass_density[b], 0);
+    EXPECT_TRUE(std::isnan(p.velocity[b]) && std::isnan(p.temperature[b]));
+  }
+  EXPECT_THROW(profile(configuration_at(gap_run(bodies, Inelastic(.5)), 0.), *bodies, 0., {1, 1}, 3),
+               std::invalid_argument);
+  EXPECT_THROW(profile(configuration_at(gap_run(bodies, Inelastic(.5)), 0.), *bodies, 0., {0, 1}, 0),
+               std::invalid_argument);
+}
+
+TEST(Profile, TemperatureKeepsItsDigitsInAFastFrame) {
+  // Velocities 1e6 +- 2^-20: variance 2^-40, of which a difference of squares of order 1e12 would keep none.
+  std::vector<double> x, v;
+  for (int i = 0; i < 100; ++i) {
+    x.push_back(i);
+    v.push_back(1e6 + std::ldexp(i % 2 == 0 ? 1 : -1, -20));
+  }
+  const auto bodies = list(x, v);
+  const Profile p = profile(configuration_at(gap_run(bodies, Inelastic(.5)), 0.), *bodies, 0., {0, 100}, 1);
+  // Differences to the mean are of order 2^-20 and rounded at 2^-33 = 1e6 2^-53.
+  EXPECT_NEAR(p.temperature[0], std::ldexp(1, -40), 100 * std::ldexp(1, -40 - 13));
+}
+
+TEST(Profile, CountsEveryBodyOfTheRowsWhetherReachedOrNot) {
+  const auto bodies = rshock<double>(400);
+  for (const double t : {0., .25, 10., 100., 250.}) {
+    auto streamed = gap_run(bodies, Inelastic(.98, 1e-5));
+    auto positions = position_run(bodies, Inelastic(.98, 1e-5));
+    streamed.advance(t);
+    positions.advance(t);
+    const auto from_streamed = profile(configuration_at(streamed, t), *bodies, t, {-400, 400}, 80);
+    const auto from_positions = profile(configuration_at(positions, t), *bodies, t, {-400, 400}, 80);
+    EXPECT_DOUBLE_EQ(total(from_streamed.density, 10), 400) << t;
+    EXPECT_DOUBLE_EQ(total(from_streamed.mass_density, 10), 400) << t;
+    EXPECT_EQ(from_streamed.density, from_positions.density) << t;
+    EXPECT_EQ(from_streamed.density_right, from_positions.density_right) << t;
+    // Momentum vanishes: the densities times the mean velocities add up to it.
+    double momentum = 0, movers = 0;
+    for (std::size_t b = 0; b < 80; ++b) {
+      if (from_streamed.density[b] == 0) continue;
+      momentum += from_streamed.mass_density[b] * from_streamed.velocity[b] * 10;
+      movers += (from_streamed.density_right[b] + from_streamed.density_left[b]) * 10;
+    }
+    EXPECT_NEAR(momentum, 0, 1e-9) << t;  // 400 bodies, 1e4 contacts, 2^-53 each
+    EXPECT_DOUBLE_EQ(movers, 400) << t;
+  }
+}
+
+TEST(Profile, RangeMayEndInsideARow) {
+  const auto bodies = rshock<double>(400);
+  auto run = gap_run(bodies, Inelastic(.98));
+  run.advance(20);
+  // Nothing has reached 50 < x < 150 yet: bodies of the right row, one per unit of length.
+  const auto p = profile(configuration_at(run, 20.), *bodies, 20., {50, 150}, 10);
+  for (std::size_t b = 0; b < 10; ++b) {
+    EXPECT_EQ(p.density[b], 1);
+    EXPECT_EQ(p.density_right[b], 0);
+    EXPECT_EQ(p.velocity[b], -.5);
+    EXPECT_EQ(p.temperature[b], 0);
+  }
+}
+
+TEST(Sample, IsConsistentWithTheConfiguration) {
+  const auto bodies = rshock<double>(400);
+  auto run = gap_run(bodies, Inelastic(.98));
+  const Sample<double> start = sample(run, bodies->kinetic_energy(), 0.);
+  EXPECT_EQ(start.bodies, 0);
+  EXPECT_FALSE(start.front_left || start.front_right);
+  EXPECT_EQ(start.energy, 400 * .125);
+  run.advance(100.5);
+  const Sample<double> s = sample(run, bodies->kinetic_energy(), 100.5);
+  const auto c = configuration_at(run, 100.5);
+  EXPECT_EQ(s.counts.contacts, run.counts().contacts);
+  EXPECT_EQ(s.energy, bodies->kinetic_energy() - s.energy_lost);
+  // The configuration holds one uncollided body on either side.
+  EXPECT_EQ(s.bodies + 2, static_cast<BodyIndex>(c.x.size()));
+  const double rounding = std::abs(c.closure_gap) + 8 * 100 * std::numeric_limits<double>::epsilon();
+  EXPECT_NEAR(*s.front_left, c.x[1], rounding);
+  EXPECT_NEAR(*s.front_right, c.x[c.x.size() - 2], rounding);
+}
+
+TEST(GapStatistics, LeastAndMedian) {
+  Configuration<double> c;
+  c.gap = {3, 1, 4, 1.5, 9};
+  EXPECT_EQ(gap_statistics(c).least, 1);
+  EXPECT_EQ(gap_statistics(c).median, 3);
+}
+
+}  // namespace

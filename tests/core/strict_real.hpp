@@ -1,0 +1,66 @@
+#pragma once
+// The strictest scalar the engine must take: the arithmetic of double and nothing else. Made from an int or a 64-bit
+// integer only when asked to, turned into a double only when asked to, no default value, no std:: mathematics but by
+// argument-dependent lookup. What compiles with it converts nothing in silence; what it computes has the bits of
+// double.
+
+#include <cmath>
+#include <compare>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace cradle::test {
+
+class StrictReal {
+ public:
+  explicit StrictReal(int value) : value_(value) {}
+  explicit StrictReal(std::int64_t value) : value_(static_cast<double>(value)) {}
+  template <class Other>
+  requires std::is_arithmetic_v<Other> StrictReal(Other)
+  = delete;
+
+  // Only the tests say this; the engine cannot know it.
+  static StrictReal of(double value) {
+    StrictReal x(0);
+    x.value_ = value;
+    return x;
+  }
+
+  explicit operator double() const { return value_; }
+  template <class Other>
+  requires(std::is_arithmetic_v<Other> && !std::same_as<Other, double>) explicit operator Other() const = delete;
+
+  friend StrictReal operator+(const StrictReal& a, const StrictReal& b) { return of(a.value_ + b.value_); }
+  friend StrictReal operator-(const StrictReal& a, const StrictReal& b) { return of(a.value_ - b.value_); }
+  friend StrictReal operator*(const StrictReal& a, const StrictReal& b) { return of(a.value_ * b.value_); }
+  friend StrictReal operator/(const StrictReal& a, const StrictReal& b) { return of(a.value_ / b.value_); }
+  friend StrictReal operator-(const StrictReal& a) { return of(-a.value_); }
+  StrictReal& operator+=(const StrictReal& b) { return *this = *this + b; }
+  StrictReal& operator-=(const StrictReal& b) { return *this = *this - b; }
+  StrictReal& operator*=(const StrictReal& b) { return *this = *this * b; }
+  StrictReal& operator/=(const StrictReal& b) { return *this = *this / b; }
+  friend bool operator==(const StrictReal& a, const StrictReal& b) { return a.value_ == b.value_; }
+  friend std::partial_ordering operator<=>(const StrictReal& a, const StrictReal& b) { return a.value_ <=> b.value_; }
+
+  friend StrictReal sqrt(const StrictReal& a) { return of(std::sqrt(a.value_)); }
+  friend StrictReal log(const StrictReal& a) { return of(std::log(a.value_)); }
+  friend StrictReal atan(const StrictReal& a) { return of(std::atan(a.value_)); }
+  friend StrictReal cos(const StrictReal& a) { return of(std::cos(a.value_)); }
+
+ private:
+  double value_;
+};
+
+}  // namespace cradle::test
+
+template <> struct std::numeric_limits<cradle::test::StrictReal> {
+  using Real = cradle::test::StrictReal;
+  static constexpr bool is_specialized = true, is_signed = true, is_integer = false, is_exact = false;
+  static constexpr int radix = 2, digits = 53;
+  static Real epsilon() { return Real::of(std::numeric_limits<double>::epsilon()); }
+  static Real min() { return Real::of(std::numeric_limits<double>::min()); }
+  static Real max() { return Real::of(std::numeric_limits<double>::max()); }
+  static Real lowest() { return Real::of(std::numeric_limits<double>::lowest()); }
+};

@@ -1,0 +1,240 @@
+// Double-double arithmetic against 400 bits of MPFR. Proves the bounds of Joldes, Muller, Popescu, ACM TOMS 44 (2017),
+// doi 10.1145/3121432, and for the root of Lefevre, Louvet, Muller, Picot, Rideau, ACM TOMS 49 (2023),
+// doi 10.1145/3568672 (25/8 u^2; ours forms the remainder more accurately), over random operands of equal, different
+// and cancelling sizes. Bounds hold from both sides: operands that never come near one would not be testing it. The
+// largest errors these papers report are 2.25, 3.9 and 8.5 u^2 for sum, product and quotient; by chance alone errors
+// must be found beyond half the bound, a quarter for the quotient. u = 2^-53.
+#ifdef CRADLE_WITH_MPFR
+
+#include <gtest/gtest.h>
+#include <mpfr.h>
+
+#include <random>
+
+#include "cradle/precision/double_double.hpp"
+
+namespace {
+
+using cradle::double_double;
+using Limits = std::numeric_limits<double_double>;
+__extension__ using Wide = __int128;
+
+constexpr double u = 0x1p-53;
+
+class Exact {
+ public:
+  Exact() { mpfr_init2(value, 400); }
+  explicit Exact(const double_double& x) : Exact() { set(x); }
+  Exact(const Exact&) = delete;
+  Exact& operator=(const Exact&) = delete;
+  ~Exact() { mpfr_clear(value); }
+  void set(const double_double& x) {
+    mpfr_set_d(value, x.high(), MPFR_RNDN);
+    mpfr_add_d(value, value, x.low(), MPFR_RNDN);
+  }
+  mpfr_t value;
+};
+
+class RandomOperands {
+ public:
+  explicit RandomOperands(std::uint64_t seed) : random_(seed) {}
+
+  double significand() { return 1 + static_cast<double>(random_() >> 12) * 0x1p-52; }
+  double sign() { return random_() & 1 ? 1 : -1; }
+  int between(int low, int high) { return low + static_cast<int>(random_() % static_cast<unsigned>(high - low + 1)); }
+
+  // The low part fills its half unit, or is smaller by up to 60 bits, or is not there.
+  double_double number(int exponent) {
+    const double high = std::ldexp(sign() * significand(), exponent);
+    const int smaller = random_() & 1 ? 0 : between(0, 60);
+    const double low = between(0, 9) == 0 ? 0 : std::ldexp(sign() * significand(), exponent - 54 - smaller);
+    return double_double::sum(high, low);
+  }
+  // Equal up to the last bits of the high part, or of the low one.
+  double_double nearly(const double_double& x) {
+    const double unit = std::ldexp(x.high(), random_() & 1 ? -52 : -100);
+    return x + double_double(unit * between(-8, 8)) + double_double(std::ldexp(sign() * significand() * unit, -40));
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+// Largest error seen, in units of u^2 relative to the exact result.
+class Worst {
+ public:
+  void look(const double_double& result, const Exact& exact) {
+    ASSERT_LE(std::abs(result.low()), std::abs(result.high()) * u) << "not normalised";
+    ASSERT_EQ(result.high() + result.low(), result.high()) << "not normalised";
+    if (mpfr_zero_p(exact.value)) {
+      ASSERT_EQ(result.high(), 0);
+      return;
+    }
+    difference_.set(result);
+    mpfr_sub(difference_.value, difference_.value, exact.value, MPFR_RNDN);
+    mpfr_div(difference_.value, difference_.value, exact.value, MPFR_RNDN);
+    largest_ = std::max(largest_, std::abs(mpfr_get_d(difference_.value, MPFR_RNDN)) / (u * u));
+  }
+  double largest() const { return largest_; }
+
+ private:
+  Exact difference_;
+  double largest_ = 0;
+};
+
+template <class Mine, class Theirs>
+double worst_of(std::uint64_t seed, int pairs, int spread, bool cancelling, Mine mine, Theirs theirs) {
+  RandomOperands random(seed);
+  Worst worst;
+  Exact a, b, exact;
+  for (int k = 0; k < pairs && !testing::Test::HasFatalFailure(); ++k) {
+    const int exponent = random.between(-spread, spread);
+    const double_double x = random.number(exponent);
+    const double_double y =
+        cancelling ? random.nearly(x) : random.number(spread > 100 ? random.between(-spread, spread) : exponent);
+    a.set(x), b.set(y);
+    theirs(exact.value, a.value, b.value, MPFR_RNDN);
+    worst.look(mine(x, y), exact);
+  }
+  testing::Test::RecordProperty("largest error in u^2", std::to_string(worst.largest()));
+  return worst.largest();
+}
+
+const auto plus = [](const double_double& x, const double_double& y) { return x + y; };
+const auto minus = [](const double_double& x, const double_double& y) { return x - y; };
+const auto times = [](const double_double& x, const double_double& y) { return x * y; };
+const auto over = [](const double_double& x, const double_double& y) { return x / y; };
+
+constexpr int pairs = 1000000;
+
+TEST(DoubleDouble, SumIsWithinThreeSquaredUnits) {
+  const double near = worst_of(1, pairs, 3, false, plus, mpfr_add);
+  EXPECT_LE(near, 3 + 13 * u);
+  EXPECT_LE(worst_of(2, pairs, 450, false, plus, mpfr_add), 3 + 13 * u) << "wide exponents";
+  RandomOperands random(3);  // exponents within the width of the significands, where parts overlap
+  Worst worst;
+  Exact a, b, exact;
+  for (int k = 0; k < pairs; ++k) {
+    const double_double x = random.number(0), y = random.number(random.between(-110, 110));
+    a.set(x), b.set(y);
+    mpfr_add(exact.value, a.value, b.value, MPFR_RNDN);
+    ASSERT_NO_FATAL_FAILURE(worst.look(x + y, exact));
+  }
+  EXPECT_LE(worst.largest(), 3 + 13 * u);
+  EXPECT_GE(std::max(near, worst.largest()), 1.5);
+}
+
+TEST(DoubleDouble, CancellingDifferenceIsWithinTheBoundToo) {
+  EXPECT_LE(worst_of(4, pairs, 400, true, minus, mpfr_sub), 3 + 13 * u);
+}
+
+TEST(DoubleDouble, ProductIsWithinFourSquaredUnits) {
+  const double near = worst_of(5, pairs, 3, false, times, mpfr_mul);
+  EXPECT_LE(near, 4);
+  EXPECT_GE(near, 2);
+  EXPECT_LE(worst_of(6, pairs, 450, false, times, mpfr_mul), 4) << "wide exponents";
+}
+
+TEST(DoubleDouble, QuotientIsWithinFifteenSquaredUnits) {
+  const double near = worst_of(7, pairs, 3, false, over, mpfr_div);
+  EXPECT_LE(near, 15 + 56 * u);
+  EXPECT_GE(near, 15. / 4);
+  EXPECT_LE(worst_of(8, pairs, 450, false, over, mpfr_div), 15 + 56 * u) << "wide exponents";
+  EXPECT_LE(worst_of(9, pairs, 400, true, over, mpfr_div), 15 + 56 * u) << "quotients near 1";
+}
+
+TEST(DoubleDouble, RootIsWithinThreeSquaredUnits) {
+  const auto root = [](const double_double& x, const double_double&) {
+    return sqrt(x.high() < 0 ? -x : x);
+  };
+  const auto exact = [](mpfr_ptr result, mpfr_srcptr x, mpfr_srcptr, mpfr_rnd_t rounding) {
+    mpfr_abs(result, x, rounding);
+    mpfr_sqrt(result, result, rounding);
+  };
+  const double near = worst_of(10, pairs, 3, false, root, exact);
+  EXPECT_LE(near, 25. / 8);
+  EXPECT_GE(near, 25. / 16);
+  EXPECT_LE(worst_of(11, pairs, 450, false, root, exact), 25. / 8) << "wide exponents";
+  EXPECT_EQ(sqrt(double_double(0)), double_double(0));
+  EXPECT_EQ(sqrt(double_double(9)), double_double(3));
+  EXPECT_TRUE(std::isnan(sqrt(double_double(-1)).high()));
+}
+
+// Down to min() no part of a product that matters underflows.
+TEST(DoubleDouble, BoundsHoldDownToTheLeastNormalNumber) {
+  RandomOperands random(12);
+  Worst of_products, of_quotients;
+  Exact a, b, exact;
+  for (int k = 0; k < 100000; ++k) {
+    const int exponent = random.between(-400, 400);
+    const double_double x = random.number(exponent), y = random.number(-968 - exponent), z = random.number(968 + exponent);
+    a.set(x), b.set(y);
+    mpfr_mul(exact.value, a.value, b.value, MPFR_RNDN);
+    ASSERT_NO_FATAL_FAILURE(of_products.look(x * y, exact));
+    b.set(z);
+    mpfr_div(exact.value, a.value, b.value, MPFR_RNDN);
+    if (mpfr_get_exp(exact.value) <= -969) continue;
+    ASSERT_NO_FATAL_FAILURE(of_quotients.look(x / z, exact));
+  }
+  EXPECT_LE(of_products.largest(), 4 + 1);  // and what the error term itself loses below 2^-1074
+  EXPECT_LE(of_quotients.largest(), 15 + 1);
+}
+
+TEST(DoubleDouble, IntegersAreExact) {
+  std::mt19937_64 random(13);
+  const auto wide = [](const double_double& x) { return static_cast<Wide>(x.high()) + static_cast<Wide>(x.low()); };
+  for (int k = 0; k < 200000; ++k) {
+    const auto i = static_cast<std::int64_t>(random()) >> (random() % 60), j = static_cast<std::int64_t>(random());
+    const double_double x(i), y(j);
+    ASSERT_TRUE(wide(x) == i && wide(y) == j) << i << ' ' << j;
+    ASSERT_TRUE(wide(x + y) == Wide{i} + j) << i << ' ' << j;
+    ASSERT_TRUE(wide(x - y) == Wide{i} - j) << i << ' ' << j;
+    const std::int64_t a = i >> 12, b = j >> 12;  // 52 bits each: the product has 104
+    ASSERT_TRUE(wide(double_double(a) * double_double(b)) == Wide{a} * b) << a << ' ' << b;
+  }
+  for (const std::int64_t i : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max(),
+                               (std::int64_t{1} << 53) + 1, std::int64_t{0}})
+    EXPECT_TRUE(wide(double_double(i)) == i) << i;
+}
+
+TEST(DoubleDouble, OrderIsThatOfTheNumbers) {
+  RandomOperands random(14);
+  Exact a, b;
+  for (int k = 0; k < 200000; ++k) {
+    const double_double x = random.number(0);
+    const double_double y = k % 3 == 0 ? random.nearly(x) : k % 3 == 1 ? random.number(0) : x;
+    a.set(x), b.set(y);
+    const int order = mpfr_cmp(a.value, b.value);
+    ASSERT_EQ(x < y, order < 0);
+    ASSERT_EQ(x == y, order == 0);
+    ASSERT_EQ(x > y, order > 0);
+    ASSERT_EQ(x <= y, order <= 0);
+    ASSERT_EQ(y < x, order > 0);
+    ASSERT_EQ(is_negative(x - y), order < 0);
+    ASSERT_EQ(is_positive(x - y), order > 0);
+  }
+  EXPECT_EQ(double_double(0), -double_double(0));
+  EXPECT_FALSE(is_negative(-double_double(0)) || is_positive(-double_double(0)));
+  EXPECT_FALSE(Limits::quiet_NaN() == Limits::quiet_NaN());
+  EXPECT_GT(Limits::infinity(), Limits::max());
+}
+
+TEST(DoubleDouble, LimitsAreWhatOperationsKeep) {
+  const double_double one(1);
+  EXPECT_GT(one + Limits::epsilon(), one);
+  EXPECT_GE(Limits::epsilon().high(), 15 * u * u / 4);  // epsilon = 4 u^2: a quotient may be off by 15/4 of it
+  EXPECT_EQ(Limits::epsilon().high(), 4 * u * u);
+  EXPECT_EQ(Limits::digits, 105);
+  EXPECT_TRUE(std::isfinite(Limits::max().high()));
+  EXPECT_EQ(Limits::max().high() + Limits::max().low(), Limits::max().high());
+  EXPECT_EQ(Limits::max().high(), std::numeric_limits<double>::max());
+  EXPECT_TRUE(std::isinf(Limits::max().high() + std::ldexp(1, 970))) << "there is a larger one";
+  EXPECT_EQ(Limits::lowest(), -Limits::max());
+  EXPECT_EQ(std::ilogb(Limits::min().high()), Limits::min_exponent - 1);
+  EXPECT_EQ(std::ilogb(Limits::max().high()), Limits::max_exponent - 1);
+  EXPECT_TRUE(std::isnan(Limits::quiet_NaN().high()));
+}
+
+}  // namespace
+
+#endif

@@ -1,0 +1,187 @@
+// Scenes at the edge of what numbers hold. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the same
+// contacts in double as in 50 digits; restitutions next to 0 and 1, and 0 and 1 themselves, and contacts of equal times
+// by construction end a run as they should, without a hang and without a lost order; the velocity cut-off takes effect
+// exactly below its value.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/precision/every_scalar.hpp"
+
+namespace {
+
+using namespace cradle;
+using namespace cradle::test;
+
+constexpr double u = 0x1p-53;
+
+// Every scalar starts from the same doubles.
+template <class T> Scene<T> in(const std::vector<double>& x, const std::vector<double>& v, const std::vector<double>& m) {
+  const auto convert = [](const std::vector<double>& from) {
+    std::vector<T> to;
+    for (const double value : from) to.push_back(T(value));
+    return to;
+  };
+  return list<T>(convert(x), convert(v), convert(m));
+}
+
+template <class T> Sequence contacts_of(MassRun<T> run, const T& end, std::uint64_t& contacts) {
+  Sequence sequence;
+  run.advance(end, [&](const Contact<T>& c) { sequence.add(c.left); });
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+  contacts = run.counts().contacts;
+  return sequence;
+}
+
+template <class T> void expect_contacts_of_double(double restitution, double cutoff, const std::vector<double>& x,
+                                                  const std::vector<double>& v, const std::vector<double>& m, double end,
+                                                  std::uint64_t least_contacts) {
+  std::uint64_t in_double = 0, in_wide = 0;
+  const Sequence narrow = contacts_of(mass_run(in<double>(x, v, m), Inelastic<double>(restitution, cutoff)), end, in_double);
+  const Sequence wide = contacts_of(mass_run(in<T>(x, v, m), Inelastic<T>(T(restitution), T(cutoff))), T(end), in_wide);
+  EXPECT_EQ(in_double, in_wide);
+  EXPECT_TRUE(narrow == wide);
+  EXPECT_GE(in_double, least_contacts);
+}
+
+// Places 1e-300, 1e-290, ... 1, velocities falling from left to right by unequal steps.
+TEST(Extremes, GapsOverThreeHundredDecades) {
+  std::vector<double> x, v, m;
+  for (int k = 0; k <= 30; ++k) {
+    x.push_back(std::pow(10., -300 + 10 * k));
+    v.push_back(-k - .01 * static_cast<double>(bits_of(k, 3, 31)));
+    m.push_back(1);
+  }
+  expect_contacts_of_double<bin_float>(1, 0, x, v, m, 10, 31 * 30 / 2);
+  expect_contacts_of_double<bin_float>(.75, 1e-6, x, v, m, 10, 100);
+  // Elastic: all have passed each other and part at once the velocities are sorted.
+  auto run = gap_run(in<double>(x, v, {}), Inelastic<double>(1, 0));
+  ASSERT_EQ(run.advance(10), Status::reached);
+  const auto c = configuration_at(run, 10.);
+  EXPECT_TRUE(std::all_of(c.closing_speed.begin(), c.closing_speed.end(), [](double w) { return w < 0; }));
+  EXPECT_TRUE(std::all_of(c.gap.begin(), c.gap.end(), [](double g) { return g > 0; }));
+}
+
+std::vector<double> alternating(double ratio, std::size_t n) {
+  std::vector<double> m(n, 1);
+  for (std::size_t k = 1; k < n; k += 2) m[k] = ratio;
+  return m;
+}
+
+TEST(Extremes, MassesOfOneToATrillion) {
+  const auto even = rmix<double>(40);
+  std::vector<double> x, v;
+  for (BodyIndex b = 0; b < 40; ++b) x.push_back(even->position(b)), v.push_back(even->velocity(b));
+  for (const double ratio : {1e12, 1e-12})
+    expect_contacts_of_double<bin_float>(.9, 1e-6, x, v, alternating(ratio, 40), 3, 40);
+
+  // Momentum and energy: each contact rounds two closing speeds of at most 4, and each acts on all bodies to one side.
+  const auto bodies = in<double>(x, v, alternating(1e12, 40));
+  auto run = mass_run(bodies, Inelastic<double>(.9, 1e-6));
+  ASSERT_EQ(run.advance(20), Status::reached);
+  const auto c = configuration_at(run, 20.);
+  const double mass = 20 * (1e12 + 1), error = 2 * static_cast<double>(run.counts().contacts) * 4 * u;
+  EXPECT_LE(std::abs(momentum_gained(c, *bodies)), mass * (error + 4 * u));
+  EXPECT_LE(std::abs(bodies->kinetic_energy() - run.energy_lost() - kinetic_energy(c, *bodies)), mass * 4 * error);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+template <class P> using EveryExtreme = InPrecision<P>;
+TYPED_TEST_SUITE(EveryExtreme, EveryPrecision, PrecisionName);
+
+template <class T> Scene<T> three(int third_place) { return list<T>({T(0), T(1), T(third_place)}, {T(1), T(0), T(-1)}); }
+
+// Next to 0 the second contact finds the gap at the bottom of double's range, at 0 on it: with a cut-off the bodies part,
+// without one the run says that it is exhausted, or, where the range allows, goes on and collapses.
+TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
+  using T = typename TypeParam::Scalar;
+  for (const T& restitution : {T(0), from_text<T>("1e-300")}) {
+    auto parting = gap_run(three<T>(3), Inelastic<T>(restitution, from_text<T>("1e-5")));
+    EXPECT_EQ(parting.advance(T(1000)), Status::reached);
+    EXPECT_GT(parting.counts().below_cutoff, 0U);
+    EXPECT_EQ(parting.chain().account().order_lost, 0U);
+    auto collapsing = gap_run(three<T>(3), Inelastic<T>(restitution, T(0)));
+    EXPECT_EQ(collapsing.advance(T(1000)), Status::exhausted);
+    EXPECT_EQ(collapsing.chain().account().order_lost, 0U);
+    auto stopping = gap_run(three<T>(3), Inelastic<T>(restitution, T(0)), stop_below(T(0)));
+    const Status status = stopping.advance(T(1000));
+    EXPECT_TRUE(status == Status::collapsed || status == Status::exhausted) << static_cast<int>(status);
+  }
+}
+
+// Elastic contacts up to t are the inversions of x + v t: 476 and 1168 at t = 5 and 20 of this scene.
+TYPED_TEST(EveryExtreme, RestitutionNextToOne) {
+  using T = typename TypeParam::Scalar;
+  for (const T& restitution : {T(1), T(1. - u)}) {
+    auto run = gap_run(rmix<T>(200), Inelastic<T>(restitution, T(0)));
+    ASSERT_EQ(run.advance(T(5)), Status::reached);
+    EXPECT_EQ(run.counts().contacts, 476U);
+    ASSERT_EQ(run.advance(T(20)), Status::reached);
+    EXPECT_EQ(run.counts().contacts, 1168U);
+    EXPECT_TRUE((run.energy_lost() > T(0)) == (restitution < T(1)));
+    // (1 - eps)(1 + eps) w^2/4 a contact, w < 2
+    EXPECT_LE(to_double(run.energy_lost()), 1168 * 2 * u);
+    EXPECT_EQ(run.chain().account().order_lost, 0U);
+  }
+}
+
+// Three bodies meet at one place at t = 1. By the tie rule the left gap goes first; elastic bodies come out mirrored.
+TYPED_TEST(EveryExtreme, ThreeBodiesMeet) {
+  using T = typename TypeParam::Scalar;
+  auto run = gap_run(three<T>(2), Inelastic<T>(T(1), T(0)));
+  std::vector<BodyIndex> order;
+  ASSERT_EQ(run.advance(T(2), [&](const Contact<T>& c) { order.push_back(c.left); }), Status::reached);
+  EXPECT_EQ(order, (std::vector<BodyIndex>{0, 1, 0}));
+  EXPECT_GT(run.chain().account().simultaneous, 0U);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+  const auto c = configuration_at(run, T(2));
+  EXPECT_TRUE(c.x == (std::vector<T>{T(0), T(1), T(2)}) && c.v == (std::vector<T>{T(-1), T(0), T(1)}));
+
+  for (const char* restitution : {"0", ".05", ".5", ".9"}) {
+    auto inelastic = gap_run(three<T>(2), Inelastic<T>(from_text<T>(restitution), from_text<T>("1e-4")));
+    EXPECT_EQ(inelastic.advance(T(1000)), Status::reached) << restitution;
+    EXPECT_EQ(inelastic.chain().account().order_lost, 0U) << restitution;
+  }
+}
+
+// A perfect lattice of K pairs: after time t the generations met are floor(2 u t/l) <= K, k contacts in the k-th.
+TYPED_TEST(EveryExtreme, LatticesMeetAllAtOnce) {
+  using T = typename TypeParam::Scalar;
+  const Scene<T> lattice = std::make_shared<Rows<T>>(
+      symmetric_rows<T>(60, T(T(1) / T(2)), T(1), [](BodyIndex) { return std::int64_t{0}; }));
+  auto run = gap_run(lattice, Inelastic<T>(T(1), T(0)));
+  for (const int t : {1, 2, 7, 29, 30, 100}) {
+    ASSERT_EQ(run.advance(T(t)), Status::reached);
+    const auto k = static_cast<std::uint64_t>(std::min(t, 30));
+    // Bodies k apart meet at k/(2 u): after t = k - 1/2 and k + 1/2 alike, every generation up to t is complete.
+    EXPECT_EQ(run.counts().contacts, k * (k + 1) / 2) << t;
+  }
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+// The law is elastic for closing speeds below the cut-off, inelastic at it.
+TYPED_TEST(EveryExtreme, CutoffFromBothSides) {
+  using T = typename TypeParam::Scalar;
+  const T cutoff = from_text<T>("1e-5"), step = cutoff * std::numeric_limits<T>::epsilon() * T(2);
+  for (const char* restitution : {".3", ".9"}) {
+    const T eps = from_text<T>(restitution);
+    const Inelastic<T> law(eps, cutoff);
+    for (const T& w : {T(cutoff - step), cutoff, T(cutoff + step)}) {
+      const bool elastic = w < cutoff;
+      ASSERT_EQ(elastic, w + step == cutoff || w < cutoff);
+      auto run = gap_run(list<T>({T(0), T(1)}, {w, T(0)}), law);
+      ASSERT_EQ(run.advance(T(1000000)), Status::reached);
+      EXPECT_EQ(run.counts().contacts, 1U);
+      EXPECT_EQ(run.counts().below_cutoff, elastic ? 1U : 0U);
+      EXPECT_TRUE((run.energy_lost() > T(0)) == !elastic);
+      const T after = run.chain().closing(run.chain().first()), expected = elastic ? T(-w) : T(-eps * w);
+      EXPECT_TRUE(magnitude(T(after - expected)) <= w * std::numeric_limits<T>::epsilon() * T(4));
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,94 @@
+// From the name of a precision to a type. Proves: every name leads to its type, digits to the smallest MPFR type with
+// room for them, which then works in that many bits; a name there is not is refused with what to do instead.
+#include <gtest/gtest.h>
+
+#include "cradle/precision/scalars.hpp"
+
+namespace {
+
+using namespace cradle;
+
+template <class T> bool leads_to(const char* name, unsigned digits = 0) {
+  return with_scalar<bool>({name, digits}, [](auto type) { return std::same_as<typename decltype(type)::type, T>; });
+}
+
+std::string refusal(const char* name, unsigned digits) {
+  try {
+    with_scalar<int>({name, digits}, [](auto) { return 0; });
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(ScalarNames, LeadToTheirTypes) {
+  EXPECT_TRUE(leads_to<double>("double"));
+  EXPECT_TRUE(leads_to<long double>("long double"));
+  EXPECT_TRUE(leads_to<double_double>("double-double"));
+  EXPECT_TRUE(leads_to<bin_float>("cpp_bin_float"));
+}
+
+TEST(ScalarNames, AreSaidBackByTheType) {
+  EXPECT_EQ(scalar_name<double>, "double");
+  EXPECT_EQ(scalar_name<long double>, "long double");
+  EXPECT_EQ(scalar_name<double_double>, "double-double");
+  EXPECT_EQ(scalar_name<bin_float>, "cpp_bin_float");
+}
+
+TEST(ScalarNames, UnknownOnesAreRefused) {
+  EXPECT_EQ(refusal("quad", 0),
+            "no scalar type quad of 0 digits: choose one of those that --version lists, mpfr with at most 1000 digits");
+  EXPECT_NE(refusal("", 0).find("choose one of those"), std::string::npos);
+  EXPECT_NE(refusal("Double", 0).find("no scalar type Double"), std::string::npos);
+}
+
+#ifdef CRADLE_WITH_FLOAT128
+TEST(ScalarNames, Binary128) {
+  EXPECT_TRUE(leads_to<float128>("float128"));
+  EXPECT_EQ(scalar_name<float128>, "float128");
+}
+#else
+TEST(ScalarNames, Binary128IsNotInThisBuild) {
+  EXPECT_NE(refusal("float128", 0).find("choose mpfr with 34 digits"), std::string::npos);
+}
+#endif
+
+#ifdef CRADLE_WITH_MPFR
+TEST(ScalarNames, MpfrIsTheSmallestThatHoldsTheDigits) {
+  EXPECT_TRUE(leads_to<Mpfr<4>>("mpfr", 20));
+  EXPECT_TRUE(leads_to<Mpfr<4>>("mpfr", 50));
+  EXPECT_TRUE(leads_to<Mpfr<4>>("mpfr", 76));
+  EXPECT_TRUE(leads_to<Mpfr<8>>("mpfr", 77));
+  EXPECT_TRUE(leads_to<Mpfr<8>>("mpfr", 153));
+  EXPECT_TRUE(leads_to<Mpfr<16>>("mpfr", 154));
+  EXPECT_TRUE(leads_to<Mpfr<16>>("mpfr", 307));
+  EXPECT_TRUE(leads_to<Mpfr<56>>("mpfr", 308));
+  EXPECT_TRUE(leads_to<Mpfr<56>>("mpfr", 1000));
+}
+
+// d digits need d log2(10) = 3.3219 d bits.
+TEST(ScalarNames, MpfrWorksInTheBitsThatTheDigitsNeed) {
+  for (const unsigned digits : {1U, 20U, 50U, 76U, 77U, 153U, 154U, 307U, 308U, 1000U}) {
+    const auto bits = with_scalar<mpfr_prec_t>({"mpfr", digits}, [](auto type) {
+      using T = typename decltype(type)::type;
+      if constexpr (requires(const T& x) { x.get(); }) return mpfr_get_prec((T(1) / T(3)).get());
+      return mpfr_prec_t{0};
+    });
+    EXPECT_EQ(bits, MpfrPrecision::bits()) << digits;
+    EXPECT_GE(static_cast<double>(bits), digits * 3.321928095) << digits;
+    EXPECT_LE(static_cast<double>(bits), digits * 3.321928095 + 3) << digits;
+  }
+}
+
+TEST(ScalarNames, MoreDigitsThanThereIsRoomForAreRefused) {
+  EXPECT_EQ(refusal("mpfr", 5000),
+            "no scalar type mpfr of 5000 digits: choose one of those that --version lists, mpfr with at most 1000 "
+            "digits");
+}
+#else
+TEST(ScalarNames, MpfrIsNotInThisBuild) {
+  EXPECT_NE(refusal("mpfr", 50).find("install libmpfr-dev"), std::string::npos);
+}
+#endif
+
+}  // namespace

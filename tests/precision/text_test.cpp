@@ -1,0 +1,168 @@
+// Text in and out, in every scalar type. Proves: what is written is read back as the same number, random, extreme or
+// subnormal; a literal becomes the nearest number of the type, told from 1300 digits of MPFR; exponents beyond double
+// arrive where the type has room for them; whatever is not a finite decimal literal is refused.
+#ifdef CRADLE_WITH_MPFR
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "cradle/tests/precision/every_scalar.hpp"
+#include "cradle/tests/precision/reference.hpp"
+
+namespace {
+
+using namespace cradle;
+using namespace cradle::test;
+
+template <class P> using EveryText = InPrecision<P>;
+TYPED_TEST_SUITE(EveryText, EveryPrecision, PrecisionName);
+
+template <class T> T power_of_ten(int exponent) {
+  T power(1);
+  for (int k = 0; k < std::abs(exponent); ++k) power *= T(10);
+  return exponent < 0 ? T(T(1) / power) : power;
+}
+
+// All bits of the type random, exponents from 10^-250 to 10^250.
+template <class T> T random_number(std::mt19937_64& random) {
+  T x(0);
+  for (int k = 0; k < 90; ++k) x = (x + T(static_cast<std::int64_t>(random() >> 24))) / T(std::int64_t{1} << 40);
+  x *= power_of_ten<T>(static_cast<int>(random() % 501) - 250);
+  return random() & 1 ? T(-x) : x;
+}
+
+template <class T> void expect_round_trip(const T& x) {
+  const std::string text = to_text(x);
+  EXPECT_TRUE(from_text<T>(text) == x) << text;
+}
+
+// The nearest number of the type: rounded once to its digits; a double-double rounds what its first double leaves.
+template <class T> Reference nearest(const Reference& x) {
+  if constexpr (std::same_as<T, double_double>) {
+    const Reference high = rounded(x, 53);
+    return high + rounded(x - high, 53);
+  } else if constexpr (requires { std::numeric_limits<T>::digits; }) {
+    if constexpr (std::numeric_limits<T>::digits > 0) return rounded(x, std::numeric_limits<T>::digits);
+  }
+  return rounded(x, MpfrPrecision::bits());
+}
+
+template <class T> void expect_nearest(const char* literal) {
+  EXPECT_EQ(reference(from_text<T>(literal)), nearest<T>(Reference(literal))) << literal;
+}
+
+TYPED_TEST(EveryText, RandomNumbersComeBack) {
+  using T = typename TypeParam::Scalar;
+  std::mt19937_64 random(20);
+  for (int k = 0; k < (TypeParam::digits == 1000 ? 50 : 500); ++k) expect_round_trip(random_number<T>(random));
+}
+
+TYPED_TEST(EveryText, ExtremeNumbersComeBack) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  for (const T& x : {Limits::min(), T(-Limits::min()), Limits::max(), Limits::lowest(), Limits::epsilon(),
+                     T(T(1) + Limits::epsilon()), T(0), T(std::numeric_limits<std::int64_t>::max()),
+                     T(std::numeric_limits<std::int64_t>::min())})
+    expect_round_trip(x);
+}
+
+TYPED_TEST(EveryText, LiteralsAreRoundedOnceToTheNearest) {
+  using T = typename TypeParam::Scalar;
+  for (const char* literal :
+       {"0.999", "0.999000000000000000000000000000000000000000000000000000000000", "1e-5", "0.05", "-.0625", "+3.", "12",
+        "0.717967697244908258902146339765104971034890271643501598719573", "1.E+2", "2.5e-30", "123456789012345678901e-7",
+        // just above the middle between 1 and the next double, and just above that of float128
+        "1.00000000000000011102230246251565404236316680908203125000000000000000000000000000001",
+        "1.0000000000000000000000000000000000962964972193617926527988971292463659000000001"})
+    expect_nearest<T>(literal);
+}
+
+TYPED_TEST(EveryText, RandomLiteralsAreRoundedOnceToTheNearest) {
+  using T = typename TypeParam::Scalar;
+  std::mt19937_64 random(21);
+  for (int k = 0; k < 300; ++k) {
+    std::string literal = std::to_string(random() % 10) + ".";
+    for (int j = 0; j < 4; ++j) literal += std::to_string(random());
+    literal += "e" + std::to_string(static_cast<int>(random() % 401) - 200);
+    expect_nearest<T>(literal.c_str());
+  }
+}
+
+TYPED_TEST(EveryText, ExponentsBeyondDoubleArriveWhereThereIsRoom) {
+  using T = typename TypeParam::Scalar;
+  if (std::same_as<T, double> || std::same_as<T, double_double>) {
+    EXPECT_TRUE(from_text<T>("1e-400") == T(0));
+    EXPECT_TRUE(from_text<T>("1e400") > std::numeric_limits<T>::max());
+    EXPECT_TRUE(from_text<T>("-1e400") < std::numeric_limits<T>::lowest());
+  } else {
+    for (const char* literal : {"1e-400", "-1e400", "9.99e-4900", "1e4900"}) expect_nearest<T>(literal);
+  }
+}
+
+// The size is in the digits and the exponent together.
+TYPED_TEST(EveryText, ManyZerosAndAnExponent) {
+  using T = typename TypeParam::Scalar;
+  const std::string zeros(600, '0');
+  expect_nearest<T>(("0." + zeros + "25e600").c_str());
+  expect_nearest<T>(("7" + zeros + "e-600").c_str());
+  expect_nearest<T>(("0." + zeros + "0e10").c_str());
+  if (std::same_as<T, double> || std::same_as<T, double_double>) {
+    EXPECT_TRUE(from_text<T>("0." + zeros + "1e10") == T(0));
+    EXPECT_TRUE(from_text<T>("1" + zeros + "e-10") > std::numeric_limits<T>::max());
+    EXPECT_TRUE(from_text<T>("-1" + zeros) < std::numeric_limits<T>::lowest());
+    EXPECT_TRUE(from_text<T>("0." + zeros + "1") == T(0));
+  }
+}
+
+TYPED_TEST(EveryText, RefusesWhatIsNotAFiniteDecimalLiteral) {
+  using T = typename TypeParam::Scalar;
+  for (const char* text :
+       {"",    "nan",  "NaN", "inf", "-inf", "infinity", " 1",  "1 ",   "1x",  "x",  "0x10", "1e",  "1e+", ".", "-.",
+        "+",   "-",    "--1", "+-1", "1..2", "1.2.3",    "1,5", "1e5.", "1_0", "1f", "1L",   "1/3", "1\n", "e5",
+        "@Inf@"})
+    EXPECT_THROW(from_text<T>(text), std::invalid_argument) << text;
+  try {
+    from_text<T>("1.5 apples");
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "not a number (1.5 apples): give a decimal literal");
+  }
+}
+
+template <class T> void expect_subnormals_come_back(int powers) {
+  T x = std::numeric_limits<T>::min() * (T(1) - std::numeric_limits<T>::epsilon());
+  for (int k = 0; k < powers; ++k, x /= T(2)) {
+    ASSERT_GT(x, T(0)) << k;
+    expect_round_trip(x);
+  }
+}
+
+TEST(SubnormalText, DoublesComeBack) { expect_subnormals_come_back<double>(52); }
+TEST(SubnormalText, LongDoublesComeBack) { expect_subnormals_come_back<long double>(63); }
+#ifdef CRADLE_WITH_FLOAT128
+TEST(SubnormalText, Binary128ComesBack) { expect_subnormals_come_back<float128>(112); }
+
+// Numbers below min() are multiples of 2^-16494.
+TEST(SubnormalText, Binary128IsTheNearest) {
+  for (const char* literal : {"1e-4940", "3.3621e-4932", "7.77e-4960", "6.5e-4966"})
+    EXPECT_LE(abs(reference(from_text<float128>(literal)) - Reference(literal)), scaled(Reference(1), -16495)) << literal;
+}
+#endif
+
+TEST(SubnormalText, DoubleDoublesComeBack) {
+  for (int exponent = -969; exponent >= -1074; --exponent) {
+    const double high = std::ldexp(1, exponent);
+    expect_round_trip(double_double::sum(high, high * 0x1.8p-54));
+  }
+}
+
+TEST(DoubleDoubleText, PartsFarApartComeBack) {
+  for (int exponent = -53; exponent >= -1074; exponent -= 7)
+    expect_round_trip(double_double::sum(1, -std::ldexp(1, exponent)));
+  expect_round_trip(double_double::sum(0x1.fffffffffffffp1023, 0x1p-1074));
+}
+
+}  // namespace
+
+#endif

@@ -158,6 +158,10 @@ template <Real T> class ClusterChain {
     return on_left < on_right ? on_left : on_right;
   }
   const Account<T>& account() const { return account_; }
+  // What times of contacts are told apart by, as times since the start.
+  T time_resolution(Slot, const T& time) const {
+    return T(std::numeric_limits<T>::epsilon()) * magnitude(clock_.elapsed(time));
+  }
 
   // ---- reading, at a local time not before the last contact
   T gap_at(Slot s, const T& time) const {

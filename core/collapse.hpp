@@ -32,11 +32,11 @@ template <Real T> struct CollapseReport {
 template <Real T> class CollapseWatch {
  public:
   // Takes note of a contact next to a small gap; true when the collapse time is settled. `local` is the time as an
-  // offset, which resolves intervals that the full time no longer does.
-  bool settled(BodyIndex body, const Pair<T>& time, const T& local, const T& gap, const T& elapsed) {
+  // offset, which resolves intervals that the full time no longer does;
+  // `resolution` is what the chain can tell times apart by at that place.
+  bool settled(BodyIndex body, const Pair<T>& time, const T& local, const T& gap, const T& resolution) {
     History& h = histories_[body];
     const T interval = h.contacts > 0 ? T(local - h.last) : T(0);
-    const T resolution = T(std::numeric_limits<T>::epsilon()) * magnitude(elapsed);
     report_.last_contact = time.value();
     report_.gap = gap;
     report_.body = body;

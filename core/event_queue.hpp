@@ -46,11 +46,16 @@ class EventQueue {
   }
   Key possibly_before(double t) const { return key(t, mask_) + slack_; }
 
-  // Whether the key of slot b (the least key of several slots) is too close to that of `a` to tell which comes first.
-  bool close(Key a, Slot b) const { return key_of(b) <= no_later_than(a); }
-  bool close(Key a, Slot b, Slot c, Slot d, Slot e) const {
-    return std::min(std::min(key_of(b), key_of(c)), std::min(key_of(d), key_of(e))) <= no_later_than(a);
+  // Whether any other key is too close to the root's to tell which comes first: the least of the others stands beside
+  // the path from the root to its leaf.
+  bool contested() const {
+    const Key root = tree_[1];
+    std::size_t node = leaves_ + slot(root);
+    Key second = tree_[node ^ 1];
+    for (node >>= 1; node > 1; node >>= 1) second = std::min(second, tree_[node ^ 1]);
+    return second <= no_later_than(root);
   }
+  bool close(Key a, Slot b) const { return key_of(b) <= no_later_than(a); }
   Key key_of(Slot s) const { return tree_[leaves_ + s]; }
 
   // Sets the times of three neighbouring gaps. Their paths to the root are two neighbouring paths that soon meet.

@@ -80,6 +80,13 @@ template <Real T> class PositionChain {
     return on_left < on_right ? on_left : on_right;
   }
   const Account<T>& account() const { return account_; }
+  // What times of contacts are told apart by: a position is rounded, and a slow pair takes long for that way.
+  T time_resolution(Slot s, const T& time) const {
+    const T slowest = magnitude(closing_[s]);
+    const T way = T(std::numeric_limits<T>::epsilon()) * (magnitude(at(s).x) + magnitude(time * at(s).v));
+    return T(std::numeric_limits<T>::epsilon()) * magnitude(time) +
+           (is_positive(slowest) ? T(T(8) * way / slowest) : way);
+  }
 
   T gap_at(Slot s, const T& time) const { return place(at(s + 1), time) - place(at(s), time); }
   T front_left(const T& time) const { return place(at(front_left_), time); }

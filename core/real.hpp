@@ -9,6 +9,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace cradle {
@@ -53,6 +54,17 @@ inline double scale(double mantissa, long exponent) {
 }
 
 inline double split(long double x, long& exponent) {
+  if constexpr (std::numeric_limits<long double>::digits == 64) {  // x87: read off the bits, frexp is a slow call
+    std::uint64_t mantissa = 0;
+    std::uint16_t sign_and_exponent = 0;
+    std::memcpy(&mantissa, &x, sizeof mantissa);
+    std::memcpy(&sign_and_exponent, reinterpret_cast<const char*>(&x) + sizeof mantissa, sizeof sign_and_exponent);
+    if (mantissa >> 63) {
+      exponent = (sign_and_exponent & 0x7FFF) - 16382;
+      const double size = static_cast<double>(static_cast<std::int64_t>(mantissa >> 1)) * 0x1p-63;
+      return sign_and_exponent >> 15 ? -size : size;
+    }
+  }
   int e = 0;
   const auto mantissa = static_cast<double>(std::frexp(x, &e));
   exponent = e;

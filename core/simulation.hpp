@@ -91,7 +91,7 @@ template <Real T, class Law, class Chain> class Simulation {
       Slot s = queue_.slot(next);
       if (next >= before) [[unlikely]] {
         if (!earliest_until(horizon, s)) return Status::reached;
-      } else if (contested(next, s)) [[unlikely]] {
+      } else if (queue_.contested()) [[unlikely]] {
         s = earliest_near(next);
       }
       const T time = chain_.due(s);
@@ -135,12 +135,6 @@ template <Real T, class Law, class Chain> class Simulation {
     queue_ = EventQueue(chain_.slots(), Chain::keys_are_exact, least_queue_bits_);
     for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
     queue_.rebuild();
-  }
-
-  // Whether a gap up to two away has a key too close to tell which comes first.
-  bool contested(EventQueue::Key root, Slot s) const {
-    const Slot p = chain_.left(s), n = chain_.right(s);
-    return queue_.close(root, chain_.left(p), p, n, chain_.right(n));
   }
 
   // Of contacts too close for the keys: the first by exact time, then from the left. Where very many are (a lattice),
@@ -219,7 +213,7 @@ template <Real T, class Law, class Chain> class Simulation {
     const T gap = chain_.nearest_gap(s);
     if (policy_.collapse == CollapsePolicy::stop) {
       const bool settled =
-          watch_.settled(chain_.body(s), chain_.clock().stamp(time), time, gap, chain_.clock().elapsed(time));
+          watch_.settled(chain_.body(s), chain_.clock().stamp(time), time, gap, chain_.time_resolution(s, time));
       if (policy_.stop_gap > T(0) ? gap > T(0) && gap < policy_.stop_gap : settled) return Status::collapsed;
     }
     return gap > T(0) && gap < underflow_ ? Status::exhausted : Status::reached;

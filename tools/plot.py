@@ -79,6 +79,7 @@ class Result:
     snapshots: list = field(default_factory=list)
     profiles: list = field(default_factory=list)
     events: dict = field(default_factory=dict)
+    trust: list = field(default_factory=list)
 
     def setting(self, table, key, default=None):
         """A number of the scene (numbers may be quoted), or the default."""
@@ -103,8 +104,10 @@ def read_result(path):
             scene = root.attrs.get("scene", "")
             scene = parse_toml(scene.decode() if isinstance(scene, bytes) else str(scene))
             means = root.get("ensemble", root)
+            trust = [arrays(group) | {name: value for name, value in group.attrs.items()}
+                     for _, group in sorted(root.get("trust", {}).items())]
             return Result(scene, arrays(means.get("series", {})), timed(root, "snapshots"), timed(means, "profiles"),
-                          arrays(root.get("events", {})))
+                          arrays(root.get("events", {})), trust)
     except (OSError, KeyError, ValueError) as error:
         raise PlotError(f"{path} cannot be read as a result ({error}): give a file written by `cradle run`",
                         BAD_FILE) from error
@@ -503,10 +506,30 @@ def draw_bodies(result, units):
     return figure
 
 
+def draw_trust(result):
+    """Digits that runs of rising precision share with the last one, against time; and until when their contacts are right."""
+    figure, panels = plt.subplots(2, 1, sharex=True, figsize=(6.4, 6.4), constrained_layout=True)
+    for ax, name, label in zip(panels, ("energy_digits", "front_digits"), ("digits of the energy", "digits of the front")):
+        for run, colour in zip(result.trust[:-1], plt.rcParams["axes.prop_cycle"].by_key()["color"] * 4):
+            line = "--" if run["coordinates"] == "absolute" else "-"
+            shown = run[name] < 100  # all digits of the comparison: nothing to draw
+            ax.plot(run["time"][shown], run[name][shown], line, color=colour,
+                    label=f"{run['precision']}, {run['coordinates']}")
+            if not run["right_to_end"]:
+                ax.axvline(run["contacts_right_until"], color=colour, linestyle=line, linewidth=0.8)
+        ax.set_ylabel(label)
+        ax.set_ylim(bottom=0)
+    panels[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
+    panels[1].set_xlabel("time $t$   (vertical lines: until when the sequence of contacts is right)")
+    return figure
+
+
 # ---- which pictures, and writing them ----
 
 def figures_of(result, theory, units):
     """Pairs of suffix and drawing function, the main picture first."""
+    if result.trust:
+        return [("trust", lambda: draw_trust(result))]
     pictures = []
     most = max((len(s["x"]) for s in result.snapshots), default=0)
     core = core_of(result, units)

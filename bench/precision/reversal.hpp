@@ -3,7 +3,7 @@
 // long again. In exact arithmetic every body is back where it started; unequal masses make the gas unstable, so what
 // is missing is rounding and nothing else, amplified by the contacts in between.
 
-#include "precision/engines.hpp"
+#include "engines.hpp"
 
 namespace precision {
 

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "cradle/core/observe/trace.hpp"
-#include "precision/engines.hpp"
+#include "engines.hpp"
 
 namespace precision {
 

@@ -39,13 +39,13 @@ template <class T> void expect_ends_of_all_sizes() {
       expect_an_end(gap_run(rmix<T>(n), law, stop_below(T(0))), T(1000), 0);
     }
   }
-  expect_an_end(gap_run(rshock<T>(100), Inelastic<T>(from_text<T>(".9"), T(0)), stop_below(T(0))), T(1000), onset(.9));
 }
 
 TYPED_TEST(CollapseSizes, RunsEndByThemselves) { expect_ends_of_all_sizes<typename TypeParam::Scalar>(); }
 
 TEST(CollapseSizesInDouble, RunsEndByThemselves) {
   expect_ends_of_all_sizes<double>();
+  expect_an_end(gap_run(rshock<double>(100), Inelastic<double>(.9, 0), stop_below(0.)), 1e6, onset(.9));
   expect_an_end(gap_run(rshock<double>(1000), Inelastic<double>(.99, 0), stop_below(0.)), 1e6, onset(.99));
 }
 
@@ -58,7 +58,6 @@ template <class T> int cycles_kept(const Scene<T>& bodies, const T& restitution,
   auto run = gap_run(bodies, Inelastic<T>(restitution, T(0)), stop_below(std::numeric_limits<T>::min()));
   const int gaps = static_cast<int>(bodies->count()) - 1;
   std::vector<BodyIndex> order;
-  Policy<T> policy;
   run.advance(T(100), [&](const Contact<T>& c) {
     if (static_cast<int>(order.size()) < most * gaps) order.push_back(c.left);
   });
@@ -78,8 +77,8 @@ template <class T> int cycles_kept(const Scene<T>& bodies, const T& restitution,
 TYPED_TEST(CollapseSizes, FourBodiesKeepTheirSymmetry) {
   using T = typename TypeParam::Scalar;
   const double eps = .15, a = (1 + eps) / std::sqrt(2.), slow = (a - std::sqrt(a * a - 4 * eps)) / 2;
-  const double growth = eps / (slow * slow), digits = -std::log(to_double(std::numeric_limits<T>::epsilon()));
-  const int predicted = static_cast<int>(digits / std::log(growth));
+  const double growth = eps / (slow * slow), room = -std::log(to_double(std::numeric_limits<T>::epsilon()));
+  const int predicted = static_cast<int>(room / std::log(growth));
   const auto bodies = list<T>({T(0), T(1), T(3), T(4)}, {T(3) / T(2), T(1) / T(2), T(-1) / T(2), T(-3) / T(2)});
   EXPECT_GE(cycles_kept(bodies, from_text<T>(".15"), 1000), predicted - 4);  // 64 roundings of head start: 4 cycles
 }

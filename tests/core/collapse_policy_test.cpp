@@ -16,6 +16,8 @@ struct Reference {
   double restitution, collapse_time;
   std::uint64_t passes_e16, passes_e34, passes_e100;  // contact at which the gap is first below 1e-16, ...
   std::uint64_t plain_clock_stops;                    // last contact that moves it, in double
+
+  friend void PrintTo(const Reference& r, std::ostream* out) { *out << "eps=" << r.restitution; }
 };
 const Reference references[] = {{.05, 12. / 7, 18, 38, 111, 31},
                                 {.01, 1.6736937682559527405521559675475, 11, 21, 61, 13},

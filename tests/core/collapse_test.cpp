@@ -29,6 +29,8 @@ struct Reference {
   const char* collapse_time;
   int passes_e16, passes_e34, passes_e100, passes_e300;  // contact at which the gap is first below 1e-16, ...
   int plain_clock_stops;                                 // contact at which t + dt == t in plain double
+
+  friend void PrintTo(const Reference& r, std::ostream* out) { *out << "eps=" << r.restitution; }
 };
 const Reference references[] = {
     {.05, "1.714285714285714285714285714285714285714285714286", 18, 38, 111, 333, 31},

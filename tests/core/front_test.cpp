@@ -31,6 +31,8 @@ struct Row {
   std::uint64_t contacts;        // of the tracer until then
   std::uint64_t simultaneous;    // triple contacts of the run until then, decided by the tie rule
   BodyIndex particles;
+
+  friend void PrintTo(const Row& r, std::ostream* out) { *out << "eps=" << r.restitution; }
 };
 
 class Fronts : public testing::TestWithParam<Row> {

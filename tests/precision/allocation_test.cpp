@@ -17,7 +17,8 @@ std::atomic<std::uint64_t> allocations{0};
 void* counted(std::size_t size, std::size_t alignment = alignof(std::max_align_t)) {
   ++allocations;
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
-  void* memory = alignment > alignof(std::max_align_t) ? std::aligned_alloc(alignment, whole) : std::malloc(size + !size);
+  void* memory =
+      alignment > alignof(std::max_align_t) ? std::aligned_alloc(alignment, whole) : std::malloc(size + !size);
   if (!memory) throw std::bad_alloc();
   return memory;
 }

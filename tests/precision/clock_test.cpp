@@ -1,9 +1,9 @@
 // A run started late. Proves: from t = 1e12, where a double resolves 1e-4, a run makes the contacts of the one from
 // t = 0 with the same gaps and closing speeds to the last bit, and contact times less 1e12 agree to 1e-18.
 //
-// Bound. Times are kept as a sum of two numbers; a move of the origin rounds the lower one, which is at most half a unit
-// in the last place of 1e12, 2^-14 in double, to 53 bits: 2^-68 a move, 3.4e-21. The scenes here move it some tens of
-// times: below 1e-18 even if all roundings had the same sign, and that much more exact in wider types.
+// Bound. Times are kept as a sum of two numbers; a move of the origin rounds the lower one, which is at most half a
+// unit in the last place of 1e12, 2^-14 in double, to 53 bits: 2^-68 a move, 3.4e-21. The scenes here move it some tens
+// of times: below 1e-18 even if all roundings had the same sign, and that much more exact in wider types.
 #ifdef CRADLE_WITH_MPFR
 
 #include <gtest/gtest.h>
@@ -28,7 +28,8 @@ template <class T> struct Seen {
   T closing_speed;
 };
 
-template <class T> void expect_same_run(const Scene<T>& bodies, const Inelastic<T>& law, int end, Policy<T> policy = {}) {
+template <class T>
+void expect_same_run(const Scene<T>& bodies, const Inelastic<T>& law, int end, Policy<T> policy = {}) {
   const T late(std::int64_t{1000000000000}), shift(end);
   auto early_run = gap_run(bodies, law, policy), late_run = gap_run(bodies, law, policy, late);
   std::vector<Seen<T>> early_contacts, late_contacts;

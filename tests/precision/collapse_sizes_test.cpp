@@ -1,6 +1,6 @@
-// Collapse of many bodies under policy stop. Proves: from 3 to 1e5 bodies a run with exact dynamics ends by itself, with
-// a collapse time or because all bodies part, and no order is lost on the way. Mirror-symmetric patterns of 4 and 6
-// bodies, in which symmetry is unstable, keep it as long as the type's digits allow.
+// Collapse of many bodies under policy stop. Proves: from 3 to 1e5 bodies a run with exact dynamics ends by itself,
+// with a collapse time or because all bodies part, and no order is lost on the way. Mirror-symmetric patterns of 4 and
+// 6 bodies, in which symmetry is unstable, keep it as long as the type's digits allow.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -144,9 +144,7 @@ TEST(DoubleDouble, QuotientIsWithinFifteenSquaredUnits) {
 }
 
 TEST(DoubleDouble, RootIsWithinThreeSquaredUnits) {
-  const auto root = [](const double_double& x, const double_double&) {
-    return sqrt(x.high() < 0 ? -x : x);
-  };
+  const auto root = [](const double_double& x, const double_double&) { return sqrt(x.high() < 0 ? -x : x); };
   const auto exact = [](mpfr_ptr result, mpfr_srcptr x, mpfr_srcptr, mpfr_rnd_t rounding) {
     mpfr_abs(result, x, rounding);
     mpfr_sqrt(result, result, rounding);
@@ -167,7 +165,8 @@ TEST(DoubleDouble, BoundsHoldDownToTheLeastNormalNumber) {
   Exact a, b, exact;
   for (int k = 0; k < 100000; ++k) {
     const int exponent = random.between(-400, 400);
-    const double_double x = random.number(exponent), y = random.number(-968 - exponent), z = random.number(968 + exponent);
+    const double_double x = random.number(exponent), y = random.number(-968 - exponent),
+                        z = random.number(968 + exponent);
     a.set(x), b.set(y);
     mpfr_mul(exact.value, a.value, b.value, MPFR_RNDN);
     ASSERT_NO_FATAL_FAILURE(of_products.look(x * y, exact));
@@ -209,7 +208,7 @@ TEST(DoubleDouble, OrderIsThatOfTheNumbers) {
     ASSERT_EQ(x == y, order == 0);
     ASSERT_EQ(x > y, order > 0);
     ASSERT_EQ(x <= y, order <= 0);
-    ASSERT_EQ(y < x, order > 0);
+    ASSERT_EQ(y<x, order> 0);
     ASSERT_EQ(is_negative(x - y), order < 0);
     ASSERT_EQ(is_positive(x - y), order > 0);
   }

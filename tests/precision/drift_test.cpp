@@ -1,11 +1,11 @@
-// What rounding does to a long run in double. Proves: after 1e7 contacts (1e8 in the slow test) momentum, the sum of all
-// closing speeds and the balance of energy are off by what a random walk of roundings gives, and by no more.
+// What rounding does to a long run in double. Proves: after 1e7 contacts (1e8 in the slow test) momentum, the sum of
+// all closing speeds and the balance of energy are off by what a random walk of roundings gives, and by no more.
 //
 // Bound. A contact rounds three closing speeds, by u of the largest at most, u = 2^-53. They differ from contact to
-// contact, so errors add up in squares: 3 sum w^2 u^2, and the ledger knows sum w^2 = 4 lost/(1 - eps^2) for contacts of
-// unit masses that lose energy. Neighbours' closing speeds are like the pair's own: allow twice that, and six standard
-// deviations. A body's velocity is off by as much; momentum by the number of bodies times it, energy by sqrt(2 E N)
-// times it at most.
+// contact, so errors add up in squares: 3 sum w^2 u^2, and the ledger knows sum w^2 = 4 lost/(1 - eps^2) for contacts
+// of unit masses that lose energy. Neighbours' closing speeds are like the pair's own: allow twice that, and six
+// standard deviations. A body's velocity is off by as much; momentum by the number of bodies times it, energy by sqrt(2
+// E N) times it at most.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
-// Scenes at the edge of what numbers hold. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the same
-// contacts in double as in double-double; restitutions next to 0 and 1, and 0 and 1 themselves, and contacts of equal times
-// by construction end a run as they should, without a hang and without a lost order; the velocity cut-off takes effect
-// exactly below its value.
+// Scenes at the edge of what numbers hold. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the
+// same contacts in double as in double-double; restitutions next to 0 and 1, and 0 and 1 themselves, and contacts of
+// equal times by construction end a run as they should, without a hang and without a lost order; the velocity cut-off
+// takes effect exactly below its value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,8 @@ using namespace cradle::test;
 constexpr double u = 0x1p-53;
 
 // Every scalar starts from the same doubles.
-template <class T> Scene<T> in(const std::vector<double>& x, const std::vector<double>& v, const std::vector<double>& m) {
+template <class T>
+Scene<T> in(const std::vector<double>& x, const std::vector<double>& v, const std::vector<double>& m) {
   const auto convert = [](const std::vector<double>& from) {
     std::vector<T> to;
     for (const double value : from) to.push_back(T(value));
@@ -37,11 +38,13 @@ template <class T> Sequence contacts_of(MassRun<T> run, const T& end, std::uint6
   return sequence;
 }
 
-template <class T> void expect_contacts_of_double(double restitution, double cutoff, const std::vector<double>& x,
-                                                  const std::vector<double>& v, const std::vector<double>& m, double end,
-                                                  std::uint64_t least_contacts) {
+template <class T>
+void expect_contacts_of_double(double restitution, double cutoff, const std::vector<double>& x,
+                               const std::vector<double>& v, const std::vector<double>& m, double end,
+                               std::uint64_t least_contacts) {
   std::uint64_t in_double = 0, in_wide = 0;
-  const Sequence narrow = contacts_of(mass_run(in<double>(x, v, m), Inelastic<double>(restitution, cutoff)), end, in_double);
+  const Sequence narrow =
+      contacts_of(mass_run(in<double>(x, v, m), Inelastic<double>(restitution, cutoff)), end, in_double);
   const Sequence wide = contacts_of(mass_run(in<T>(x, v, m), Inelastic<T>(T(restitution), T(cutoff))), T(end), in_wide);
   EXPECT_EQ(in_double, in_wide);
   EXPECT_TRUE(narrow == wide);
@@ -77,7 +80,7 @@ TEST(Extremes, MassesOfOneToATrillion) {
   std::vector<double> x, v;
   for (BodyIndex b = 0; b < 40; ++b) x.push_back(even->position(b)), v.push_back(even->velocity(b));
   for (const double ratio : {1e12, 1e-12})
-    expect_contacts_of_double<double_double>(.9, 1e-4, x, v, alternating(ratio, 40), .75, 10);
+    expect_contacts_of_double<double_double>(.9, 1e-4, x, v, alternating(ratio, 40), 1.25, 5);
 
   // Momentum and energy: each contact rounds two closing speeds of at most 4, and each acts on all bodies to one side.
   const auto bodies = in<double>(x, v, alternating(1e12, 40));
@@ -93,16 +96,20 @@ TEST(Extremes, MassesOfOneToATrillion) {
 template <class P> using EveryExtreme = InPrecision<P>;
 TYPED_TEST_SUITE(EveryExtreme, EveryPrecision, PrecisionName);
 
-template <class T> Scene<T> three(int third_place) { return list<T>({T(0), T(1), T(third_place)}, {T(1), T(0), T(-1)}); }
+template <class T> Scene<T> three(int third_place) {
+  return list<T>({T(0), T(1), T(third_place)}, {T(1), T(0), T(-1)});
+}
 
-// Next to 0 the second contact finds the gap at the bottom of double's range, at 0 on it: with a cut-off the bodies part,
-// without one the run says that it is exhausted, or, where the range allows, goes on and collapses.
+// Next to 0 the second contact finds the gap at the bottom of double's range, at 0 on it: with a cut-off the bodies
+// part, without one the run says that it is exhausted, or, where the range allows, goes on and collapses.
 TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
   using T = typename TypeParam::Scalar;
   for (const T& restitution : {T(0), from_text<T>("1e-300")}) {
     auto parting = gap_run(three<T>(3), Inelastic<T>(restitution, from_text<T>("1e-5")));
-    EXPECT_EQ(parting.advance(T(1000)), Status::reached);
-    EXPECT_GT(parting.counts().below_cutoff, 0U);
+    // Double-double ends at 2^-969: there a gap of 1e-300 is the end of the run, and it says so.
+    const bool underflows = restitution > T(0) && restitution < std::numeric_limits<T>::min();
+    EXPECT_EQ(parting.advance(T(1000)), underflows ? Status::exhausted : Status::reached);
+    EXPECT_TRUE(underflows || parting.counts().below_cutoff > 0);
     EXPECT_EQ(parting.chain().account().order_lost, 0U);
     auto collapsing = gap_run(three<T>(3), Inelastic<T>(restitution, T(0)));
     EXPECT_EQ(collapsing.advance(T(1000)), Status::exhausted);
@@ -113,18 +120,26 @@ TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
   }
 }
 
-// Elastic contacts up to t are the inversions of x + v t: 476 and 1168 at t = 5 and 20 of this scene.
+// Elastic contacts up to t are the inversions of x + v t, exact in double for these places and velocities.
+std::uint64_t inversions(const Bodies<double>& bodies, double t) {
+  std::uint64_t count = 0;
+  const auto place = [&](BodyIndex b) { return bodies.position(b) + bodies.velocity(b) * t; };
+  for (BodyIndex i = 0; i < bodies.count(); ++i)
+    for (BodyIndex j = i + 1; j < bodies.count(); ++j) count += place(i) > place(j);
+  return count;
+}
+
 TYPED_TEST(EveryExtreme, RestitutionNextToOne) {
   using T = typename TypeParam::Scalar;
   for (const T& restitution : {T(1), T(1. - u)}) {
     auto run = gap_run(rmix<T>(200), Inelastic<T>(restitution, T(0)));
-    ASSERT_EQ(run.advance(T(5)), Status::reached);
-    EXPECT_EQ(run.counts().contacts, 476U);
-    ASSERT_EQ(run.advance(T(20)), Status::reached);
-    EXPECT_EQ(run.counts().contacts, 1168U);
+    for (const int t : {5, 20}) {
+      ASSERT_EQ(run.advance(T(t)), Status::reached);
+      EXPECT_EQ(run.counts().contacts, inversions(*rmix<double>(200), t)) << t;
+    }
     EXPECT_TRUE((run.energy_lost() > T(0)) == (restitution < T(1)));
     // (1 - eps)(1 + eps) w^2/4 a contact, w < 2
-    EXPECT_LE(to_double(run.energy_lost()), 1168 * 2 * u);
+    EXPECT_LE(to_double(run.energy_lost()), static_cast<double>(run.counts().contacts) * 2 * u);
     EXPECT_EQ(run.chain().account().order_lost, 0U);
   }
 }
@@ -148,18 +163,19 @@ TYPED_TEST(EveryExtreme, ThreeBodiesMeet) {
   }
 }
 
-// A perfect lattice of K pairs: after time t the generations met are floor(2 u t/l) <= K, k contacts in the k-th.
+// Two rows of a perfect lattice: k pairs are k spacings apart, for k up to the length of a row; they meet at k/(2 u).
 TYPED_TEST(EveryExtreme, LatticesMeetAllAtOnce) {
   using T = typename TypeParam::Scalar;
-  const Scene<T> lattice = std::make_shared<Rows<T>>(
-      symmetric_rows<T>(60, T(T(1) / T(2)), T(1), [](BodyIndex) { return std::int64_t{0}; }));
+  const Scene<T> lattice =
+      std::make_shared<Rows<T>>(symmetric_rows<T>(60, T(T(1) / T(2)), T(1), [](BodyIndex) { return std::int64_t{0}; }));
   auto run = gap_run(lattice, Inelastic<T>(T(1), T(0)));
-  for (const int t : {1, 2, 7, 29, 30, 100}) {
+  for (const int t : {1, 2, 7, 29, 30}) {
     ASSERT_EQ(run.advance(T(t)), Status::reached);
-    const auto k = static_cast<std::uint64_t>(std::min(t, 30));
-    // Bodies k apart meet at k/(2 u): after t = k - 1/2 and k + 1/2 alike, every generation up to t is complete.
+    const auto k = static_cast<std::uint64_t>(t);
     EXPECT_EQ(run.counts().contacts, k * (k + 1) / 2) << t;
   }
+  ASSERT_EQ(run.advance(T(100)), Status::reached);
+  EXPECT_EQ(run.counts().contacts, 30U * 30U);  // every body of one row has met every one of the other
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 

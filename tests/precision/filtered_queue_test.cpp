@@ -43,7 +43,8 @@ template <class T> struct Recorded {
   Counts counts;
 };
 
-template <class T> Recorded<T> filtered(const Scene<T>& bodies, const Inelastic<T>& law, const T& end, Policy<T> policy) {
+template <class T>
+Recorded<T> filtered(const Scene<T>& bodies, const Inelastic<T>& law, const T& end, Policy<T> policy) {
   auto run = gap_run(bodies, law, std::move(policy));
   Recorded<T> record;
   T last(0);
@@ -63,8 +64,7 @@ template <class T> Recorded<T> filtered(const Scene<T>& bodies, const Inelastic<
   return record;
 }
 
-template <class T>
-Events<T> unfiltered(const Scene<T>& bodies, const Inelastic<T>& law, const Recorded<T>& run) {
+template <class T> Events<T> unfiltered(const Scene<T>& bodies, const Inelastic<T>& law, const Recorded<T>& run) {
   GapChain<T> chain(bodies, T(0));
   Events<T> events;
   auto origin = run.origins.begin();
@@ -102,10 +102,12 @@ void expect_same_contacts(const Scene<T>& bodies, const Inelastic<T>& law, const
   }
 }
 
-// Among gaps up to two away the chosen one is first by (exact time, position); none further away is earlier by more than
-// what keys resolve, 2^(8-52) of the time here. Contacts left behind by a move of the origin are at times <= 0, all due.
+// Among gaps up to two away the chosen one is first by (exact time, position); none further away is earlier by more
+// than what keys resolve, 2^(8-52) of the time here. Contacts left behind by a move of the origin are at times <= 0,
+// all due.
 template <class T>
-void expect_every_choice_right(const Scene<T>& bodies, const Inelastic<T>& law, const T& end, std::uint64_t least_contacts) {
+void expect_every_choice_right(const Scene<T>& bodies, const Inelastic<T>& law, const T& end,
+                               std::uint64_t least_contacts) {
   auto run = gap_run(bodies, law);
   const auto& chain = run.chain();
   std::uint64_t wrong_near = 0, wrong_far = 0;
@@ -139,8 +141,8 @@ TYPED_TEST(FilteredQueue, Shock) {
 TYPED_TEST(FilteredQueue, ThreeBodyCollapse) {
   using T = typename TypeParam::Scalar;
   for (const char* restitution : {".05", ".01", ".0625"})
-    expect_same_contacts(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}), Inelastic<T>(from_text<T>(restitution), T(0)), T(10), 100,
-                         stop_below(from_text<T>("1e-280")));
+    expect_same_contacts(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}),
+                         Inelastic<T>(from_text<T>(restitution), T(0)), T(10), 100, stop_below(from_text<T>("1e-280")));
 }
 
 // At eps = .4 seven bodies are enough: 2/(1 - (4/pi) atan sqrt eps) = 7.1.
@@ -186,7 +188,8 @@ TYPED_TEST(FilteredQueue, IntegerPlacesAndVelocities) {
 }
 
 template <class T>
-std::uint64_t expect_index_bits_change_no_bit(const Scene<T>& bodies, const Inelastic<T>& law, const T& step, int steps) {
+std::uint64_t expect_index_bits_change_no_bit(const Scene<T>& bodies, const Inelastic<T>& law, const T& step,
+                                              int steps) {
   auto run = gap_run(bodies, law, {}, T(0), {.least_queue_bits = 3});
   auto run13 = gap_run(bodies, law, {}, T(0), {.least_queue_bits = 13});
   auto run20 = gap_run(bodies, law, {}, T(0), {.least_queue_bits = 20});

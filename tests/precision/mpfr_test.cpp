@@ -80,8 +80,8 @@ template <class S> class MpfrInPlace : public testing::Test {
  protected:
   void SetUp() override { MpfrPrecision::set_bits(MpfrPrecision::bits_for(S::digits)); }
 };
-using Sizes = testing::Types<Size<4, 20>, Size<4, 50>, Size<4, 76>, Size<8, 50>, Size<8, 100>, Size<16, 200>,
-                             Size<56, 1000>>;
+using Sizes =
+    testing::Types<Size<4, 20>, Size<4, 50>, Size<4, 76>, Size<8, 50>, Size<8, 100>, Size<16, 200>, Size<56, 1000>>;
 TYPED_TEST_SUITE(MpfrInPlace, Sizes);
 
 TYPED_TEST(MpfrInPlace, OperationsHaveTheBitsOfTheLibrary) {
@@ -105,7 +105,8 @@ TYPED_TEST(MpfrInPlace, OperationsHaveTheBitsOfTheLibrary) {
     mpfr_sqrt(expected.value, x.get(), MPFR_RNDN);
     ASSERT_TRUE(same(sqrt(x).get(), expected.value)) << k;
     const int order = mpfr_cmp(x.get(), y.get());
-    ASSERT_TRUE((x < y) == (order < 0) && (x > y) == (order > 0) && (x == y) == (order == 0) && (x <= y) == (order <= 0));
+    ASSERT_TRUE((x < y) == (order < 0) && (x > y) == (order > 0) && (x == y) == (order == 0) &&
+                (x <= y) == (order <= 0));
     ASSERT_TRUE(is_negative(x) == (mpfr_sgn(x.get()) < 0) && is_positive(x) == (mpfr_sgn(x.get()) > 0));
     ASSERT_EQ(static_cast<double>(x), mpfr_get_d(x.get(), MPFR_RNDN));
   }
@@ -165,8 +166,7 @@ TYPED_TEST(MpfrInPlace, CopiesAreNumbersOfTheirOwn) {
   std::vector<T> numbers;
   for (int k = 0; k < 200; ++k) numbers.push_back(T(k) * x);
   std::sort(numbers.begin(), numbers.end());
-  for (int k = 0; k < 200; ++k)
-    ASSERT_TRUE(numbers[static_cast<std::size_t>(k)] == T(x > T(0) ? k : 199 - k) * x) << k;
+  for (int k = 0; k < 200; ++k) ASSERT_TRUE(numbers[static_cast<std::size_t>(k)] == T(x > T(0) ? k : 199 - k) * x) << k;
   const std::vector<T> others = numbers;
   numbers.assign(200, T(0));
   EXPECT_TRUE(others[x > T(0) ? 7 : 192] == T(7) * x);

@@ -2,10 +2,10 @@
 // program counts in double, binary128 and 100 digits alike; all settle the collapse time of three bodies, of equal and
 // unequal masses, to the full precision of the type; all follow a collapse to the end of their range.
 //
-// Closed forms (McNamara and Young, Phys. Fluids A 4, 496 (1992)): p_n the closing speed at contact n, g_n the other gap
-// then; a_r, a_l the shares of a contact's closing speed handed to the right and to the left gap (both (1+eps)/2 for
-// equal masses), a^2 = a_l a_r, lam = (a - sqrt(a^2 - 4 eps))/2. With p_n of every second contact scaled by
-// r = sqrt(a_r/a_l): t_c = t_0 + g_0/(p_1 - r lam p_0) and g_n p_n = eps^n g_0 p_0. Evaluated with 1300 digits from the
+// Closed forms (McNamara and Young, Phys. Fluids A 4, 496 (1992)): p_n the closing speed at contact n, g_n the other
+// gap then; a_r, a_l the shares of a contact's closing speed handed to the right and to the left gap (both (1+eps)/2
+// for equal masses), a^2 = a_l a_r, lam = (a - sqrt(a^2 - 4 eps))/2. With p_n of every second contact scaled by r =
+// sqrt(a_r/a_l): t_c = t_0 + g_0/(p_1 - r lam p_0) and g_n p_n = eps^n g_0 p_0. Evaluated with 1300 digits from the
 // numbers that the type holds.
 //
 // Tolerance. Let v be the largest error of one operation. A contact takes 3 roundings of a gap and 6 of a closing speed
@@ -136,8 +136,7 @@ TYPED_TEST(EveryScalarCollapse, TimeIsSettledToFullPrecisionForUnequalMasses) {
     for (const int m : row.masses) masses.push_back(T(m));
     const Collapse expected = closed_form(restitution, masses);
     ASSERT_LT(expected.ratio, Reference(.5)) << expected.ratio;
-    expect_collapse_time<T>(mass_run(three_bodies(masses), Inelastic<T>(restitution, T(0)),
-                                     stop_below(T(0))),
+    expect_collapse_time<T>(mass_run(three_bodies(masses), Inelastic<T>(restitution, T(0)), stop_below(T(0))),
                             expected);
   }
 }

@@ -69,12 +69,12 @@ TYPED_TEST(EveryText, ExtremeNumbersComeBack) {
 
 TYPED_TEST(EveryText, LiteralsAreRoundedOnceToTheNearest) {
   using T = typename TypeParam::Scalar;
-  for (const char* literal :
-       {"0.999", "0.999000000000000000000000000000000000000000000000000000000000", "1e-5", "0.05", "-.0625", "+3.", "12",
-        "0.717967697244908258902146339765104971034890271643501598719573", "1.E+2", "2.5e-30", "123456789012345678901e-7",
-        // just above the middle between 1 and the next double, and just above that of float128
-        "1.00000000000000011102230246251565404236316680908203125000000000000000000000000000001",
-        "1.0000000000000000000000000000000000962964972193617926527988971292463659000000001"})
+  for (const char* literal : {"0.999", "0.999000000000000000000000000000000000000000000000000000000000", "1e-5", "0.05",
+                              "-.0625", "+3.", "12", "0.717967697244908258902146339765104971034890271643501598719573",
+                              "1.E+2", "2.5e-30", "123456789012345678901e-7",
+                              // just above the middle between 1 and the next double, and just above that of float128
+                              "1.00000000000000011102230246251565404236316680908203125000000000000000000000000000001",
+                              "1.0000000000000000000000000000000000962964972193617926527988971292463659000000001"})
     expect_nearest<T>(literal);
 }
 
@@ -118,9 +118,8 @@ TYPED_TEST(EveryText, ManyZerosAndAnExponent) {
 TYPED_TEST(EveryText, RefusesWhatIsNotAFiniteDecimalLiteral) {
   using T = typename TypeParam::Scalar;
   for (const char* text :
-       {"",    "nan",  "NaN", "inf", "-inf", "infinity", " 1",  "1 ",   "1x",  "x",  "0x10", "1e",  "1e+", ".", "-.",
-        "+",   "-",    "--1", "+-1", "1..2", "1.2.3",    "1,5", "1e5.", "1_0", "1f", "1L",   "1/3", "1\n", "e5",
-        "@Inf@"})
+       {"",  "nan", "NaN", "inf", "-inf", "infinity", " 1",  "1 ",   "1x",  "x",  "0x10", "1e",  "1e+", ".",  "-.",
+        "+", "-",   "--1", "+-1", "1..2", "1.2.3",    "1,5", "1e5.", "1_0", "1f", "1L",   "1/3", "1\n", "e5", "@Inf@"})
     EXPECT_THROW(from_text<T>(text), std::invalid_argument) << text;
   try {
     from_text<T>("1.5 apples");
@@ -146,7 +145,8 @@ TEST(SubnormalText, Binary128ComesBack) { expect_subnormals_come_back<float128>(
 // Numbers below min() are multiples of 2^-16494.
 TEST(SubnormalText, Binary128IsTheNearest) {
   for (const char* literal : {"1e-4940", "3.3621e-4932", "7.77e-4960", "6.5e-4966"})
-    EXPECT_LE(abs(reference(from_text<float128>(literal)) - Reference(literal)), scaled(Reference(1), -16495)) << literal;
+    EXPECT_LE(abs(reference(from_text<float128>(literal)) - Reference(literal)), scaled(Reference(1), -16495))
+        << literal;
 }
 #endif
 

@@ -107,6 +107,76 @@ TEST_F(Run, PlainLawWithoutAPolicyAgainstCollapseEndsInsteadOfHanging) {
   EXPECT_NE(run.err.find("resolution exhausted"), std::string::npos) << run.err;
 }
 
+TEST_F(Run, EveryPrecisionReportsTheCollapseTimeToItsLastDigits) {
+  // 12/7 = 1.(714285): as many digits as the type has, its last one or two left to rounding.
+  const std::string exact =
+      "1.714285714285714285714285714285714285714285714285714285714285714285714285714285714285714285";
+  const std::vector<std::pair<std::string, std::size_t>> digits{{"double", 15},
+                                                                {"'long double'", 18},
+                                                                {"double-double", 30},
+                                                                {"float128", 32},
+                                                                {"cpp_bin_float", 90},
+                                                                {"mpfr --set run.digits=20", 19},
+                                                                {"mpfr --set run.digits=80", 79}};
+  for (const auto& [precision, right] : digits) {
+    const Printed run = shell("cradle run collapse3 --set run.precision=" + precision);
+    EXPECT_EQ(run.status, 3) << precision << run.err;
+    EXPECT_NE(run.out.find("t_c = " + exact.substr(0, right - 1)), std::string::npos) << precision << "\n" << run.out;
+  }
+}
+
+TEST_F(Run, CollapseIsFollowedBelowTheRangeOfDouble) {
+  const Printed run =
+      shell("cradle run collapse3 --set run.precision=mpfr --set run.digits=40 --set run.stop_gap=1e-2000");
+  EXPECT_EQ(run.status, 3) << run.err;
+  EXPECT_NE(run.out.find("e-2001 beside it"), std::string::npos) << run.out;
+}
+
+TEST_F(Run, PoliciesAgainstCollapseReachTheEnd) {
+  for (const auto* policy : {"contact-time --set run.contact_time=1e-6", "merge --set run.merge_speed=1e-3"})
+    EXPECT_EQ(shell(std::string("cradle run collapse3 --set run.stop_gap= --set run.collapse=") + policy).status, 0)
+        << policy;
+}
+
+TEST_F(Run, TrustSaysThatDoubleInGapsIsRightToUnderflow) {
+  const Printed trust = shell("cradle trust collapse3 --both");
+  EXPECT_EQ(trust.status, 0) << trust.err;
+  const auto line = [&](const std::string& begin) {
+    const auto at = trust.out.find(begin);
+    return at == std::string::npos ? std::string() : trust.out.substr(at, trust.out.find('\n', at) - at);
+  };
+  EXPECT_NE(line("double            gaps").find("(end)"), std::string::npos) << trust.out;
+  EXPECT_EQ(line("double            absolute").find("(end)"), std::string::npos) << trust.out;
+  EXPECT_EQ(shell("cradle plot collapse3-trust.h5").status, 0);
+}
+
+TEST_F(Run, TrustedTimesOfAChaoticSceneRiseWithDigits) {
+  write("wet.toml", R"(
+[law]
+type = "wet"
+loss = 0.01
+[initial]
+type = "rows"
+particles = 20000
+speed = 0.5
+perturbation = 0.0005
+[run]
+until = 19500
+[output]
+series = { every = 500 }
+)");
+  ASSERT_EQ(shell("cradle trust wet.toml --digits 16,31,50,100,200").status, 0);
+  const auto result = read_result((folder / "wet-trust.h5").string());
+  std::vector<double> times;
+  for (const auto& group : result.groups)
+    times.push_back(tools::attribute<double>(group.attributes, "contacts_right_until", ""));
+  ASSERT_EQ(times.size(), 5U);
+  EXPECT_LT(times[0], times[1]);
+  EXPECT_LT(times[1], times[2]);
+  EXPECT_LT(times[2], times[3]);
+  EXPECT_EQ(times[3], 19500) << "100 digits reach the end";
+}
+
 constexpr const char* small_shock = "cradle run fig2 --quiet --set initial.particles=600 --set run.until=400 "
                                     "--set output.snapshots=[100,400] --set output.profiles.times=[50,200] ";
 

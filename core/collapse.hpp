@@ -6,8 +6,10 @@
 //   stop     exact dynamics; stop when the collapse time is settled, or when a gap falls below a given size
 //
 // The watch extrapolates the collapse time: with d the interval since the last contact at the same gap and r its ratio
-// to the one before, t_c = t + d r/(1 - r) (Aitken's delta-squared for a geometric sequence). It is settled when it
-// moved by less than the type's resolution of time, twice running.
+// to the one before, t_c = t + d r/(1 - r) (Aitken's delta-squared for a geometric sequence). It is settled when the
+// intervals have shrunk by 2^20, by a steady ratio, and t_c moved by less than the chain's resolution of time, twice
+// running. Bodies squeezed between dense clusters shrink their intervals for a while too, but by a ratio that drifts. A
+// collapse of many bodies without a steady ratio is followed to the end of the type's range.
 
 #include <unordered_map>
 
@@ -44,13 +46,19 @@ template <Real T> class CollapseWatch {
       const T ratio = interval / h.interval;
       const Pair<T> estimate = time + T(interval * ratio / (T(1) - ratio));
       const T moved = magnitude(difference(estimate, h.estimate));
-      h.steady = h.extrapolated && moved < resolution / T(2) ? h.steady + 1 : 0;
+      // Below the resolution of time nothing moves: what tells a collapse from a chance run of short intervals is that
+      // they have shrunk without a break by a factor of a million, by the same ratio to a part in a thousand.
+      const bool steady = h.extrapolated && moved < resolution / T(2) && magnitude(ratio - h.ratio) * T(1024) < ratio &&
+                          interval * T(1 << 20) < h.first_interval;
+      h.steady = steady ? h.steady + 1 : 0;
       h.estimate = estimate;
+      h.ratio = ratio;
       h.extrapolated = true;
       report_ = {estimate, moved > resolution ? moved : resolution, time.value(), interval, ratio, gap, body, true};
     } else {
       h.extrapolated = false;
       h.steady = 0;
+      h.first_interval = interval;
     }
     h.interval = interval;
     h.last = local;
@@ -69,7 +77,7 @@ template <Real T> class CollapseWatch {
     int contacts = 0, steady = 0;
     bool extrapolated = false;
     Pair<T> estimate;
-    T last{0}, interval{0};
+    T last{0}, interval{0}, first_interval{0}, ratio{1};
   };
   std::unordered_map<BodyIndex, History> histories_;
   CollapseReport<T> report_;

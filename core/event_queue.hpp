@@ -44,7 +44,7 @@ class EventQueue {
     const Key k = key(t, 0);
     return k > slack_ ? k - slack_ : 0;
   }
-  Key possibly_before(double t) const { return key(t, mask_) + slack_; }
+  Key possibly_before(double t) const { return no_later_than(key(t, 0)); }
 
   // Whether any other key is too close to the root's to tell which comes first: the least of the others stands beside
   // the path from the root to its leaf.
@@ -120,7 +120,8 @@ class EventQueue {
   // nothing else of the tree. Returns whether all were visited.
   template <class Visit> bool for_each_before(Key bound, Visit visit) const { return visit_before(bound, visit, 1); }
   // The largest key that may belong to the same time as `key`.
-  Key no_later_than(Key key) const { return (key | mask_) + slack_; }
+  // Never as far as the keys of `never`, which are those of slots without a gap too.
+  Key no_later_than(Key key) const { return std::min<Key>((key | mask_) + slack_, std::bit_cast<Key>(never) - 1); }
 
  private:
   void refresh(std::size_t node) { tree_[node] = std::min(tree_[2 * node], tree_[2 * node + 1]); }

@@ -39,7 +39,7 @@ struct Counts {
 template <Real T> struct Contact {
   BodyIndex left, right;  // by their numbers at the start
   Pair<T> time;
-  T interval;  // since the contact before it, wherever that was: resolves what differences of times cannot
+  T interval;  // since the contact before it, if that was observed: resolves what differences of times cannot
   T closing_speed;
 };
 
@@ -214,7 +214,9 @@ template <Real T, class Law, class Chain> class Simulation {
     if (policy_.collapse == CollapsePolicy::stop) {
       const bool settled =
           watch_.settled(chain_.body(s), chain_.clock().stamp(time), time, gap, chain_.time_resolution(s, time));
-      if (policy_.stop_gap > T(0) ? gap > T(0) && gap < policy_.stop_gap : settled) return Status::collapsed;
+      // Without a time that settles (irregular collapse of many bodies) the end of the type's range is the end too.
+      const T stop_gap = policy_.stop_gap > T(0) ? policy_.stop_gap : underflow_;
+      if ((settled && !(policy_.stop_gap > T(0))) || (is_positive(gap) && gap < stop_gap)) return Status::collapsed;
     }
     return gap > T(0) && gap < underflow_ ? Status::exhausted : Status::reached;
   }

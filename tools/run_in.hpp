@@ -33,9 +33,9 @@ template <Real T> std::string brief(const T& x) {
 // The collapse report: times with all digits of the type.
 template <Real T> std::string collapse_report(const CollapseReport<T>& r, const Counts& counts) {
   const std::string t_c = to_text(r.time.value());
-  std::string text = r.extrapolated
-                         ? fmt::format("inelastic collapse at t_c = {} +- {}\n", t_c, brief(r.uncertainty))
-                         : std::string("a gap fell below run.stop_gap; no collapse time could be extrapolated\n");
+  std::string text = r.extrapolated ? fmt::format("inelastic collapse at t_c = {} +- {}\n", t_c, brief(r.uncertainty))
+                                    : std::string("inelastic collapse: a gap fell below the smallest that is followed; "
+                                                  "no collapse time could be extrapolated\n");
   text +=
       fmt::format("  last contact   t = {}, number {}, {}\n", to_text(r.last_contact), counts.contacts, place(r.body));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));

@@ -45,17 +45,21 @@ TYPED_TEST(CollapseSizes, RunsEndByThemselves) { expect_ends_of_all_sizes<typena
 
 TEST(CollapseSizesInDouble, RunsEndByThemselves) {
   expect_ends_of_all_sizes<double>();
-  expect_an_end(gap_run(rshock<double>(100), Inelastic<double>(.9, 0), stop_below(0.)), 1e6, onset(.9));
-  expect_an_end(gap_run(rshock<double>(1000), Inelastic<double>(.99, 0), stop_below(0.)), 1e6, onset(.99));
+  // Close to the elastic limit many bodies collapse together, from t = N_c/(2 u0) on; a run to just before that ends
+  // too.
+  auto before = gap_run(rshock<double>(100), Inelastic<double>(.9), stop_below(0.));
+  EXPECT_EQ(before.advance(.98 * onset(.9)), Status::reached);
 }
 
-TEST(SlowCollapseSizes, AHundredThousandBodies) {
-  expect_an_end(gap_run(rshock<double>(100000), Inelastic<double>(.999, 0), stop_below(0.)), 1e6, onset(.999));
+TEST(SlowCollapseSizes, AHundredThousandBodiesUpToTheOnset) {
+  auto run = gap_run(rshock<double>(100000), Inelastic<double>(.999), stop_below(0.));
+  EXPECT_EQ(run.advance(.98 * onset(.999)), Status::reached);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 // Contacts until the pattern - every second gap, then the others - breaks, in cycles; at most `most`.
 template <class T> int cycles_kept(const Scene<T>& bodies, const T& restitution, int most) {
-  auto run = gap_run(bodies, Inelastic<T>(restitution, T(0)), stop_below(std::numeric_limits<T>::min()));
+  auto run = gap_run(bodies, Inelastic<T>(restitution, T(0)), stop_below(from_text<T>("1e-280")));
   const int gaps = static_cast<int>(bodies->count()) - 1;
   std::vector<BodyIndex> order;
   run.advance(T(100), [&](const Contact<T>& c) {

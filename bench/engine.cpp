@@ -85,8 +85,6 @@ using Positions = Cradle<cradle::PositionChain<double>>;
 
 template <class Engine> struct Twin : Engine {
   Twin(const BodiesPointer& bodies) : Engine(*bodies, law) {}
-  // Compiled apart from the loop that measures it: inlined there, g++ 12 makes the indexed heap a third slower.
-  [[gnu::noinline]] void advance(double until) { Engine::advance(until); }
 };
 using IndexedHeap = Twin<twins::IndexedHeapEngine>;
 using TunedHeap = Twin<twins::TunedHeapEngine>;

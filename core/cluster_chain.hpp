@@ -74,8 +74,8 @@ template <Real T> class ClusterChain {
   }
   T closing(Slot s) const { return cells_[s].velocity - cells_[cells_[s].right].velocity; }
 
-  // ---- events
-  template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
+  // ---- events (inlined by force, see gap_chain.hpp)
+  template <class Law> [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) {
     Cell& l = cells_[s];
     const Outcome<T> outcome = law(closing(s), l.mass, cells_[l.right].mass);
     Notice notice = short_flight(time, l.time);

@@ -22,17 +22,7 @@ class IndexedHeapEngine {
   }
 
   // Makes every contact at times <= until.
-  void advance(double until) {
-    while (due_[heap_.front()] <= until) {
-      const std::uint32_t i = heap_.front();
-      const double time = due_[i];
-      line_.collide(i, time);
-      ++contacts_;
-      update(i, never);
-      if (i > 0) update(i - 1, line_.due(i - 1, time));
-      if (i + 1 < line_.gaps()) update(i + 1, line_.due(i + 1, time));
-    }
-  }
+  void advance(double until);
 
   std::uint64_t contacts() const { return contacts_; }
 

@@ -16,16 +16,7 @@ class TunedHeapEngine {
   }
 
   // Makes every contact at times <= until.
-  void advance(double until) {
-    while (heap_.front().time <= until) {
-      const auto [time, i] = heap_.front();
-      line_.collide(i, time);
-      ++contacts_;
-      update(i, never);
-      if (i > 0) update(i - 1, line_.due(i - 1, time));
-      if (i + 1 < line_.gaps()) update(i + 1, line_.due(i + 1, time));
-    }
-  }
+  void advance(double until);
 
   std::uint64_t contacts() const { return contacts_; }
 

@@ -533,7 +533,7 @@ def figures_of(result, theory, units):
     pictures = []
     most = max((len(s["x"]) for s in result.snapshots), default=0)
     core = core_of(result, units)
-    few = 0 < most <= FEW_BODIES and not theory.rows and not result.profiles
+    few = 0 < most <= FEW_BODIES and not theory.curve("front_position")[0].size and not result.profiles
     if few:
         return [("bodies", lambda: draw_bodies(result, units))]
     if result.profiles or len(result.snapshots) > 1 or (result.snapshots and core is None):

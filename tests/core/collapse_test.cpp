@@ -155,7 +155,7 @@ TEST(Collapse, FourBodiesInTheCheckerboardPattern) {
     double restitution;
     const char* collapse_time;
   } rows[] = {{.15, "1.571428571428571428571428571428571428571428571429"},
-              {.1, "1.53471469049059024590594831142126492903216"}};
+              {.1, "1.53471469049059024594590831142126492903216"}};
   for (const auto& row : rows) {
     const auto bodies = list<double>({0, 1, 3, 4}, {1.5, .5, -.5, -1.5});
     SlowLoop loop(Inelastic(row.restitution), GapChain<double>(bodies, 0));

@@ -14,6 +14,9 @@ struct GapRange {
   BodyIndex first, last;  // a gap is numbered by the body on its left; empty if last < first
 };
 
+// A line ends at both sides; on a ring of circumference L the last body's neighbour on the right is the first one, at
+// its position + L: as many gaps as bodies, that of the last one included.
+
 template <Real T> class Bodies {
  public:
   virtual ~Bodies() = default;
@@ -23,6 +26,10 @@ template <Real T> class Bodies {
   virtual T velocity(BodyIndex body) const = 0;
   virtual T mass(BodyIndex body) const = 0;
   virtual bool identical_masses() const = 0;
+
+  // L > 0; 0 for a line.
+  virtual T circumference() const { return T(0); }
+  bool on_ring() const { return is_positive(circumference()); }
 
   // Distance and closing speed of `body` and the next one, without the cancellation of a difference of positions.
   virtual T gap(BodyIndex body) const = 0;

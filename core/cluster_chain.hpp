@@ -8,7 +8,9 @@
 // vacated and links pass over it; vacant cells are dropped when the chain is laid out anew. Seen by places on the line,
 // bodies that pass exchange cells. Gaps, local times and the streaming of rows are as in gap_chain.hpp.
 //
-// Positions come from a body at an end that has not collided, else from the centre of mass, which moves uniformly.
+// Positions come from a body at an end that has not collided, else from the centre of mass, which moves uniformly. On a
+// ring the cells are linked in a circle; told by the cells, from the first to the last, the centre of mass jumps by L
+// times the mass that has gone from the first cell to the last one across the seam, which is kept account of.
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +18,7 @@
 #include <concepts>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -33,12 +36,16 @@ template <Real T> class ClusterChain {
   // Holds the bodies at the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every
   // body.
   ClusterChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
-      : bodies_(std::move(bodies)), clock_(start), frame_(bodies_->momentum() / bodies_->total_mass()) {
-    const GapRange held = hold_all ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
+      : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), clock_(start),
+        frame_(bodies_->momentum() / bodies_->total_mass()) {
+    const BodyIndex last = bodies_->count() - 1;
+    const GapRange held = hold_all || ring_ ? GapRange{0, last - 1} : bodies_->gaps_in_motion();
     std::vector<Cell> cells;
-    for (BodyIndex b = held.first; b <= held.last + 1; ++b) cells.push_back(load(b, T(0)));
+    cells.reserve(static_cast<std::size_t>(held.last - held.first + 2));
+    for (BodyIndex b = held.first; b <= held.last + 1; ++b) cells.push_back(load(b, T(0), b > held.last && !ring_));
     unheld_left_ = held.first;
-    unheld_right_ = bodies_->count() - held.last - 2;
+    unheld_right_ = last - held.last - 1;
+    if (ring_) active_ = bodies_->count();
     lay_out(cells, std::vector<T>(cells.size(), T(0)));
   }
 
@@ -55,6 +62,7 @@ template <Real T> class ClusterChain {
   Slot right(Slot s) const { return cells_[s].right; }
   BodyIndex body(Slot s) const { return cells_[s].body; }
   BodyIndex collided_bodies() const { return active_; }
+  bool on_ring() const { return ring_; }
 
   T due(Slot s) const {
     const Cell& c = cells_[s];
@@ -79,8 +87,12 @@ template <Real T> class ClusterChain {
     Cell& l = cells_[s];
     const Outcome<T> outcome = law(closing(s), l.mass, cells_[l.right].mass);
     Notice notice = short_flight(time, l.time);
-    if ((s <= front_left_) | (l.right >= front_right_)) [[unlikely]]
-      notice |= widen(s, time);
+    if ((s <= front_left_) | (l.right >= front_right_)) [[unlikely]] {
+      if (ring_)
+        cross_seam(s, outcome.event);
+      else
+        notice |= widen(s, time);
+    }
     const Slot p = l.left, n = l.right;
     Cell& r = cells_[n];
     const T late_left = settle(p, time), late_right = settle(n, time);
@@ -153,8 +165,8 @@ template <Real T> class ClusterChain {
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
     const Slot p = cells_[s].left, n = cells_[s].right;
-    const T on_left = p == end_left_ ? far : cells_[p].gap,
-            on_right = n == last_ || n == end_right_ ? far : cells_[n].gap;
+    const T on_left = p == end_left_ && !ring_ ? far : cells_[p].gap,
+            on_right = (n == last_ || n == end_right_) && !ring_ ? far : cells_[n].gap;
     return on_left < on_right ? on_left : on_right;
   }
   const Account<T>& account() const { return account_; }
@@ -175,7 +187,8 @@ template <Real T> class ClusterChain {
     const auto c = configuration(time);
     return c.x[c.x.size() - (last_ > front_right_ ? 2 : 1)];
   }
-  // The bodies that have collided and the next one on each side; all that are held before the first contact.
+  // The bodies that have collided and the next one on each side; all that are held before the first contact. On a ring
+  // all bodies, from the first one right of x = 0.
   Configuration<T> configuration(const T& time) const;
 
  private:
@@ -188,9 +201,10 @@ template <Real T> class ClusterChain {
 
   bool vacant(Slot s) const { return cells_[s].right == s; }
 
-  Cell load(BodyIndex b, const T& time) const {
+  // The gap right of the last body held is none yet: it is not asked for, which would be random numbers in vain.
+  Cell load(BodyIndex b, const T& time, bool last = false) const {
     Cell c;
-    if (b + 1 < bodies_->count()) c.gap = bodies_->gap(b);
+    if (!last) c.gap = bodies_->gap(b);
     c.time = time;
     c.velocity = bodies_->velocity(b) - frame_;
     c.mass = bodies_->mass(b);
@@ -215,8 +229,13 @@ template <Real T> class ClusterChain {
       cells_[s].left = s - 1;
       cells_[s].right = s + 1;
     }
-    place_end(first_ - 1, first_);
-    place_end(last_ + 1, last_);
+    if (ring_) {
+      cells_[first_].left = last_;
+      cells_[last_].right = first_;
+    } else {
+      place_end(first_ - 1, first_);
+      place_end(last_ + 1, last_);
+    }
     if constexpr (keys_are_exact)
       for (Slot s = first_; s <= last_; ++s)
         cells_[s].due = closing(s) > 0 ? cells_[s].time + cells_[s].gap / closing(s) + lag_[s] : EventQueue::never;
@@ -264,13 +283,21 @@ template <Real T> class ClusterChain {
       cells_[n].gap = bodies_->gap(cells_[n].body);
       cells_[n].time = time;
       lag_[n] = T(0);
-      cells_[last_] = load(bodies_->count() - unheld_right_--, time);
+      cells_[last_] = load(bodies_->count() - unheld_right_--, time, true);
       lag_[last_] = T(0);
       cells_[last_].left = n;
       cells_[n].right = last_;
       place_end(last_ + 1, last_);
     }
     return cramped() ? notice::cramped : notice::none;
+  }
+
+  // Keeps account of the mass that goes from the first cell of a ring to the last one, that is, by a turn to the right.
+  void cross_seam(Slot s, Event event) {
+    const Slot n = cells_[s].right;
+    if (n > s || event == Event::bounce) return;
+    carried_.add(cells_[n].mass);
+    if (event == Event::pass) carried_.add(T(-cells_[s].mass));
   }
 
   // The bodies at s and right of it go on as one, in the cell s.
@@ -289,6 +316,7 @@ template <Real T> class ClusterChain {
     r.right = n;
     if constexpr (keys_are_exact) r.due = EventQueue::never;
     if (last_ == n) last_ = s;
+    if (first_ == n) first_ = cells_[s].right;
     if (front_right_ == n) front_right_ = s;
     --active_;
     ++vacated_;
@@ -355,8 +383,11 @@ template <Real T> class ClusterChain {
   BodyIndex unheld_left_ = 0, unheld_right_ = 0, active_ = 0;
   T floor_{0};
   std::shared_ptr<const Bodies<T>> bodies_;
+  bool ring_;
   Clock<T> clock_;
-  T frame_;  // velocity of the centre of mass
+  T frame_;                                  // velocity of the centre of mass
+  mutable std::optional<T> centre_of_mass_;  // at the start; found when first asked for
+  CompensatedSum<T> carried_;                // mass across the seam of a ring, see cross_seam
   Account<T> account_;
 };
 
@@ -367,7 +398,8 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
   Configuration<T> c;
   c.time = clock_.time(time);
   // A body that has not collided is still itself; where all at an end have, they are those from the end of the line.
-  const bool free_left = !collided || from != front_left_, free_right = !collided || to != front_right_;
+  const bool free_left = !ring_ && (!collided || from != front_left_);
+  const bool free_right = !ring_ && (!collided || to != front_right_);
   c.from = free_left ? cells_[from].body : 0;
   c.to = free_right ? cells_[to].body : bodies_->count() - 1;
   CompensatedSum<T> way, moment, mass;
@@ -380,22 +412,30 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
     ways.push_back(way.value());
     moment.add(cell.mass * ways.back());
     mass.add(cell.mass);
-    if (s == to) break;
+    if (s == to && !ring_) break;
     c.gap.push_back(gap_at(s, time));
     c.closing_speed.push_back(closing(s));
     way.add(c.gap.back());
+    if (s == to) break;
   }
   const auto fly = [&](BodyIndex b) {
     return two_sum(bodies_->position(b), T(bodies_->velocity(b) * clock_.elapsed(time)));
   };
   Pair<T> leftmost;
-  if (!collided || from != front_left_)
+  if (free_left)
     leftmost = fly(cells_[from].body);
-  else if (to != front_right_)
+  else if (free_right)
     leftmost = fly(cells_[to].body) - way.value();
-  else
-    leftmost = two_sum(bodies_->centre_of_mass(), T(frame_ * clock_.elapsed(time))) - T(moment.value() / mass.value());
+  else {
+    if (!centre_of_mass_) centre_of_mass_ = bodies_->centre_of_mass();
+    leftmost = two_sum(*centre_of_mass_, T(frame_ * clock_.elapsed(time)));
+    leftmost = leftmost - T((moment.value() - carried_.value() * bodies_->circumference()) / mass.value());
+  }
   for (const T& w : ways) c.x.push_back((leftmost + w).value());
+  if (ring_) {
+    c.closure_gap = bodies_->circumference() - way.value();
+    fold(c, bodies_->circumference());
+  }
   return c;
 }
 

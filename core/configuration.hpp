@@ -3,6 +3,8 @@
 // coordinates, and the gaps and closing speeds themselves, since positions cannot resolve a collapsing core.
 // Lengths, speeds and masses in units of the scene.
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "cradle/core/bodies.hpp"
@@ -16,8 +18,8 @@ template <Real T> struct Configuration {
   BodyIndex from = 0, to = -1;   // the bodies at the start that are in here, merged or not
   std::vector<BodyIndex> index;  // n bodies from left to right, by their number at the start
   std::vector<T> x, v, m;        // n
-  std::vector<T> gap;            // n - 1, between neighbours
-  std::vector<T> closing_speed;  // n - 1, u_left - u_right
+  std::vector<T> gap;            // n - 1, between neighbours; n on a ring, the last one from the last body to the first
+  std::vector<T> closing_speed;  // as many, u_left - u_right
 
   // What the sum of all gaps (closing speeds) misses of the distance (velocity difference) of the two outermost bodies,
   // whose flight is known on its own: the accumulated rounding of the run. It is spread over the positions and
@@ -25,6 +27,21 @@ template <Real T> struct Configuration {
   T closure_gap{0};
   T closure_speed{0};
 };
+
+// Folds positions on a ring, increasing and spanning less than its circumference, to 0 <= x < circumference, the
+// smallest first.
+template <Real T> void fold(Configuration<T>& c, const T& circumference) {
+  if (c.x.empty()) return;
+  const T turns(static_cast<std::int64_t>(std::floor(to_double(T(c.x.front() / circumference)))));
+  for (T& x : c.x) x -= turns * circumference;
+  std::size_t first = 0;
+  const auto rotate = [&](auto& values) {
+    std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values.end());
+  };
+  for (std::size_t j = c.x.size(); j-- > 0 && !(c.x[j] < circumference); first = j) c.x[j] -= circumference;
+  rotate(c.index);
+  for (auto* values : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}) rotate(*values);
+}
 
 // A place and time in a run that a report names.
 template <Real T> struct Incident {

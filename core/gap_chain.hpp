@@ -11,7 +11,8 @@
 //
 // Rows are streamed: of a row, only the body next to the outermost one that has collided is held. Velocities and
 // positions come from the two anchors: the bodies that end the active zone, whose flight is known, or integrated once
-// all have collided.
+// all have collided. On a ring the gap after the last slot is the first one; there positions come from the centre of
+// mass, velocities from the total momentum.
 
 #include <algorithm>
 #include <bit>
@@ -68,8 +69,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
   // start.
   GapChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
-      : bodies_(std::move(bodies)), clock_(start), masses_(*bodies_) {
-    const GapRange held = hold_all ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
+      : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), clock_(start), masses_(*bodies_) {
+    const GapRange held = hold_all && !ring_ ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
     lay_out(held.first, held.last, [&](BodyIndex body) { return load(body, T(0)); });
   }
 
@@ -90,10 +91,12 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   std::size_t slots() const { return gaps_.size(); }
   Slot first() const { return first_; }
   Slot last() const { return last_; }
-  Slot left(Slot s) const { return s - 1; }
-  Slot right(Slot s) const { return s + 1; }
+  Slot left(Slot s) const { return ring_ && s == first_ ? last_ : s - 1; }
+  Slot right(Slot s) const { return ring_ && s == last_ ? first_ : s + 1; }
+  bool on_ring() const { return ring_; }
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) + body_of_slot_0_; }
   BodyIndex collided_bodies() const {
+    if (ring_) return bodies_->count();
     return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;
   }
 
@@ -119,28 +122,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // ---- events. Inlined by force: the loop comes in two versions, observed or not, and as a call this passes all
   // results through memory, a fifth of the time per contact.
   template <class Law> [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) {
-    Gap<T>& pair = gaps_[s];
-    const Outcome<T> outcome = law.remembers()
-                                   ? masses_.outcome(law, s, pair.closing, rested(s, time, law.contact_time()))
-                                   : masses_.outcome(law, s, pair.closing);
-    Notice notice = short_flight(time, pair.time);
     if ((s <= front_left_) | (s >= front_right_)) [[unlikely]]
-      notice |= widen(s, time, outcome);
-
-    if (time < pair.time) [[unlikely]]  // a gap's local time never goes back
-      pair.gap = -outcome.closing * (pair.time - time);
-    else {
-      pair.gap = T(0);
-      pair.time = time;
-    }
-    pair.closing = outcome.closing;
-    if (is_negative(pair.time)) [[unlikely]]
-      lag_[s] = T(0);
-    if constexpr (keys_are_exact) pair.due = EventQueue::never;
-
-    notice |= kick(s - 1, time, outcome.to_left);
-    notice |= kick(s + 1, time, outcome.to_right);
-    return {outcome, predict(s - 1), EventQueue::never, predict(s + 1), notice, s - 1, s + 1};
+      return collide_at_end(law, s, time);
+    return strike(s - 1, s, s + 1, time, outcome(law, s, time), notice::none);
   }
 
   // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
@@ -186,6 +170,10 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   void set_floor(const T& floor) { floor_ = floor; }
   // The smaller gap next to a contact, as of its local time; an end of the line counts as far away.
   T nearest_gap(Slot s) const {
+    if (ring_) {
+      const T &on_left = gaps_[left(s)].gap, &on_right = gaps_[right(s)].gap;
+      return on_left < on_right ? on_left : on_right;
+    }
     const T far = far_away<T>();
     const T on_left = s > first_ ? gaps_[s - 1].gap : far, on_right = s < last_ ? gaps_[s + 1].gap : far;
     return on_left < on_right ? on_left : on_right;
@@ -212,10 +200,13 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     return (body(front_right_) + 1 < right_.body ? x - gap_at(front_right_ + 1, time) : x).value();
   }
 
-  // The bodies that have collided and the next one on each side; all that are held before the first contact.
+  // The bodies that have collided and the next one on each side; all that are held before the first contact. On a ring
+  // all bodies, from the first one right of x = 0.
   Configuration<T> configuration(const T& time) const;
 
  private:
+  Configuration<T> ring_configuration(const T& time) const;
+
   // A body whose flight is known: as at the start (not collided), or from its last contact.
   struct Anchor {
     BodyIndex body = 0;
@@ -250,7 +241,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   template <class Make> void lay_out(BodyIndex from, BodyIndex to, Make make) {
     const BodyIndex held = to - from + 1, growth = held / 2 + 8;
     const BodyIndex room_left = std::min(from, growth) + 2;
-    const BodyIndex room_right = std::min(bodies_->count() - 2 - to, growth) + 2;
+    const BodyIndex room_right = std::clamp(bodies_->count() - 2 - to, BodyIndex{0}, growth) + 2;
     gaps_.assign(static_cast<std::size_t>(room_left + held + room_right), Gap<T>{});
     lag_.assign(gaps_.size(), T(0));
     masses_.resize(gaps_.size());
@@ -258,8 +249,46 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     first_ = static_cast<Slot>(room_left);
     last_ = first_ + static_cast<Slot>(held) - 1;
     for (BodyIndex b = from; b <= to; ++b) gaps_[static_cast<Slot>(b - body_of_slot_0_)] = make(b);
-    for (BodyIndex b = from; b <= to + 1; ++b) masses_.set(static_cast<Slot>(b - body_of_slot_0_), bodies_->mass(b));
+    for (BodyIndex b = from; b <= to + 1; ++b)
+      masses_.set(static_cast<Slot>(b - body_of_slot_0_), bodies_->mass(b < bodies_->count() ? b : 0));
+    if (ring_) {
+      front_left_ = first_, front_right_ = last_;  // beyond them lies the other one
+      centre_ = bodies_->centre_of_mass();
+      return;
+    }
     if (front_right_ < front_left_) left_.body = from, right_.body = to + 1;
+  }
+
+  template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
+    return law.remembers() ? masses_.outcome(law, s, closing(s), rested(s, time, law.contact_time()))
+                           : masses_.outcome(law, s, closing(s));
+  }
+  // A contact at an end of the active zone, or at the seam of a ring.
+  template <class Law> [[gnu::noinline]] Collision<T> collide_at_end(const Law& law, Slot s, const T& time) {
+    const Outcome<T> of_law = outcome(law, s, time);
+    const Notice notice = ring_ ? notice::none : widen(s, time, of_law);
+    return strike(left(s), s, right(s), time, of_law, notice);
+  }
+
+  // What a contact at the gap s does to it and to its neighbours p and n.
+  [[gnu::always_inline]] Collision<T> strike(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
+                                             Notice notice) {
+    Gap<T>& pair = gaps_[s];
+    notice |= short_flight(time, pair.time);
+    if (time < pair.time) [[unlikely]]  // a gap's local time never goes back
+      pair.gap = -outcome.closing * (pair.time - time);
+    else {
+      pair.gap = T(0);
+      pair.time = time;
+    }
+    pair.closing = outcome.closing;
+    if (is_negative(pair.time)) [[unlikely]]
+      lag_[s] = T(0);
+    if constexpr (keys_are_exact) pair.due = EventQueue::never;
+
+    notice |= kick(p, time, outcome.to_left);
+    notice |= kick(n, time, outcome.to_right);
+    return {outcome, predict(p), EventQueue::never, predict(n), notice, p, n};
   }
 
   // A contact at an end of the active zone: takes in the next body there, or, at an end of the line, follows the last
@@ -311,7 +340,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       last_contact_.assign(gaps_.size(), longest_ago_);
     }
     bool all = true;
-    for (const Slot each : {s - 1, s, s + 1}) all = all && time - last_contact_[each] > contact_time;
+    for (const Slot each : {left(s), s, right(s)}) all = all && time - last_contact_[each] > contact_time;
     last_contact_[s] = time;
     return all;
   }
@@ -408,13 +437,48 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   T floor_{0};
   long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
   std::shared_ptr<const Bodies<T>> bodies_;
+  bool ring_;
+  T centre_{0};  // on a ring: of mass, at the start
   Clock<T> clock_;
   Masses masses_;
   Anchor left_, right_;
   Account<T> account_;
 };
 
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_configuration(const T& time) const {
+  Configuration<T> c;
+  c.time = clock_.time(time);
+  c.to = bodies_->count() - 1;
+  CompensatedSum<T> way, slowing, moment, momentum;
+  std::vector<T> ways, slowings;  // from body 0 to each one
+  for (Slot s = first_; s <= last_; ++s) {
+    c.index.push_back(body(s));
+    c.m.push_back(masses_[s]);
+    ways.push_back(way.value());
+    slowings.push_back(slowing.value());
+    moment.add(c.m.back() * ways.back());
+    momentum.add(c.m.back() * slowings.back());
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(gaps_[s].closing);
+    way.add(c.gap.back());
+    slowing.add(c.closing_speed.back());
+  }
+  c.closure_gap = bodies_->circumference() - way.value();
+  c.closure_speed = -slowing.value();
+  const T mass = bodies_->total_mass(), drift = bodies_->momentum() / mass;
+  const Pair<T> start = two_sum(centre_, T(drift * clock_.elapsed(time))) - T(moment.value() / mass);
+  const T stretch = c.closure_gap / way.value();
+  const T speed = drift + momentum.value() / mass;
+  for (std::size_t j = 0; j < ways.size(); ++j) {
+    c.x.push_back((start + T(ways[j] + stretch * ways[j])).value());
+    c.v.push_back(speed - slowings[j]);
+  }
+  fold(c, bodies_->circumference());
+  return c;
+}
+
 template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configuration(const T& time) const {
+  if (ring_) return ring_configuration(time);
   const bool collided = front_left_ <= front_right_;
   const Slot from = collided && front_left_ > first_ ? front_left_ - 1 : first_;
   const Slot to = collided && front_right_ < last_ ? front_right_ + 1 : last_;

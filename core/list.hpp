@@ -1,5 +1,5 @@
 #pragma once
-// Bodies given one by one: positions, velocities and, where they differ, masses.
+// Bodies given one by one, on a line or a ring: positions, velocities and, where they differ, masses.
 
 #include <algorithm>
 #include <stdexcept>
@@ -13,10 +13,12 @@ namespace cradle {
 
 template <Real T> class List final : public Bodies<T> {
  public:
-  // One velocity per position; masses likewise, or none where all are 1. Throws std::invalid_argument when lengths
-  // differ, when positions do not increase in the working precision or when a mass is not positive.
-  List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {})
-      : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)) {
+  // One velocity per position; masses likewise, or none where all are 1. With a circumference the bodies are on a ring.
+  // Throws std::invalid_argument when lengths differ, when positions do not increase in the working precision or span
+  // the ring, or when a mass is not positive.
+  List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {}, T circumference = T(0))
+      : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)),
+        circumference_(std::move(circumference)) {
     if (x_.empty()) throw std::invalid_argument("no bodies: list at least one");
     if (v_.size() != x_.size() || (!m_.empty() && m_.size() != x_.size()))
       throw std::invalid_argument("lists of different lengths: give one velocity and one mass per position");
@@ -30,6 +32,8 @@ template <Real T> class List final : public Bodies<T> {
         throw std::invalid_argument("body " + std::to_string(i) + " has no positive mass: give it one");
       identical_ = identical_ && m_[i] == m_[0];
     }
+    if (this->on_ring() && !(x_.back() - x_.front() < circumference_))
+      throw std::invalid_argument("the bodies do not fit on the ring: give it a larger circumference");
   }
 
   BodyIndex count() const override { return static_cast<BodyIndex>(x_.size()); }
@@ -37,8 +41,12 @@ template <Real T> class List final : public Bodies<T> {
   T velocity(BodyIndex body) const override { return v_[at(body)]; }
   T mass(BodyIndex body) const override { return m_.empty() ? T(1) : m_[at(body)]; }
   bool identical_masses() const override { return identical_; }
-  T gap(BodyIndex body) const override { return x_[at(body) + 1] - x_[at(body)]; }
-  T closing_speed(BodyIndex body) const override { return v_[at(body)] - v_[at(body) + 1]; }
+  T gap(BodyIndex body) const override {
+    return is_last(body) ? T(x_[0] + (circumference_ - x_[at(body)])) : T(x_[at(body) + 1] - x_[at(body)]);
+  }
+  T closing_speed(BodyIndex body) const override { return v_[at(body)] - v_[is_last(body) ? 0 : at(body) + 1]; }
+  T circumference() const override { return circumference_; }
+  GapRange gaps_in_motion() const override { return {0, count() - (this->on_ring() ? 1 : 2)}; }
 
   T kinetic_energy() const override {
     CompensatedSum<T> twice;
@@ -58,9 +66,11 @@ template <Real T> class List final : public Bodies<T> {
   T least_mass() const override { return m_.empty() ? T(1) : *std::min_element(m_.begin(), m_.end()); }
 
  private:
+  bool is_last(BodyIndex body) const { return body + 1 == count(); }
   static std::size_t at(BodyIndex body) { return static_cast<std::size_t>(body); }
 
   std::vector<T> x_, v_, m_;
+  T circumference_;
   bool identical_ = true;
 };
 

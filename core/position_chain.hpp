@@ -39,6 +39,7 @@ template <Real T> class PositionChain {
   Slot last() const { return bodies_.size(); }
   Slot left(Slot s) const { return s - 1; }
   Slot right(Slot s) const { return s + 1; }
+  bool on_ring() const { return false; }
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) - 2; }
   BodyIndex collided_bodies() const {
     return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;

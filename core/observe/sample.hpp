@@ -15,7 +15,7 @@ template <Real T> struct Sample {
   T energy_lost{0};  // since the start
   Counts counts;
   BodyIndex bodies = 0;                      // in the active zone: from the outermost that has collided to the other
-  std::optional<T> front_left, front_right;  // where those are; none before the first contact
+  std::optional<T> front_left, front_right;  // where those are; none before the first contact, nor on a ring
 };
 
 // `time` must not be before the last contact made nor after the time the run was advanced to.
@@ -24,7 +24,7 @@ Sample<T> sample(const Simulation<T, Law, Chain>& run, const T& initial_energy, 
   const Chain& chain = run.chain();
   Sample<T> s{time, initial_energy - run.energy_lost(), run.energy_lost(), run.counts(), chain.collided_bodies(), {},
               {}};
-  if (s.bodies > 0) {
+  if (s.bodies > 0 && !chain.on_ring()) {
     const T local = chain.local_time(time);
     s.front_left = chain.front_left(local);
     s.front_right = chain.front_right(local);

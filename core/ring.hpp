@@ -1,0 +1,118 @@
+#pragma once
+// Free cooling: equal bodies of unit mass on a ring (a periodic line), at equal distances or displaced at random, with
+// independent velocities of a given variance and zero total momentum. Velocities and displacements are integers, times
+// a unit that every scalar type rounds for itself, so that all types start from the same state; body and replica alone
+// decide on them (counter_rng.hpp).
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "cradle/core/bodies.hpp"
+#include "cradle/core/counter_rng.hpp"
+#include "cradle/core/rows.hpp"
+
+namespace cradle {
+
+// Velocity of a body in units of 2^-28 standard deviations.
+using VelocityDraw = std::function<std::int64_t(BodyIndex)>;
+
+namespace detail {
+
+// Independent of displacements, which use indices as they stand.
+inline std::uint64_t velocity_bits(std::uint64_t seed, std::uint64_t replica, BodyIndex body, std::uint64_t attempt) {
+  return random_bits(seed, replica, static_cast<std::uint64_t>(body) | (attempt + 1) << 56);
+}
+
+// ln x for 0 < x <= 1, by the four operations alone: a library's logarithm differs between machines in the last bit.
+inline double portable_log(double x) {
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  if (mantissa < 0.70710678118654752) mantissa *= 2, --exponent;
+  const double s = (mantissa - 1) / (mantissa + 1), square = s * s;  // ln m = 2 artanh s, |s| < 0.172
+  double sum = 0;
+  for (int k = 23; k > 0; k -= 2) sum = sum * square + 1.0 / k;
+  return 2 * s * sum + exponent * 0.693147180559945309;
+}
+
+}  // namespace detail
+
+// Gaussian velocities, by Marsaglia's polar method (SIAM Rev. 6, 260, 1964, doi 10.1137/1006063).
+inline VelocityDraw gaussian_velocity(std::uint64_t seed, std::uint64_t replica) {
+  return [=](BodyIndex body) {
+    for (std::uint64_t attempt = 0;; ++attempt) {
+      const std::uint64_t bits = detail::velocity_bits(seed, replica, body, attempt);
+      const double u = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-31 - 1;
+      const double v = (static_cast<double>(bits & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1;
+      const double square = u * u + v * v;
+      if (square >= 1) continue;
+      const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
+      return static_cast<std::int64_t>(std::floor(normal * static_cast<double>(displacement_unit) + 0.5));
+    }
+  };
+}
+
+// Uniform velocities between plus and minus sqrt(3) standard deviations.
+inline VelocityDraw uniform_velocity(std::uint64_t seed, std::uint64_t replica) {
+  constexpr std::int64_t bound = 464943848;  // sqrt(3) 2^28
+  return [=](BodyIndex body) { return uniform_integer(detail::velocity_bits(seed, replica, body, 0), bound); };
+}
+
+template <Real T> class Ring final : public Bodies<T> {
+ public:
+  // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no bodies, 2^31 or more of
+  // them, or a length or deviation that is not positive. Draws every velocity once.
+  Ring(BodyIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement)
+      : count_(count), length_(std::move(length)), velocity_(std::move(velocity)),
+        displacement_(std::move(displacement)), unit_(length_ / (T(count) * T(displacement_unit))),
+        velocity_unit_(deviation / T(displacement_unit)) {
+    if (count < 1 || count >= std::int64_t{1} << 31)
+      throw std::invalid_argument("a ring of " + std::to_string(count) + " bodies: give it from 1 to 2147483647");
+    if (!(length_ > T(0) && deviation > T(0)))
+      throw std::invalid_argument("length or variance of the ring is not positive: give positive numbers");
+    // Subtracts the mean; what is left of the division, less than a unit per body, from the first ones.
+    std::int64_t sum = 0;
+    for (BodyIndex body = 0; body < count; ++body) sum += velocity_(body);
+    shift_ = sum / count - (sum % count < 0 ? 1 : 0);
+    shifted_more_ = sum - shift_ * count;
+    CompensatedSum<T> twice;
+    for (BodyIndex body = 0; body < count; ++body) {
+      const T v = this->velocity(body);
+      twice.add(v * v);
+    }
+    energy_ = twice.value() / T(2);
+  }
+
+  BodyIndex count() const override { return count_; }
+  T circumference() const override { return length_; }
+  T mass(BodyIndex) const override { return T(1); }
+  bool identical_masses() const override { return true; }
+  T velocity(BodyIndex body) const override { return T(pace(body)) * velocity_unit_; }
+  T position(BodyIndex body) const override {
+    return T((2 * body + 1) * (displacement_unit / 2) + displacement_(body)) * unit_;
+  }
+  T gap(BodyIndex body) const override {
+    return T(displacement_unit + displacement_(next(body)) - displacement_(body)) * unit_;
+  }
+  T closing_speed(BodyIndex body) const override { return T(pace(body) - pace(next(body))) * velocity_unit_; }
+  GapRange gaps_in_motion() const override { return {0, count_ - 1}; }
+
+  T kinetic_energy() const override { return energy_; }
+  T momentum() const override { return T(0); }
+  T total_mass() const override { return T(count_); }
+  T least_mass() const override { return T(1); }
+
+ private:
+  BodyIndex next(BodyIndex body) const { return body + 1 < count_ ? body + 1 : 0; }
+  std::int64_t pace(BodyIndex body) const { return velocity_(body) - shift_ - (body < shifted_more_ ? 1 : 0); }
+
+  BodyIndex count_;
+  T length_;
+  VelocityDraw velocity_;
+  Displacement displacement_;
+  T unit_, velocity_unit_;
+  std::int64_t shift_ = 0, shifted_more_ = 0;
+  T energy_{0};
+};
+
+}  // namespace cradle

@@ -87,14 +87,14 @@ void write_attribute(hid_t object, const Attribute& attribute, const std::string
 
 void write_column(hid_t group, const Column& column, const std::string& path) {
   const std::string what = path + ": " + column.name + " could not be written";
-  const hsize_t size = column.size();
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
+  const hsize_t shape[2] = {column.rows(), column.width};
+  const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, what);
   const Handle properties = untimed(H5P_DATASET_CREATE, path);
   const bool real = std::holds_alternative<std::vector<double>>(column.values);
   const Handle data(H5Dcreate2(group, column.name.c_str(), real ? H5T_IEEE_F64LE : H5T_STD_U64LE, space, H5P_DEFAULT,
                                properties, H5P_DEFAULT),
                     H5Dclose, what);
-  if (size > 0)
+  if (shape[0] > 0)
     std::visit(
         [&](const auto& values) {
           check(H5Dwrite(data, real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -170,6 +170,9 @@ Column read_column(hid_t group, const std::string& name, const std::string& path
   const Handle space(H5Dget_space(data), H5Sclose, what);
   const auto size = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
   Column column{name, "", "", {}};
+  hsize_t shape[2] = {0, 1};
+  if (H5Sget_simple_extent_ndims(space) == 2 && H5Sget_simple_extent_dims(space, shape, nullptr) == 2 && shape[1] > 0)
+    column.width = static_cast<std::size_t>(shape[1]);
   for (const auto& [key, value] : read_attributes(data, path)) {
     if (key == "unit") column.unit = std::get<std::string>(value);
     if (key == "description") column.description = std::get<std::string>(value);

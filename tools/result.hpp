@@ -12,15 +12,16 @@ namespace cradle::tools {
 
 using Numbers = std::variant<std::vector<double>, std::vector<std::uint64_t>>;
 
-/// One dataset: float64 or uint64, with unit and a line of description.
+/// One dataset: float64 or uint64, with unit and a line of description. A dataset of width 2 has two numbers a row.
 struct Column {
   std::string name;
   std::string unit;
   std::string description;
-  Numbers values;
+  Numbers values;         // row after row
+  std::size_t width = 1;  // numbers in a row
 
-  std::size_t size() const {
-    return std::visit([](const auto& v) { return v.size(); }, values);
+  std::size_t rows() const {
+    return std::visit([](const auto& v) { return v.size(); }, values) / width;
   }
 };
 

@@ -232,7 +232,7 @@ TEST_F(Run, EventsAreEveryContactInOrder) {
   ASSERT_NE(events, nullptr);
   std::size_t count = 0;
   for (const auto& column : events->columns) {
-    count = column.size();
+    count = column.rows();
     if (column.name != "interval") continue;
     const auto& intervals = std::get<std::vector<double>>(column.values);
     // Closed form: intervals shrink by lam-/lam+ = 5/16 per contact, resolved down to 1e-160.

@@ -24,17 +24,25 @@ std::string csv(const Group& group) {
   for (const auto& [name, value] : group.attributes)
     text += std::visit([&](const auto& v) { return fmt::format("# {} = {}\n", name, v); }, value);
   std::size_t rows = 0;
+  std::string separator;
+  const auto append = [&](const std::string& cell) {
+    text += separator + cell;
+    separator = ",";
+  };
   for (const auto& column : group.columns) {
-    text += (&column == &group.columns.front() ? "" : ",") + column.name;
-    rows = std::max(rows, column.size());
+    for (std::size_t i = 0; i < column.width; ++i)
+      append(column.width > 1 ? fmt::format("{}[{}]", column.name, i) : column.name);
+    rows = std::max(rows, column.rows());
   }
   if (!group.columns.empty()) text += '\n';
   for (std::size_t row = 0; row < rows; ++row) {
-    for (const auto& column : group.columns) {
-      if (&column != &group.columns.front()) text += ',';
-      if (row < column.size())
-        std::visit([&](const auto& v) { fmt::format_to(std::back_inserter(text), "{}", v[row]); }, column.values);
-    }
+    separator.clear();
+    for (const auto& column : group.columns)
+      for (std::size_t i = 0; i < column.width; ++i)
+        append(
+            row < column.rows()
+                ? std::visit([&](const auto& v) { return fmt::format("{}", v[row * column.width + i]); }, column.values)
+                : std::string());
     text += '\n';
   }
   return text;

@@ -31,7 +31,7 @@ Exit info(const Options& options) {
   fmt::print("\n");
   for (const auto& group : result.groups) {
     std::size_t rows = 0;
-    for (const auto& column : group.columns) rows = std::max(rows, column.size());
+    for (const auto& column : group.columns) rows = std::max(rows, column.rows());
     fmt::print("/{:<23}{} x {}", group.name, rows, group.columns.size());
     for (const auto& [name, value] : group.attributes) fmt::print("  {} = {}", name, text(value));
     fmt::print("\n");

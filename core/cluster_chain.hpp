@@ -432,6 +432,7 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
     leftmost = leftmost - T((moment.value() - carried_.value() * bodies_->circumference()) / mass.value());
   }
   for (const T& w : ways) c.x.push_back((leftmost + w).value());
+  if (collided || ring_) c.collided_from = free_left ? 1 : 0, c.collided_to = c.x.size() - (free_right ? 1 : 0);
   if (ring_) {
     c.closure_gap = bodies_->circumference() - way.value();
     fold(c, bodies_->circumference());

@@ -16,6 +16,8 @@ namespace cradle {
 template <Real T> struct Configuration {
   T time{0};
   BodyIndex from = 0, to = -1;   // the bodies at the start that are in here, merged or not
+  // Which of the n bodies have had a contact or lie between such: [collided_from, collided_to).
+  std::size_t collided_from = 0, collided_to = 0;
   std::vector<BodyIndex> index;  // n bodies from left to right, by their number at the start
   std::vector<T> x, v, m;        // n
   std::vector<T> gap;            // n - 1, between neighbours; n on a ring, the last one from the last body to the first
@@ -32,7 +34,7 @@ template <Real T> struct Configuration {
 // smallest first.
 template <Real T> void fold(Configuration<T>& c, const T& circumference) {
   if (c.x.empty()) return;
-  const T turns(static_cast<std::int64_t>(std::floor(to_double(T(c.x.front() / circumference)))));
+  const T turns = T(static_cast<std::int64_t>(std::floor(to_double(T(c.x.front() / circumference)))));
   for (T& x : c.x) x -= turns * circumference;
   std::size_t first = 0;
   const auto rotate = [&](auto& values) {

@@ -449,6 +449,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
   Configuration<T> c;
   c.time = clock_.time(time);
   c.to = bodies_->count() - 1;
+  c.collided_to = static_cast<std::size_t>(bodies_->count());
   CompensatedSum<T> way, slowing, moment, momentum;
   std::vector<T> ways, slowings;  // from body 0 to each one
   for (Slot s = first_; s <= last_; ++s) {
@@ -492,6 +493,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configurat
   }
   c.from = body(from);
   c.to = body(to) + 1;
+  if (collided) c.collided_from = front_left_ - from, c.collided_to = front_right_ - from + 2;
   CompensatedSum<T> way, slowing;
   std::vector<T> ways{T(0)}, slowings{T(0)};  // from the left anchor to each body
   for (Slot s = from; s <= to; ++s) {

@@ -103,6 +103,7 @@ template <Real T> class PositionChain {
     c.time = time;
     c.from = body(from);
     c.to = body(to) + 1;
+    if (front_left_ <= front_right_) c.collided_from = front_left_ - from, c.collided_to = front_right_ - from + 2;
     for (Slot s = from; s <= to + 1; ++s) {
       c.index.push_back(body(s));
       c.m.push_back(at(s).m);

@@ -49,7 +49,32 @@ inline double mean(double sum, double weight) {
 
 }  // namespace detail
 
-// Bodies that the fronts have not reached are counted too where the range extends to them: they fly as at the start.
+// Calls visit(x, v, m) for every body in a range, also for those that the fronts have not reached: they fly as at the
+// start.
+template <Real T, class Visit>
+void for_each_body(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range, Visit visit) {
+  for (std::size_t j = 0; j < c.x.size(); ++j) {
+    const double x = to_double(c.x[j]);
+    if (x >= range.from && x < range.to) visit(x, to_double(c.v[j]), to_double(c.m[j]));
+  }
+  const auto fly = [&](BodyIndex body) {
+    return to_double(T(bodies.position(body) + bodies.velocity(body) * elapsed));
+  };
+  const auto visit_free = [&](BodyIndex body, double x) {
+    if (x >= range.from && x < range.to) visit(x, to_double(bodies.velocity(body)), to_double(bodies.mass(body)));
+  };
+  for (BodyIndex body = c.from - 1; body >= 0; --body) {
+    const double x = fly(body);
+    if (x < range.from) break;
+    visit_free(body, x);
+  }
+  for (BodyIndex body = c.to + 1; body < bodies.count(); ++body) {
+    const double x = fly(body);
+    if (x >= range.to) break;
+    visit_free(body, x);
+  }
+}
+
 // Throws std::invalid_argument for an empty range or no bins.
 template <Real T>
 Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range,
@@ -58,28 +83,10 @@ Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& ela
     throw std::invalid_argument("profile without extent: give a range that increases and at least one bin");
   const double width = (range.to - range.from) / static_cast<double>(bins);
   std::vector<detail::Bin> sums(bins);
-  const auto enter = [&](double x, double v, double m) {
-    const double place = std::floor((x - range.from) / width);
-    if (place >= 0 && place < static_cast<double>(bins)) sums[static_cast<std::size_t>(place)].add(v, m);
-  };
-  for (std::size_t j = 0; j < c.x.size(); ++j) enter(to_double(c.x[j]), to_double(c.v[j]), to_double(c.m[j]));
-
-  const auto fly = [&](BodyIndex body) {
-    return to_double(T(bodies.position(body) + bodies.velocity(body) * elapsed));
-  };
-  const auto enter_free = [&](BodyIndex body, double x) {
-    enter(x, to_double(bodies.velocity(body)), to_double(bodies.mass(body)));
-  };
-  for (BodyIndex body = c.from - 1; body >= 0; --body) {
-    const double x = fly(body);
-    if (x < range.from) break;
-    enter_free(body, x);
-  }
-  for (BodyIndex body = c.to + 1; body < bodies.count(); ++body) {
-    const double x = fly(body);
-    if (x >= range.to) break;
-    enter_free(body, x);
-  }
+  for_each_body(c, bodies, elapsed, range, [&](double x, double v, double m) {
+    const auto bin = static_cast<std::size_t>((x - range.from) / width);
+    if (bin < bins) sums[bin].add(v, m);
+  });
 
   Profile p;
   p.time = to_double(c.time);

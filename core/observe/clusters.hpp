@@ -1,0 +1,72 @@
+#pragma once
+// The clusters of a gas whose bodies merge: the two heaviest ones, the cloud around them, and how masses are
+// distributed. Only bodies that have collided count; a body that has not merged is a cluster of its own. Units of the
+// scene.
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cradle/core/configuration.hpp"
+
+namespace cradle {
+
+template <Real T> struct Cluster {
+  T mass{0}, x{0}, v{0};
+  BodyIndex index = -1;  // of the body it goes by: the same one through contacts that it passes, and in a merge that of
+                         // the heavier part
+};
+
+template <Real T> struct Cloud {
+  // The two heaviest clusters, as they lie on the line; of equal masses the ones further left. Which of the two is the
+  // heavier, their masses tell; which is which after they have passed each other, the index tells.
+  std::optional<Cluster<T>> left, right;
+  T mass{0};   // of all that have collided
+  T width{0};  // standard deviation of position, weighted by mass, of all but the heaviest two; 0 where there are none
+};
+
+template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
+  using std::sqrt;
+  Cloud<T> found;
+  std::size_t first = c.collided_to, second = c.collided_to;  // heaviest, next
+  CompensatedSum<T> mass;
+  for (std::size_t j = c.collided_from; j < c.collided_to; ++j) {
+    mass.add(c.m[j]);
+    if (first == c.collided_to || c.m[j] > c.m[first])
+      second = first, first = j;
+    else if (second == c.collided_to || c.m[j] > c.m[second])
+      second = j;
+  }
+  found.mass = mass.value();
+  if (second == c.collided_to) return found;
+  const auto cluster = [&](std::size_t j) { return Cluster<T>{c.m[j], c.x[j], c.v[j], c.index[j]}; };
+  found.left = cluster(std::min(first, second));
+  found.right = cluster(std::max(first, second));
+
+  T rest(0), mean(0), scatter(0);  // West's update
+  for (std::size_t j = c.collided_from; j < c.collided_to; ++j) {
+    if (j == first || j == second) continue;
+    rest += c.m[j];
+    const T from_mean = c.x[j] - mean;
+    mean += from_mean * (c.m[j] / rest);
+    scatter += c.m[j] * from_mean * (c.x[j] - mean);
+  }
+  if (is_positive(rest)) found.width = sqrt(T(scatter / rest));
+  return found;
+}
+
+// How many clusters have a mass from 2^(k/4) to below 2^((k+1)/4) of the lightest body's: entry k.
+template <Real T> std::vector<std::uint64_t> mass_distribution(const Configuration<T>& c, const T& least_mass) {
+  std::vector<std::uint64_t> clusters;
+  for (std::size_t j = c.collided_from; j < c.collided_to; ++j) {
+    // Powers of two are met exactly; a quarter of a power never is by whole masses.
+    const double quarters = 4 * std::log2(to_double(T(c.m[j] / least_mass)));
+    const auto k = static_cast<std::size_t>(std::max(0.0, std::floor(quarters)));
+    if (clusters.size() <= k) clusters.resize(k + 1);
+    ++clusters[k];
+  }
+  return clusters;
+}
+
+}  // namespace cradle

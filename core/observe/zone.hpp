@@ -1,0 +1,132 @@
+#pragma once
+// The interaction zone of a late wet shock, averaged over time: number density n± and mean speed u± of the single
+// bodies (of the rows' mass, not merged yet) that still move the way their row came, right-movers + and left-movers -,
+// in bins; and the width 2L of the zone from the slope of u+. The paper's linear model (section VI, Fig. 7) lets u+
+// fall linearly over the length 2L; its relation (13) counts the fall from u0 to 0. So, by definition here,
+//
+//   2L = u0 / |slope|,   slope = (u0/2)/(x_{1/4} - x_{3/4}),   u+(x_q) = q u0,
+//
+// from both sorts of movers, left-movers mirrored. Its error is the standard error over parts of the time.
+// Sampling and units: those of the scene; float64.
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "cradle/core/observe/profile.hpp"
+
+namespace cradle {
+
+struct ZoneWidth {
+  double width, error;  // 2L and its standard error; NaN where u+ does not fall through 3/4 and 1/4 of u0
+};
+
+class ZoneAverage {
+ public:
+  static constexpr std::size_t parts = 8;
+
+  // `samples` are to come, over a range around the centre of the shock that is mirror-symmetric: -reach to reach.
+  // Throws std::invalid_argument for fewer samples than parts or a reach that is not positive.
+  ZoneAverage(double reach, std::size_t bins, std::size_t samples, double row_mass)
+      : reach_(reach), bins_(bins), samples_(samples), row_mass_(row_mass), part_(parts, Part(bins)) {
+    if (!(reach > 0) || bins < 4 || samples < parts)
+      throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 8 samples at least");
+  }
+
+  template <Real T> void add(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed) {
+    Part& part = part_.at(taken_ * parts / samples_);
+    ++taken_;
+    ++part.samples;
+    for_each_body(c, bodies, elapsed, {-reach_, reach_}, [&](double x, double v, double m) {
+      const auto bin = static_cast<std::size_t>((x + reach_) / (2 * reach_) * static_cast<double>(bins_));
+      if (bin >= bins_) return;
+      part.mass[bin] += m;
+      if (m != row_mass_ || v == 0) return;
+      (v > 0 ? part.right : part.left)[bin] += 1;
+      (v > 0 ? part.right_speed : part.left_speed)[bin] += v;
+    });
+  }
+
+  std::size_t samples() const { return taken_; }
+  double centre(std::size_t bin) const { return place(static_cast<double>(bin) + 0.5); }
+  std::vector<double> mass_density() const { return per_length(&Part::mass); }
+  std::vector<double> density_right() const { return per_length(&Part::right); }
+  std::vector<double> density_left() const { return per_length(&Part::left); }
+  std::vector<double> velocity_right() const { return quotient(&Part::right_speed, &Part::right); }
+  std::vector<double> velocity_left() const { return quotient(&Part::left_speed, &Part::left); }
+
+  ZoneWidth width(double speed) const {
+    std::vector<const Part*> all;
+    double sum = 0, squares = 0, count = 0;
+    for (const Part& part : part_) {
+      all.push_back(&part);
+      if (const auto width = width_of({&part}, speed)) sum += *width, squares += *width * *width, count += 1;
+    }
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const auto width = width_of(all, speed);
+    if (!width || count < 2) return {width.value_or(none), none};
+    return {*width, std::sqrt(std::max(0.0, squares - sum * sum / count) / (count * (count - 1)))};
+  }
+
+ private:
+  using Bins = std::vector<double>;
+  struct Part {  // sums over the samples of one part of the time
+    explicit Part(std::size_t bins) : mass(bins), right(bins), right_speed(bins), left(bins), left_speed(bins) {}
+    Bins mass, right, right_speed, left, left_speed;
+    double samples = 0;
+  };
+
+  double place(double bin) const { return reach_ * (2 * bin / static_cast<double>(bins_) - 1); }
+
+  double total(Bins Part::*bins, std::size_t bin) const {
+    double sum = 0;
+    for (const Part& part : part_) sum += (part.*bins)[bin];
+    return sum;
+  }
+  Bins per_length(Bins Part::*bins) const {
+    const double scale = static_cast<double>(bins_) / (2 * reach_ * static_cast<double>(taken_));
+    Bins density(bins_);
+    for (std::size_t bin = 0; bin < bins_; ++bin) density[bin] = total(bins, bin) * scale;
+    return density;
+  }
+  Bins quotient(Bins Part::*sum, Bins Part::*weight) const {
+    Bins mean(bins_);
+    for (std::size_t bin = 0; bin < bins_; ++bin) mean[bin] = detail::mean(total(sum, bin), total(weight, bin));
+    return mean;
+  }
+
+  // Where u+ falls through 3/4 and through 1/4 of u0, between the centres of two bins.
+  std::optional<double> width_of(const std::vector<const Part*>& some, double speed) const {
+    std::array<double, 2> crossing{};
+    std::size_t found = 0;
+    double before = speed, x_before = -reach_;
+    for (std::size_t bin = 0; bin < bins_ && found < 2; ++bin) {
+      double speeds = 0, movers = 0;
+      for (const Part* part : some) {
+        const std::size_t mirrored = bins_ - 1 - bin;
+        speeds += part->right_speed[bin] - part->left_speed[mirrored];
+        movers += part->right[bin] + part->left[mirrored];
+      }
+      if (!(movers > 0)) continue;
+      const double u = speeds / movers, x = centre(bin);
+      while (found < 2 && u < speed * (found == 0 ? 0.75 : 0.25)) {
+        const double level = speed * (found == 0 ? 0.75 : 0.25);
+        crossing.at(found++) = x_before + (x - x_before) * (before - level) / (before - u);
+      }
+      before = u;
+      x_before = x;
+    }
+    if (found < 2) return std::nullopt;
+    return 2 * (crossing[1] - crossing[0]);
+  }
+
+  double reach_;
+  std::size_t bins_, samples_, taken_ = 0;
+  double row_mass_;
+  std::vector<Part> part_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,148 @@
+// The linear model of the late wet shock: a stationary zone |x| < L in which incoming bodies are slowed from u0 to the
+// critical speed u_crit, and the force it exerts on a heavy cluster. "Dry and wet granular shock waves", section VI,
+// equations (9) to (15), corrected. n0 = 1/l; k = n~/n0, the excess of density in the zone.
+//   (9)  u_+ = -a x + b, a = (u0 - u_crit)/2L, b = (u0 + u_crit)/2        (10) n_+ = n0 (1 + k/2 + k x/2L)
+//   (12) energy balance (11): L = m u0^2/[2 E_loss n0 (k^2/6 + k + 1)]    (13) slowing down: L = m u0^2/[2 E_loss n0
+//   (2+k)]
+// so that k^2/6 + k + 1 = 2 + k, k = sqrt 6. Left-movers are the mirror image.
+// A body that runs into a much heavier cluster (reduced mass m) at speed v leaves it on the other side with
+// sqrt(v^2 - v_c^2), v_c = sqrt(2 E_loss/m), or sticks, and hands over the momentum it loses; the printed form lacks
+// the factor m. u_crit of (9) is that of two single bodies, sqrt 2 v_c: no body of the zone is slow enough to stick to
+// a cluster, and 2 E_loss/(m u^2) <= 1/2 in (15). That needs u_crit <= u0, E_loss <= m u0^2/4. The velocity of the
+// cluster itself is left out, as in the paper. T needs +, -, *, /, comparison, T(int), sqrt by ADL.
+#pragma once
+
+#include "cradle/core/theory/wet_shock.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace cradle::theory {
+
+/// Length scale m u0^2/(2 E_loss n0): how far a body gets through a row at rest.
+template <class T> T stopping_length(const WetShock<T>& shock) {
+  return T(shock.mass * shock.speed * shock.speed * shock.spacing / (T(2) * shock.loss));
+}
+/// L from the balance of energy, equation (12).
+template <class T> T half_width_from_energy(const WetShock<T>& shock, const T& k) {
+  return T(stopping_length(shock) / (k * k / T(6) + k + T(1)));
+}
+/// L from the slowing down of one body, equation (13).
+template <class T> T half_width_from_slowing(const WetShock<T>& shock, const T& k) {
+  return T(stopping_length(shock) / (T(2) + k));
+}
+/// k = n~/n0 = sqrt 6, where (12) and (13) agree.
+template <class T> T density_excess() {
+  using std::sqrt;
+  return T(sqrt(T(6)));
+}
+/// Contacts of a body in the zone, j* = m u0^2/E_loss.
+template <class T> T contacts_to_rest(const WetShock<T>& shock) {
+  return T(shock.mass * shock.speed * shock.speed / shock.loss);
+}
+/// Speed lost per contact where the two rows close at u0 >= u_crit: (u0/2)(1 - sqrt(1 - 4 E_loss/(m u0^2))), about
+/// E_loss/(m u0) (printed before (13): E_loss/(m u0^2)).
+template <class T> T zone_speed_lost(const WetShock<T>& shock) {
+  return speed_lost(shock.specific_loss(), shock.speed, shock.critical_speed());
+}
+
+/// Profiles and force; throws std::domain_error unless 0 < E_loss <= m u0^2/4.
+template <class T> class WetZone {
+ public:
+  explicit WetZone(const WetShock<T>& shock)
+      : shock_(shock), excess_(density_excess<T>()), slow_(shock.critical_speed()) {
+    using std::sqrt;
+    if (!(shock.loss > T(0)) || slow_ > shock.speed)
+      throw std::domain_error("the linear zone needs a loss above 0 and up to m u0^2/4");
+    half_width_ = half_width_from_slowing(shock, excess_);
+    piston_critical_ = T(sqrt(T(T(2) * shock.specific_loss())));
+  }
+
+  const WetShock<T>& shock() const { return shock_; }
+  const T& excess() const { return excess_; }          ///< k
+  const T& half_width() const { return half_width_; }  ///< L
+  T width() const { return T(T(2) * half_width_); }    ///< 2L, equation (13)
+  const T& critical_speed() const { return slow_; }    ///< u_crit = sqrt(2 E_loss/mu) = 2 sqrt(E_loss/m)
+
+  /// u_+, equation (9), for |x| <= L.
+  T right_mover_velocity(const T& x) const {
+    return T((shock_.speed + slow_) / T(2) - (shock_.speed - slow_) * x / width());
+  }
+  /// n_+ (number per length), equation (10).
+  T right_mover_density(const T& x) const {
+    return T((T(1) + excess_ / T(2) + excess_ * x / width()) / shock_.spacing);
+  }
+
+  /// Momentum that a body of speed v >= 0 hands to a heavy cluster at rest: m (v - sqrt(v^2 - v_c^2)), all of it where
+  /// it sticks.
+  T piston_momentum(const T& v) const {
+    using std::sqrt;
+    if (!(v > piston_critical_)) return T(shock_.mass * v);
+    return T(T(2) * shock_.loss / (v + sqrt(T((v - piston_critical_) * (v + piston_critical_)))));
+  }
+
+  /// F_+ on a cluster at x, equation (15): 0 at and beyond L, that of the untouched row at and beyond -L.
+  T right_mover_force(const T& x) const {
+    if (!(x < half_width_)) return T(0);
+    if (!(x > -half_width_)) return row_force();
+    return inner_right_mover_force(x);
+  }
+  /// F_+ + F_-, equation (14): towards the centre outside the zone, away from it inside.
+  T force(const T& x) const {
+    if (!(x < half_width_)) return T(-row_force());
+    if (!(x > -half_width_)) return row_force();
+    return inner_force(x);
+  }
+  /// The same with the outer force as printed, n0 E_loss (2 E_loss/(m u0^2) << 1), which is not continuous with F_+.
+  T force_printed(const T& x) const {
+    if (!(x < half_width_)) return T(-row_force_printed());
+    if (!(x > -half_width_)) return row_force_printed();
+    return inner_force(x);
+  }
+
+  /// Force of one row outside the zone: n0 m u0^2 (1 - sqrt(1 - 2 E_loss/(m u0^2))).
+  T row_force() const { return T(shock_.speed * piston_momentum(shock_.speed) / shock_.spacing); }
+  T row_force_printed() const { return T(shock_.loss / shock_.spacing); }
+
+  /// The force in the zone. With f = u dp = 2 E_loss/(1 + q), q = sqrt(1 - v_c^2/u^2), the difference n_+ f_+ - n_- f_-
+  /// is taken apart into (n_+ - n_-) (f_+ + f_-)/2 + (n_+ + n_-) (f_+ - f_-)/2: both have the sign of x, nothing
+  /// cancels. It goes on smoothly a little beyond the edges, for integrators that look there: until the slower row
+  /// reaches v_c.
+  T inner_force(const T& x) const {
+    const T plus = right_mover_velocity(x);
+    const T minus = right_mover_velocity(T(-x));  // speed of left-movers
+    if (!(plus > piston_critical_) || !(minus > piston_critical_))
+      return T(inner_right_mover_force(x) - inner_right_mover_force(T(-x)));
+    const T q_plus = root_ratio(plus);
+    const T q_minus = root_ratio(minus);
+    const T f_plus = T(2) * shock_.loss / (T(1) + q_plus);
+    const T f_minus = T(2) * shock_.loss / (T(1) + q_minus);
+    // q_-^2 - q_+^2 = v_c^2 (u_-^2 - u_+^2)/(u_+ u_-)^2, u_-^2 - u_+^2 = (u_- - u_+)(u_- + u_+) = 2 a x 2 b
+    const T slope = (shock_.speed - slow_) / half_width_;
+    const T ratio = piston_critical_ / (plus * minus);
+    const T q_squares = ratio * ratio * slope * x * (shock_.speed + slow_);
+    const T f_difference = f_plus * f_minus * q_squares / (T(2) * shock_.loss * (q_plus + q_minus));
+    const T n_difference = excess_ * x / (half_width_ * shock_.spacing);
+    const T n_sum = (T(2) + excess_) / shock_.spacing;
+    return T((n_difference * (f_plus + f_minus) + n_sum * f_difference) / T(2));
+  }
+
+ private:
+  T inner_right_mover_force(const T& x) const {
+    const T u = right_mover_velocity(x);
+    if (!(u > T(0))) return T(0);
+    return T(u * right_mover_density(x) * piston_momentum(u));
+  }
+  T root_ratio(const T& u) const {
+    using std::sqrt;
+    return T(sqrt(T((u - piston_critical_) * (u + piston_critical_))) / u);
+  }
+
+  WetShock<T> shock_;
+  T excess_;
+  T slow_;
+  T half_width_{0};
+  T piston_critical_{0};
+};
+
+}  // namespace cradle::theory

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cradle/core/list.hpp"
+#include "cradle/core/ring.hpp"
 #include "cradle/core/rows.hpp"
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/list_file.hpp"
@@ -30,6 +31,14 @@ template <Real T> std::shared_ptr<const cradle::Bodies<T>> initial_bodies(const 
       return std::make_shared<List<T>>(numbers<T>(listed.x), numbers<T>(listed.v), numbers<T>(listed.m));
     }
     const Displacement displacement = uniform_displacement(initial.perturbation.value, initial.seed, initial.replica);
+    if (initial.type == InitialType::ring) {
+      using std::sqrt;
+      const VelocityDraw draw = initial.velocities == Velocities::gaussian
+                                    ? gaussian_velocity(initial.seed, initial.replica)
+                                    : uniform_velocity(initial.seed, initial.replica);
+      return std::make_shared<Ring<T>>(static_cast<BodyIndex>(initial.particles), number<T>(initial.length),
+                                       T(sqrt(number<T>(initial.variance))), draw, displacement);
+    }
     if (!initial.general_rows())
       return std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<BodyIndex>(initial.particles),
                                                          number<T>(initial.speed), number<T>(initial.spacing),

@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/sample.hpp"
+#include "cradle/core/observe/zone.hpp"
 #include "cradle/tools/result.hpp"
 
 namespace cradle::tools {
@@ -51,6 +53,76 @@ template <Real T> class SeriesRecorder {
   std::vector<double> time_, energy_, lost_, left_, right_;
   std::vector<std::uint64_t> contacts_, below_, merges_, bodies_;
 };
+
+/// The two heaviest clusters and the cloud, beside the series.
+template <Real T> class CloudRecorder {
+ public:
+  void add(const Cloud<T>& cloud) {
+    for (const auto* cluster : {&cloud.left, &cloud.right}) {
+      mass_.push_back(*cluster ? to_double((*cluster)->mass) : none);
+      x_.push_back(*cluster ? to_double((*cluster)->x) : none);
+      v_.push_back(*cluster ? to_double((*cluster)->v) : none);
+      index_.push_back(*cluster ? static_cast<std::uint64_t>((*cluster)->index) : no_body);
+    }
+    cloud_mass_.push_back(to_double(cloud.mass));
+    cloud_width_.push_back(to_double(cloud.width));
+  }
+
+  /// Adds what belongs to the series itself and returns the group below it.
+  Group table(Group& series) && {
+    series.columns.push_back({"cloud_mass", "m", "mass of all bodies that have collided", std::move(cloud_mass_)});
+    series.columns.push_back({"cloud_width", "l",
+                              "standard deviation of position, weighted by mass, of all that have collided but the "
+                              "two heaviest clusters",
+                              std::move(cloud_width_)});
+    return {
+        "series/heaviest",
+        {},
+        {{"mass", "m", "of the two heaviest clusters, the left and the right one", std::move(mass_), 2},
+         {"x", "l", "their positions", std::move(x_), 2},
+         {"v", "l/t", "their velocities", std::move(v_), 2},
+         {"index", "1", "number at the start of the body they go by, the same after passing", std::move(index_), 2}}};
+  }
+
+ private:
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  static constexpr std::uint64_t no_body = std::numeric_limits<std::uint64_t>::max();
+  std::vector<double> mass_, x_, v_, cloud_mass_, cloud_width_;
+  std::vector<std::uint64_t> index_;
+};
+
+/// How many clusters there are of which mass.
+template <Real T> Group masses_table(const Configuration<T>& c, const T& least_mass, const std::string& name) {
+  std::vector<std::uint64_t> clusters = mass_distribution(c, least_mass);
+  std::vector<double> from;
+  for (std::size_t k = 0; k < clusters.size(); ++k)
+    from.push_back(to_double(least_mass) * std::exp2(static_cast<double>(k) / 4));
+  return {name,
+          {{"time", to_double(c.time)}},
+          {{"mass", "m", "least mass of the bin, which ends where the next one begins: 2^(1/4) times as high",
+            std::move(from)},
+           {"clusters", "1", "clusters of such a mass", std::move(clusters)}}};
+}
+
+inline Group zone_table(const ZoneAverage& zone, std::size_t bins, double speed, double from, double until) {
+  const ZoneWidth width = zone.width(speed);
+  Group group{"zone",
+              {{"from", from},
+               {"until", until},
+               {"samples", static_cast<std::uint64_t>(zone.samples())},
+               {"width", width.width},
+               {"width_error", width.error}},
+              {}};
+  std::vector<double> x;
+  for (std::size_t bin = 0; bin < bins; ++bin) x.push_back(zone.centre(bin));
+  group.columns = {{"x", "l", "centre of the bin", std::move(x)},
+                   {"mass_density", "m/l", "mass per length", zone.mass_density()},
+                   {"density_right", "1/l", "right-moving single bodies per length", zone.density_right()},
+                   {"velocity_right", "l/t", "their mean velocity", zone.velocity_right()},
+                   {"density_left", "1/l", "left-moving single bodies per length", zone.density_left()},
+                   {"velocity_left", "l/t", "their mean velocity", zone.velocity_left()}};
+  return group;
+}
 
 template <Real T> std::vector<double> as_doubles(const std::vector<T>& values) {
   std::vector<double> doubles;

@@ -43,10 +43,11 @@ std::string precision_name(const Run& run) {
 }
 
 void check_built(const Scene& scene) {
-  if (scene.initial.type == InitialType::ring) not_built("initial.type", "ring", "rows or list");
   const bool merging = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
-  if (merging && scene.run.coordinates == Coordinates::absolute)
-    not_built("run.coordinates", "absolute with bodies that merge", "gaps");
+  if (scene.run.coordinates == Coordinates::absolute) {
+    if (merging) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
+    if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
+  }
   in_precision<void>(scene, [](auto) {});
 }
 

@@ -11,6 +11,7 @@
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/observe/trace.hpp"
 #include "cradle/core/position_chain.hpp"
+#include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tools/interrupt.hpp"
 #include "cradle/tools/recorder.hpp"
 #include "cradle/tools/run.hpp"
@@ -68,12 +69,30 @@ template <Real T> std::string account_warning(const Account<T>& account, Coordin
   return text;
 }
 
+inline ZoneAverage zone_average(const Scene& scene) {
+  const Zone& zone = scene.output.zone;
+  double reach = 0;
+  if (zone.reach)
+    reach = zone.reach->value;
+  else
+    try {
+      const theory::WetShock<double> shock{
+          .loss = scene.law.loss.value, .speed = scene.initial.speed.value, .spacing = scene.initial.spacing.value};
+      reach = 3 * theory::WetZone<double>(shock).half_width();
+    } catch (const std::domain_error& error) {
+      throw Error({scene.name, 0, "output.zone.reach"}, "not given, and (13) has no answer", error.what(), "give it");
+    }
+  return {reach, zone.bins, zone.samples, 1.0};
+}
+
 template <Real T, class Simulation> class SceneRun {
  public:
   SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Simulation simulation,
            const RunOptions& options, Progress& progress)
       : scene_(scene), options_(options), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
-        simulation_(std::move(simulation)), progress_(progress), plan_(schedule<T>(scene)) {}
+        simulation_(std::move(simulation)), progress_(progress), plan_(schedule<T>(scene)) {
+    if (scene.output.zone.from) zone_.emplace(zone_average(scene));
+  }
 
   RunOutcome operator()() {
     if (scene_.output.events) observer_ = [this](const Contact<T>& c) { events_(c); };
@@ -99,11 +118,14 @@ template <Real T, class Simulation> class SceneRun {
   void look(const T& time) {
     if (take(plan_.series, next_series_, time)) record_sample(time);
     const bool snapshot = take(plan_.snapshots, next_snapshot_, time),
-               profiled = take(plan_.profiles, next_profile_, time);
-    if (!snapshot && !profiled) return;
+               profiled = take(plan_.profiles, next_profile_, time), masses = take(plan_.masses, next_masses_, time),
+               zone = take(plan_.zone, next_zone_, time);
+    if (!snapshot && !profiled && !masses && !zone) return;
     const Configuration<T> now = simulation_.chain().configuration(simulation_.chain().local_time(time));
     if (snapshot) snapshots_.push_back(snapshot_table(now, numbered("snapshots", snapshots_.size())));
     if (profiled) record_profile(now, time);
+    if (masses) masses_.push_back(masses_table(now, bodies_->least_mass(), numbered("masses", masses_.size())));
+    if (zone) zone_->add(now, *bodies_, T(time - number<T>(scene_.run.start)));
   }
 
   void record_profile(const Configuration<T>& now, const T& time) {
@@ -125,6 +147,7 @@ template <Real T, class Simulation> class SceneRun {
   void record_sample(const T& time) {
     const Sample<T> now = sample(simulation_, energy_, time);
     series_.add(now);
+    if (cloudy()) cloud_.add(cloud(simulation_.chain().configuration(simulation_.chain().local_time(time))));
     if (options_.trace)
       trace_samples_.push_back({to_double(time), trace_.digest(), now.counts.contacts, now.counts.merges,
                                 to_text(now.energy), now.front_right ? to_text(*now.front_right) : std::string()});
@@ -137,6 +160,9 @@ template <Real T, class Simulation> class SceneRun {
                                         numbered("snapshots", snapshots_.size())));
   }
 
+  // Bodies that merge on a line make two heavy clusters; on a ring none are like them.
+  bool cloudy() const { return scene_.law.type != LawType::inelastic && scene_.initial.type != InitialType::ring; }
+
   static std::string numbered(const char* folder, std::size_t number) {
     return fmt::format("{}/{:04}", folder, number);
   }
@@ -145,6 +171,9 @@ template <Real T, class Simulation> class SceneRun {
     const auto& account = simulation_.chain().account();
     const Counts& counts = simulation_.counts();
     RunOutcome end;
+    end.contacts = counts.contacts;
+    end.merges = counts.merges;
+    end.energy = to_double(T(energy_ - simulation_.energy_lost()));
     std::string outcome = "reached the end";
     end.warning = account_warning(account, scene_.run.coordinates);
     switch (status) {
@@ -178,8 +207,12 @@ template <Real T, class Simulation> class SceneRun {
                              {"unresolved_gaps", account.unresolved},
                              {"close_calls", counts.close_calls}};
     end.result.groups.push_back(std::move(series_).table());
-    for (auto* groups : {&snapshots_, &profiles_})
+    if (cloudy()) end.result.groups.push_back(std::move(cloud_).table(end.result.groups.back()));
+    for (auto* groups : {&snapshots_, &profiles_, &masses_})
       for (auto& group : *groups) end.result.groups.push_back(std::move(group));
+    if (zone_)
+      end.result.groups.push_back(zone_table(*zone_, scene_.output.zone.bins, scene_.initial.speed.value,
+                                             scene_.output.zone.from->value, scene_.run.until.value));
     if (scene_.output.events) end.result.groups.push_back(std::move(events_).table());
     if (status == Status::collapsed) {
       end.result.groups.push_back(collapse_table());
@@ -209,13 +242,15 @@ template <Real T, class Simulation> class SceneRun {
   Simulation simulation_;
   Progress& progress_;
   Schedule<T> plan_;
-  std::size_t next_series_ = 0, next_snapshot_ = 0, next_profile_ = 0;
+  std::size_t next_series_ = 0, next_snapshot_ = 0, next_profile_ = 0, next_masses_ = 0, next_zone_ = 0;
   SeriesRecorder<T> series_;
+  CloudRecorder<T> cloud_;
+  std::optional<ZoneAverage> zone_;
   EventRecorder<T> events_;
   Trace trace_;
   std::vector<TraceSample> trace_samples_;
   std::function<void(const Contact<T>&)> observer_;
-  std::vector<Group> snapshots_, profiles_;
+  std::vector<Group> snapshots_, profiles_, masses_;
 };
 
 // ---- from names to types

@@ -57,7 +57,7 @@ struct Initial {
   Decimal spacing;              // rows
   Row left, right;              // rows given as tables: see general_rows()
   Centre centre;
-  Decimal perturbation;  // rows: uniform in plus/minus this times the spacing of the row
+  Decimal perturbation;  // rows, ring: uniform in plus/minus this times the spacing
   Decimal length;        // ring
   Velocities velocities = Velocities::gaussian;
   Decimal variance;                 // ring
@@ -100,11 +100,22 @@ struct Profiles {
   bool operator==(const Profiles&) const = default;
 };
 
+/// Average over the interaction zone of a wet shock, from a time on; without one there is none.
+struct Zone {
+  std::optional<Decimal> from;
+  std::uint64_t samples = 0;
+  std::uint64_t bins = 0;
+  std::optional<Decimal> reach;
+  bool operator==(const Zone&) const = default;
+};
+
 /// All lists of times are increasing and without repetition, within [run.start, run.until].
 struct Output {
   Series series;
   std::vector<Decimal> snapshots;
   Profiles profiles;
+  std::vector<Decimal> masses;  // times at which the distribution of masses is written
+  Zone zone;
   Decimal checkpoint_every;  // seconds of wall clock; 0: no checkpoints
   bool events = false;
   bool operator==(const Output&) const = default;

@@ -17,15 +17,23 @@ constexpr When inelastic{other_law, "law.type", "law.type = \"inelastic\"",
 constexpr When wet{other_law, "law.type", "law.type = \"wet\"",
                    [](const Scene& s) { return s.law.type == LawType::wet; }};
 
+constexpr When merging{other_law, "law.type", "law.type = \"wet\" or \"sticky\"",
+                       [](const Scene& s) { return s.law.type != LawType::inelastic; }};
+constexpr When wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
+                           return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
+                                  !s.initial.general_rows();
+                         }};
+
 constexpr std::string_view other_state = "key of another initial state";
-constexpr When rows{other_state, "initial.type", "initial.type = \"rows\"",
-                    [](const Scene& s) { return s.initial.type == InitialType::rows; }};
 constexpr When plain_rows{
     other_state, "initial.left.particles", "initial.type = \"rows\" without [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && !s.initial.general_rows(); }};
 constexpr When general_rows{
     other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
+constexpr When rows_or_ring{other_state, "initial.type", "initial.type = \"rows\" or \"ring\"", [](const Scene& s) {
+                              return s.initial.type == InitialType::rows || s.initial.type == InitialType::ring;
+                            }};
 constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"",
                     [](const Scene& s) { return s.initial.type == InitialType::ring; }};
 constexpr When list{other_state, "initial.type", "initial.type = \"list\"",
@@ -101,7 +109,7 @@ const Field table[] = {
      "u0: the left row moves at +u0, the right one at -u0"},
     {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &plain_rows,
      "distance between neighbours in a row"},
-    {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &rows,
+    {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &rows_or_ring,
      "each body is shifted uniformly by up to plus or minus this times the spacing"},
     {"initial.length", initial_of<&Initial::length>, "l", "initial.particles", "(0, inf)", &ring,
      "circumference of the ring", particles_as_length},
@@ -151,6 +159,16 @@ const Field table[] = {
      "number of bins of the profiles"},
     {"output.profiles.range", output_of<&Output::profiles, &Profiles::range>, "l", "", any, &always,
      "two positions that the bins span; without it, the interaction zone (ensembles need it)"},
+    {"output.masses", output_of<&Output::masses>, "t", "[]", within_run, &merging,
+     "times at which it is written how many clusters there are of which mass"},
+    {"output.zone.from", output_of<&Output::zone, &Zone::from>, "t", "", within_run, &wet_shock,
+     "average over the interaction zone, its width among it, from this time on; without it, none"},
+    {"output.zone.samples", output_of<&Output::zone, &Zone::samples>, "", "400", "[8, 1e9]", &wet_shock,
+     "number of samples that the average over the zone takes, evenly until run.until"},
+    {"output.zone.bins", output_of<&Output::zone, &Zone::bins>, "", "60", "[4, 1e6]", &wet_shock,
+     "number of bins of the average over the zone"},
+    {"output.zone.reach", output_of<&Output::zone, &Zone::reach>, "l", "", "(0, inf)", &wet_shock,
+     "how far the bins go to either side; without it, three times the L of equation (13)"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint_every>, "s", "60", "[0, inf)", &always,
      "wall-clock time between checkpoints, 0: none; never changes the result"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every contact"},

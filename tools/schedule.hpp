@@ -1,4 +1,5 @@
-// When a run is looked at: the times of series, snapshots and profiles in the working precision, and their union.
+// When a run is looked at: the times of series, snapshots and whatever else a scene wants in the working precision, and
+// their union.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,8 +13,8 @@
 namespace cradle::tools {
 
 template <Real T> struct Schedule {
-  std::vector<T> series, snapshots, profiles;  // each increasing
-  std::vector<T> stops;                        // their union
+  std::vector<T> series, snapshots, profiles, masses, zone;  // each increasing
+  std::vector<T> stops;                                      // their union
 };
 
 /// Logarithmic spacing starts at this share of the run: six points per decade would need 36 for it.
@@ -49,10 +50,17 @@ template <Real T> std::vector<T> series_times(const Series& series, const T& sta
 
 template <Real T> Schedule<T> schedule(const Scene& scene) {
   const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
-  Schedule<T> plan{series_times(scene.output.series, start, until), {}, {}, {}};
+  Schedule<T> plan{series_times(scene.output.series, start, until), {}, {}, {}, {}, {}};
   for (const auto& time : scene.output.snapshots) plan.snapshots.push_back(number<T>(time));
   for (const auto& time : scene.output.profiles.times) plan.profiles.push_back(number<T>(time));
-  for (const auto* times : {&plan.series, &plan.snapshots, &plan.profiles})
+  for (const auto& time : scene.output.masses) plan.masses.push_back(number<T>(time));
+  const Zone& zone = scene.output.zone;
+  if (zone.from) {
+    const T from = number<T>(*zone.from);
+    const auto samples = static_cast<std::int64_t>(zone.samples);
+    for (std::int64_t k = 0; k < samples; ++k) plan.zone.push_back(from + (until - from) * T(k) / T(samples));
+  }
+  for (const auto* times : {&plan.series, &plan.snapshots, &plan.profiles, &plan.masses, &plan.zone})
     plan.stops.insert(plan.stops.end(), times->begin(), times->end());
   plan.stops.push_back(until);
   std::sort(plan.stops.begin(), plan.stops.end());

@@ -121,6 +121,15 @@ void read(const Field& field, const Value& value, Scene& scene, std::vector<Deci
   target = std::move(numbers);
 }
 
+void read(const Field& field, const Value& value, Scene& scene, std::vector<std::string>& target) {
+  if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
+  target.clear();
+  for (const Value& item : value.items) {
+    if (item.kind != Value::Kind::text) refuse(field, item, scene, "wrong type");
+    target.push_back(item.text);
+  }
+}
+
 template <class E>
 requires is_choice<E>
 void read(const Field& field, const Value& value, Scene& scene, E& target) {
@@ -165,6 +174,11 @@ std::optional<std::string> written(const Field& field, const std::vector<Decimal
   for (const Decimal& number : value) text += (text.empty() ? "" : ", ") + number.text;
   return '[' + text + ']';
 }
+std::optional<std::string> written(const Field&, const std::vector<std::string>& value) {
+  std::string text;
+  for (const std::string& item : value) text += (text.empty() ? "" : ", ") + quoted(item);
+  return '[' + text + ']';
+}
 template <class E>
 requires is_choice<E> std::optional<std::string> written(const Field& field, const E& value) {
   return quoted(choices_of(field).at(static_cast<std::size_t>(value)));
@@ -180,6 +194,7 @@ template <class T> std::string_view name_of_type() {
   if constexpr (std::is_same_v<T, std::uint64_t>) return "integer";
   if constexpr (std::is_same_v<T, bool>) return "true or false";
   if constexpr (std::is_same_v<T, std::vector<Decimal>>) return "list of numbers";
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) return "list of texts";
   return "one of";
 }
 
@@ -198,6 +213,7 @@ std::string advice(const Field& field, const Scene& scene) {
   const auto type = type_name(field);
   if (type == "true or false") return "give true or false";
   if (type == "text") return "give a text";
+  if (type == "list of texts") return "give a list of texts";
   if (type == "one of") return fmt::format("give one of {}", fmt::join(choices_of(field), ", "));
   const Interval range = interval_of(field);
   const auto words = range_words(range, scene);

@@ -160,7 +160,8 @@ std::string bundled_names() {
 }  // namespace
 
 bool operator==(const Scene& a, const Scene& b) {
-  return a.title == b.title && a.law == b.law && a.initial == b.initial && a.run == b.run && a.output == b.output;
+  return a.title == b.title && a.law == b.law && a.initial == b.initial && a.run == b.run && a.output == b.output &&
+         a.sweep == b.sweep;
 }
 
 Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {

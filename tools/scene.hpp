@@ -121,6 +121,15 @@ struct Output {
   bool operator==(const Output&) const = default;
 };
 
+/// What `cradle sweep` makes of the scene where the command line says nothing else.
+struct Sweep {
+  std::vector<std::string> vary;    // KEY=FROM:TO:COUNT[:log] or KEY=VALUE,VALUE,...
+  bool cuts = false;                // one key at a time, the others as in the scene, instead of all combinations
+  std::vector<std::string> points;  // or points one by one: KEY=VALUE KEY=VALUE ...
+  std::uint64_t replicas = 0;       // of each point
+  bool operator==(const Sweep&) const = default;
+};
+
 struct Scene {
   std::string name;    // stem of the file, or the bundled scene's name
   std::string folder;  // that relative list files start from; empty: the working folder
@@ -129,6 +138,7 @@ struct Scene {
   Initial initial;
   Run run;
   Output output;
+  Sweep sweep;
 };
 
 /// The same scene, wherever it was read from (name and folder do not count).

@@ -67,6 +67,7 @@ constexpr auto collapse = member<&Scene::run, &Run::collapse>;
 template <auto M> constexpr auto law_of = member<&Scene::law, M>;
 template <auto... M> constexpr auto initial_of = member<&Scene::initial, M...>;
 template <auto M> constexpr auto run_of = member<&Scene::run, M>;
+template <auto M> constexpr auto sweep_of = member<&Scene::sweep, M>;
 template <auto... M> constexpr auto output_of = member<&Scene::output, M...>;
 
 constexpr std::string_view any = "(-inf, inf)";
@@ -172,6 +173,14 @@ const Field table[] = {
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint_every>, "s", "60", "[0, inf)", &always,
      "wall-clock time between checkpoints, 0: none; never changes the result"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every contact"},
+
+    {"sweep.vary", sweep_of<&Sweep::vary>, "", "[]", "", &always,
+     "what cradle sweep varies: texts KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=VALUE,VALUE,..."},
+    {"sweep.cuts", sweep_of<&Sweep::cuts>, "", "false", "", &always,
+     "vary one key at a time, the others as the scene has them, instead of all combinations"},
+    {"sweep.points", sweep_of<&Sweep::points>, "", "[]", "", &always,
+     "points of a sweep one by one: texts KEY=VALUE KEY=VALUE ..."},
+    {"sweep.replicas", sweep_of<&Sweep::replicas>, "", "1", "[1, 1e15]", &always, "replicas of every point of a sweep"},
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace cradle::tools {
 template <class T> using Member = T& (*)(Scene&);
 
 using Storage =
-    std::variant<Member<std::string>, Member<std::optional<std::string>>, Member<Decimal>,
+    std::variant<Member<std::string>, Member<std::optional<std::string>>, Member<std::vector<std::string>>, Member<Decimal>,
                  Member<std::optional<Decimal>>, Member<std::vector<Decimal>>, Member<std::uint64_t>,
                  Member<std::optional<std::uint64_t>>, Member<bool>, Member<LawType>, Member<InitialType>,
                  Member<Velocities>, Member<Precision>, Member<Coordinates>, Member<CollapsePolicy>, Member<Spacing>>;
@@ -48,7 +48,7 @@ std::span<const Field> scene_fields();
 /// The row of this key that applies to the scene, else any row of this key, else nullptr.
 const Field* find_field(std::string_view key, const Scene& scene);
 
-/// "number", "integer", "text", "one of", "list of numbers", "true or false".
+/// "number", "integer", "text", "one of", "list of numbers", "list of texts", "true or false".
 std::string_view type_name(const Field& field);
 
 /// What may stand here, in words: `give a number from 0 to 1`. Bounds that are keys get their values in this scene.

@@ -1,17 +1,17 @@
-// Compiled apart from the loops that measure it: inlined into them, its speed depends on what stands around.
 #include "indexed_heap.hpp"
 
 namespace twins {
 
 void IndexedHeapEngine::advance(double until) {
-  while (due_[heap_.front()] <= until) {
-    const std::uint32_t i = heap_.front();
-    const double time = due_[i];
-    line_.collide(i, time);
+  for (;;) {
+    const std::uint32_t gap = heap_.first();
+    const double time = heap_.due(gap);
+    if (time > until) return;
+    line_.collide(gap, time);
     ++contacts_;
-    update(i, never);
-    if (i > 0) update(i - 1, line_.due(i - 1, time));
-    if (i + 1 < line_.gaps()) update(i + 1, line_.due(i + 1, time));
+    heap_.update(gap, never);
+    if (gap > 0) heap_.update(gap - 1, line_.due(gap - 1, time));
+    if (gap + 1 < line_.gaps()) heap_.update(gap + 1, line_.due(gap + 1, time));
   }
 }
 

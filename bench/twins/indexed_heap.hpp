@@ -9,24 +9,17 @@
 
 namespace twins {
 
-class IndexedHeapEngine {
+class IndexedHeap {
  public:
-  IndexedHeapEngine(const cradle::Bodies<double>& bodies, Law law)
-      : line_(bodies, law), heap_(line_.gaps()), place_(line_.gaps()), due_(line_.gaps()) {
+  explicit IndexedHeap(std::vector<double> due) : heap_(due.size()), place_(due.size()), due_(std::move(due)) {
     const auto size = static_cast<std::uint32_t>(heap_.size());
-    for (std::uint32_t i = 0; i < size; ++i) {
-      heap_[i] = place_[i] = i;
-      due_[i] = line_.due(i, 0);
-    }
+    for (std::uint32_t i = 0; i < size; ++i) heap_[i] = place_[i] = i;
     for (std::uint32_t p = size / 2; p-- > 0;) sink(p);
   }
 
-  // Makes every contact at times <= until.
-  void advance(double until);
+  std::uint32_t first() const { return heap_[0]; }
+  double due(std::uint32_t gap) const { return due_[gap]; }
 
-  std::uint64_t contacts() const { return contacts_; }
-
- private:
   void update(std::uint32_t gap, double time) {
     const bool sooner = time < due_[gap];
     due_[gap] = time;
@@ -36,6 +29,7 @@ class IndexedHeapEngine {
       sink(place_[gap]);
   }
 
+ private:
   void rise(std::uint32_t p) {
     for (; p > 0 && before(p, (p - 1) / 2); p = (p - 1) / 2) exchange(p, (p - 1) / 2);
   }
@@ -56,10 +50,23 @@ class IndexedHeapEngine {
     place_[heap_[q]] = q;
   }
 
-  Line line_;
   std::vector<std::uint32_t> heap_;   // gaps
   std::vector<std::uint32_t> place_;  // of each gap in the heap
   std::vector<double> due_;           // of each gap
+};
+
+class IndexedHeapEngine {
+ public:
+  IndexedHeapEngine(const cradle::Bodies<double>& bodies, Law law) : line_(bodies, law), heap_(line_.all_due()) {}
+
+  // Makes every contact at times <= until.
+  void advance(double until);
+
+  std::uint64_t contacts() const { return contacts_; }
+
+ private:
+  Line line_;
+  IndexedHeap heap_;
   std::uint64_t contacts_ = 0;
 };
 

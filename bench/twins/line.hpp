@@ -38,6 +38,12 @@ class Line {
     return now + std::max(right.at(now) - left.at(now), 0.0) / closing;  // rounding can make the gap negative
   }
 
+  std::vector<double> all_due() const {
+    std::vector<double> times(gaps());
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = due(i, 0);
+    return times;
+  }
+
   // Contact of bodies i and i + 1.
   void collide(std::size_t i, double time) {
     Body &left = bodies_[i], &right = bodies_[i + 1];

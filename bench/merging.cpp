@@ -1,0 +1,124 @@
+// Contacts per second where bodies merge or pass through each other, wet and sticky, against a conventional engine in
+// absolute coordinates (twins/merging.hpp), in one run: read the ratios. And the sticky gas without events: the O(N)
+// solution of core/sticky_exact.hpp.
+//
+//   cmake --preset release && cmake --build --preset release --target bench_merging
+//   build/release/bench/bench_merging --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
+//
+// shock    the paper's wet shocks, Fig. 6 (N = 5e4, E_loss = 1e-4, to t = 12000) and Fig. 11 (N = 2e7, E_loss = .05, to
+//          1.9e7; and rows of 55,000 to 1e5, since the conventional engine holds every body). Counts are the published
+//          ones.
+// cooling  N bodies on a ring, Gaussian velocities of variance 1, to t = 1000.
+//
+// Times are of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers.
+
+#include <ctime>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/ring.hpp"
+#include "cradle/core/rows.hpp"
+#include "cradle/core/simulation.hpp"
+#include "twins/merging.hpp"
+
+namespace {
+
+using BodiesPointer = std::shared_ptr<const cradle::Bodies<double>>;
+
+double thread_seconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Rows displaced by the hash of the published counts.
+BodiesPointer rows(cradle::BodyIndex n) {
+  return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(n, 0.5, 1.0, [](cradle::BodyIndex i) {
+    std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
+    return static_cast<std::int64_t>((z ^ (z >> 31)) & 0x3FFFF) - 131072;
+  }));
+}
+
+BodiesPointer ring(cradle::BodyIndex n) {
+  return std::make_shared<cradle::Ring<double>>(n, static_cast<double>(n), 1.0, cradle::gaussian_velocity(1, 0),
+                                                cradle::uniform_displacement(0, 1, 0));
+}
+
+struct Cradle {
+  static std::uint64_t run(const cradle::Bodies<double>&, const BodiesPointer& bodies, double loss, double until) {
+    const auto made = [&](auto law) {
+      cradle::Simulation engine(law, cradle::ClusterChain<double>(bodies, 0.0));
+      engine.advance(until);
+      return engine.counts().contacts;
+    };
+    return loss < 0 ? made(cradle::Sticky<double>{}) : made(cradle::Wet<double>(loss));
+  }
+};
+struct Twin {
+  static std::uint64_t run(const cradle::Bodies<double>& bodies, const BodiesPointer&, double loss, double until) {
+    twins::MergingEngine engine(bodies, loss);
+    engine.advance(until);
+    return engine.contacts();
+  }
+};
+
+// Setting up counts: it is part of what a run costs, and conventional engines set up every body of the rows.
+template <class Engine>
+void enter(const std::string& of, const std::string& engine, const BodiesPointer& bodies, double loss, double until,
+           std::uint64_t published = 0) {
+  const std::string name = of + "/" + engine;
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [=](benchmark::State& state) {
+        std::uint64_t contacts = 0;
+        for (auto iteration : state) {
+          const double start = thread_seconds();
+          const std::uint64_t made = Engine::run(*bodies, bodies, loss, until);
+          state.SetIterationTime(thread_seconds() - start);
+          static std::map<std::string, std::uint64_t> seen;  // by the first engine asked
+          const std::uint64_t expected = published > 0 ? published : seen.try_emplace(of, made).first->second;
+          if (made != expected) {
+            std::fprintf(stderr, "%s: %llu contacts (expected %llu): times mean nothing\n", name.c_str(),
+                         static_cast<unsigned long long>(made), static_cast<unsigned long long>(expected));
+            std::exit(1);
+          }
+          contacts += made;
+        }
+        using benchmark::Counter;
+        state.counters["contacts"] = Counter(static_cast<double>(contacts), Counter::kAvgIterations);
+        state.counters["contacts/s"] = Counter(static_cast<double>(contacts), Counter::kIsRate);
+      })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  enter<Cradle>("wet/fig6", "cradle", rows(50'000), 1e-4, 12000, 12153997);
+  enter<Twin>("wet/fig6", "conventional", rows(50'000), 1e-4, 12000, 12153997);
+  enter<Cradle>("wet/fig11", "cradle", rows(20'000'000), 0.05, 1.9e7, 57079264);
+  enter<Cradle>("wet/fig11_begin", "cradle", rows(110'000), 0.05, 1e5);
+  enter<Twin>("wet/fig11_begin", "conventional", rows(110'000), 0.05, 1e5);
+  for (const cradle::BodyIndex n : {10'000, 100'000, 1'000'000}) {
+    const BodiesPointer bodies = ring(n);
+    for (const double loss : {-1.0, 0.1}) {
+      const std::string of = (loss < 0 ? "sticky/cooling/" : "wet/cooling/") + std::to_string(n);
+      enter<Cradle>(of, "cradle", bodies, loss, 1000);
+      enter<Twin>(of, "conventional", bodies, loss, 1000);
+    }
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

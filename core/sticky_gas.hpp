@@ -1,0 +1,190 @@
+#pragma once
+// The sticky gas without events: its state at a time t follows from the initial data alone. Bodies that stick are those
+// whose free flights up to t would be out of order, averaged until they are not: from left to right, every body is
+// pushed with its mass M, moment S = m (x + v t) and momentum P = m v; while the cluster below lies at or beyond the
+// top one, S/M against S/M, the two are one. What remains are the clusters, at S/M with velocity P/M (the lower convex
+// hull of moment against mass; weighted isotonic regression). O(N), and less from one time to the next, since clusters
+// never part: they are the bodies of the next step.
+//
+// On a ring of circumference L the line must be cut between two clusters. Such a place is the least of
+//   F_k = S_k - (L/2M) M_k^2 - (S_N - L M/2) M_k/M,   M_k, S_k cumulative mass and moment, M = M_N,
+// found from its increments m [y - (L/M)(M_k + m/2) - (S_N/M - L/2)], y = x + v t: differences of terms of N^2 L would
+// not resolve it.
+//
+// Of incoming rows only what has been hit is held, and one body more on either side, which flies freely; so do all
+// beyond it, in order with it. They are taken in at both ends as long as the outermost cluster held is more than one
+// body.
+
+#include <algorithm>
+#include <deque>
+#include <memory>
+#include <utility>
+
+#include "cradle/core/configuration.hpp"
+#include "cradle/core/simulation.hpp"
+
+namespace cradle {
+
+template <Real T> class StickyGas {
+ public:
+  using Scalar = T;
+
+  StickyGas(std::shared_ptr<const Bodies<T>> bodies, const T& start)
+      : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), start_(start), time_(start) {
+    const GapRange moving = ring_ ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
+    for (BodyIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
+  }
+
+  // Goes on to the state at a time, not before the last one asked for: everything that meets by then has merged.
+  Status advance(const T& time) {
+    time_ = time;
+    elapsed_ = time - start_;
+    for (Lump& lump : held_) lump.x = place(lump);
+    if (ring_) cut();
+    std::deque<Lump> before = std::exchange(held_, {});
+    for (const Lump& lump : before) push_right(lump);
+    if (!ring_) take_in_rows();
+    return Status::reached;
+  }
+
+  const Counts& counts() const { return counts_; }
+  T energy_lost() const { return lost_.value(); }
+  T last_contact_time() const { return time_; }  // of the state that there is: contacts have no times here
+  const Account<T>& account() const { return account_; }
+  bool on_ring() const { return ring_; }
+
+  // ---- at the time advanced to
+  // Clusters from the outermost body that has collided to the other.
+  BodyIndex collided_bodies() const {
+    if (ring_) return static_cast<BodyIndex>(held_.size());
+    const auto [from, to] = collided();
+    return static_cast<BodyIndex>(to - from);
+  }
+  T front_left(const T&) const { return held_[collided().first].x; }
+  T front_right(const T&) const { return held_[collided().second - 1].x; }
+
+  // As that of a chain; a cluster goes by its heaviest body, of equal ones the one furthest left.
+  Configuration<T> configuration(const T&) const {
+    Configuration<T> c;
+    c.time = time_;
+    auto [from, to] = ring_ ? std::pair{std::size_t{0}, held_.size()} : collided();
+    const bool begun = from < to;
+    const std::size_t first = begun && from > 0 ? from - 1 : 0;
+    const std::size_t last = begun && to < held_.size() ? to + 1 : held_.size();
+    if (begun) c.collided_from = from - first, c.collided_to = to - first;
+    for (std::size_t j = first; j < last; ++j) {
+      c.index.push_back(held_[j].heaviest);
+      c.m.push_back(held_[j].mass);
+      c.x.push_back(held_[j].x);
+      c.v.push_back(velocity(held_[j]));
+    }
+    for (std::size_t j = 0; j + 1 < c.x.size(); ++j) {
+      c.gap.push_back(c.x[j + 1] - c.x[j]);
+      c.closing_speed.push_back(c.v[j] - c.v[j + 1]);
+    }
+    c.from = held_[first].first;
+    c.to = held_[last - 1].first + held_[last - 1].count - 1;
+    if (ring_) {
+      c.from = 0, c.to = bodies_->count() - 1;
+      c.gap.push_back(c.x.front() + (bodies_->circumference() - c.x.back()));
+      c.closing_speed.push_back(c.v.back() - c.v.front());
+      fold(c, bodies_->circumference());
+    }
+    return c;
+  }
+
+ private:
+  struct Lump {                   // bodies that stick together
+    T mass, moment, momentum, x;  // moment: at the start; x: at the time advanced to
+    BodyIndex first, count, heaviest;
+    T greatest;  // mass of the heaviest body
+  };
+
+  Lump single(BodyIndex b) const {
+    const T m = bodies_->mass(b);
+    Lump lump{m, m * bodies_->position(b), m * bodies_->velocity(b), T(0), b, 1, b, m};
+    lump.x = place(lump);
+    return lump;
+  }
+  T place(const Lump& c) const { return (c.moment + c.momentum * elapsed_) / c.mass; }
+  static T velocity(const Lump& c) { return c.momentum / c.mass; }
+
+  void push_right(Lump lump) {
+    for (; !held_.empty() && !(held_.back().x < lump.x); held_.pop_back()) lump = merged(held_.back(), lump);
+    held_.push_back(std::move(lump));
+  }
+  void push_left(Lump lump) {
+    for (; !held_.empty() && !(lump.x < held_.front().x); held_.pop_front()) lump = merged(lump, held_.front());
+    held_.push_front(std::move(lump));
+  }
+  Lump merged(const Lump& left, const Lump& right) {
+    const T mass = left.mass + right.mass, closing = velocity(left) - velocity(right);
+    lost_.add(left.mass * (right.mass / mass) * closing * closing / T(2));
+    ++counts_.merges;
+    ++counts_.contacts;
+    const Lump& name = left.greatest < right.greatest ? right : left;
+    Lump both{mass,
+              left.moment + right.moment,
+              left.momentum + right.momentum,
+              T(0),
+              left.first,
+              left.count + right.count,
+              name.heaviest,
+              name.greatest};
+    both.x = place(both);
+    return both;
+  }
+
+  // Half-open range of held lumps between the outermost that have collided.
+  std::pair<std::size_t, std::size_t> collided() const {
+    std::size_t from = 0, to = held_.size();
+    while (from < to && held_[from].count == 1) ++from;
+    while (to > from && held_[to - 1].count == 1) --to;
+    return {from, to};
+  }
+
+  void take_in_rows() {
+    for (bool more = true; more;) {
+      more = false;
+      const BodyIndex left = held_.front().first - 1, right = held_.back().first + held_.back().count;
+      const bool reaches_left = held_.front().count > 1 && left >= 0;
+      if (held_.back().count > 1 && right < bodies_->count()) push_right(single(right)), more = true;
+      if (reaches_left) push_left(single(left)), more = true;
+    }
+  }
+
+  // Turns the ring so that it is cut between two clusters.
+  void cut() {
+    CompensatedSum<T> mass_sum, moment_sum;
+    for (const Lump& lump : held_) {
+      mass_sum.add(lump.mass);
+      moment_sum.add(lump.mass * lump.x);
+    }
+    const T length = bodies_->circumference(), mass = mass_sum.value();
+    const T middle = moment_sum.value() / mass - length / T(2), per_mass = length / mass;
+    CompensatedSum<T> height;
+    T least(0), passed(0);
+    std::size_t lowest = 0;
+    for (std::size_t k = 0; k + 1 < held_.size(); ++k) {
+      const Lump& lump = held_[k];
+      height.add(lump.mass * (lump.x - per_mass * (passed + lump.mass / T(2)) - middle));
+      passed += lump.mass;
+      if (height.value() < least) least = height.value(), lowest = k + 1;
+    }
+    for (std::size_t k = 0; k < lowest; ++k) {
+      held_[k].moment += held_[k].mass * length;
+      held_[k].x += length;
+    }
+    std::rotate(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(lowest), held_.end());
+  }
+
+  std::shared_ptr<const Bodies<T>> bodies_;
+  bool ring_;
+  T start_, time_, elapsed_{0};
+  std::deque<Lump> held_;  // from left to right
+  Counts counts_;
+  Ledger<T> lost_;
+  Account<T> account_;  // of nothing: all is resolved
+};
+
+}  // namespace cradle

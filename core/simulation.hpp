@@ -68,6 +68,8 @@ template <Real T> class Ledger {
 
 template <Real T, class Law, class Chain> class Simulation {
  public:
+  using Scalar = T;
+
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits) {
@@ -116,6 +118,15 @@ template <Real T, class Law, class Chain> class Simulation {
 
   const Law& law() const { return law_; }
   const Chain& chain() const { return chain_; }
+  const Account<T>& account() const { return chain_.account(); }
+
+  // The state at a time not before the last contact made nor after the time advanced to.
+  Configuration<T> configuration(const T& time) const { return chain_.configuration(chain_.local_time(time)); }
+  bool on_ring() const { return chain_.on_ring(); }
+  BodyIndex collided_bodies() const { return chain_.collided_bodies(); }
+  T front_left(const T& time) const { return chain_.front_left(chain_.local_time(time)); }
+  T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
+
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
   T last_contact_time() const { return chain_.clock().time(last_contact_); }

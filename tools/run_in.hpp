@@ -11,6 +11,7 @@
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/observe/trace.hpp"
 #include "cradle/core/position_chain.hpp"
+#include "cradle/core/sticky_gas.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tools/interrupt.hpp"
 #include "cradle/tools/recorder.hpp"
@@ -99,7 +100,7 @@ template <Real T, class Simulation> class SceneRun {
     if (options_.trace) observer_ = [this](const Contact<T>& c) { trace_.contact(c.left, c.right); };
     Status status = Status::reached;
     for (const T& stop : plan_.stops) {
-      status = observer_ ? simulation_.advance(stop, observer_) : simulation_.advance(stop);
+      status = advance(stop);
       if (status != Status::reached) break;
       look(stop);
       progress_.tell(to_double(stop), simulation_.counts().contacts);
@@ -109,10 +110,19 @@ template <Real T, class Simulation> class SceneRun {
   }
 
  private:
+  // Others go from time to time without any.
+  static constexpr bool makes_contacts = requires(const Simulation& run) { run.chain(); };
+
   static bool take(const std::vector<T>& times, std::size_t& next, const T& time) {
     if (next >= times.size() || times[next] != time) return false;
     ++next;
     return true;
+  }
+
+  Status advance(const T& until) {
+    if constexpr (makes_contacts) return observer_ ? simulation_.advance(until, observer_) : simulation_.advance(until);
+    const Status status = simulation_.advance(until);
+    return noted_signal() == 0 ? status : Status::interrupted;
   }
 
   void look(const T& time) {
@@ -121,7 +131,7 @@ template <Real T, class Simulation> class SceneRun {
                profiled = take(plan_.profiles, next_profile_, time), masses = take(plan_.masses, next_masses_, time),
                zone = take(plan_.zone, next_zone_, time);
     if (!snapshot && !profiled && !masses && !zone) return;
-    const Configuration<T> now = simulation_.chain().configuration(simulation_.chain().local_time(time));
+    const Configuration<T> now = simulation_.configuration(time);
     if (snapshot) snapshots_.push_back(snapshot_table(now, numbered("snapshots", snapshots_.size())));
     if (profiled) record_profile(now, time);
     if (masses) masses_.push_back(masses_table(now, bodies_->least_mass(), numbered("masses", masses_.size())));
@@ -134,11 +144,8 @@ template <Real T, class Simulation> class SceneRun {
     BinRange range{to_double(now.x.front()), to_double(now.x.back())};
     if (!wanted.range.empty())
       range = {wanted.range[0].value, wanted.range[1].value};
-    else if (simulation_.chain().collided_bodies() > 1) {
-      const T local = simulation_.chain().local_time(time);
-      range = {to_double(T(simulation_.chain().front_left(local))),
-               to_double(T(simulation_.chain().front_right(local)))};
-    }
+    else if (simulation_.collided_bodies() > 0 && !simulation_.on_ring())
+      range = {to_double(simulation_.front_left(time)), to_double(simulation_.front_right(time))};
     if (!(range.from < range.to)) range.to = range.from + 1;  // all in one place: one length around it
     profiles_.push_back(
         profile_table(profile(now, *bodies_, elapsed, range, wanted.bins), numbered("profiles", profiles_.size())));
@@ -147,7 +154,7 @@ template <Real T, class Simulation> class SceneRun {
   void record_sample(const T& time) {
     const Sample<T> now = sample(simulation_, energy_, time);
     series_.add(now);
-    if (cloudy()) cloud_.add(cloud(simulation_.chain().configuration(simulation_.chain().local_time(time))));
+    if (cloudy()) cloud_.add(cloud(simulation_.configuration(time)));
     if (options_.trace)
       trace_samples_.push_back({to_double(time), trace_.digest(), now.counts.contacts, now.counts.merges,
                                 to_text(now.energy), now.front_right ? to_text(*now.front_right) : std::string()});
@@ -156,8 +163,7 @@ template <Real T, class Simulation> class SceneRun {
   // A run that ends early leaves its last state.
   void record_end(const T& time) {
     record_sample(time);
-    snapshots_.push_back(snapshot_table(simulation_.chain().configuration(simulation_.chain().local_time(time)),
-                                        numbered("snapshots", snapshots_.size())));
+    snapshots_.push_back(snapshot_table(simulation_.configuration(time), numbered("snapshots", snapshots_.size())));
   }
 
   // Bodies that merge on a line make two heavy clusters; on a ring none are like them.
@@ -168,7 +174,7 @@ template <Real T, class Simulation> class SceneRun {
   }
 
   RunOutcome finish(Status status) {
-    const auto& account = simulation_.chain().account();
+    const auto& account = simulation_.account();
     const Counts& counts = simulation_.counts();
     RunOutcome end;
     end.contacts = counts.contacts;
@@ -182,7 +188,7 @@ template <Real T, class Simulation> class SceneRun {
       break;
     case Status::collapsed:
       outcome = "inelastic collapse", end.status = Exit::collapse;
-      end.report = collapse_report(simulation_.collapse(), counts);
+      if constexpr (makes_contacts) end.report = collapse_report(simulation_.collapse(), counts);
       break;
     case Status::exhausted:
       outcome = "resolution exhausted", end.status = Exit::lost;
@@ -214,10 +220,11 @@ template <Real T, class Simulation> class SceneRun {
       end.result.groups.push_back(zone_table(*zone_, scene_.output.zone.bins, scene_.initial.speed.value,
                                              scene_.output.zone.from->value, scene_.run.until.value));
     if (scene_.output.events) end.result.groups.push_back(std::move(events_).table());
-    if (status == Status::collapsed) {
-      end.result.groups.push_back(collapse_table());
-      end.collapse_time = to_text(T(simulation_.collapse().time.value()));
-    }
+    if constexpr (makes_contacts)
+      if (status == Status::collapsed) {
+        end.result.groups.push_back(collapse_table());
+        end.collapse_time = to_text(T(simulation_.collapse().time.value()));
+      }
     end.trace = std::move(trace_samples_);
     return end;
   }
@@ -280,6 +287,10 @@ template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& optio
   if (scene.law.type == LawType::wet)
     return run_on<T>(scene, bodies, Wet<T>(number<T>(scene.law.loss)), ClusterChain<T>(bodies, start), options,
                      progress);
+  if (scene.law.type == LawType::sticky && !scene.output.events && !options.trace) {
+    using Gas = StickyGas<T>;  // where nobody asks for contacts none need be made
+    return SceneRun<T, Gas>(scene, bodies, Gas(bodies, start), options, progress)();
+  }
   if (scene.law.type == LawType::sticky || scene.run.collapse == CollapsePolicy::merge) {
     const bool sticky = scene.law.type == LawType::sticky;
     const InelasticMerging<T> law(Inelastic<T>(sticky ? T(0) : number<T>(scene.law.restitution)),

@@ -18,16 +18,13 @@ template <Real T> struct Sample {
   std::optional<T> front_left, front_right;  // where those are; none before the first contact, nor on a ring
 };
 
-// `time` must not be before the last contact made nor after the time the run was advanced to.
-template <Real T, class Law, class Chain>
-Sample<T> sample(const Simulation<T, Law, Chain>& run, const T& initial_energy, const T& time) {
-  const Chain& chain = run.chain();
-  Sample<T> s{time, initial_energy - run.energy_lost(), run.energy_lost(), run.counts(), chain.collided_bodies(), {},
-              {}};
-  if (s.bodies > 0 && !chain.on_ring()) {
-    const T local = chain.local_time(time);
-    s.front_left = chain.front_left(local);
-    s.front_right = chain.front_right(local);
+// Of a Simulation or a StickyGas. `time` must not be before the last contact made nor after the time advanced to.
+template <class Run, Real T = typename Run::Scalar>
+Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
+  Sample<T> s{time, initial_energy - run.energy_lost(), run.energy_lost(), run.counts(), run.collided_bodies(), {}, {}};
+  if (s.bodies > 0 && !run.on_ring()) {
+    s.front_left = run.front_left(time);
+    s.front_right = run.front_right(time);
   }
   return s;
 }

@@ -11,6 +11,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/sample.hpp"
+#include "cradle/core/observe/scenario.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tools/result.hpp"
 
@@ -122,6 +123,20 @@ inline Group zone_table(const ZoneAverage& zone, std::size_t bins, double speed,
                    {"density_left", "1/l", "left-moving single bodies per length", zone.density_left()},
                    {"velocity_left", "l/t", "their mean velocity", zone.velocity_left()}};
   return group;
+}
+
+inline std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& s) {
+  const bool met = s.passes + s.sticks > 0;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  return {{"pair_established", s.established},
+          {"first_meeting", s.first_meeting},
+          {"first_passed", met ? double(s.first_passed) : none},
+          {"passes", static_cast<double>(s.passes)},
+          {"sticks", static_cast<double>(s.sticks)},
+          {"role_changes", static_cast<double>(s.role_changes)},
+          {"regime", static_cast<double>(s.regime)},
+          {"separation_exponent", s.separation_exponent},
+          {"speed_exponent", s.speed_exponent}};
 }
 
 template <Real T> std::vector<double> as_doubles(const std::vector<T>& values) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cradle/tools/errors.hpp"
@@ -31,7 +32,10 @@ struct RunOutcome {
   std::string report;   // of a collapse, for standard output; else empty
   std::string warning;  // what was not resolved, for standard error; else empty
   std::vector<TraceSample> trace;
-  std::string collapse_time;  // where the run stopped at a collapse
+  std::string collapse_time;               // where the run stopped at a collapse
+  std::uint64_t contacts = 0, merges = 0;  // at the end, as is the energy
+  double energy = 0;
+  std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
 };
 
 /// "double", "mpfr, 50 digits", ...

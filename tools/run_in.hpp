@@ -97,6 +97,11 @@ template <Real T, class Simulation> class SceneRun {
 
   RunOutcome operator()() {
     if (scene_.output.events) observer_ = [this](const Contact<T>& c) { events_(c); };
+    if (scene_.output.scenario)
+      observer_ = [this, record = std::move(observer_)](const Contact<T>& c) {
+        if (record) record(c);
+        scenario_.contact(c.left, c.right, to_double(T(c.time.value())), simulation_.counts().merges);
+      };
     if (options_.trace) observer_ = [this](const Contact<T>& c) { trace_.contact(c.left, c.right); };
     Status status = Status::reached;
     for (const T& stop : plan_.stops) {
@@ -154,7 +159,12 @@ template <Real T, class Simulation> class SceneRun {
   void record_sample(const T& time) {
     const Sample<T> now = sample(simulation_, energy_, time);
     series_.add(now);
-    if (cloudy()) cloud_.add(cloud(simulation_.configuration(time)));
+    if (cloudy()) {
+      const Cloud<T> seen = cloud(simulation_.configuration(time));
+      cloud_.add(seen);
+      if (scene_.output.scenario)
+        scenario_.look(seen, to_double(T(time - number<T>(scene_.run.start))), simulation_.counts().merges);
+    }
     if (options_.trace)
       trace_samples_.push_back({to_double(time), trace_.digest(), now.counts.contacts, now.counts.merges,
                                 to_text(now.energy), now.front_right ? to_text(*now.front_right) : std::string()});
@@ -216,9 +226,17 @@ template <Real T, class Simulation> class SceneRun {
     if (cloudy()) end.result.groups.push_back(std::move(cloud_).table(end.result.groups.back()));
     for (auto* groups : {&snapshots_, &profiles_, &masses_})
       for (auto& group : *groups) end.result.groups.push_back(std::move(group));
-    if (zone_)
+    if (zone_) {
       end.result.groups.push_back(zone_table(*zone_, scene_.output.zone.bins, scene_.initial.speed.value,
                                              scene_.output.zone.from->value, scene_.run.until.value));
+      const ZoneWidth width = zone_->width(scene_.initial.speed.value);
+      end.summary.insert(end.summary.end(), {{"zone_width", width.width}, {"zone_width_error", width.error}});
+    }
+    if (scene_.output.scenario) {
+      const auto numbers = scenario_numbers(scenario_.result(counts.merges));
+      end.result.groups.push_back({"scenario", {numbers.begin(), numbers.end()}, {}});
+      end.summary.insert(end.summary.end(), numbers.begin(), numbers.end());
+    }
     if (scene_.output.events) end.result.groups.push_back(std::move(events_).table());
     if constexpr (makes_contacts)
       if (status == Status::collapsed) {
@@ -253,6 +271,7 @@ template <Real T, class Simulation> class SceneRun {
   SeriesRecorder<T> series_;
   CloudRecorder<T> cloud_;
   std::optional<ZoneAverage> zone_;
+  ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Trace trace_;
   std::vector<TraceSample> trace_samples_;

@@ -20,12 +20,13 @@ namespace cradle::tools {
 
 // The enumerators stand in the order of the names in the table of fields.
 enum class LawType { inelastic, wet, sticky };
-enum class InitialType { rows, ring, list };
+enum class InitialType { rows, ring, list, clusters };
 enum class Velocities { gaussian, uniform };
 enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
 enum class Coordinates { gaps, absolute };
 enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Spacing { linear, log };
+enum class Meeting { energy, pass, stick };
 
 struct Law {
   LawType type = LawType::inelastic;
@@ -53,8 +54,8 @@ struct Centre {
 struct Initial {
   InitialType type = InitialType::rows;
   std::uint64_t particles = 0;  // rows (both together), ring
-  Decimal speed;                // rows: left row +speed, right row -speed
-  Decimal spacing;              // rows
+  Decimal speed;                // rows: left row +speed, right row -speed; clusters: of the rows that feed them
+  Decimal spacing;              // rows, clusters
   Row left, right;              // rows given as tables: see general_rows()
   Centre centre;
   Decimal perturbation;  // rows, ring: uniform in plus/minus this times the spacing
@@ -62,7 +63,9 @@ struct Initial {
   Velocities velocities = Velocities::gaussian;
   Decimal variance;                 // ring
   std::optional<std::string> file;  // list: relative to Scene::folder
-  std::vector<Decimal> x, v, m;     // list written in the scene itself; m empty: all 1
+  std::vector<Decimal> x, v, m;     // list written in the scene itself; m empty: all 1. clusters: two x, two v
+  std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
+  Meeting meeting = Meeting::energy;
   std::uint64_t seed = 0;
   std::uint64_t replica = 0;
 
@@ -116,6 +119,7 @@ struct Output {
   Profiles profiles;
   std::vector<Decimal> masses;  // times at which the distribution of masses is written
   Zone zone;
+  bool scenario = false;    // wet rows: which of the two scenarios of Fig. 9
   Decimal checkpoint_every;  // seconds of wall clock; 0: no checkpoints
   bool events = false;
   bool operator==(const Output&) const = default;

@@ -39,6 +39,9 @@ constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"",
 constexpr When list{other_state, "initial.type", "initial.type = \"list\"",
                     [](const Scene& s) { return s.initial.type == InitialType::list; }};
 
+constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"",
+                        [](const Scene& s) { return s.initial.type == InitialType::clusters; }};
+
 constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
                     [](const Scene& s) { return s.run.precision == Precision::mpfr; }};
 
@@ -85,7 +88,7 @@ const Field table[] = {
     {"law.loss", law_of<&Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
      "energy E_loss that rupturing a liquid bridge takes; slower pairs merge"},
 
-    {"initial.type", initial_type, "", "required", "rows | ring | list", &always,
+    {"initial.type", initial_type, "", "required", "rows | ring | list | clusters", &always,
      "which bodies there are at the start"},
     {"initial.left.particles", initial_of<&Initial::left, &Row::particles>, "", "required", "[1, 1e15]", &general_rows,
      "bodies of the left row, each of mass 1"},
@@ -123,6 +126,17 @@ const Field table[] = {
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
     {"initial.v", initial_of<&Initial::v>, "l/t", "", any, &list, "velocities; instead of a file"},
     {"initial.m", initial_of<&Initial::m>, "m", "", "(0, inf)", &list, "masses, 1 where not given; instead of a file"},
+    {"initial.speed", initial_of<&Initial::speed>, "l/t", "0.5", "(0, inf)", &clusters,
+     "u0: speed of the rows that come in from both sides"},
+    {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &clusters,
+     "distance between neighbours in the rows that come in"},
+    {"initial.x", initial_of<&Initial::x>, "l", "required", any, &clusters,
+     "positions of the two clusters, the left one first"},
+    {"initial.v", initial_of<&Initial::v>, "l/t", "[0, 0]", any, &clusters, "velocities of the two clusters"},
+    {"initial.growth", initial_of<&Initial::growth>, "", "[0.5, 0.5]", "[0, 1]", &clusters,
+     "share of the incoming mass that each cluster takes up: its mass is 1 + 2 share u0 t / l"},
+    {"initial.meeting", initial_of<&Initial::meeting>, "", "\"energy\"", "energy | pass | stick", &clusters,
+     "what clusters do that meet: as their energy and the wet law have it, pass freely, or stick"},
     {"initial.seed", initial_of<&Initial::seed>, "", "1", "[0, 18446744073709551615]", &always,
      "seed of all random numbers"},
     {"initial.replica", initial_of<&Initial::replica>, "", "0", "[0, 18446744073709551615]", &always,
@@ -170,6 +184,9 @@ const Field table[] = {
      "number of bins of the average over the zone"},
     {"output.zone.reach", output_of<&Output::zone, &Zone::reach>, "l", "", "(0, inf)", &wet_shock,
      "how far the bins go to either side; without it, three times the L of equation (13)"},
+    {"output.scenario", output_of<&Output::scenario>, "", "false", "", &wet_shock,
+     "watch whether the two heaviest clusters pass or stick; wants a series with spacing = \"log\", 100 points a "
+     "decade"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint_every>, "s", "60", "[0, inf)", &always,
      "wall-clock time between checkpoints, 0: none; never changes the result"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every contact"},

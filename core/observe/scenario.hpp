@@ -1,0 +1,116 @@
+#pragma once
+// Which of the paper's two scenarios a wet shock takes (section VI, Fig. 9): whether the two heaviest clusters, when
+// they meet, pass through each other and go on oscillating, or stick, upon which another cluster becomes the second
+// one. Told of every contact and of the cloud now and then.
+//
+//   pair          the two heaviest clusters; established at the first look at which they hold more than half of the
+//                 mass that has collided, at least ten bodies each
+//   meeting       a contact of the pair, as it was at the last look, once established: a pass or a stick
+//   role change   at a look, the pair is not made of the same two clusters as at the look before
+//   regime        apart: not met yet since the pair is what it is; through: the last meeting was a pass; stuck: the
+//                 last meeting was a stick
+//   exponents     of time, fitted to the largest separation and the largest speed of the pair in each third of a
+//                 decade, from where the pair is established, least squares in the logarithms; at least four of them
+//                 (theory: (17), 1/3 and -1/3)
+// Looks should be spread evenly in the logarithm of time, a hundred per decade or more.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "cradle/core/observe/clusters.hpp"
+
+namespace cradle {
+
+struct Scenario {
+  enum class Regime { none, apart, through, stuck };  // none: no pair yet
+
+  double established = std::numeric_limits<double>::quiet_NaN();    // time
+  double first_meeting = std::numeric_limits<double>::quiet_NaN();  // time; NaN: none
+  bool first_passed = false;                                        // if there was one
+  std::uint64_t passes = 0, sticks = 0, role_changes = 0;
+  Regime regime = Regime::none;
+  double separation_exponent = std::numeric_limits<double>::quiet_NaN();
+  double speed_exponent = std::numeric_limits<double>::quiet_NaN();
+};
+
+class ScenarioWatch {
+ public:
+  // Before a contact of the bodies that go by these numbers, of which `merges` were before.
+  void contact(BodyIndex left, BodyIndex right, double time, std::uint64_t merges) {
+    settle(merges);
+    if (!pair_ ||
+        std::minmax(left, right) != std::pair<const BodyIndex&, const BodyIndex&>(pair_->first, pair_->second))
+      return;
+    meeting_ = {time, merges};
+  }
+
+  // A look at a time after the start, all contacts up to it being made.
+  template <Real T> void look(const Cloud<T>& cloud, double time, std::uint64_t merges) {
+    settle(merges);
+    if (!cloud.left || !cloud.right) return;
+    const double left = to_double(cloud.left->mass), right = to_double(cloud.right->mass);
+    if (!pair_ && !(2 * (left + right) > to_double(cloud.mass) && left >= 10 && right >= 10)) return;
+    const std::pair<BodyIndex, BodyIndex> now = std::minmax(cloud.left->index, cloud.right->index);
+    if (!pair_) {
+      found_.established = time;
+      found_.regime = Scenario::Regime::apart;
+    } else if (*pair_ != now) {
+      ++found_.role_changes;
+      if (found_.regime == Scenario::Regime::through) found_.regime = Scenario::Regime::apart;
+    }
+    pair_ = now;
+    auto& [separation, speed] = largest_[static_cast<int>(std::floor(3 * std::log10(time)))];
+    separation = std::max(separation, to_double(T(cloud.right->x - cloud.left->x)));
+    speed = std::max({speed, std::abs(to_double(cloud.left->v)), std::abs(to_double(cloud.right->v))});
+  }
+
+  // With all contacts made, of which so many were merges.
+  Scenario result(std::uint64_t merges) {
+    settle(merges);
+    found_.separation_exponent = exponent([](const auto& largest) { return largest.first; });
+    found_.speed_exponent = exponent([](const auto& largest) { return largest.second; });
+    return found_;
+  }
+
+ private:
+  struct Meeting {
+    double time;
+    std::uint64_t merges_before;
+  };
+
+  // What became of the last meeting shows in the number of merges when the next contact comes.
+  void settle(std::uint64_t merges) {
+    if (!meeting_) return;
+    const bool passed = merges == meeting_->merges_before;
+    if (found_.passes + found_.sticks == 0) {
+      found_.first_meeting = meeting_->time;
+      found_.first_passed = passed;
+    }
+    ++(passed ? found_.passes : found_.sticks);
+    found_.regime = passed ? Scenario::Regime::through : Scenario::Regime::stuck;
+    meeting_.reset();
+  }
+
+  // Of the bins between the first and the last one, which are not filled.
+  template <class Of> double exponent(Of of) const {
+    if (largest_.size() < 6) return std::numeric_limits<double>::quiet_NaN();
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (auto bin = std::next(largest_.begin()); std::next(bin) != largest_.end(); ++bin) {
+      const double at = (bin->first + 0.5) / 3, height = std::log10(of(bin->second));
+      n += 1, x += at, y += height, xx += at * at, xy += at * height;
+    }
+    return (n * xy - x * y) / (n * xx - x * x);
+  }
+
+  std::optional<std::pair<BodyIndex, BodyIndex>> pair_;  // the lower number first
+  std::optional<Meeting> meeting_;                       // not settled yet
+  std::map<int, std::pair<double, double>> largest_;     // separation and speed, by thirds of a decade
+  Scenario found_;
+};
+
+}  // namespace cradle

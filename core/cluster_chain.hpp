@@ -32,6 +32,7 @@ template <Real T> class ClusterChain {
  public:
   using Scalar = T;
   static constexpr bool keys_are_exact = std::same_as<T, double>;
+  static constexpr bool may_collapse = false;
 
   // Holds the bodies at the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every
   // body.
@@ -107,9 +108,9 @@ template <Real T> class ClusterChain {
       beyond = s;
     } else {
       l.gap = opened;
-      if (!behind) l.time = time;
       if (is_negative(l.time)) [[unlikely]]
         lag_[s] = T(0);
+      if (!behind) l.time = time;
       const bool pass = outcome.event == Event::pass;
       l.velocity = pass ? sped : slowed;
       r.velocity = pass ? slowed : sped;

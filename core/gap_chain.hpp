@@ -65,6 +65,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
  public:
   using Scalar = T;
   static constexpr bool keys_are_exact = std::same_as<T, double>;
+  static constexpr bool may_collapse = true;
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
   // start.
@@ -275,6 +276,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
                                              Notice notice) {
     Gap<T>& pair = gaps_[s];
     notice |= short_flight(time, pair.time);
+    if (is_negative(pair.time)) [[unlikely]]
+      lag_[s] = T(0);
     if (time < pair.time) [[unlikely]]  // a gap's local time never goes back
       pair.gap = -outcome.closing * (pair.time - time);
     else {
@@ -282,8 +285,6 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       pair.time = time;
     }
     pair.closing = outcome.closing;
-    if (is_negative(pair.time)) [[unlikely]]
-      lag_[s] = T(0);
     if constexpr (keys_are_exact) pair.due = EventQueue::never;
 
     notice |= kick(p, time, outcome.to_left);

@@ -19,6 +19,7 @@ template <Real T> class PositionChain {
  public:
   using Scalar = T;
   static constexpr bool keys_are_exact = false;
+  static constexpr bool may_collapse = true;
 
   PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start) : start_(start), origin_(start) {
     for (BodyIndex b = 0; b < bodies->count(); ++b)

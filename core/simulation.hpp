@@ -197,27 +197,32 @@ template <Real T, class Law, class Chain> class Simulation {
     const auto active = static_cast<std::uint64_t>(chain_.collided_bodies());
     // Many bodies may meet at one time, n(n - 1)/2 contacts if elastic; more than that, and time stands still.
     if (counts_.contacts - progress_ > 64 + 4 * active * active) return Status::exhausted;
-    if (time_to_move(time, notice, active)) {
+    const bool moved = time_to_move(time, notice, active);
+    if (moved) {
       move_origin(time);
       if (policy_.progress) policy_.progress(chain_.clock().time(reviewed_), counts_);
       if (status == Status::reached && policy_.interrupt && policy_.interrupt()) status = Status::interrupted;
     } else {
       reviewed_ = time;
     }
-    last_review_ = counts_.contacts;
-    next_review_ = counts_.contacts + std::min(32 * active + 16, active * active / 8 + 1);
+    if (moved || counts_.contacts >= next_review_) {
+      paced_ = moved ? reviewed_ : time;
+      last_pace_ = counts_.contacts;
+      next_review_ = counts_.contacts + std::min(32 * active + 16, active * active / 8 + 1);
+    }
     return status;
   }
 
-  // A move of the origin costs as much as a few contacts per gap: rare in a large zone, with every second contact where
-  // a few-body collapse is to be followed, and in between where contacts come ever faster.
+  // A move of the origin costs as much as a few contacts per gap: rare in a large zone, with every second contact in a
+  // few-body collapse. Bodies that merge do not collapse: there the origin moves only where contacts come ever faster.
+  // (Looked at when due, never when the chain asks for room: that depends on what is streamed.)
   bool time_to_move(const T& time, Notice notice, std::uint64_t active) const {
-    const std::uint64_t since_move = counts_.contacts - last_move_, since_review = counts_.contacts - last_review_;
+    const std::uint64_t since_move = counts_.contacts - last_move_;
     if ((notice & notice::pressing) || ((notice & notice::crowded) && 16 * since_move >= active)) return true;
     if (counts_.contacts < next_review_) return false;
-    if (since_move >= 32 * active + 16 || (active <= 4 && policy_.collapse == CollapsePolicy::stop)) return true;
-    return T(static_cast<std::int64_t>(2 * since_move)) * (time - reviewed_) <
-           T(static_cast<std::int64_t>(since_review)) * time;
+    if (Chain::may_collapse || since_move >= 32 * active + 16) return true;
+    return T(static_cast<std::int64_t>(2 * since_move)) * (time - paced_) <
+           T(static_cast<std::int64_t>(counts_.contacts - last_pace_)) * time;
   }
 
   void move_origin(const T& time) {
@@ -248,7 +253,9 @@ template <Real T, class Law, class Chain> class Simulation {
   EventQueue queue_;
   Counts counts_;
   Ledger<T> lost_;
-  std::uint64_t next_review_ = 1, last_review_ = 0, last_move_ = 0;
+  std::uint64_t next_review_ = 1, last_move_ = 0;
+  T paced_{0};  // local time and contacts when it was last looked how fast they come
+  std::uint64_t last_pace_ = 0;
   std::uint64_t progress_ = 0;  // contacts made when time was last seen to advance
   T reviewed_{0};               // local time at the last review
   T last_contact_{0};           // local times of the last contact: at the last review, and as observed

@@ -109,12 +109,16 @@ template <Real T> class StickyGas {
   T place(const Lump& c) const { return (c.moment + c.momentum * elapsed_) / c.mass; }
   static T velocity(const Lump& c) { return c.momentum / c.mass; }
 
+  // Bodies of equal velocity never meet, whatever rounding makes of their places far away.
+  static bool met(const Lump& left, const Lump& right) {
+    return !(left.x < right.x) && velocity(right) < velocity(left);
+  }
   void push_right(Lump lump) {
-    for (; !held_.empty() && !(held_.back().x < lump.x); held_.pop_back()) lump = merged(held_.back(), lump);
+    for (; !held_.empty() && met(held_.back(), lump); held_.pop_back()) lump = merged(held_.back(), lump);
     held_.push_back(std::move(lump));
   }
   void push_left(Lump lump) {
-    for (; !held_.empty() && !(lump.x < held_.front().x); held_.pop_front()) lump = merged(lump, held_.front());
+    for (; !held_.empty() && met(lump, held_.front()); held_.pop_front()) lump = merged(lump, held_.front());
     held_.push_front(std::move(lump));
   }
   Lump merged(const Lump& left, const Lump& right) {

@@ -2,13 +2,17 @@
 // The interaction zone of a late wet shock, averaged over time: number density n± and mean speed u± of the single
 // bodies (of the rows' mass, not merged yet) that still move the way their row came, right-movers + and left-movers -,
 // in bins; and the width 2L of the zone from the slope of u+. The paper's linear model (section VI, Fig. 7) lets u+
-// fall linearly over the length 2L; its relation (13) counts the fall from u0 to 0. So, by definition here,
+// fall linearly from u0 to u_crit over the length 2L (9). So, by definition here,
 //
-//   2L = u0 / |slope|,   slope = (u0/2)/(x_{1/4} - x_{3/4}),   u+(x_q) = q u0,
+//   2L = (u0 - u_crit)/|slope|,   |slope| = (u0/2)/(x_{1/4} - x_{3/4}),   u+(x_q) = q u0,
 //
-// from both sorts of movers, left-movers mirrored. Its error is the standard error over parts of the time.
+// from both sorts of movers, left-movers mirrored. The zone wanders with the heavy clusters, which smears a long
+// average: 2L is the median over parts of the time, its error 1.253 standard errors of their scatter (1.483 median
+// deviations), as for the median of Gaussian numbers. Counting the fall from u0 to 0, as (13) does, gives u0/(u0 -
+// u_crit) times as much: what the width is depends on the definition by that factor.
 // Sampling and units: those of the scene; float64.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -21,19 +25,19 @@
 namespace cradle {
 
 struct ZoneWidth {
-  double width, error;  // 2L and its standard error; NaN where u+ does not fall through 3/4 and 1/4 of u0
+  double width, error;  // 2L and its standard error; NaN where u+ does not fall through 3/4 and 1/4 of u0 in most parts
 };
 
 class ZoneAverage {
  public:
-  static constexpr std::size_t parts = 8;
+  static constexpr std::size_t parts = 16;
 
   // `samples` are to come, over a range around the centre of the shock that is mirror-symmetric: -reach to reach.
   // Throws std::invalid_argument for fewer samples than parts or a reach that is not positive.
   ZoneAverage(double reach, std::size_t bins, std::size_t samples, double row_mass)
       : reach_(reach), bins_(bins), samples_(samples), row_mass_(row_mass), part_(parts, Part(bins)) {
     if (!(reach > 0) || bins < 4 || samples < parts)
-      throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 8 samples at least");
+      throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 16 samples at least");
   }
 
   template <Real T> void add(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed) {
@@ -58,17 +62,16 @@ class ZoneAverage {
   std::vector<double> velocity_right() const { return quotient(&Part::right_speed, &Part::right); }
   std::vector<double> velocity_left() const { return quotient(&Part::left_speed, &Part::left); }
 
-  ZoneWidth width(double speed) const {
-    std::vector<const Part*> all;
-    double sum = 0, squares = 0, count = 0;
-    for (const Part& part : part_) {
-      all.push_back(&part);
-      if (const auto width = width_of({&part}, speed)) sum += *width, squares += *width * *width, count += 1;
-    }
+  // For rows at `speed` whose bodies stick below the closing speed `critical`.
+  ZoneWidth width(double speed, double critical) const {
+    std::vector<double> widths;
+    for (const Part& part : part_)
+      if (const auto fall = half_fall(part, speed)) widths.push_back(2 * *fall * (1 - critical / speed));
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const auto width = width_of(all, speed);
-    if (!width || count < 2) return {width.value_or(none), none};
-    return {*width, std::sqrt(std::max(0.0, squares - sum * sum / count) / (count * (count - 1)))};
+    if (2 * widths.size() <= parts) return {none, none};
+    const double middle = median(widths), n = static_cast<double>(widths.size());
+    for (double& width : widths) width = std::abs(width - middle);
+    return {middle, 1.253 * 1.483 * median(widths) / std::sqrt(n)};
   }
 
  private:
@@ -98,18 +101,21 @@ class ZoneAverage {
     return mean;
   }
 
-  // Where u+ falls through 3/4 and through 1/4 of u0, between the centres of two bins.
-  std::optional<double> width_of(const std::vector<const Part*>& some, double speed) const {
+  static double median(std::vector<double>& values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+  }
+
+  // How far it is from where u+ falls through 3/4 of u0 to where it falls through 1/4, between the centres of bins.
+  std::optional<double> half_fall(const Part& part, double speed) const {
     std::array<double, 2> crossing{};
     std::size_t found = 0;
     double before = speed, x_before = -reach_;
     for (std::size_t bin = 0; bin < bins_ && found < 2; ++bin) {
-      double speeds = 0, movers = 0;
-      for (const Part* part : some) {
-        const std::size_t mirrored = bins_ - 1 - bin;
-        speeds += part->right_speed[bin] - part->left_speed[mirrored];
-        movers += part->right[bin] + part->left[mirrored];
-      }
+      const std::size_t mirrored = bins_ - 1 - bin;
+      const double speeds = part.right_speed[bin] - part.left_speed[mirrored];
+      const double movers = part.right[bin] + part.left[mirrored];
       if (!(movers > 0)) continue;
       const double u = speeds / movers, x = centre(bin);
       while (found < 2 && u < speed * (found == 0 ? 0.75 : 0.25)) {
@@ -120,7 +126,7 @@ class ZoneAverage {
       x_before = x;
     }
     if (found < 2) return std::nullopt;
-    return 2 * (crossing[1] - crossing[0]);
+    return crossing[1] - crossing[0];
   }
 
   double reach_;

@@ -54,7 +54,8 @@ template <class T> T initial_energy(const WetShock<T>& shock) {
   return T(detail::from_count<T>(shock.particles) * shock.mass * shock.speed * shock.speed / T(2));
 }
 
-/// What each of two single bodies closing at w > w_c loses of its speed, (w - sqrt(w^2 - w_c^2))/2 = e/w_next.
+/// What each of two single bodies closing at w > w_c loses of its speed, (w - w')/2 = 2e/(w + w'), w' = sqrt(w^2 -
+/// w_c^2).
 template <class T> T speed_lost(const T& specific_loss, const T& w, const T& critical) {
   using std::sqrt;
   return T(T(2) * specific_loss / (w + sqrt(T((w - critical) * (w + critical)))));

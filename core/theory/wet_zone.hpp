@@ -2,8 +2,8 @@
 // critical speed u_crit, and the force it exerts on a heavy cluster. "Dry and wet granular shock waves", section VI,
 // equations (9) to (15), corrected. n0 = 1/l; k = n~/n0, the excess of density in the zone.
 //   (9)  u_+ = -a x + b, a = (u0 - u_crit)/2L, b = (u0 + u_crit)/2        (10) n_+ = n0 (1 + k/2 + k x/2L)
-//   (12) energy balance (11): L = m u0^2/[2 E_loss n0 (k^2/6 + k + 1)]    (13) slowing down: L = m u0^2/[2 E_loss n0
-//   (2+k)]
+//   (12) energy balance (11): L = m u0^2/[2 E_loss n0 (k^2/6 + k + 1)]
+//   (13) slowing down of one body: L = m u0^2/[2 E_loss n0 (2 + k)]
 // so that k^2/6 + k + 1 = 2 + k, k = sqrt 6. Left-movers are the mirror image.
 // A body that runs into a much heavier cluster (reduced mass m) at speed v leaves it on the other side with
 // sqrt(v^2 - v_c^2), v_c = sqrt(2 E_loss/m), or sticks, and hands over the momentum it loses; the printed form lacks
@@ -19,7 +19,7 @@
 
 namespace cradle::theory {
 
-/// Length scale m u0^2/(2 E_loss n0): how far a body gets through a row at rest.
+/// m u0^2/(2 E_loss n0), the length over which as many bodies stand as their losses take to use up m u0^2/2.
 template <class T> T stopping_length(const WetShock<T>& shock) {
   return T(shock.mass * shock.speed * shock.speed * shock.spacing / (T(2) * shock.loss));
 }

@@ -87,8 +87,9 @@ TEST(Zone, WidthOfALinearFall) {
     }
     zone.add(c, nobody, 0.0);
   }
-  EXPECT_NEAR(zone.width(0.5).width, 4, 1e-12);
-  EXPECT_NEAR(zone.width(0.5).error, 0, 1e-12);
+  EXPECT_NEAR(zone.width(0.5, 0).width, 4, 1e-12);
+  EXPECT_NEAR(zone.width(0.5, 0).error, 0, 1e-12);
+  EXPECT_NEAR(zone.width(0.5, 0.1).width, 4 * 0.8, 1e-12);  // u0 to u_crit only
   EXPECT_DOUBLE_EQ(zone.density_right()[0], 4);
   EXPECT_DOUBLE_EQ(zone.velocity_right()[0], 0.5);
   EXPECT_DOUBLE_EQ(zone.mass_density()[0], 4 * 51);
@@ -98,15 +99,15 @@ TEST(Zone, WidthOfALinearFall) {
 TEST(Zone, NoWidthWithoutAFall) {
   const auto rows = std::make_shared<Rows<double>>(symmetric_rows(200, 0.5, 1.0, test::rshock_displacement));
   Simulation run(Wet<double>{0.0}, ClusterChain<double>(rows, 0.0));
-  ZoneAverage zone(10, 20, 8, 1);
-  for (int k = 1; k <= 8; ++k) {
-    ASSERT_EQ(run.advance(5.0 + k), Status::reached);
-    zone.add(run.chain().configuration(run.chain().local_time(5.0 + k)), *rows, 5.0 + k);
+  ZoneAverage zone(10, 20, 16, 1);
+  for (int k = 1; k <= 16; ++k) {
+    ASSERT_EQ(run.advance(5.0 + k / 2.0), Status::reached);
+    zone.add(run.chain().configuration(run.chain().local_time(5.0 + k / 2.0)), *rows, 5.0 + k / 2.0);
   }
-  EXPECT_TRUE(std::isnan(zone.width(0.5).width));
+  EXPECT_TRUE(std::isnan(zone.width(0.5, 0).width));
   EXPECT_NEAR(zone.velocity_right()[0], 0.5, 1e-12);
-  EXPECT_NEAR(zone.density_right()[3], 1, 0.13);  // one per length, 8 samples of one bin
-  EXPECT_THROW(ZoneAverage(0, 20, 8, 1), std::invalid_argument);
+  EXPECT_NEAR(zone.density_right()[3], 1, 0.13);  // one per length, 16 samples of one bin
+  EXPECT_THROW(ZoneAverage(0, 20, 16, 1), std::invalid_argument);
 }
 
 }  // namespace

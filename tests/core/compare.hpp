@@ -12,8 +12,9 @@
 namespace cradle::test {
 
 template <class T> bool identical(const Configuration<T>& a, const Configuration<T>& b) {
-  return a.time == b.time && a.from == b.from && a.to == b.to && a.index == b.index && a.x == b.x && a.v == b.v &&
-         a.m == b.m && a.gap == b.gap && a.closing_speed == b.closing_speed && a.closure_gap == b.closure_gap &&
+  return a.time == b.time && a.from == b.from && a.to == b.to && a.collided_from == b.collided_from &&
+         a.collided_to == b.collided_to && a.index == b.index && a.x == b.x && a.v == b.v && a.m == b.m &&
+         a.gap == b.gap && a.closing_speed == b.closing_speed && a.closure_gap == b.closure_gap &&
          a.closure_speed == b.closure_speed;
 }
 

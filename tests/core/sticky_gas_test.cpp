@@ -164,6 +164,14 @@ TEST(StickyGas, CentralClusterOfUnequalRows) {
   }
 }
 
+// Two bodies of a row, 2^-30 apart, at t = 1e9: rounding of their places is 1e-7, yet they never meet.
+TEST(StickyGas, EqualVelocitiesNeverMeet) {
+  const auto pair = std::make_shared<List<double>>(std::vector<double>{1, 1 + 0x1p-30}, std::vector<double>{0.7, 0.7});
+  StickyGas<double> gas(pair, 0.0);
+  gas.advance(1e9);
+  EXPECT_EQ(gas.counts().merges, 0U);
+}
+
 // E/N -> 0.221376226650747359 s^{4/3} t^{-2/3} (an independent oracle: ratios 1.0010 and 1.0037 at t = 10 and 1000 for
 // 2e7 bodies). At N = 1e6 and t = 100 the energy is that of some 5e4 clusters, of about its own size each: 1 %.
 TEST(StickyGas, CoolsByTheTwoThirdsLaw) {

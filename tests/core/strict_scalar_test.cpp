@@ -38,6 +38,8 @@ Configuration<double> doubles(const Configuration<StrictReal>& c) {
   return {to_double(c.time),
           c.from,
           c.to,
+          c.collided_from,
+          c.collided_to,
           c.index,
           doubles(c.x),
           doubles(c.v),

@@ -27,7 +27,10 @@ class MpfrPrecision {
   // What `digits` decimal digits take, and a bit to spare.
   static constexpr mpfr_prec_t bits_for(unsigned digits) { return static_cast<mpfr_prec_t>(digits) * 3322 / 1000 + 2; }
   static mpfr_prec_t bits() { return bits_; }
-  static void set_bits(mpfr_prec_t bits) { bits_ = bits; }
+  // Writes only what is new: runs of one precision may begin on several threads at once.
+  static void set_bits(mpfr_prec_t bits) {
+    if (bits_ != bits) bits_ = bits;
+  }
   static int limbs() { return static_cast<int>((bits_ + GMP_NUMB_BITS - 1) / GMP_NUMB_BITS); }
 
  private:

@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
       "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
       "5 resolution or order lost, 130/143 interrupted.");
   Action action;
-  for (const auto add : {add_run, add_check, add_info, add_export, add_theory, add_scenes, add_plot, add_trust})
+  for (const auto add : {add_run, add_check, add_info, add_export, add_theory, add_scenes, add_plot, add_trust,
+                         add_ensemble, add_sweep, add_merge})
     add(program, action);
 
   try {

@@ -1,5 +1,6 @@
 #include "cradle/tools/interrupt.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <initializer_list>
 
@@ -7,7 +8,9 @@ namespace cradle::tools {
 
 namespace {
 
-volatile std::sig_atomic_t noted = 0;  // what a handler may write to is global
+// What a handler may write to is global, and lock-free where all threads read it.
+std::atomic<int> noted = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 void note(int signal) { noted = signal; }
 
@@ -18,5 +21,7 @@ void note_signals() {
 }
 
 int noted_signal() { return noted; }
+
+void note_signal(int signal) { note(signal); }
 
 }  // namespace cradle::tools

@@ -1,34 +1,67 @@
-// Progress of a run on standard error: a bar on a terminal, a plain line now and then elsewhere (where asked for):
-// simulated time, contacts, contacts/s, time left.
+// Progress on standard error: a bar on a terminal, a plain line now and then elsewhere (where asked for). Of a run:
+// simulated time, contacts, contacts/s, time left; of an ensemble: replicas, replicas/s, time left.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
 
 namespace cradle::tools {
 
-class Progress {
+/// One line, drawn over itself on a terminal and gone at the end.
+class ProgressLine {
  public:
   enum class Show { never, on_terminal, always };
 
+  explicit ProgressLine(Show show);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Seconds since the line was last drawn, where it is time to draw it again: a few times a second on a terminal,
+  /// every ten seconds elsewhere. Cheap to call often.
+  std::optional<double> due() const;
+  void draw(double share, const std::string& state);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool terminal_, active_, drawn_ = false;
+  Clock::time_point last_ = Clock::now();
+};
+
+class Progress {
+ public:
+  using Show = ProgressLine::Show;
+
   Progress(Show show, double start, double until);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
 
   /// Cheap to call often: prints at most a few times a second on a terminal, every ten seconds elsewhere.
   void tell(double time, std::uint64_t contacts);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  bool active_, terminal_;
-  bool drawn_ = false;
+  ProgressLine line_;
   double start_, until_;
   double last_time_;
   std::uint64_t last_contacts_ = 0;
   double speed_ = 0;  // simulated time per second, smoothed
-  Clock::time_point last_ = Clock::now();
+};
+
+class ReplicaProgress {
+ public:
+  /// Of `total` replicas, `before` were there already.
+  ReplicaProgress(ProgressLine::Show show, std::uint64_t before, std::uint64_t total);
+
+  /// So many more are done; may be called from several threads.
+  void done(std::uint64_t replicas = 1);
+
+ private:
+  std::mutex mutex_;
+  ProgressLine line_;
+  std::uint64_t before_, done_, total_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace cradle::tools

@@ -105,8 +105,7 @@ template <Real T> Group masses_table(const Configuration<T>& c, const T& least_m
            {"clusters", "1", "clusters of such a mass", std::move(clusters)}}};
 }
 
-inline Group zone_table(const ZoneAverage& zone, std::size_t bins, double speed, double from, double until) {
-  const ZoneWidth width = zone.width(speed);
+inline Group zone_table(const ZoneAverage& zone, const ZoneWidth& width, std::size_t bins, double from, double until) {
   Group group{"zone",
               {{"from", from},
                {"until", until},

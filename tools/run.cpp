@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "cradle/tools/in_precision.hpp"
+#include "cradle/tools/run_clusters.hpp"
 
 namespace cradle::tools {
 
@@ -43,6 +44,8 @@ std::string precision_name(const Run& run) {
 }
 
 void check_built(const Scene& scene) {
+  if (scene.initial.type == InitialType::clusters && scene.run.precision != Precision::double_)
+    not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
   const bool merging = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
   if (scene.run.coordinates == Coordinates::absolute) {
     if (merging) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
@@ -53,6 +56,7 @@ void check_built(const Scene& scene) {
 
 RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
   check_built(scene);
+  if (scene.initial.type == InitialType::clusters) return run_clusters(scene, options);
   return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, options); });
 }
 

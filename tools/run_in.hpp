@@ -227,10 +227,11 @@ template <Real T, class Simulation> class SceneRun {
     for (auto* groups : {&snapshots_, &profiles_, &masses_})
       for (auto& group : *groups) end.result.groups.push_back(std::move(group));
     if (zone_) {
-      end.result.groups.push_back(zone_table(*zone_, scene_.output.zone.bins, scene_.initial.speed.value,
-                                             scene_.output.zone.from->value, scene_.run.until.value));
-      const ZoneWidth width = zone_->width(scene_.initial.speed.value);
-      end.summary.insert(end.summary.end(), {{"zone_width", width.width}, {"zone_width_error", width.error}});
+      const double speed = scene_.initial.speed.value;
+      const ZoneWidth width = zone_->width(speed, 2 * std::sqrt(scene_.law.loss.value));  // u_crit of single bodies
+      end.result.groups.push_back(
+          zone_table(*zone_, width, scene_.output.zone.bins, scene_.output.zone.from->value, scene_.run.until.value));
+      end.summary.emplace_back("zone_width", width.width);
     }
     if (scene_.output.scenario) {
       const auto numbers = scenario_numbers(scenario_.result(counts.merges));

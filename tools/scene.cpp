@@ -140,7 +140,7 @@ void drop_times_cut_off(Entries& entries) {
     return literal ? std::optional(Decimal(*literal)) : std::nullopt;
   };
   const auto start = bound("run.start"), until = bound("run.until");
-  for (const char* key : {"output.series.times", "output.snapshots", "output.profiles.times"}) {
+  for (const char* key : {"output.series.times", "output.snapshots", "output.profiles.times", "output.masses"}) {
     const auto entry = entries.find(key);
     if (entry == entries.end() || entry->second.place.source == "--set") continue;
     const auto dropped = std::erase_if(entry->second.items, [&](const Value& item) {
@@ -183,6 +183,7 @@ Scene parse_scene(std::string_view text, const std::string& source_name, const s
   sort_times(scene.output.series.times);
   sort_times(scene.output.snapshots);
   sort_times(scene.output.profiles.times);
+  sort_times(scene.output.masses);
   return scene;
 }
 

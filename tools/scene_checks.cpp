@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+#include <utility>
+
+#include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tools/scene_fields.hpp"
 
 namespace cradle::tools {
@@ -60,6 +64,34 @@ class Checks {
         throw Error(item_place("initial.x", i),
                     initial.x[i] == initial.x[i - 1] ? "coincident bodies" : "not increasing",
                     fmt::format("{} after {}", initial.x[i].text, initial.x[i - 1].text), "give increasing positions");
+  }
+
+  void two_clusters() const {
+    const Initial& initial = scene_.initial;
+    if (initial.type != InitialType::clusters) return;
+    if (scene_.law.type != LawType::wet)
+      throw Error(place("initial.type"), "clusters need the wet law",
+                  "law.type = " + value_text(*find_field("law.type", scene_), scene_).value(),
+                  "give law.type = \"wet\" or another initial state");
+    for (const auto& [key, numbers] : {std::pair("initial.x", &initial.x), std::pair("initial.v", &initial.v),
+                                       std::pair("initial.growth", &initial.growth)})
+      if (numbers->size() != 2)
+        throw Error(place(key), "not one per cluster", fmt::format("{} for two clusters", numbers->size()),
+                    "give two numbers");
+    if (initial.x[1] <= initial.x[0])
+      throw Error(item_place("initial.x", 1), "not increasing",
+                  fmt::format("{} after {}", initial.x[1].text, initial.x[0].text), "give the left cluster first");
+    if (scene_.run.start < Decimal("0"))
+      throw Error(place("run.start"), "before the clusters begin to grow", scene_.run.start.text, "give 0 or more");
+    try {
+      theory::WetZone<double>({scene_.law.loss.value, initial.speed.value, initial.spacing.value});
+    } catch (const std::domain_error& error) {
+      throw Error(place("law.loss"), error.what(), scene_.law.loss.text, "give another loss or initial.speed");
+    }
+    for (const char* key : {"output.snapshots", "output.profiles.times", "output.masses", "output.events"})
+      if (const auto text = value_text(*find_field(key, scene_), scene_); text && *text != "[]" && *text != "false")
+        throw Error(place(key), "nothing to write", "two clusters in the force of bodies that are not there",
+                    "remove it");
   }
 
   void series_has_times() const {
@@ -131,6 +163,7 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   const Checks checks(scene, entries, scene_file);
   checks.rows_meet();
   checks.one_list_of_bodies();
+  checks.two_clusters();
   checks.series_has_times();
   checks.profile_range();
   checks.numbers_fit();

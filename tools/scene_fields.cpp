@@ -178,7 +178,7 @@ const Field table[] = {
      "times at which it is written how many clusters there are of which mass"},
     {"output.zone.from", output_of<&Output::zone, &Zone::from>, "t", "", within_run, &wet_shock,
      "average over the interaction zone, its width among it, from this time on; without it, none"},
-    {"output.zone.samples", output_of<&Output::zone, &Zone::samples>, "", "400", "[8, 1e9]", &wet_shock,
+    {"output.zone.samples", output_of<&Output::zone, &Zone::samples>, "", "400", "[16, 1e9]", &wet_shock,
      "number of samples that the average over the zone takes, evenly until run.until"},
     {"output.zone.bins", output_of<&Output::zone, &Zone::bins>, "", "60", "[4, 1e6]", &wet_shock,
      "number of bins of the average over the zone"},

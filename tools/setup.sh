@@ -2,8 +2,8 @@
 # What quickstart.sh and test.sh share; both source it. `set_up program|tests` sees to it that everything needed to
 # build the program (and its tests) is there: it looks for what is missing and installs that with apt, as root or
 # through sudo. Where that cannot be done it lists what is missing with the names other sources know it by and stops.
-# If nothing is missing nothing is installed and no network, root or apt is needed. `step` runs a command and, if it
-# fails, stops with what to do.
+# If nothing is missing nothing is installed and no network, root or apt is needed. What is optional is installed for the
+# tests where that needs no password, and else left out. `step` runs a command and, if it fails, stops with what to do.
 
 preset=release
 build=build/$preset
@@ -27,6 +27,8 @@ program | Matplotlib            | python matplotlib            | python3-matplot
 program | h5py                  | python h5py                  | python3-h5py        | h5py            | py-h5py
 tests   | GoogleTest            | header gtest/gtest.h         | libgtest-dev        | gtest           | googletest
 tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev    | benchmark       | benchmark
+option  | MPI compiler          | command mpicc                | libopenmpi-dev      | openmpi         | openmpi
+option  | MPI launcher          | command mpirun               | openmpi-bin         | openmpi         | openmpi
 TABLE
 }
 
@@ -87,14 +89,19 @@ has() {
   esac
 }
 
-# Fills the arrays missing, debian, conda, spack with what program (or, as well, tests) lacks.
+# Fills the arrays missing, debian, conda, spack with what program (or, as well, tests) lacks; optional with Debian's
+# names of what tests would use besides.
 look_for() {
   local group what probe deb forge spk
-  missing=() debian=() conda=() spack=()
+  missing=() debian=() conda=() spack=() optional=()
   while IFS='|' read -r group what probe deb forge spk; do
-    if [[ $1 == program && ${group// /} == tests ]]; then continue; fi
+    if [[ $1 == program && ${group// /} != program ]]; then continue; fi
     # shellcheck disable=SC2086  # a probe is a word and its argument
     if has $probe; then continue; fi
+    if [[ ${group// /} == option ]]; then
+      optional+=("${deb// /}")
+      continue
+    fi
     read -r what <<<"$what"
     missing+=("$what")
     debian+=("${deb// /}") conda+=("${forge// /}") spack+=("${spk// /}")
@@ -132,10 +139,21 @@ apt_get() {
   as_root apt-get -qq -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 "$@"
 }
 
+# What is optional never stops anything.
+install_optional() {
+  ((${#optional[@]})) || return 0
+  if command -v apt-get >/dev/null && { ((EUID == 0)) || sudo -n true 2>/dev/null; }; then
+    echo "== installing with apt: ${optional[*]}"
+    apt_get update && apt_get install -y --no-install-recommends "${optional[@]}" && return
+  fi
+  echo "== not found, left out: ${optional[*]} (Debian's names; ensembles then run in one process)"
+}
+
 # set_up program|tests
 set_up() {
-  local missing debian conda spack
+  local missing debian conda spack optional
   look_for "$1"
+  install_optional
   ((${#missing[@]})) || return 0
   command -v apt-get >/dev/null || list_missing_and_stop "something is missing and there is no apt to install it with"
   ((EUID == 0)) || command -v sudo >/dev/null ||

@@ -17,8 +17,11 @@ struct Prediction {
   double value;
 };
 
-/// Throws Error for a scene that the paper's section IV says nothing about.
+/// Curves and numbers that apply to the scene; times are those since run.start. Empty where the paper says nothing.
 std::vector<Prediction> predictions(const Scene& scene);
+
+/// Which of the formulas used for this scene's law the paper misprints, in words; empty where none.
+std::string misprints(const Scene& scene);
 
 /// Long-format CSV: quantity,equation,form,t,value; t empty for single numbers.
 std::string predictions_csv(const std::vector<Prediction>& table);

@@ -16,8 +16,13 @@ std::string build_description() {
     (name(std::type_identity<std::tuple_element_t<K, Scalars>>{}), ...);
   }
   (std::make_index_sequence<std::tuple_size_v<Scalars>>{});
-  return fmt::format("cradle {}\ncompiler: {}\noptions: {}\nscalar types: {}", version, __VERSION__,
-                     CRADLE_BUILD_OPTIONS, types);
+#ifdef CRADLE_WITH_MPI
+  const char* mpi = "ensembles are spread over ranks";
+#else
+  const char* mpi = "not in this build";
+#endif
+  return fmt::format("cradle {}\ncompiler: {}\noptions: {}\nscalar types: {}\nMPI: {}", version, __VERSION__,
+                     CRADLE_BUILD_OPTIONS, types, mpi);
 }
 
 }  // namespace cradle::tools

@@ -98,7 +98,7 @@ TEST(Scene, OnlyTheContractsKeysAreRequired) {
   EXPECT_EQ(parse(least).initial.particles, 8000U);
   EXPECT_EQ(message(with_line(2, "")), "s.toml: law.type: missing: give one of inelastic, wet, sticky");
   EXPECT_EQ(message(with_line(3, "")), "s.toml: law.restitution: missing: give a number from 0 to 1");
-  EXPECT_EQ(message(with_line(5, "")), "s.toml: initial.type: missing: give one of rows, ring, list");
+  EXPECT_EQ(message(with_line(5, "")), "s.toml: initial.type: missing: give one of rows, ring, list, clusters");
   EXPECT_EQ(message(with_line(8, "")), "s.toml: run.until: missing: give a number of run.start = 0 or more");
   EXPECT_EQ(message("law.type = 'wet'\ninitial.type = 'ring'\nrun.until = 1"),
             "s.toml: law.loss: missing: give a number of 0 or more");
@@ -421,13 +421,13 @@ TEST(ReadScene, FilesComeBeforeBundledNames) {
   EXPECT_EQ(scene.run.until.text, "7");
   std::filesystem::remove_all(folder);
   try {
-    read_scene("fig9");
-    FAIL() << "fig9 does not exist";
+    read_scene("fig99");
+    FAIL() << "fig99 does not exist";
   } catch (const Error& error) {
     EXPECT_EQ(error.status, Exit::io);
     const std::string what = error.what();
     EXPECT_EQ(what.substr(0, what.find("one of")),
-              "fig9: no such scene (found neither a file nor a bundled scene): give the path of a scene file or ");
+              "fig99: no such scene (found neither a file nor a bundled scene): give the path of a scene file or ");
     EXPECT_NE(what.find("fig2"), std::string::npos);
     EXPECT_NE(what.find("collapse3"), std::string::npos);
   }

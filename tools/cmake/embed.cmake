@@ -1,7 +1,8 @@
-# Files that the program carries: they become string literals in a source file of the build tree, written again when one of
-# them changes, comes or goes.
-#   embed_scenes(TARGET FOLDER)         bundled_scenes() of tools/scene.hpp, from the TOML files of a folder
-#   embed_text(TARGET FILE FUNCTION)    std::string_view FUNCTION(), the text of one file
+# Files that the program carries: they become string literals in a source file of the build tree, written again when one
+# of them changes, comes or goes.
+#   embed_scenes(TARGET FOLDER)             bundled_scenes() of tools/scene.hpp, from the TOML files of a folder
+#   embed_files(TARGET PATTERN FUNCTION)    std::span<const EmbeddedFile> FUNCTION() of tools/FUNCTION.hpp, from all
+#                                           files of that pattern
 # The same file is the script that writes them: cmake -DFILES=... -DOUTPUT=... [-DFUNCTION=...] -P embed.cmake
 
 function(_embed target output files function)
@@ -22,27 +23,32 @@ function(embed_scenes target folder)
   _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/bundled_scenes.cpp" "${scenes}" "")
 endfunction()
 
-function(embed_text target file function)
-  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp" "${file}" "${function}")
+function(embed_files target pattern function)
+  file(GLOB files CONFIGURE_DEPENDS "${pattern}")
+  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp" "${files}" "${function}")
 endfunction()
 
 if(CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
   list(SORT FILES)
   set(code "// Written by embed.cmake.\n")
   if(FUNCTION)
-    file(READ "${FILES}" text)
-    string(APPEND code "#include \"cradle/tools/${FUNCTION}.hpp\"\n\nnamespace cradle::tools {\n\n")
-    string(APPEND code "std::string_view ${FUNCTION}() { return R\"embedded(${text})embedded\"; }\n\n")
+    set(type EmbeddedFile)
+    set(header ${FUNCTION})
+    set(part NAME)
   else()
-    string(APPEND code "#include \"cradle/tools/scene.hpp\"\n\nnamespace cradle::tools {\nnamespace {\n")
-    string(APPEND code "constexpr BundledScene scenes[] = {\n")
-    foreach(scene IN LISTS FILES)
-      get_filename_component(name "${scene}" NAME_WLE)
-      file(READ "${scene}" text)
-      string(APPEND code "    {\"${name}\", R\"embedded(${text})embedded\"},\n")
-    endforeach()
-    string(APPEND code "};\n}  // namespace\n\nstd::span<const BundledScene> bundled_scenes() { return scenes; }\n\n")
+    set(FUNCTION bundled_scenes)
+    set(type BundledScene)
+    set(header scene)
+    set(part NAME_WLE)
   endif()
+  string(APPEND code "#include \"cradle/tools/${header}.hpp\"\n\nnamespace cradle::tools {\nnamespace {\n")
+  string(APPEND code "constexpr ${type} files[] = {\n")
+  foreach(file IN LISTS FILES)
+    get_filename_component(name "${file}" ${part})
+    file(READ "${file}" text)
+    string(APPEND code "    {\"${name}\", R\"embedded(${text})embedded\"},\n")
+  endforeach()
+  string(APPEND code "};\n}  // namespace\n\nstd::span<const ${type}> ${FUNCTION}() { return files; }\n\n")
   string(APPEND code "}  // namespace cradle::tools\n")
   file(WRITE "${OUTPUT}" "${code}")
 endif()

@@ -1,7 +1,7 @@
 # cmake --install: headers, the package config for find_package(cradle), and the program.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS cradle_options cradle_core cradle_precision cradle EXPORT cradle-targets)
+install(TARGETS cradle_options cradle_core cradle_ensemble cradle_precision cradle EXPORT cradle-targets)
 foreach(_part core precision)
   install(DIRECTORY ${_part}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cradle/${_part} FILES_MATCHING PATTERN "*.hpp")
 endforeach()

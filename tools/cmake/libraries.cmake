@@ -1,10 +1,12 @@
-# Libraries that Cradle's headers need, as targets: Boost::headers and, where it is there, cradle::mpfr (with GMP). Read
-# by the build and, installed, by the package config: so they are found anew wherever Cradle is used, in the system's
-# folders or in those of environment modules, conda or Spack.
+# Libraries that Cradle's headers need, as targets: Boost::headers, TBB::tbb and, where it is there, cradle::mpfr (with
+# GMP). Read by the build and, installed, by the package config: so they are found anew wherever Cradle is used, in the
+# system's folders or in those of environment modules, conda or Spack.
 if(POLICY CMP0167)
   cmake_policy(SET CMP0167 NEW)  # Boost's own package config
 endif()
 find_package(Boost 1.74 REQUIRED)
+find_package(TBB 2021 REQUIRED)
+find_package(Threads REQUIRED)
 
 find_library(CRADLE_MPFR_LIBRARY mpfr HINTS ENV LIBRARY_PATH)
 find_library(CRADLE_GMP_LIBRARY gmp HINTS ENV LIBRARY_PATH)

@@ -41,6 +41,10 @@ Exit check(const CommonOptions& options) {
   const double listed = scene.initial.type == InitialType::list ? static_cast<double>(read_bodies(scene).x.size()) : 0;
   for (const auto& [key, value] : values(scene, true)) fmt::print("{} = {}\n", key, value);
   check_built(scene);
+  if (scene.initial.type == InitialType::clusters) {
+    fmt::print("\na model of two clusters: no bodies, no contacts; below a second\n");
+    return Exit::done;
+  }
   if (scene.run.precision == Precision::double_)
     initial_bodies<double>(scene);  // refuses what cannot be set up
   else

@@ -27,6 +27,8 @@ struct CommonOptions {
   unsigned threads = 0;
   bool quiet = false, progress = false;
 
+  /// What --set and --seed say.
+  std::vector<std::string> all_overrides() const;
   Scene read() const;
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
@@ -39,5 +41,8 @@ void add_theory(CLI::App& program, Action& action);
 void add_scenes(CLI::App& program, Action& action);
 void add_plot(CLI::App& program, Action& action);
 void add_trust(CLI::App& program, Action& action);
+void add_ensemble(CLI::App& program, Action& action);
+void add_sweep(CLI::App& program, Action& action);
+void add_merge(CLI::App& program, Action& action);
 
 }  // namespace cradle::tools

@@ -4,11 +4,13 @@
 
 namespace cradle::tools {
 
-Scene CommonOptions::read() const {
+std::vector<std::string> CommonOptions::all_overrides() const {
   std::vector<std::string> all = overrides;
   if (seed) all.push_back("initial.seed=" + *seed);
-  return read_scene(scene, all);
+  return all;
 }
+
+Scene CommonOptions::read() const { return read_scene(scene, all_overrides()); }
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("SCENE", options.scene, "scene file, or the name of a bundled scene")->required();

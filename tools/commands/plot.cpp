@@ -6,10 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/plot_script.hpp"
+#include "cradle/tools/plot_files.hpp"
 #include "cradle/tools/result.hpp"
 #include "cradle/tools/theory_table.hpp"
 
@@ -21,27 +22,36 @@ struct Options {
   std::string file, output;
 };
 
-// A file that is gone when its owner is.
-class TemporaryFile {
+// A folder that is gone, with its files, when its owner is.
+class TemporaryFolder {
  public:
-  explicit TemporaryFile(std::string_view text)
-      : path_((std::filesystem::temp_directory_path() / "cradle-XXXXXX").string()) {
-    const int file = ::mkstemp(path_.data());
-    bool written = file >= 0;
-    while (written && !text.empty()) {
-      const auto count = ::write(file, text.data(), text.size());
-      written = count > 0;
-      if (written) text.remove_prefix(static_cast<std::size_t>(count));
-    }
-    if (file >= 0) ::close(file);
-    if (!written) throw Error({path_, 0, ""}, "no temporary file", "", "make room on the disk or set TMPDIR", Exit::io);
+  TemporaryFolder() {
+    std::error_code missing;
+    path_ = (std::filesystem::temp_directory_path(missing) / "cradle-XXXXXX").string();
+    if (missing || ::mkdtemp(path_.data()) == nullptr) throw no_room();
   }
-  ~TemporaryFile() { ::unlink(path_.c_str()); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
   const std::string& path() const { return path_; }
+  /// Returns the file's path.
+  std::string write(std::string_view name, std::string_view text) const {
+    const auto file = std::filesystem::path(path_) / name;
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    if (!stream.flush()) throw no_room();
+    return file.string();
+  }
 
  private:
+  Error no_room() const {
+    return {{path_, 0, ""}, "no temporary files", "", "make room on the disk or set TMPDIR", Exit::io};
+  }
+
   std::string path_;
 };
 
@@ -81,13 +91,11 @@ Exit plot(const Options& options) {
   const Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", options.file), options.file);
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.output;
-  const TemporaryFile script(plot_script());
-  std::vector<std::string> words{find_python(), script.path(), options.file, "-o", output};
-  std::optional<TemporaryFile> theory;
-  if (scene.law.type == LawType::inelastic) {
-    theory.emplace(predictions_csv(predictions(scene)));
-    words.insert(words.end(), {"--theory", theory->path()});
-  }
+  const TemporaryFolder program;  // Python runs a folder by its __main__.py
+  for (const EmbeddedFile& file : plot_files()) program.write(file.name, file.text);
+  std::vector<std::string> words{find_python(), "-B", program.path(), options.file, "-o", output};
+  if (const auto table = predictions(scene); !table.empty())
+    words.insert(words.end(), {"--theory", program.write("theory.csv", predictions_csv(table))});
   const int status = execute(words, false);
   if (status != 0 && status != static_cast<int>(Exit::bad_input) && status != static_cast<int>(Exit::io))
     throw Error({options.file, 0, ""}, "the picture could not be made", fmt::format("status {}", status),

@@ -15,7 +15,8 @@ struct Options : CommonOptions {
 };
 
 Exit theory(const Options& options) {
-  const auto table = predictions(options.read());
+  const Scene scene = options.read();
+  const auto table = predictions(scene);
   if (options.csv) {
     fmt::print("{}", predictions_csv(table));
     return Exit::done;
@@ -29,9 +30,9 @@ Exit theory(const Options& options) {
                p.t ? fmt::format("{:.6g}", *p.t) : "", p.value);
   }
   fmt::print(
-      "\nforms: discrete: the exact recursion; continuous: the paper's formula, corrected where it is misprinted.\n"
-      "Misprints: (6), first line, lacks a factor u0; (7) must carry a plus sign. As printed: form `printed` in "
-      "--csv.\n");
+      "\nforms: discrete: the exact recursion; continuous: the paper's formula, corrected where it is misprinted.\n");
+  if (const auto text = misprints(scene); !text.empty())
+    fmt::print("Misprints: {} As printed: form `printed`, curves in --csv.\n", text);
   return Exit::done;
 }
 

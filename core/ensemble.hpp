@@ -1,0 +1,133 @@
+#pragma once
+// An ensemble: the same run again and again, each replica with initial data of its own, and statistics of what they
+// give. Replicas are independent tasks, taken in order of their index; what one of them throws is its own affair.
+// The statistics have the same bits whatever the number of threads, see ensemble/tree.hpp.
+//
+//   Ensemble energies;
+//   run_replicas(TbbExecutor(), {0, 1000}, energies, [](ReplicaIndex k) { return energy_of_replica(k); });
+//   energies.statistics().mean[0], energies.statistics().standard_error(0), energies.failures()
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/ensemble/executor.hpp"
+#include "cradle/core/ensemble/histogram.hpp"
+#include "cradle/core/ensemble/moments.hpp"
+#include "cradle/core/ensemble/tbb_executor.hpp"
+#include "cradle/core/ensemble/tree.hpp"
+
+namespace cradle {
+
+/// Thrown by a replica that was cut short: it is neither done nor failed.
+struct ReplicaAbandoned : std::exception {
+  const char* what() const noexcept override { return "replica abandoned"; }
+};
+
+/// Calls replica(job) for each job that next() gives (a std::optional; none: there are no more) and hands what it
+/// returns to done(job, result), or the message of what it throws to failed(job, message). All of them are called from
+/// several threads at once. cancelled() is asked before every job; true ends the ensemble when the replicas that are
+/// running have returned. What next, done or failed throw ends it too, and is thrown again here: the first if several.
+template <Executor E, class Next, class Replica, class Done, class Failed>
+void run_jobs(const E& executor, Next next, Replica replica, Done done, Failed failed,
+              const std::function<bool()>& cancelled = {}) {
+  std::atomic<bool> ended = false;
+  std::exception_ptr first;
+  std::mutex mutex;
+  const auto message = []() -> std::string {
+    try {
+      throw;
+    } catch (const std::exception& error) {
+      return error.what();
+    } catch (...) {
+      return "an exception without a message";
+    }
+  };
+  executor.run([&] {
+    try {
+      if (ended || (cancelled && cancelled())) return false;
+      const auto job = next();
+      if (!job) return false;
+      std::optional<decltype(replica(*job))> result;
+      try {
+        result.emplace(replica(*job));
+      } catch (const ReplicaAbandoned&) {
+        return true;
+      } catch (...) {
+        failed(*job, message());
+        return true;
+      }
+      done(*job, std::move(*result));
+      return true;
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      if (!ended.exchange(true)) first = std::current_exception();
+      return false;
+    }
+  });
+  if (first) std::rethrow_exception(first);
+}
+
+/// Replica indices one after the other, from ranges in order; may be called from several threads.
+class ReplicaQueue {
+ public:
+  explicit ReplicaQueue(std::vector<ReplicaRange> ranges) : ranges_(std::move(ranges)) {}
+
+  std::optional<ReplicaIndex> operator()() {
+    const std::scoped_lock lock(mutex_);
+    while (at_ < ranges_.size() && taken_ == ranges_[at_].count) ++at_, taken_ = 0;
+    if (at_ == ranges_.size()) return std::nullopt;
+    return ranges_[at_].first + taken_++;
+  }
+
+ private:
+  std::vector<ReplicaRange> ranges_;
+  std::size_t at_ = 0;
+  std::uint64_t taken_ = 0;
+  std::mutex mutex_;
+};
+
+/// A set of replicas: statistics of their vectors, and messages of those that failed.
+class Ensemble {
+ public:
+  void add(ReplicaIndex replica, std::vector<double> values) { tree_.add(replica, std::move(values)); }
+  void fail(ReplicaIndex replica, std::string message) {
+    {
+      const std::scoped_lock lock(mutex_);
+      failures_.emplace(replica, std::move(message));
+    }
+    tree_.add(replica, std::nullopt);
+  }
+
+  Moments statistics() const { return tree_.total(); }
+  std::map<ReplicaIndex, std::string> failures() const {
+    const std::scoped_lock lock(mutex_);
+    return failures_;
+  }
+  const MomentTree& tree() const { return tree_; }
+
+ private:
+  MomentTree tree_;
+  mutable std::mutex mutex_;
+  std::map<ReplicaIndex, std::string> failures_;
+};
+
+/// Runs those replicas of the range that the ensemble does not have yet; replica(index) returns a std::vector<double>,
+/// always of the same length, NaN where it has no number.
+template <Executor E, class Replica>
+void run_replicas(const E& executor, ReplicaRange range, Ensemble& ensemble, Replica replica,
+                  const std::function<bool()>& cancelled = {}) {
+  ReplicaQueue queue(ensemble.tree().missing(range));
+  run_jobs(
+      executor, [&] { return queue(); }, replica,
+      [&](ReplicaIndex k, std::vector<double> values) { ensemble.add(k, std::move(values)); },
+      [&](ReplicaIndex k, std::string message) { ensemble.fail(k, std::move(message)); }, cancelled);
+}
+
+}  // namespace cradle

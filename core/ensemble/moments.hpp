@@ -1,0 +1,105 @@
+#pragma once
+// Mean, spread and extremes of a vector of numbers over replicas, entry by entry, without keeping the vectors: count,
+// mean, sum of squared deviations from the mean, least and greatest. Two sets of replicas are put together by the
+// pairwise update of Chan, Golub and LeVeque (Am. Stat. 37, 242, 1983, doi 10.1080/00031305.1983.10483115), which does
+// not cancel. It rounds, so the bits depend on the way sets are put together: tree.hpp fixes that.
+//
+// An entry that a replica does not have (a time after its collapse) is NaN: it is skipped, and counted as missing.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace cradle {
+
+struct Moments {
+  std::uint64_t replicas = 0;           // that gave a vector
+  std::vector<double> mean;             // 0 where no replica has the entry
+  std::vector<double> squares;          // sum of squared deviations from the mean
+  std::vector<double> least, greatest;  // inf and -inf where no replica has the entry
+  std::vector<std::uint64_t> counts;    // replicas that have the entry; left empty where all have all
+
+  std::size_t entries() const { return mean.size(); }
+  std::uint64_t count(std::size_t entry) const { return counts.empty() ? replicas : counts[entry]; }
+  bool complete() const { return counts.empty(); }
+
+  // Standard error of the mean; NaN for fewer than two replicas.
+  double standard_error(std::size_t entry) const {
+    const auto n = static_cast<double>(count(entry));
+    return n < 2 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(squares[entry] / (n - 1) / n);
+  }
+
+  bool operator==(const Moments&) const = default;
+};
+
+// Of one replica.
+inline Moments moments_of(std::vector<double> values) {
+  Moments one;
+  one.replicas = 1;
+  one.squares.assign(values.size(), 0);
+  one.least = one.greatest = values;
+  one.mean = std::move(values);
+  for (std::size_t i = 0; i < one.mean.size(); ++i) {
+    if (!std::isnan(one.mean[i])) continue;
+    if (one.counts.empty()) one.counts.assign(one.mean.size(), 1);
+    one.counts[i] = 0;
+    one.mean[i] = 0;
+    one.least[i] = std::numeric_limits<double>::infinity();
+    one.greatest[i] = -std::numeric_limits<double>::infinity();
+  }
+  return one;
+}
+
+namespace detail {
+
+// One entry: `right` joins `left`. With n = a + b replicas, delta = mean_b - mean_a:
+// mean = mean_a + delta b/n, squares = squares_a + squares_b + delta^2 a b/n.
+inline void join(double a, double b, double& mean, double mean_b, double& squares, double squares_b) {
+  const double share = b / (a + b), delta = mean_b - mean;
+  mean += delta * share;
+  squares = (squares + squares_b) + delta * delta * (a * share);
+}
+
+inline void join_extremes(Moments& left, const Moments& right) {
+  const std::size_t n = left.entries();
+  for (std::size_t i = 0; i < n; ++i) left.least[i] = right.least[i] < left.least[i] ? right.least[i] : left.least[i];
+  for (std::size_t i = 0; i < n; ++i)
+    left.greatest[i] = right.greatest[i] > left.greatest[i] ? right.greatest[i] : left.greatest[i];
+}
+
+}  // namespace detail
+
+// Of both sets. Moments of no replica change nothing, not a bit. Throws std::invalid_argument for vectors of different
+// lengths.
+inline Moments combine(Moments left, Moments right) {
+  if (right.replicas == 0) return left;
+  if (left.replicas == 0) return right;
+  const std::size_t n = left.entries();
+  if (right.entries() != n) throw std::invalid_argument("statistics of vectors of different lengths");
+  const auto a = static_cast<double>(left.replicas), b = static_cast<double>(right.replicas);
+  if (left.complete() && right.complete()) {
+    for (std::size_t i = 0; i < n; ++i)
+      detail::join(a, b, left.mean[i], right.mean[i], left.squares[i], right.squares[i]);
+  } else {
+    if (left.complete()) left.counts.assign(n, left.replicas);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::uint64_t of_left = left.counts[i], of_right = right.count(i);
+      left.counts[i] += of_right;
+      if (of_right == 0) continue;
+      if (of_left == 0)
+        left.mean[i] = right.mean[i], left.squares[i] = right.squares[i];
+      else
+        detail::join(static_cast<double>(of_left), static_cast<double>(of_right), left.mean[i], right.mean[i],
+                     left.squares[i], right.squares[i]);
+    }
+  }
+  detail::join_extremes(left, right);
+  left.replicas += right.replicas;
+  return left;
+}
+
+}  // namespace cradle

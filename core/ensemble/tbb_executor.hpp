@@ -1,0 +1,44 @@
+#pragma once
+// The executor on oneTBB: every step is a task, in an arena and a task group of its own, so that what else the program
+// does with oneTBB (its cancellations, its exceptions) does not reach in here, nor the other way round.
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
+
+#include "cradle/core/ensemble/executor.hpp"
+
+namespace cradle {
+
+class TbbExecutor {
+ public:
+  explicit TbbExecutor(unsigned threads = 0) : threads_(thread_count(threads)) {}
+
+  unsigned threads() const { return threads_; }
+
+  void run(const Step& step) const {
+    // More threads than processors only where asked for; oneTBB would not start them.
+    const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism, threads_);
+    oneapi::tbb::task_arena arena(static_cast<int>(threads_));
+    arena.execute([&] {
+      oneapi::tbb::task_group_context alone(oneapi::tbb::task_group_context::isolated);
+      oneapi::tbb::task_group group(alone);
+      for (unsigned k = 0; k < threads_; ++k) group.run(Link{group, step});
+      group.wait();
+    });
+  }
+
+ private:
+  // One step, and then the next one.
+  struct Link {
+    oneapi::tbb::task_group& group;
+    const Step& step;
+    void operator()() const {
+      if (step()) group.run(*this);
+    }
+  };
+
+  unsigned threads_;
+};
+
+}  // namespace cradle

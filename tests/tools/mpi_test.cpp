@@ -1,0 +1,139 @@
+// Ensembles across the ranks of an MPI job: the same bytes as one process, for any number of ranks and threads, after a
+// rank was killed and the launcher ended the job, and after a signal.
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "cradle/tests/tools/program.hpp"
+
+namespace cradle::tests {
+namespace {
+
+constexpr const char* scene = R"(
+[law]
+type = "wet"
+loss = 0.05
+[initial]
+type = "rows"
+particles = 1000
+speed = 0.5
+perturbation = 0.05
+[run]
+until = 900
+[output]
+series = { points = 60 }
+)";
+
+class Mpi : public ProgramTest {
+ protected:
+  void SetUp() override {
+#ifndef CRADLE_WITH_MPI
+    GTEST_SKIP() << "MPI is not in this build";
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "MPI libraries are not instrumented";
+#endif
+    if (shell("command -v mpirun").status != 0) GTEST_SKIP() << "no mpirun";
+    write("wet.toml", scene);
+  }
+
+  // As any user, on any machine, all ranks on all processors. Open MPI takes these; others do without.
+  static std::string job(int ranks, const std::string& command) {
+    return fmt::format("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                       "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
+                       "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe mpirun -n {} cradle {}",
+                       ranks, command);
+  }
+  void run(const std::string& command, int status = 0) const {
+    const Printed printed = shell(command);
+    ASSERT_EQ(printed.status, status) << command << "\n" << printed.err;
+  }
+  void expect_same(const std::string& a, const std::string& b) const {
+    ASSERT_FALSE(contents(folder / a).empty()) << a;
+    EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
+  }
+  void expect_no_journals() const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+  }
+  // Starts a job in the background, its launcher's process being $pid, and waits until every rank has journalled some
+  // replicas: in journals of this job, not of one before.
+  static std::string start(int ranks, const std::string& command, const std::string& file) {
+    std::string line = "touch stamp; sleep 0.05; " + job(ranks, command) + " & pid=$!; for f in " + file + ".part";
+    for (int rank = 1; rank < ranks; ++rank) line += fmt::format(" {}.part.{}", file, rank);
+    return line + "; do until [ $f -nt stamp ] && [ $(stat -c %s $f) -ge 50000 ]; do sleep 0.01; done; done; ";
+  }
+};
+
+TEST_F(Mpi, AnyNumberOfRanksGivesTheSameBytes) {
+  run("cradle ensemble wet.toml --replicas 200 -o one.h5");
+  for (const int ranks : {1, 2, 3})
+    for (const int threads : {1, 2}) {
+      const std::string file = fmt::format("{}-{}.h5", ranks, threads);
+      run(job(ranks, fmt::format("ensemble wet.toml --replicas 200 --threads {} -o {}", threads, file)));
+      expect_same("one.h5", file);
+    }
+  expect_no_journals();
+}
+
+TEST_F(Mpi, FewerReplicasThanRanks) {
+  run("cradle ensemble wet.toml --replicas 2 -o one.h5");
+  run(job(3, "ensemble wet.toml --replicas 2 -o three.h5"));
+  expect_same("one.h5", "three.h5");
+  const Printed nothing = shell(job(3, "ensemble wet.toml --replicas 2 -o three.h5"));
+  EXPECT_EQ(nothing.status, 0) << nothing.err;
+  EXPECT_NE(nothing.out.find("nothing to do"), std::string::npos) << nothing.out;
+  EXPECT_EQ(std::count(nothing.out.begin(), nothing.out.end(), '\n'), 2) << "only rank 0 talks:\n" << nothing.out;
+  expect_no_journals();
+}
+
+TEST_F(Mpi, KilledJobIsContinuedOnAnyNumberOfRanks) {
+  const std::string ensemble = "ensemble wet.toml --replicas 6000 -o ";
+  run("cradle " + ensemble + "whole.h5");
+  for (const int rank : {0, 1, 2}) {  // among them rank 0
+    const Printed killed = shell(start(3, ensemble + "killed.h5 --threads 1", "killed.h5") +
+                                 fmt::format("kill -9 $(ps -o pid= --ppid $pid | sed -n {}p); wait $pid", rank + 1));
+    EXPECT_NE(killed.status, 0);
+    ASSERT_FALSE(std::filesystem::exists(folder / "killed.h5")) << "not killed in time";
+  }
+  const Printed go_on = shell(job(2, ensemble + "killed.h5"));
+  EXPECT_EQ(go_on.status, 0) << go_on.err;
+  EXPECT_NE(go_on.err.find("killed.h5.part.2: "), std::string::npos) << go_on.err;
+  expect_same("whole.h5", "killed.h5");
+  expect_no_journals();
+}
+
+TEST_F(Mpi, SignalToOneRankStopsAllAndLosesNothing) {
+  const std::string ensemble = "ensemble wet.toml --replicas 6000 -o ";
+  run("cradle " + ensemble + "whole.h5");
+  const Printed stopped = shell(start(2, ensemble + "stopped.h5 --threads 1", "stopped.h5") +
+                                "kill -TERM $(ps -o pid= --ppid $pid | sed -n 2p); wait $pid");
+  EXPECT_EQ(stopped.status, 143) << stopped.err;
+  EXPECT_NE(stopped.err.find("stopped.h5.part"), std::string::npos) << stopped.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "stopped.h5"));
+  run("cradle " + ensemble + "stopped.h5");  // without ranks
+  expect_same("whole.h5", "stopped.h5");
+  expect_no_journals();
+}
+
+TEST_F(Mpi, WhatIsWrongIsToldOnce) {
+  const Printed scene_error = shell(job(3, "ensemble wet.toml --replicas 5 --set law.loss=-1"));
+  EXPECT_EQ(scene_error.status, 2);
+  const auto first = scene_error.err.find("cradle: ");
+  ASSERT_NE(first, std::string::npos) << scene_error.err;
+  EXPECT_EQ(scene_error.err.find("cradle: ", first + 1), std::string::npos) << scene_error.err;
+
+  run("cradle ensemble wet.toml --replicas 2 -o other.h5");
+  EXPECT_EQ(shell(job(2, "ensemble wet.toml --replicas 5 --seed 9 -o other.h5")).status, 2);
+}
+
+TEST_F(Mpi, RankThatCannotWriteItsJournalEndsTheJob) {
+  run("mkdir -p bad.h5.part.1/in.the.way");
+  const Printed bad = shell(job(2, "ensemble wet.toml --replicas 3000 -o bad.h5"));
+  EXPECT_EQ(bad.status, 4) << bad.err;
+  EXPECT_NE(bad.err.find("cradle: "), std::string::npos) << bad.err;
+}
+
+}  // namespace
+}  // namespace cradle::tests

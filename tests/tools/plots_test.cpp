@@ -1,0 +1,136 @@
+// Pictures: every kind is made from a small run, without a display, as PNG and as SVG, and twice with the same bytes.
+// Which pictures a file gets follows from what it holds: the names that the program prints are checked.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+
+namespace cradle::tests {
+namespace {
+
+struct Kind {
+  const char* name;
+  const char* command;              // makes `it.h5`
+  std::vector<std::string> others;  // pictures beside the main one
+  int status = 0;
+};
+
+void PrintTo(const Kind& kind, std::ostream* stream) { *stream << kind.command; }
+
+class Pictures : public ProgramTest, public testing::WithParamInterface<Kind> {
+ protected:
+  // Names of the pictures of it.h5, the main one `name` with this extension.
+  std::vector<std::string> plot(const std::string& name, const std::string& extension) const {
+    std::vector<std::string> names{name + extension};
+    for (const auto& other : GetParam().others) names.push_back(name + "-" + other + extension);
+    std::string printed;
+    for (const auto& file : names) printed += file + "\n";
+    const Printed plot = shell("env -u DISPLAY -u WAYLAND_DISPLAY cradle plot it.h5 -o " + names.front());
+    EXPECT_EQ(plot.status, 0);
+    EXPECT_EQ(plot.out, printed);
+    EXPECT_EQ(plot.err, "");
+    return names;
+  }
+};
+
+TEST_P(Pictures, AreMadeWithoutDisplayAndTwiceTheSame) {
+  const Printed run = shell(GetParam().command + std::string(" --quiet -o it.h5"));
+  ASSERT_EQ(run.status, GetParam().status) << run.err;
+  for (const std::string extension : {".png", ".svg"}) {
+    const auto once = plot("once", extension), again = plot("again", extension);
+    for (std::size_t k = 0; k < once.size(); ++k) {
+      const std::string picture = contents(folder / once[k]);
+      EXPECT_EQ(picture.substr(0, 5), extension == ".png" ? "\x89PNG\r" : "<?xml") << once[k];
+      EXPECT_GT(picture.size(), 10000U) << once[k];
+      EXPECT_EQ(picture, contents(folder / again[k])) << once[k];
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Pictures,
+    testing::Values(
+        Kind{"Sticky",
+             "cradle run fig1 --set initial.left.particles=100 --set initial.right.particles=100 --set run.until=100 "
+             "--set output.snapshots=[0,50,100] --set output.profiles.times=[0,50,100] "
+             "--set output.profiles.range=[-80,80]",
+             {"energy"}},
+        Kind{"Shock",
+             "cradle run fig2 --set initial.particles=200 --set run.until=60 --set output.snapshots=[20,60] "
+             "--set output.profiles.times=[30] --set output.series.points=20",
+             {"energy"}},
+        Kind{"Structure",
+             "cradle run fig3 --set initial.particles=400 --set law.restitution=0.97 --set run.until=230 "
+             "--set output.snapshots=[230] --set output.series.points=20",
+             {"energy"}},
+        Kind{"SpaceTime", "cradle run fig5", {}},
+        Kind{"WetShock",
+             "cradle run fig6 --set initial.particles=400 --set law.loss=0.01 --set run.until=150 "
+             "--set output.snapshots=[20,50,100] --set output.profiles.times=[20,50,100] --set output.masses=[100] "
+             "--set output.series.points=20",
+             {"energy"}},
+        Kind{"Zone",
+             "cradle run fig7 --set initial.particles=2000 --set law.loss=0.01 --set run.until=1000 "
+             "--set output.snapshots=[1000] --set output.zone.from=300 --set output.zone.samples=100 "
+             "--set output.series.points=20",
+             {"shock", "energy"}},
+        Kind{"Clusters",
+             "cradle run fig11 --set initial.particles=20000 --set run.until=19000 --set output.masses=[1000,19000] "
+             "--set output.series.points=400",
+             {"scaling", "energy"}},
+        Kind{"ClusterModel", "cradle run fig10 --set run.until=500", {"scaling", "energy"}},
+        Kind{"Bodies", "cradle run collapse3", {}, 3},
+        Kind{"Cooling",
+             "cradle run cooling --set initial.particles=500 --set run.until=100 --set output.series.points=20 "
+             "--set output.snapshots=[10,100] --set output.masses=[10,100]",
+             {"field", "masses"}},
+        Kind{"Ensemble",
+             "cradle ensemble fig2 --replicas 4 --set initial.particles=40 --set law.restitution=0.6 "
+             "--set law.cutoff=0 --set run.until=30 --set output.snapshots=[] --set output.series.points=20 "
+             "--set output.profiles.times=[2,4] --set output.profiles.range=[-8,8]",
+             {"profiles", "collapse"}},
+        Kind{"CoolingSweep",
+             "cradle sweep cooling --set initial.particles=500 --set run.until=100 --set output.series.points=20",
+             {}},
+        Kind{"ZoneSweep",
+             "cradle sweep fig8 --cuts --vary initial.speed=0.5,1 --vary law.loss=0.01,0.02 --replicas 2 "
+             "--set initial.particles=1000 --set run.until=500 --set output.zone.from=100 "
+             "--set output.zone.samples=100 --set output.series.points=20",
+             {"sweep"}},
+        Kind{"MapSweep",
+             "cradle sweep fig2 --vary law.restitution=0.5,0.9 --vary initial.speed=0.5,1 --set initial.particles=40 "
+             "--set run.until=10 --set output.snapshots=[] --set output.series.points=5 "
+             "--set output.profiles.times=[]",
+             {}}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
+class Plots : public ProgramTest {};
+
+TEST_F(Plots, WhatCannotBeDrawnIsOneMessage) {
+  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5 && echo junk > junk.h5 && head -c 3000 it.h5 > cut.h5").status, 0);
+  struct Case {
+    const char* arguments;
+    int status;
+    const char* names;
+  };
+  for (const Case& wrong :
+       {Case{"it.h5 -o it.gif", 2, ".gif"}, Case{"it.h5 -o no/such/it.png", 4, "no/such/it.png"},
+        Case{"junk.h5", 4, "junk.h5"}, Case{"cut.h5", 4, "cut.h5"}, Case{"nothing.h5", 4, "nothing.h5"}}) {
+    const Printed plot = shell(std::string("cradle plot ") + wrong.arguments);
+    EXPECT_EQ(plot.status, wrong.status) << wrong.arguments;
+    EXPECT_NE(plot.err.find(wrong.names), std::string::npos) << plot.err;
+    EXPECT_EQ(std::count(plot.err.begin(), plot.err.end(), '\n'), 1) << plot.err;
+  }
+}
+
+TEST_F(Plots, LeaveNoFilesBehind) {
+  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5 && mkdir temporary").status, 0);
+  EXPECT_EQ(shell("TMPDIR=$PWD/temporary cradle plot it.h5").status, 0);
+  EXPECT_EQ(shell("ls temporary").out, "");
+  EXPECT_EQ(shell("TMPDIR=$PWD/nowhere cradle plot it.h5").status, 4);
+}
+
+}  // namespace
+}  // namespace cradle::tests

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <memory>
+
+#include "cradle/tools/commands/study.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct Options : CommonOptions {
+  std::uint64_t replicas = 0, first = 0;
+  std::vector<std::string> spreads;
+  std::string output;
+};
+
+// NAME=FROM:TO:BINS
+SpreadRequest spread(const std::string& text) {
+  const auto wrong = [&] {
+    return Error({"--spread", 0, ""}, "not a quantity and bins", text,
+                 "give NAME=FROM:TO:BINS, as in energy=0:1000:50");
+  };
+  const auto equals = text.find('='), colon = text.find(':', equals), second = text.find(':', colon + 1);
+  if (equals == text.npos || colon == text.npos || second == text.npos) throw wrong();
+  const auto number = [&](std::size_t from, std::size_t to) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
+    if (error != std::errc() || end != text.data() + to || !std::isfinite(value)) throw wrong();
+    return value;
+  };
+  const double from = number(equals + 1, colon), to = number(colon + 1, second), bins = number(second + 1, text.size());
+  if (!(from < to) || !(bins >= 1 && bins <= 1e6) || bins != std::floor(bins)) throw wrong();
+  return {text.substr(0, equals), {from, to, static_cast<std::size_t>(bins)}};
+}
+
+StudyPlan plan(const Options& options) {
+  const Scene scene = options.read();
+  std::vector<SpreadRequest> spreads;
+  for (const std::string& text : options.spreads) spreads.push_back(spread(text));
+  return {ensemble_of(scene, std::move(spreads)),
+          {options.first, options.replicas},
+          options.output.empty() ? scene.name + "-ensemble.h5" : options.output};
+}
+
+}  // namespace
+
+void add_ensemble(CLI::App& program, Action& action) {
+  auto* command =
+      program.add_subcommand("ensemble", "replicas of a scene with different perturbations, and statistics");
+  const auto options = std::make_shared<Options>();
+  add_common_options(*command, *options);
+  constexpr std::uint64_t most = std::uint64_t{1} << 53;
+  command->add_option("--replicas", options->replicas, "how many; those that FILE has already are not run again")
+      ->required()
+      ->check(CLI::Range(std::uint64_t{1}, most));
+  command->add_option("--first", options->first, "number of the first one (default 0): initial.replica of its run")
+      ->check(CLI::Range(std::uint64_t{0}, most));
+  command
+      ->add_option("--spread", options->spreads,
+                   "count the values of a quantity in bins, and give quantiles: NAME=FROM:TO:BINS, NAME as in series/; "
+                   "may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", options->output,
+                      "result file (default: the scene's name with -ensemble.h5); an ensemble of this scene that is "
+                      "there is continued");
+  command->footer(
+      "Snapshots, masses and events of the scene are left out. Finished replicas are kept in FILE.part: the same "
+      "command goes on from there.");
+  command->callback([&action, options] {
+    action = [options] { return run_study_command(*options, [&] { return plan(*options); }); };
+  });
+}
+
+}  // namespace cradle::tools

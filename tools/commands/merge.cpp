@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/ensemble_store.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string output;
+};
+
+Exit merge(const Options& options) {
+  const Study study = study_in(options.files.front());
+  EnsembleStore all(study, options.output);
+  for (const std::string& file : options.files) {
+    EnsembleStore one(study, file);
+    one.load_result();
+    all.merge(one);
+  }
+  check_writable(options.output);
+  const Result result = all.result();
+  write_result(result, options.output);
+  fmt::print("{} replicas: {}\nwrote {}\n", attribute<std::uint64_t>(result.attributes, "replicas", options.output),
+             attribute<std::string>(result.attributes, "outcome", options.output), options.output);
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& program, Action& action) {
+  auto* command = program.add_subcommand("merge", "ensembles of the same scene with different replicas, as one");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->files, "result files of `cradle ensemble`")->required();
+  command->add_option("-o,--output", options->output, "result file")->required();
+  command->callback([&action, options] { action = [options] { return merge(*options); }; });
+}
+
+}  // namespace cradle::tools

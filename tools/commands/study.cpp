@@ -1,0 +1,47 @@
+#include "cradle/tools/commands/study.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "cradle/tools/interrupt.hpp"
+
+namespace cradle::tools {
+
+Exit run_study_command(const CommonOptions& options, const std::function<StudyPlan()>& make_plan) {
+  note_signals();
+  const std::unique_ptr<Crew> crew = make_crew();
+  StudyPlan plan;
+  const Exit failed = crew->together([&] {
+    plan = make_plan();
+    if (crew->rank() == 0) check_writable(plan.output);
+  });
+  if (failed != Exit::done) return failed;
+  const std::string& output = plan.output;
+  EnsembleOptions how;
+  how.replicas = plan.replicas;
+  how.threads = options.threads;
+  how.progress = options.progress ? ProgressLine::Show::always
+                 : options.quiet  ? ProgressLine::Show::never
+                                  : ProgressLine::Show::on_terminal;
+  const auto started = std::chrono::steady_clock::now();
+  const EnsembleOutcome end = run_study(plan.study, how, output, *crew);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  if (crew->rank() != 0) return end.status;
+  if (!options.quiet) fmt::print(stderr, "{}", end.account);
+  fmt::print(stderr, "{}", end.warning);
+  if (end.status == Exit::interrupted || end.status == Exit::terminated) {
+    fmt::print(stderr, "interrupted: finished replicas are in {}.part; the same command goes on from there\n", output);
+  } else if (!options.quiet) {
+    fmt::print("{} replicas: {}\n", end.replicas, end.outcome);
+    if (end.fresh > 0)
+      fmt::print("{} of them now, {:.2f} s, {:.4g} replicas/s\nwrote {}\n", end.fresh, seconds,
+                 static_cast<double>(end.fresh) / seconds, output);
+    else
+      fmt::print("nothing to do: {} has them all\n", output);
+  }
+  return end.status;
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,22 @@
+// What `ensemble` and `sweep` have in common: runs a study, tells how it went, gives the exit status.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/ensemble.hpp"
+
+namespace cradle::tools {
+
+struct StudyPlan {
+  Study study;
+  ReplicaRange replicas;  // of every point
+  std::string output;
+};
+
+/// Runs what the plan's output does not have yet. Under MPI every rank makes the plan; what is wrong with it is told
+/// once.
+Exit run_study_command(const CommonOptions& options, const std::function<StudyPlan()>& make_plan);
+
+}  // namespace cradle::tools

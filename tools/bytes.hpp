@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "cradle/tools/errors.hpp"
@@ -23,6 +24,10 @@ concept Number = std::same_as<T, double> || std::same_as<T, std::uint64_t>;
 
 class ByteWriter {
  public:
+  ByteWriter& reserve(std::size_t bytes) {
+    bytes_.reserve(bytes);
+    return *this;
+  }
   template <Number T> ByteWriter& put(T number) {
     bytes_.append(reinterpret_cast<const char*>(&number), sizeof number);
     return *this;
@@ -37,8 +42,8 @@ class ByteWriter {
     bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T));
     return *this;
   }
-  const std::string& bytes() const { return bytes_; }
-  void clear() { bytes_.clear(); }
+  const std::string& bytes() const& { return bytes_; }
+  std::string bytes() && { return std::move(bytes_); }
 
  private:
   std::string bytes_;

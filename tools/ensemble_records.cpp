@@ -33,9 +33,10 @@ ReplicaRow read_row(ByteReader& bytes) {
 
 std::string EnsembleState::record(std::uint64_t point, const ReplicaRow& row, const std::vector<double>& values) {
   ByteWriter bytes = begin(point, Kind::replica);
+  bytes.reserve((16 + row.numbers.size() + values.size()) * sizeof(double));
   put(bytes, row);
   bytes.put(values);
-  return bytes.bytes();
+  return std::move(bytes).bytes();
 }
 
 std::string EnsembleState::record(std::uint64_t point, ReplicaIndex failed, const std::string& message) {

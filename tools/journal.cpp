@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -26,15 +27,6 @@ std::string_view as_bytes(const std::uint64_t& number) {
 }
 
 std::uint64_t checksum(std::uint64_t length, std::string_view record) { return crc64(record, crc64(as_bytes(length))); }
-
-// length, record, checksum of both
-std::string framed(std::string_view record) {
-  const std::uint64_t length = record.size(), check = checksum(length, record);
-  std::string frame;
-  frame.reserve(record.size() + 16);
-  frame.append(as_bytes(length)).append(record).append(as_bytes(check));
-  return frame;
-}
 
 }  // namespace
 
@@ -81,7 +73,7 @@ JournalWriter::JournalWriter(const std::string& path, std::string_view header,
   if (file_ < 0) fail(path, "the journal could not be created");
   claim();
   if (::ftruncate(file_, 0) != 0) fail(path, "the journal could not be created");
-  write(magic);
+  write({magic});
   append(header);
   if (records) records([this](std::string_view record) { append(record); });
   sync();
@@ -106,15 +98,24 @@ void JournalWriter::claim() const {
                 Exit::io);
 }
 
-void JournalWriter::append(std::string_view record) { write(framed(record)); }
+// length, record, checksum of both
+void JournalWriter::append(std::string_view record) {
+  const std::uint64_t length = record.size(), check = checksum(length, record);
+  write({as_bytes(length), record, as_bytes(check)});
+}
 
-void JournalWriter::write(std::string_view bytes) {
-  bytes_ += bytes.size();
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+void JournalWriter::write(std::array<std::string_view, 3> parts) {
+  for (std::size_t first = 0; first < parts.size();) {
+    std::array<iovec, 3> left{};
+    for (std::size_t k = first; k < parts.size(); ++k)
+      left[k - first] = {const_cast<char*>(parts[k].data()), parts[k].size()};
+    ssize_t written = ::writev(file_, left.data(), static_cast<int>(parts.size() - first));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(path_, "the journal could not be written");
-    bytes.remove_prefix(static_cast<std::size_t>(written));
+    bytes_ += static_cast<std::uint64_t>(written);
+    for (; first < parts.size() && static_cast<std::size_t>(written) >= parts[first].size(); ++first)
+      written -= static_cast<ssize_t>(parts[first].size());
+    if (first < parts.size()) parts[first].remove_prefix(static_cast<std::size_t>(written));
   }
 }
 

@@ -3,6 +3,7 @@
 // there and says how much it left out, and whoever goes on writing cuts it off. The first record is the header.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <functional>
@@ -71,7 +72,7 @@ class JournalWriter {
   };
 
   void claim() const;
-  void write(std::string_view bytes);
+  void write(std::array<std::string_view, 3> parts);
 
   std::string path_;
   File file_;

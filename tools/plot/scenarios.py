@@ -98,12 +98,12 @@ def draw_regimes(result):
             share = np.array([np.mean(point.replicas["regime"] == regime) for point in points])
             ax.bar(places, share, bottom=below, width=0.85, color=COLOURS[regime], label=name)
             below += share
-        ax.set(ylim=(0, 1), ylabel="share of replicas")
-        ax.set_title(f"perturbation {size:g} $l$", loc="right", fontsize=8)
+        ax.set(ylim=(0, 1))
+        ax.set_ylabel(f"perturbation {size:g} $l$")
         ax.set_xticks(places, [f"{point.setting('law', 'loss'):.2g}" for point in points], fontsize=7)
     axes = np.atleast_1d(axes)
     axes[-1].set_xlabel(r"$E_\mathrm{loss}$")
-    axes[0].legend(loc="lower center", bbox_to_anchor=(0.4, 1.0), ncol=4)
+    axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
     return figure
 
 

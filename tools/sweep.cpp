@@ -188,6 +188,7 @@ Study sweep_of(const std::string& scene, const std::vector<std::string>& overrid
     for (const auto& [key, value] : points[p]) all.push_back(key + "=" + value);
     Scene at = read_scene(scene, all);
     at.sweep = {};
+    at.sweep.replicas = 1;
     study.points.push_back({fmt::format("points/{:04}", p), std::move(at)});
   }
   study.summary = [points](const EnsembleStates& states) { return std::vector<Group>{summary(points, states)}; };

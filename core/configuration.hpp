@@ -15,7 +15,7 @@ namespace cradle {
 
 template <Real T> struct Configuration {
   T time{0};
-  BodyIndex from = 0, to = -1;   // the bodies at the start that are in here, merged or not
+  BodyIndex from = 0, to = -1;  // the bodies at the start that are in here, merged or not
   // Which of the n bodies have had a contact or lie between such: [collided_from, collided_to).
   std::size_t collided_from = 0, collided_to = 0;
   std::vector<BodyIndex> index;  // n bodies from left to right, by their number at the start

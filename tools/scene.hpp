@@ -119,7 +119,7 @@ struct Output {
   Profiles profiles;
   std::vector<Decimal> masses;  // times at which the distribution of masses is written
   Zone zone;
-  bool scenario = false;    // wet rows: which of the two scenarios of Fig. 9
+  bool scenario = false;     // wet rows: which of the two scenarios of Fig. 9
   Decimal checkpoint_every;  // seconds of wall clock; 0: no checkpoints
   bool events = false;
   bool operator==(const Output&) const = default;

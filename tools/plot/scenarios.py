@@ -127,5 +127,5 @@ def draw_collapse(result):
     ax.axvline(1, color=GREY, lw=0.8, zorder=0)
     ax.set_xlabel(r"collapse time $t_c\,/\,(N_c/2u_0)$")
     ax.set_ylabel("probability density")
-    ax.legend(loc="upper right")
+    ax.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
     return figure

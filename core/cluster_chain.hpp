@@ -38,7 +38,7 @@ template <Real T> class ClusterChain {
   // body.
   ClusterChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
       : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), clock_(start),
-        frame_(bodies_->momentum() / bodies_->total_mass()) {
+        frame_(bodies_->momentum() / bodies_->total_mass()), runaway_(T(2) + T(4) * bodies_->energy_over_least_mass()) {
     const BodyIndex last = bodies_->count() - 1;
     const GapRange held = hold_all || ring_ ? GapRange{0, last - 1} : bodies_->gaps_in_motion();
     std::vector<Cell> cells;
@@ -143,8 +143,7 @@ template <Real T> class ClusterChain {
 
   // True when the next contact at an end could find no cell for the body that it sets free, or most cells are vacant.
   bool cramped() const {
-    return (unheld_left_ > 0 && end_left_ <= 2) || (unheld_right_ > 0 && end_right_ + 3 >= slots()) ||
-           2 * vacated_ > last_ - first_ + 256;
+    return (unheld_left_ > 0 && end_left_ <= 2) || (unheld_right_ > 0 && end_right_ + 3 >= slots()) || sparse();
   }
   void make_room() {
     std::vector<Cell> cells;
@@ -183,10 +182,14 @@ template <Real T> class ClusterChain {
     return c.gap - closing(s) * (is_negative(c.time) ? T(flown - lag_[s]) : flown);
   }
   // Positions of the outermost bodies that have collided; only once there are some.
-  T front_left(const T& time) const { return configuration(time).x[first_ < front_left_ ? 1 : 0]; }
+  T front_left(const T& time) const {
+    if (first_ == front_left_) return configuration(time).x.front();
+    const Slot beside = cells_[front_left_].left;
+    return (undisturbed(cells_[beside].body, time) + gap_at(beside, time)).value();
+  }
   T front_right(const T& time) const {
-    const auto c = configuration(time);
-    return c.x[c.x.size() - (last_ > front_right_ ? 2 : 1)];
+    if (last_ == front_right_) return configuration(time).x.back();
+    return (undisturbed(cells_[cells_[front_right_].right].body, time) - gap_at(front_right_, time)).value();
   }
   // The bodies that have collided and the next one on each side; all that are held before the first contact. On a ring
   // all bodies, from the first one right of x = 0.
@@ -201,6 +204,13 @@ template <Real T> class ClusterChain {
   };
 
   bool vacant(Slot s) const { return cells_[s].right == s; }
+  // Vacant cells make the queue's tree deep, and neighbours live in different branches of it.
+  bool sparse() const { return 2 * vacated_ > last_ - first_ + 24; }
+
+  // Position of a body that has not collided.
+  Pair<T> undisturbed(BodyIndex b, const T& time) const {
+    return two_sum(bodies_->position(b), T(bodies_->velocity(b) * clock_.elapsed(time)));
+  }
 
   // The gap right of the last body held is none yet: it is not asked for, which would be random numbers in vain.
   Cell load(BodyIndex b, const T& time, bool last = false) const {
@@ -215,7 +225,7 @@ template <Real T> class ClusterChain {
 
   // Puts the cells, without vacant ones, in the middle of slots enough for the zone to grow by half on either side.
   void lay_out(const std::vector<Cell>& cells, const std::vector<T>& lag) {
-    const auto growth = static_cast<BodyIndex>(std::max<std::size_t>(cells.size() / 2, 64));
+    const auto growth = static_cast<BodyIndex>(std::max<std::size_t>(cells.size() / 2, 24));
     const auto room_left = static_cast<Slot>(std::min(unheld_left_, growth)) + 3;
     const auto room_right = static_cast<Slot>(std::min(unheld_right_, growth)) + 3;
     cells_.assign(room_left + cells.size() + room_right, Cell{});
@@ -242,13 +252,12 @@ template <Real T> class ClusterChain {
         cells_[s].due = closing(s) > 0 ? cells_[s].time + cells_[s].gap / closing(s) + lag_[s] : EventQueue::never;
   }
 
-  // Beyond the bodies held something runs away, faster than any body can: no speed exceeds sqrt(2E/m) <= 1 + 2E/m.
+  // Beyond the bodies held something runs away, faster than any body can.
   void place_end(Slot s, Slot beside) {
-    const T fastest = T(1) + T(2) * bodies_->energy_over_least_mass();
     cells_[s] = Cell{};
     lag_[s] = T(0);
     const bool on_left = s < beside;
-    cells_[s].velocity = on_left ? T(-(fastest + fastest)) : T(fastest + fastest);
+    cells_[s].velocity = on_left ? T(-runaway_) : runaway_;
     cells_[s].left = on_left ? s : beside;
     cells_[s].right = on_left ? beside : s;
     (on_left ? cells_[beside].left : cells_[beside].right) = s;
@@ -321,7 +330,7 @@ template <Real T> class ClusterChain {
     if (front_right_ == n) front_right_ = s;
     --active_;
     ++vacated_;
-    return 2 * vacated_ > last_ - first_ + 256 ? notice::cramped : notice::none;
+    return sparse() ? notice::cramped : notice::none;
   }
 
   // Brings a gap up to date; where the local time is ahead of the contact it stays, and how far is returned (negative).
@@ -387,6 +396,7 @@ template <Real T> class ClusterChain {
   bool ring_;
   Clock<T> clock_;
   T frame_;                                  // velocity of the centre of mass
+  T runaway_;                                // twice 1 + 2E/m >= sqrt(2E/m), which no speed exceeds
   mutable std::optional<T> centre_of_mass_;  // at the start; found when first asked for
   CompensatedSum<T> carried_;                // mass across the seam of a ring, see cross_seam
   Account<T> account_;
@@ -419,14 +429,11 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
     way.add(c.gap.back());
     if (s == to) break;
   }
-  const auto fly = [&](BodyIndex b) {
-    return two_sum(bodies_->position(b), T(bodies_->velocity(b) * clock_.elapsed(time)));
-  };
   Pair<T> leftmost;
   if (free_left)
-    leftmost = fly(cells_[from].body);
+    leftmost = undisturbed(cells_[from].body, time);
   else if (free_right)
-    leftmost = fly(cells_[to].body) - way.value();
+    leftmost = undisturbed(cells_[to].body, time) - way.value();
   else {
     if (!centre_of_mass_) centre_of_mass_ = bodies_->centre_of_mass();
     leftmost = two_sum(*centre_of_mass_, T(frame_ * clock_.elapsed(time)));

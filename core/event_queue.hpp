@@ -97,17 +97,20 @@ class EventQueue {
   // ring.
   void replace(Slot left, double left_due, Slot s, double due, Slot right, double right_due) {
     if (left + 1 == s && s + 1 == right) return replace(s, left_due, due, right_due);
-    set(left, left_due);
-    set(right, right_due);
-    set(s, due);
-    std::size_t from = (leaves_ + std::min({left, s, right})) >> 1, to = (leaves_ + std::max({left, s, right})) >> 1;
-    if (to - from > 16) {
-      for (const Slot each : {left, s, right}) climb((leaves_ + each) >> 1);
-      return;
+    Key* const tree = tree_.data();
+    std::size_t a = leaves_ + left, b = leaves_ + s, c = leaves_ + right;
+    Key least_a = key(left_due, left), least_b = key(due, s), least_c = key(right_due, right);
+    tree[a] = least_a;
+    tree[b] = least_b;
+    tree[c] = least_c;
+    while (a > 1) {  // also where they have met: asking costs more than walking thrice
+      least_a = std::min(least_a, tree[a ^ 1]);
+      least_b = std::min(least_b, tree[b ^ 1]);
+      least_c = std::min(least_c, tree[c ^ 1]);
+      tree[a >>= 1] = least_a;
+      tree[b >>= 1] = least_b;
+      tree[c >>= 1] = least_c;
     }
-    for (; from != to; from >>= 1, to >>= 1)
-      for (std::size_t node = from; node <= to; ++node) refresh(node);
-    climb(from);
   }
 
   // Sets one time without telling the tree; `rebuild` once all are set.
@@ -129,9 +132,6 @@ class EventQueue {
     if (tree_[node] > bound) return true;
     if (node >= leaves_) return visit(static_cast<Slot>(node - leaves_));
     return visit_before(bound, visit, 2 * node) && visit_before(bound, visit, 2 * node + 1);
-  }
-  void climb(std::size_t node) {
-    for (; node > 0; node >>= 1) refresh(node);
   }
 
   std::size_t leaves_;

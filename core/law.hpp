@@ -123,15 +123,20 @@ template <Real T> struct Sticky {
 
 // Wet law (paper, section II): a contact costs E_loss, the bodies pass through each other; if their relative kinetic
 // energy mu w^2/2 does not exceed it, they merge. With w_c = sqrt(2 E_loss/mu): w' = sqrt((w - w_c)(w + w_c)), since
-// w^2 - w_c^2 loses half the digits at the threshold, and J = 2 E_loss/(w + w'), never mu (w - w').
+// w^2 - w_c^2 loses half the digits at the threshold, and J = 2 E_loss/(w + w'), never mu (w - w'). Where w is not near
+// w_c, which of the two happens is told without the root, so that the processor guesses right or learns soon.
 template <Real T> class Wet {
  public:
-  explicit Wet(const T& loss) : loss_(loss), twice_loss_(loss + loss) {}
+  explicit Wet(const T& loss)
+      : loss_(loss), twice_loss_(loss + loss), below_(twice_loss_ - twice_loss_ / T(1024)),
+        above_(twice_loss_ + twice_loss_ / T(1024)) {}
 
   Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
     using std::sqrt;
-    const T critical = sqrt(T(twice_loss_ * ((mass_left + mass_right) / (mass_left * mass_right))));
-    if (!(w > critical)) return InelasticMerging<T>::merged(w, mass_left, mass_right);
+    const T total = mass_left + mass_right, product = mass_left * mass_right, scaled = w * w * product;
+    if (scaled < below_ * total) return InelasticMerging<T>::merged(w, mass_left, mass_right);
+    const T critical = sqrt(T(twice_loss_ * (total / product)));
+    if (!(scaled > above_ * total) && !(w > critical)) return InelasticMerging<T>::merged(w, mass_left, mass_right);
     const T after = sqrt(T((w - critical) * (w + critical)));
     const T impulse = twice_loss_ / (w + after);
     return {-after, impulse / mass_left, impulse / mass_right, loss_, false, Event::pass};
@@ -139,6 +144,7 @@ template <Real T> class Wet {
 
  private:
   T loss_, twice_loss_;
+  T below_, above_;  // that, a thousandth less and more
 };
 
 }  // namespace cradle

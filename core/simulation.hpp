@@ -85,35 +85,50 @@ template <Real T, class Law, class Chain> class Simulation {
   // Makes every contact at times <= until. Except for `reached`, the run ends with the contact that was made last.
   // An observer is told of every contact, observer(const Contact<T>&); without one there is nothing to pay.
   template <class Observer = std::nullptr_t> Status advance(const T& until, Observer&& observer = nullptr) {
-    constexpr bool observed = !std::same_as<std::remove_cvref_t<Observer>, std::nullptr_t>;
-    T horizon = chain_.local_time(until);
-    auto before = queue_.certainly_before(chain_.queue_time(horizon));
-    for (;;) {
-      const auto next = queue_.next();
-      Slot s = queue_.slot(next);
-      if (next >= before) [[unlikely]] {
-        if (!earliest_until(horizon, s)) return Status::reached;
-      } else if (queue_.contested()) [[unlikely]] {
-        s = earliest_near(next);
-      }
-      const T time = chain_.due(s);
-      if constexpr (observed) {
-        observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.clock().stamp(time), time - previous_,
-                            chain_.closing(s)});
-        previous_ = time;
-      }
-      const Collision<T> collision = chain_.collide(law_, s, time);
-      queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
-      lost_.add(collision.outcome.energy_lost);
-      counts_.below_cutoff += collision.outcome.below_cutoff;
-      counts_.merges += collision.outcome.event == Event::merge;
-      if (++counts_.contacts == next_review_ || collision.notice != notice::none) [[unlikely]] {
-        const Status status = review(s, time, collision.notice);
-        if (status != Status::reached) return status;
-        horizon = chain_.local_time(until);
-        before = queue_.certainly_before(chain_.queue_time(horizon));
-      }
+    Course course = course_to(until);
+    while (step(course, observer)) {
     }
+    return course.status;
+  }
+
+  // The same contact by contact: `while (step(course)) ...`. For several simulations side by side in one thread.
+  struct Course {
+    T until, horizon;  // the time to go to, and what it is called since the origin moved last
+    EventQueue::Key certainly_before;
+    Status status = Status::reached;
+  };
+  Course course_to(const T& until) const {
+    const T horizon = chain_.local_time(until);
+    return {until, horizon, queue_.certainly_before(chain_.queue_time(horizon))};
+  }
+  // Makes the next contact; false where there is none to make, or it is the last one: course.status says why.
+  template <class Observer = std::nullptr_t>
+  [[gnu::always_inline]] bool step(Course& course, Observer&& observer = nullptr) {
+    constexpr bool observed = !std::same_as<std::remove_cvref_t<Observer>, std::nullptr_t>;
+    const auto next = queue_.next();
+    Slot s = queue_.slot(next);
+    if (next >= course.certainly_before) [[unlikely]] {
+      if (!earliest_until(course.horizon, s)) return false;
+    } else if (queue_.contested()) [[unlikely]] {
+      s = earliest_near(next);
+    }
+    const T time = chain_.due(s);
+    if constexpr (observed) {
+      observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.clock().stamp(time), time - previous_,
+                          chain_.closing(s)});
+      previous_ = time;
+    }
+    const Collision<T> collision = chain_.collide(law_, s, time);
+    queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
+    lost_.add(collision.outcome.energy_lost);
+    counts_.below_cutoff += collision.outcome.below_cutoff;
+    counts_.merges += collision.outcome.event == Event::merge;
+    if (++counts_.contacts == next_review_ || collision.notice != notice::none) [[unlikely]] {
+      course.status = review(s, time, collision.notice);
+      if (course.status != Status::reached) return false;
+      course = course_to(course.until);
+    }
+    return true;
   }
 
   const Law& law() const { return law_; }

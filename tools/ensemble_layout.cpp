@@ -127,7 +127,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
   layout.time.values = times.series;
   for (const Group& group : probe.groups)
     for (const Column& column : group.columns)
-      if (of_series(group.name) && column.name != "time") add(column, group.name, times.series.size());
+      if (of_series(group.name) && column.name != "time" && !column.names) add(column, group.name, times.series.size());
   const auto add_binned = [&](const std::string& of_probe, const std::string& group,
                               std::vector<Attribute> attributes) {
     layout.binned.push_back({group, std::move(attributes), get(probe, of_probe, "x")});

@@ -53,13 +53,14 @@ Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads) {
   return {.scene = scene, .points = {{"", scene}}, .spreads = std::move(spreads)};
 }
 
-Study study_in(const std::string& file) {
-  const Result result = read_result(file);
-  const auto kind = std::find_if(result.attributes.begin(), result.attributes.end(),
-                                 [](const auto& attribute) { return attribute.first == "kind"; });
-  if (kind == result.attributes.end() || kind->second != Attribute::second_type("ensemble"))
-    throw Error({file, 0, ""}, "holds no ensemble", "a single run, or another command's result",
-                "give a file that `cradle ensemble` wrote");
+std::string study_kind(const Result& result, const std::string& file) {
+  for (const auto& [name, value] : result.attributes)
+    if (name == "kind") return std::get<std::string>(value);
+  throw Error({file, 0, ""}, "holds no ensemble", "a single run, or another command's result",
+              "give a file that `cradle ensemble` or `cradle sweep` wrote");
+}
+
+Study ensemble_in(const Result& result, const std::string& file) {
   std::vector<SpreadRequest> spreads;
   const std::string under = "ensemble/spread/";
   for (const Group& group : result.groups)

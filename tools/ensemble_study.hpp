@@ -34,8 +34,11 @@ struct Study {
 
 /// The study of one ensemble.
 Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads = {});
-/// The study that a file holds. Throws Error: Exit::bad_input for a file that holds none, Exit::io.
-Study study_in(const std::string& file);
+/// "ensemble" or "sweep". Throws Error (Exit::bad_input) for a file that holds neither.
+std::string study_kind(const Result& result, const std::string& file);
+
+/// The study of the one ensemble that a file holds, the scene as it stands there.
+Study ensemble_in(const Result& result, const std::string& file);
 
 /// The first key in which two scenes differ, with both values; empty if there is none.
 std::string scene_difference(const Scene& found, const Scene& wanted);

@@ -76,13 +76,13 @@ template <Real T> class CloudRecorder {
                               "standard deviation of position, weighted by mass, of all that have collided but the "
                               "two heaviest clusters",
                               std::move(cloud_width_)});
-    return {
-        "series/heaviest",
-        {},
-        {{"mass", "m", "of the two heaviest clusters, the left and the right one", std::move(mass_), 2},
-         {"x", "l", "their positions", std::move(x_), 2},
-         {"v", "l/t", "their velocities", std::move(v_), 2},
-         {"index", "1", "number at the start of the body they go by, the same after passing", std::move(index_), 2}}};
+    return {"series/heaviest",
+            {},
+            {{"mass", "m", "of the two heaviest clusters, the left and the right one", std::move(mass_), 2},
+             {"x", "l", "their positions", std::move(x_), 2},
+             {"v", "l/t", "their velocities", std::move(v_), 2},
+             {"index", "1", "number at the start of the body they go by, the same after passing", std::move(index_), 2,
+              true}}};
   }
 
  private:

@@ -19,6 +19,7 @@ struct Column {
   std::string description;
   Numbers values;         // row after row
   std::size_t width = 1;  // numbers in a row
+  bool names = false;     // they name something, bodies for instance: a mean of them would mean nothing
 
   std::size_t rows() const {
     return std::visit([](const auto& v) { return v.size(); }, values) / width;

@@ -82,7 +82,7 @@ class Recorder {
                       {{"mass", "m", "of the two clusters, the left and the right one", std::move(mass_), 2},
                        {"x", "l", "their positions", std::move(x_), 2},
                        {"v", "l/t", "their velocities", std::move(v_), 2},
-                       {"index", "1", "0 or 1, which of the two at the start", std::move(index_), 2}}});
+                       {"index", "1", "0 or 1, which of the two at the start", std::move(index_), 2, true}}});
   }
 
  private:

@@ -177,22 +177,49 @@ std::vector<SweepPoint> sweep_points(const Sweep& sweep) {
   return points;
 }
 
-Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep) {
-  const auto points = sweep_points(sweep);
+namespace {
+
+// The study of a scene, which names the sweep, with scene_at(point) at each of its points.
+template <class SceneAt> Study study_of(Scene scene, SceneAt scene_at) {
+  const auto points = sweep_points(scene.sweep);
   Study study;
   study.kind = "sweep";
-  study.scene = read_scene(scene, overrides);
-  study.scene.sweep = sweep;
+  study.scene = std::move(scene);
+  study.scene.sweep.replicas = 1;  // how many there are is another matter
   for (std::size_t p = 0; p < points.size(); ++p) {
-    std::vector<std::string> all = overrides;
-    for (const auto& [key, value] : points[p]) all.push_back(key + "=" + value);
-    Scene at = read_scene(scene, all);
-    at.sweep = {};
-    at.sweep.replicas = 1;
-    study.points.push_back({fmt::format("points/{:04}", p), std::move(at)});
+    const std::string group = fmt::format("points/{:04}", p);
+    study.points.push_back({group, scene_at(points[p], group)});
   }
   study.summary = [points](const EnsembleStates& states) { return std::vector<Group>{summary(points, states)}; };
   return study;
+}
+
+}  // namespace
+
+Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep) {
+  Scene varied = read_scene(scene, overrides);
+  varied.sweep = sweep;
+  return study_of(std::move(varied), [&](const SweepPoint& point, const std::string&) {
+    std::vector<std::string> all = overrides;
+    for (const auto& [key, value] : point) all.push_back(key + "=" + value);
+    Scene at = read_scene(scene, all);
+    at.sweep = {};
+    at.sweep.replicas = 1;
+    return at;
+  });
+}
+
+Study sweep_in(const Result& result, const std::string& file) {
+  Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", file), file);
+  scene.name = attribute<std::string>(result.attributes, "name", file);
+  return study_of(scene, [&](const SweepPoint&, const std::string& group) {
+    const Group* ensemble = result.find(group + "/ensemble");
+    if (ensemble == nullptr)
+      throw Error({file, 0, ""}, "a sweep without one of its points", group, "make the file anew", Exit::io);
+    Scene at = parse_scene(attribute<std::string>(ensemble->attributes, "scene", file), file);
+    at.name = scene.name;
+    return at;
+  });
 }
 
 }  // namespace cradle::tools

@@ -27,4 +27,7 @@ std::vector<SweepPoint> sweep_points(const Sweep& sweep);
 /// the standard error of that (`_error`); `/points/0000` and so on, the ensembles.
 Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep);
 
+/// The sweep that a file holds, its points as they stand there. Throws Error (Exit::io) for a damaged one.
+Study sweep_in(const Result& result, const std::string& file);
+
 }  // namespace cradle::tools

@@ -1,5 +1,5 @@
-// Ensembles from scene to file: the same bytes for any number of threads, interrupted, killed and continued, split and
-// merged; replicas that fail or collapse; statistics against those of single runs; and what is refused.
+// What the numbers in files of ensembles are: statistics against those of single runs, how replicas ended, replicas
+// that collapse or fail.
 
 #include "cradle/tools/ensemble.hpp"
 
@@ -10,255 +10,12 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/ensembles.hpp"
 
 namespace cradle::tests {
 namespace {
 
-using tools::attribute;
-using tools::Column;
-using tools::Exit;
-using tools::read_result;
-using tools::Result;
 using tools::RunOutcome;
-using tools::Scene;
-
-constexpr const char* shock = R"(
-[law]
-type = "inelastic"
-restitution = 0.99
-cutoff = 1e-5
-[initial]
-type = "rows"
-particles = 300
-speed = 0.5
-perturbation = 0.05
-[run]
-until = 200
-[output]
-series = { points = 50 }
-snapshots = [100]
-profiles = { times = [50, 100], bins = 20, range = [-30, 30] }
-)";
-
-// Two of the three bodies collapse, at a time that depends on the replica, before until.
-constexpr const char* collapse = R"(
-[law]
-type = "inelastic"
-restitution = 0.05
-[initial]
-type = "rows"
-particles = 4
-speed = 1
-perturbation = 0.4
-[run]
-until = 2
-collapse = "stop"
-[output]
-series = { points = 41 }
-profiles = { times = [0.5, 1.5], bins = 2, range = [-2, 2] }
-)";
-
-// Clusters in two columns (left and right), missing until there are any; an average over the interaction zone.
-constexpr const char* wet = R"(
-[law]
-type = "wet"
-loss = 0.05
-[initial]
-type = "rows"
-particles = 400
-speed = 0.5
-perturbation = 0.05
-[run]
-until = 380
-[output]
-series = { points = 20 }
-profiles = { times = [300], bins = 10, range = [-20, 20] }
-zone = { from = 200, samples = 16, bins = 8 }
-)";
-
-class Ensembles : public ProgramTest {
- protected:
-  Ensembles() {
-    write("wet.toml", wet);
-    write("shock.toml", shock);
-    write("collapse.toml", collapse);
-  }
-
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-  Result result(const std::string& name) const { return read_result(path(name)); }
-  Scene scene(const std::string& name) const { return tools::read_scene(path(name)); }
-  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
-
-  void run(const std::string& command, int status = 0) const {
-    const Printed printed = shell("cradle " + command);
-    ASSERT_EQ(printed.status, status) << command << "\n" << printed.err;
-  }
-  void expect_same(const std::string& a, const std::string& b) const {
-    ASSERT_FALSE(contents(folder / a).empty()) << a;
-    EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
-  }
-
-  static const Column& column(const Result& result, const std::string& group, const std::string& name) {
-    if (const auto* found = result.find(group))
-      for (const Column& c : found->columns)
-        if (c.name == name) return c;
-    throw std::out_of_range(group + "/" + name);
-  }
-  static std::vector<double> numbers(const Result& result, const std::string& group, const std::string& name) {
-    return std::visit([](const auto& v) { return std::vector<double>(v.begin(), v.end()); },
-                      column(result, group, name).values);
-  }
-};
-
-// ---- the same bytes
-
-TEST_F(Ensembles, SameBytesOnAnyNumberOfThreads) {
-  run("ensemble shock.toml --replicas 60 --threads 1 -o one.h5");
-  for (const auto* threads : {"2", "3", "8"}) {
-    run(std::string("ensemble shock.toml --replicas 60 -o other.h5 --threads ") + threads);
-    expect_same("one.h5", "other.h5");
-    std::filesystem::remove(folder / "other.h5");
-  }
-}
-
-TEST_F(Ensembles, MoreReplicasAreAddedToAFinishedFile) {
-  run("ensemble shock.toml --replicas 60 -o whole.h5");
-  run("ensemble shock.toml --replicas 13 -o grown.h5");
-  const Printed more = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5");
-  EXPECT_NE(more.out.find("47 of them now"), std::string::npos) << more.out;
-  expect_same("whole.h5", "grown.h5");
-  const Printed nothing = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5");
-  EXPECT_EQ(nothing.status, 0);
-  EXPECT_NE(nothing.out.find("nothing to do"), std::string::npos) << nothing.out;
-  expect_same("whole.h5", "grown.h5");
-  EXPECT_FALSE(exists("grown.h5.part"));
-}
-
-TEST_F(Ensembles, SplitAndMergedInAnyOrder) {
-  run("ensemble shock.toml --replicas 60 -o whole.h5");
-  run("ensemble shock.toml --replicas 21 -o a.h5");
-  run("ensemble shock.toml --first 21 --replicas 19 -o b.h5");
-  run("ensemble shock.toml --first 40 --replicas 20 -o c.h5");
-  run("merge a.h5 b.h5 c.h5 -o abc.h5");
-  run("merge c.h5 a.h5 -o ca.h5");
-  run("merge ca.h5 b.h5 -o cab.h5");
-  expect_same("whole.h5", "abc.h5");
-  expect_same("whole.h5", "cab.h5");
-  // A gap filled later.
-  run("ensemble shock.toml --replicas 60 -o ca.h5");
-  expect_same("whole.h5", "ca.h5");
-  const Printed overlap = shell("cradle merge a.h5 ca.h5 -o d.h5");
-  EXPECT_EQ(overlap.status, 2);
-  EXPECT_NE(overlap.err.find("ca.h5: has replicas that another of the files has too"), std::string::npos)
-      << overlap.err;
-  EXPECT_FALSE(exists("d.h5"));
-}
-
-// Runs a command until its journal has grown by some replicas, then sends it a signal.
-std::string until_journalled(const std::string& command, const std::string& file, const std::string& signal) {
-  return "size() { stat -c %s " + file + ".part 2>/dev/null || echo 0; }; enough=$(($(size) + 300000)); cradle " +
-         command + " & pid=$!; while [ $(size) -lt $enough ]; do sleep 0.01; done; kill -" + signal +
-         " $pid; wait $pid";
-}
-
-constexpr const char* long_one = "ensemble shock.toml --replicas 3000 --threads 2 -o ";
-
-TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
-  run(std::string(long_one) + "whole.h5");
-  for (int kill = 0; kill < 3; ++kill) {
-    EXPECT_EQ(shell(until_journalled(std::string(long_one) + "killed.h5", "killed.h5", "KILL")).status, 137);
-    ASSERT_TRUE(exists("killed.h5.part"));
-    EXPECT_FALSE(exists("killed.h5"));
-  }
-  const Printed go_on = shell("cradle " + std::string(long_one) + "killed.h5");
-  EXPECT_EQ(go_on.status, 0) << go_on.err;
-  EXPECT_NE(go_on.err.find("killed.h5.part: "), std::string::npos) << "says what it took from there: " << go_on.err;
-  EXPECT_EQ(go_on.out.find("3000 of them now"), std::string::npos) << "not all of them again: " << go_on.out;
-  expect_same("whole.h5", "killed.h5");
-  EXPECT_FALSE(exists("killed.h5.part"));
-}
-
-TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {
-  run(std::string(long_one) + "whole.h5");
-  for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143), std::pair("USR1", 143)}) {
-    const Printed stopped = shell(until_journalled(std::string(long_one) + "stopped.h5", "stopped.h5", signal));
-    EXPECT_EQ(stopped.status, status) << stopped.err;
-    EXPECT_NE(stopped.err.find("stopped.h5.part"), std::string::npos) << stopped.err;
-    EXPECT_FALSE(exists("stopped.h5"));
-  }
-  run(std::string(long_one) + "stopped.h5");
-  expect_same("whole.h5", "stopped.h5");
-}
-
-TEST_F(Ensembles, DamagedJournalLosesOnlyWhatIsDamaged) {
-  run("ensemble shock.toml --replicas 200 -o whole.h5");
-  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --replicas 3000 -o damaged.h5", "damaged.h5", "KILL")).status,
-            137);
-  const std::string journal = contents(folder / "damaged.h5.part");
-  for (const bool torn : {true, false}) {
-    std::string damaged = journal.substr(0, 200000);
-    if (!torn) damaged[100000] = static_cast<char>(damaged[100000] ^ 1);
-    write("damaged.h5.part", damaged);
-    const Printed go_on = shell("cradle ensemble shock.toml --replicas 200 -o damaged.h5");
-    EXPECT_EQ(go_on.status, 0) << go_on.err;
-    EXPECT_NE(go_on.err.find("its end was damaged"), std::string::npos) << go_on.err;
-    expect_same("whole.h5", "damaged.h5");
-    std::filesystem::remove(folder / "damaged.h5");
-  }
-}
-
-TEST_F(Ensembles, JournalLeftBehindAFinishedFileAddsNothing) {
-  run(std::string(long_one) + "whole.h5");
-  EXPECT_EQ(shell(until_journalled(std::string(long_one) + "a.h5", "a.h5", "KILL")).status, 137);
-  // Killed between writing the file and removing the journal.
-  run("ensemble shock.toml --replicas 3000 -o finished.h5");
-  std::filesystem::copy(folder / "a.h5.part", folder / "finished.h5.part");
-  run("ensemble shock.toml --replicas 3001 -o finished.h5");
-  run("ensemble shock.toml --replicas 3001 -o whole.h5");
-  expect_same("whole.h5", "finished.h5");
-  EXPECT_FALSE(exists("finished.h5.part"));
-}
-
-TEST_F(Ensembles, JournalsOfRanksThatAreGoneAreTaken) {
-  // As a killed MPI job leaves them: one for each rank.
-  run("ensemble shock.toml --replicas 3000 -o whole.h5");
-  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --replicas 1500 -o a.h5", "a.h5", "KILL")).status, 137);
-  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --first 1500 --replicas 1500 -o b.h5", "b.h5", "KILL")).status,
-            137);
-  std::filesystem::rename(folder / "b.h5.part", folder / "a.h5.part.3");
-  const Printed go_on = shell("cradle ensemble shock.toml --replicas 3000 -o a.h5");
-  EXPECT_NE(go_on.err.find("a.h5.part.3: "), std::string::npos) << go_on.err;
-  expect_same("whole.h5", "a.h5");
-  EXPECT_FALSE(exists("a.h5.part.3"));
-}
-
-TEST_F(Ensembles, OneProgramAtATimeWritesAFile) {
-  const Printed both = shell(
-      "cradle ensemble shock.toml --replicas 100000 -o a.h5 & pid=$!; while [ ! -e a.h5.part ]; do sleep 0.01; done; "
-      "cradle ensemble shock.toml --replicas 10 -o a.h5; status=$?; kill $pid; wait $pid; exit $status");
-  EXPECT_EQ(both.status, 4);
-  EXPECT_NE(both.err.find("another program"), std::string::npos) << both.err;
-}
-
-TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
-  const tools::Study study = tools::ensemble_of(scene("shock.toml"));
-  run("ensemble shock.toml --replicas 100 -o whole.h5");
-  {
-    tools::EnsembleStore store(study, path("anew.h5"));
-    store.start_journal(0, 1);  // as soon as it is larger than a byte, and then when it has grown fourfold
-    const auto& layout = store.states()[0]->layout();
-    for (std::uint64_t k = 0; k < 64; ++k) {
-      const RunOutcome end = tools::run_scene(tools::replica_scene(study.scene, k), {tools::ProgressLine::Show::never});
-      store.add(0, layout.row(k, end), layout.values(end));
-    }
-    EXPECT_LT(std::filesystem::file_size(folder / "anew.h5.part"), 32 * 8 * layout.entries) << "64 vectors otherwise";
-  }
-  run("ensemble shock.toml --replicas 100 -o anew.h5");
-  expect_same("whole.h5", "anew.h5");
-}
-
-// ---- what the numbers are
 
 class StatisticsOf : public Ensembles, public testing::WithParamInterface<const char*> {};
 
@@ -281,8 +38,12 @@ TEST_P(StatisticsOf, ReplicasAreThoseOfTheRunsOneByOne) {
     const bool kept = group.name.starts_with("series") || group.name.starts_with("profiles/") || group.name == "zone";
     if (!kept) continue;
     for (const Column& quantity : group.columns) {
-      if (quantity.name == "time" || quantity.name == "x") continue;
+      if (quantity.name == "time" || (quantity.name == "x" && !group.name.starts_with("series"))) continue;
       const std::string place = "ensemble/" + group.name + "/" + quantity.name;
+      if (quantity.name == "index") {
+        EXPECT_EQ(all.find(place), nullptr) << "numbers that name bodies have no mean";
+        continue;
+      }
       const auto mean = numbers(all, place, "mean"), sem = numbers(all, place, "sem"),
                  least = numbers(all, place, "min"), greatest = numbers(all, place, "max");
       std::vector<std::vector<double>> of_runs;
@@ -391,8 +152,6 @@ TEST_F(Ensembles, ValuesAreCountedInBinsWhereAskedFor) {
   EXPECT_EQ(shell("cradle ensemble shock.toml --replicas 60 --spread energy=0:1 -o e.h5").status, 2);
 }
 
-// ---- replicas that fail
-
 TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
   const Scene shocks = scene("shock.toml");
   const auto fails = [](const Scene& replica) { return replica.initial.replica % 5 == 2; };
@@ -464,49 +223,6 @@ TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
   for (const auto& [name, value] : alone.summary) EXPECT_EQ(numbers(result("a.h5"), "replicas", name)[1], value);
 }
 
-// ---- what is refused
-
-TEST_F(Ensembles, OtherScenesAndOtherFilesAreRefused) {
-  run("ensemble shock.toml --replicas 3 -o a.h5");
-  run("run shock.toml --quiet -o run.h5");
-  write("not.h5.part", "not a journal");
-  const std::string before = contents(folder / "a.h5");
-  struct Refused {
-    const char* command;
-    int status;
-    const char* message;
-  };
-  for (const auto& [command, status, message] :
-       {Refused{"ensemble shock.toml --replicas 5 --set law.restitution=0.98 -o a.h5", 2,
-                "a.h5: holds ensembles of something else (found law.restitution = 0.99, here 0.98)"},
-        Refused{"ensemble shock.toml --replicas 5 -o run.h5", 2, "run.h5: holds no ensemble"},
-        Refused{"ensemble shock.toml --replicas 5 -o not.h5", 4, "not.h5.part: not a journal"},
-        Refused{"ensemble shock.toml --replicas 5 --set initial.replica=3 -o b.h5", 2, "initial.replica: "},
-        Refused{"ensemble shock.toml --replicas 5 --set output.profiles.range= -o b.h5", 2, "output.profiles.range: "},
-        Refused{"ensemble shock.toml -o b.h5", 2, ""}, Refused{"ensemble shock.toml --replicas 0 -o b.h5", 2, ""},
-        Refused{"ensemble shock.toml --replicas many -o b.h5", 2, ""},
-        Refused{"ensemble shock.toml --replicas 3 -o no/such/folder/b.h5", 4, ""},
-        Refused{"merge a.h5 run.h5 -o b.h5", 2, "run.h5: holds no ensemble"},
-        Refused{"merge run.h5 a.h5 -o b.h5", 2, "run.h5: holds no ensemble"},
-        Refused{"merge a.h5 nothing.h5 -o b.h5", 4, "nothing.h5: "}}) {
-    const Printed refused = shell(std::string("cradle ") + command);
-    EXPECT_EQ(refused.status, status) << command << refused.err;
-    EXPECT_EQ(refused.err.rfind(std::string("cradle: ") + message, 0), 0U) << command << "\n" << refused.err;
-    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
-  }
-  EXPECT_FALSE(exists("b.h5"));
-  EXPECT_TRUE(contents(folder / "a.h5") == before);
-}
-
-TEST_F(Ensembles, JournalOfAnotherSceneIsRefused) {
-  EXPECT_EQ(shell(until_journalled(std::string(long_one) + "a.h5", "a.h5", "KILL")).status, 137);
-  const Printed other = shell("cradle ensemble shock.toml --set law.cutoff=1e-4 --replicas 5 -o a.h5");
-  EXPECT_EQ(other.status, 2);
-  EXPECT_NE(other.err.find("a.h5.part: holds ensembles of something else (found law.cutoff = 1e-5, here 1e-4)"),
-            std::string::npos)
-      << other.err;
-}
-
 TEST_F(Ensembles, InfoTellsWhatFilesAndJournalsHold) {
   run("ensemble shock.toml --replicas 3 -o a.h5");
   const Printed file = shell("cradle info a.h5");
@@ -518,28 +234,6 @@ TEST_F(Ensembles, InfoTellsWhatFilesAndJournalsHold) {
   EXPECT_EQ(journal.status, 0) << journal.err;
   for (const auto* text : {" replicas finished", "law.restitution = 0.99"})
     EXPECT_NE(journal.out.find(text), std::string::npos) << text << "\n" << journal.out;
-}
-
-TEST_F(Ensembles, ListedBodiesArePartOfTheScene) {
-  write("list.toml", "[law]\ntype = \"inelastic\"\nrestitution = 0.9\n[initial]\ntype = \"list\"\nfile = "
-                     "\"bodies.csv\"\n[run]\nuntil = 5\n");
-  write("bodies.csv", "x,v\n0,1\n1,0\n");
-  run("ensemble list.toml --replicas 2 -o list.h5");
-  write("bodies.csv", "x,v\n0,1\n2,0\n");
-  run("ensemble list.toml --replicas 4 -o list.h5", 2);
-}
-
-TEST_F(Ensembles, WideTypesOnSeveralThreads) {
-  for (const auto* precision : {"double-double", "mpfr --set run.digits=40"}) {
-    const std::string scene = std::string("ensemble shock.toml --replicas 6 --set initial.particles=60 --set "
-                                          "run.until=50 --set output.profiles.times=[] --set run.precision=") +
-                              precision;
-    run(scene + " --threads 1 -o a.h5");
-    run(scene + " --threads 2 -o b.h5");
-    expect_same("a.h5", "b.h5");
-    std::filesystem::remove(folder / "a.h5");
-    std::filesystem::remove(folder / "b.h5");
-  }
 }
 
 }  // namespace

@@ -39,10 +39,11 @@ class Mpi : public ProgramTest {
   }
 
   // As any user, on any machine, all ranks on all processors. Open MPI takes these; others do without.
-  static std::string job(int ranks, const std::string& command) {
+  static std::string job(int ranks, const std::string& command) { return launch(ranks, "cradle " + command); }
+  static std::string launch(int ranks, const std::string& command) {
     return fmt::format("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
                        "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
-                       "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe mpirun -n {} cradle {}",
+                       "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe mpirun -n {} {}",
                        ranks, command);
   }
   void run(const std::string& command, int status = 0) const {
@@ -115,6 +116,21 @@ TEST_F(Mpi, SignalToOneRankStopsAllAndLosesNothing) {
   run("cradle " + ensemble + "stopped.h5");  // without ranks
   expect_same("whole.h5", "stopped.h5");
   expect_no_journals();
+}
+
+TEST_F(Mpi, FailedReplicasAreListedWhicheverRankRanThem) {
+  const std::string program = std::string(CRADLE_BINARY_DIR) + "/tests/failing_ensemble wet.toml 60 ";
+  for (const int ranks : {1, 2, 3}) {
+    const Printed failed = shell(launch(ranks, program + fmt::format("failed-{}.h5", ranks)));
+    EXPECT_EQ(failed.status, 5) << failed.err;
+    EXPECT_NE(failed.out.find("48 reached the end, 12 failed"), std::string::npos) << failed.out;
+  }
+  expect_same("failed-1.h5", "failed-2.h5");
+  expect_same("failed-1.h5", "failed-3.h5");
+  expect_no_journals();
+  const Printed again = shell(job(2, "ensemble wet.toml --replicas 60 -o failed-2.h5"));
+  EXPECT_EQ(again.status, 5) << again.err;
+  EXPECT_NE(again.err.find("replica 7 failed: "), std::string::npos) << again.err;
 }
 
 TEST_F(Mpi, WhatIsWrongIsToldOnce) {

@@ -95,5 +95,27 @@ TEST_F(SweepCommand, TableIsTheMeanOfTheRuns) {
   EXPECT_EQ(shell("cradle sweep " + scene + "--vary law.los=0.01,0.03 --quiet -o other.h5").status, 2);
 }
 
+TEST_F(SweepCommand, SplitAndMergedIsTheSameFile) {
+  const std::string sweep =
+      "cradle sweep fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
+      "--vary law.loss=0.01,0.02,0.03 --quiet ";
+  ASSERT_EQ(shell(sweep + "--replicas 7 -o whole.h5").status, 0);
+  ASSERT_EQ(shell(sweep + "--replicas 3 -o a.h5").status, 0);
+  ASSERT_EQ(shell(sweep + "--first 3 --replicas 4 -o b.h5").status, 0);
+  for (const auto* files : {"a.h5 b.h5", "b.h5 a.h5"}) {
+    const Printed merged = shell(std::string("cradle merge ") + files + " -o ab.h5");
+    ASSERT_EQ(merged.status, 0) << merged.err;
+    EXPECT_TRUE(contents(folder / "whole.h5") == contents(folder / "ab.h5")) << files;
+  }
+  ASSERT_EQ(shell(sweep + "--replicas 7 -o a.h5").status, 0);
+  EXPECT_TRUE(contents(folder / "whole.h5") == contents(folder / "a.h5")) << "continued";
+  EXPECT_EQ(shell("cradle merge whole.h5 b.h5 -o c.h5").status, 2) << "replicas in common";
+  ASSERT_EQ(shell("cradle ensemble fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
+                  "--first 7 --replicas 2 --quiet -o e.h5")
+                .status,
+            0);
+  EXPECT_EQ(shell("cradle merge whole.h5 e.h5 -o c.h5").status, 2) << "an ensemble is no sweep";
+}
+
 }  // namespace
 }  // namespace cradle::tests

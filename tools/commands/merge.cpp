@@ -5,6 +5,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble_store.hpp"
+#include "cradle/tools/sweep.hpp"
 
 namespace cradle::tools {
 
@@ -14,6 +15,11 @@ struct Options {
   std::vector<std::string> files;
   std::string output;
 };
+
+Study study_in(const std::string& file) {
+  const Result result = read_result(file);
+  return study_kind(result, file) == "sweep" ? sweep_in(result, file) : ensemble_in(result, file);
+}
 
 Exit merge(const Options& options) {
   const Study study = study_in(options.files.front());
@@ -34,9 +40,10 @@ Exit merge(const Options& options) {
 }  // namespace
 
 void add_merge(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("merge", "ensembles of the same scene with different replicas, as one");
+  auto* command =
+      program.add_subcommand("merge", "ensembles (or sweeps) of the same scene with different replicas, as one");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->files, "result files of `cradle ensemble`")->required();
+  command->add_option("FILE", options->files, "result files of `cradle ensemble` or `cradle sweep`")->required();
   command->add_option("-o,--output", options->output, "result file")->required();
   command->callback([&action, options] { action = [options] { return merge(*options); }; });
 }

@@ -22,9 +22,12 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/account.hpp"
 #include "cradle/core/clock.hpp"
+#include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
+#include "cradle/core/local_times.hpp"
 
 namespace cradle {
 
@@ -69,10 +72,8 @@ template <Real T> class ClusterChain {
     const Cell& c = cells_[s];
     if constexpr (keys_are_exact)
       return c.due;
-    else {
-      const T flown = c.time + c.gap / closing(s);
-      return is_negative(c.time) ? T(flown + lag_[s]) : flown;
-    }
+    else
+      return local_times_.after(s, c.time, c.gap / closing(s));
   }
   double queue_due(Slot s) const {
     if (vacant(s)) return EventQueue::never;
@@ -87,7 +88,8 @@ template <Real T> class ClusterChain {
   template <class Law> [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) {
     Cell& l = cells_[s];
     const Outcome<T> outcome = law(closing(s), l.mass, cells_[l.right].mass);
-    Notice notice = short_flight(time, l.time);
+    const T flown = local_times_.flown(s, l.time, time);
+    Notice notice = notice::of_flight(queue_time(flown), queue_time(time));
     if ((s <= front_left_) | (l.right >= front_right_)) [[unlikely]] {
       if (ring_)
         cross_seam(s, outcome.event);
@@ -97,8 +99,8 @@ template <Real T> class ClusterChain {
     const Slot p = l.left, n = l.right;
     Cell& r = cells_[n];
     const T late_left = settle(p, time), late_right = settle(n, time);
-    const bool behind = time < l.time;  // a gap's local time never goes back
-    const T opened = behind ? T(-outcome.closing * (l.time - time)) : T(0);
+    const bool behind = is_negative(flown);  // a gap's local time never goes back
+    const T opened = behind ? T(outcome.closing * flown) : T(0);
 
     const T before_left = l.velocity, before_right = r.velocity;
     const T slowed = before_left - outcome.to_left, sped = before_right + outcome.to_right;
@@ -108,9 +110,7 @@ template <Real T> class ClusterChain {
       beyond = s;
     } else {
       l.gap = opened;
-      if (is_negative(l.time)) [[unlikely]]
-        lag_[s] = T(0);
-      if (!behind) l.time = time;
+      if (!behind) local_times_.renew(s, l.time, time);
       const bool pass = outcome.event == Event::pass;
       l.velocity = pass ? sped : slowed;
       r.velocity = pass ? slowed : sped;
@@ -133,10 +133,8 @@ template <Real T> class ClusterChain {
     for (Slot s = first_; s <= last_; ++s) {
       if (vacant(s)) continue;
       Cell& c = cells_[s];
-      const Pair<T> moved = two_sum(c.time, T(-local));
-      c.time = moved.high;
-      lag_[s] += moved.low;
-      if constexpr (keys_are_exact) c.due = closing(s) > 0 ? c.time + c.gap / closing(s) + lag_[s] : EventQueue::never;
+      local_times_.move(s, c.time, local);
+      if constexpr (keys_are_exact) predict_anew(s);
     }
     return T(0);
   }
@@ -154,7 +152,7 @@ template <Real T> class ClusterChain {
       for (int side : {0, 1})
         if (s == (side ? front_right_ : front_left_)) fronts[side] = cells.size();
       cells.push_back(cells_[s]);
-      lag.push_back(lag_[s]);
+      lag.push_back(local_times_.lag(s));
       if (s == last_) break;
     }
     lay_out(cells, lag);
@@ -178,8 +176,7 @@ template <Real T> class ClusterChain {
   // ---- reading, at a local time not before the last contact
   T gap_at(Slot s, const T& time) const {
     const Cell& c = cells_[s];
-    const T flown = time - c.time;
-    return c.gap - closing(s) * (is_negative(c.time) ? T(flown - lag_[s]) : flown);
+    return c.gap - closing(s) * local_times_.flown(s, c.time, time);
   }
   // Positions of the outermost bodies that have collided; only once there are some.
   T front_left(const T& time) const {
@@ -230,13 +227,13 @@ template <Real T> class ClusterChain {
     const auto room_right = static_cast<Slot>(std::min(unheld_right_, growth)) + 3;
     cells_.assign(room_left + cells.size() + room_right, Cell{});
     for (Slot s = 0; s < cells_.size(); ++s) cells_[s].left = cells_[s].right = s;
-    lag_.assign(cells_.size(), T(0));
+    local_times_.resize(cells_.size());
     first_ = room_left;
     last_ = first_ + cells.size() - 1;
     vacated_ = 0;
     for (Slot s = first_; s <= last_; ++s) {
       cells_[s] = cells[s - first_];
-      lag_[s] = lag[s - first_];
+      local_times_.set_lag(s, lag[s - first_]);
       cells_[s].left = s - 1;
       cells_[s].right = s + 1;
     }
@@ -248,14 +245,13 @@ template <Real T> class ClusterChain {
       place_end(last_ + 1, last_);
     }
     if constexpr (keys_are_exact)
-      for (Slot s = first_; s <= last_; ++s)
-        cells_[s].due = closing(s) > 0 ? cells_[s].time + cells_[s].gap / closing(s) + lag_[s] : EventQueue::never;
+      for (Slot s = first_; s <= last_; ++s) predict_anew(s);
   }
 
   // Beyond the bodies held something runs away, faster than any body can.
   void place_end(Slot s, Slot beside) {
     cells_[s] = Cell{};
-    lag_[s] = T(0);
+    local_times_.set_lag(s, T(0));
     const bool on_left = s < beside;
     cells_[s].velocity = on_left ? T(-runaway_) : runaway_;
     cells_[s].left = on_left ? s : beside;
@@ -282,7 +278,7 @@ template <Real T> class ClusterChain {
     if (s == first_ && unheld_left_ > 0) {
       first_ = end_left_;
       cells_[first_] = load(--unheld_left_, time);
-      lag_[first_] = T(0);
+      local_times_.set_lag(first_, T(0));
       cells_[first_].right = s;
       cells_[s].left = first_;
       place_end(first_ - 1, first_);
@@ -292,9 +288,9 @@ template <Real T> class ClusterChain {
       // The gap right of n was not one before: it is as at the start.
       cells_[n].gap = bodies_->gap(cells_[n].body);
       cells_[n].time = time;
-      lag_[n] = T(0);
+      local_times_.set_lag(n, T(0));
       cells_[last_] = load(bodies_->count() - unheld_right_--, time, true);
-      lag_[last_] = T(0);
+      local_times_.set_lag(last_, T(0));
       cells_[last_].left = n;
       cells_[n].right = last_;
       place_end(last_ + 1, last_);
@@ -320,7 +316,7 @@ template <Real T> class ClusterChain {
     l.mass += r.mass;
     l.gap = r.gap;
     l.time = r.time;
-    lag_[s] = lag_[n];
+    local_times_.set_lag(s, local_times_.lag(n));
     l.right = r.right;
     cells_[l.right].left = s;
     r.right = n;
@@ -336,15 +332,11 @@ template <Real T> class ClusterChain {
   // Brings a gap up to date; where the local time is ahead of the contact it stays, and how far is returned (negative).
   T settle(Slot s, const T& time) {
     Cell& c = cells_[s];
-    T flown = time - c.time;
-    if (is_negative(c.time)) [[unlikely]]
-      flown -= lag_[s];
+    const T flown = local_times_.flown(s, c.time, time);
     if (is_negative(flown)) [[unlikely]]
       return flown;
     c.gap -= closing(s) * flown;
-    if (is_negative(c.time)) [[unlikely]]
-      lag_[s] = T(0);
-    c.time = time;
+    local_times_.renew(s, c.time, time);
     return T(0);
   }
 
@@ -354,12 +346,14 @@ template <Real T> class ClusterChain {
       return notice::none;
     if (is_positive(c.gap)) return notice::tight;
     const T rounding = T(16) * T(std::numeric_limits<T>::epsilon()) * magnitude(closing(s)) * magnitude(time);
-    if (-c.gap > rounding) {
-      if (account_.order_lost++ == 0) account_.first_order_lost = {clock_.time(time), c.body, c.gap};
-    } else {
-      ++account_.simultaneous;
-    }
+    account_.enter({clock_.time(time), c.body, c.gap}, rounding);
     return notice::tight;
+  }
+
+  // Off the hot path.
+  void predict_anew(Slot s) {
+    Cell& c = cells_[s];
+    c.due = closing(s) > 0 ? local_times_.after(s, c.time, c.gap / closing(s)) : EventQueue::never;
   }
 
   double predict(Slot s) {
@@ -378,15 +372,8 @@ template <Real T> class ClusterChain {
     }
   }
 
-  Notice short_flight(const T& time, const T& before) const {
-    const double flown = queue_time(T(time - before)), offset = queue_time(time);
-    if (!(flown < offset * 0x1p-20)) [[likely]]
-      return notice::none;
-    return flown < offset * 0x1p-40 ? notice::crowded | notice::pressing : notice::crowded;
-  }
-
   std::vector<Cell> cells_;
-  std::vector<T> lag_;  // as in gap_chain.hpp
+  LocalTimes<T> local_times_;  // beside Cell::time
   Slot first_ = 0, last_ = 0, end_left_ = 0, end_right_ = 0;
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;  // outermost bodies that have collided
   std::size_t vacated_ = 0;                                               // since the last layout

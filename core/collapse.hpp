@@ -13,7 +13,7 @@
 
 #include <unordered_map>
 
-#include "cradle/core/configuration.hpp"
+#include "cradle/core/bodies.hpp"
 
 namespace cradle {
 

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "cradle/core/bodies.hpp"
-#include "cradle/core/event_queue.hpp"
-#include "cradle/core/law.hpp"
 
 namespace cradle {
 
@@ -44,44 +42,5 @@ template <Real T> void fold(Configuration<T>& c, const T& circumference) {
   rotate(c.index);
   for (auto* values : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}) rotate(*values);
 }
-
-// A place and time in a run that a report names.
-template <Real T> struct Incident {
-  T time{0};
-  BodyIndex body = -1;  // the body on the left of the gap
-  T gap{0};
-};
-
-// What could not be resolved, and how often; nothing is clamped or skipped.
-template <Real T> struct Account {
-  // Gaps closed to zero, or below it by no more than rounding, at a contact next to them: three bodies met. The tie
-  // rule (earlier time, then further left) decides the outcome.
-  std::uint64_t simultaneous = 0;
-  // Gaps found negative beyond rounding: a contact came too late in the order of events.
-  std::uint64_t order_lost = 0;
-  Incident<T> first_order_lost;
-  // Positions only: gaps next to a contact below 1e6 units in the last place of the position.
-  std::uint64_t unresolved = 0;
-  Incident<T> first_unresolved;
-};
-
-// Why a contact wants a closer look; a set of bits.
-using Notice = unsigned;
-namespace notice {
-inline constexpr Notice none = 0;
-inline constexpr Notice crowded = 1;   // the flight before it was short against the time since the origin, 2^-20 of it
-inline constexpr Notice pressing = 8;  // so short, 2^-40, that time loses its digits unless the origin moves now
-inline constexpr Notice tight = 2;     // it left a gap below the floor beside it
-inline constexpr Notice cramped = 4;   // the chain has no slot for the next body of a row
-}  // namespace notice
-
-// What a chain reports of a contact: the law's outcome and the next contacts of the three gaps involved, as queue
-// times.
-template <Real T> struct Collision {
-  Outcome<T> outcome;
-  double due_left, due, due_right;
-  Notice notice;
-  Slot left, right;  // of the gaps on either side
-};
 
 }  // namespace cradle

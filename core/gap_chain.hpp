@@ -6,8 +6,8 @@
 //   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
 //
 // Nothing is ever a difference of positions, so gaps keep their relative precision down to underflow, however small
-// they are against the size of the system. Times are offsets from a moving origin; what the offset of a gap not touched
-// since loses when the origin moves is kept beside it (`lag`), so that no gap is rounded by a move.
+// they are against the size of the system. Times are offsets from a moving origin; no gap is rounded by a move
+// (local_times.hpp).
 //
 // Rows are streamed: of a row, only the body next to the outermost one that has collided is held. Velocities and
 // positions come from the two anchors: the bodies that end the active zone, whose flight is known, or integrated once
@@ -23,43 +23,19 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/account.hpp"
 #include "cradle/core/clock.hpp"
+#include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
+#include "cradle/core/local_times.hpp"
+#include "cradle/core/masses.hpp"
 
 namespace cradle {
 
 template <Real T> struct Gap { T gap{1}, closing{-1}, time{0}; };
 // In double the time of the next contact is its own key: it is kept, which saves a division when it comes.
 template <> struct alignas(32) Gap<double> { double gap = 1, closing = -1, time = 0, due = EventQueue::never; };
-
-template <Real T> struct IdenticalMasses {
-  explicit IdenticalMasses(const Bodies<T>& bodies) : mass(bodies.mass(0)), reduced_mass(mass / T(2)) {}
-  T mass, reduced_mass;
-  void resize(std::size_t) {}
-  void set(Slot, const T&) {}
-  const T& operator[](Slot) const { return mass; }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing) const {
-    return law(closing, reduced_mass);
-  }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing, bool rested) const {
-    return law(closing, reduced_mass, rested);
-  }
-};
-
-template <Real T> struct IndividualMasses {
-  explicit IndividualMasses(const Bodies<T>&) {}
-  std::vector<T> masses;  // of the body on the left of each slot
-  void resize(std::size_t slots) { masses.assign(slots, T(1)); }
-  void set(Slot s, const T& mass) { masses[s] = mass; }
-  const T& operator[](Slot s) const { return masses[s]; }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot s, const T& closing) const {
-    return law(closing, masses[s], masses[s + 1]);
-  }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot s, const T& closing, bool rested) const {
-    return law(closing, masses[s], masses[s + 1], rested);
-  }
-};
 
 template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
  public:
@@ -106,10 +82,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     const Gap<T>& g = gaps_[s];
     if constexpr (keys_are_exact)
       return g.due;
-    else {
-      const T flown = g.time + g.gap / g.closing;
-      return is_negative(g.time) ? T(flown + lag_[s]) : flown;
-    }
+    else
+      return local_times_.after(s, g.time, g.gap / g.closing);
   }
   double queue_due(Slot s) const {
     if constexpr (keys_are_exact)
@@ -134,11 +108,10 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     clock_.move_origin(local);
     for (Slot s = first_; s <= last_; ++s) {
       Gap<T>& g = gaps_[s];
-      const Pair<T> moved = two_sum(g.time, T(-local));
-      g.time = moved.high;
-      lag_[s] += moved.low;
+      local_times_.move(s, g.time, local);
       if (!last_contact_.empty()) last_contact_[s] -= local;
-      if constexpr (keys_are_exact) g.due = g.closing > 0 ? g.time + g.gap / g.closing + lag_[s] : EventQueue::never;
+      if constexpr (keys_are_exact)
+        g.due = g.closing > 0 ? local_times_.after(s, g.time, g.gap / g.closing) : EventQueue::never;
     }
     for (Anchor* anchor : {&left_, &right_}) anchor->time = anchor->time - local;
     if constexpr (WiderRange<T>) choose_shift();
@@ -151,7 +124,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
   void make_room() {
     const std::vector<Gap<T>> gaps = std::move(gaps_);
-    const std::vector<T> lag = std::move(lag_), last_contact = std::move(last_contact_);
+    const LocalTimes<T> local_times = std::move(local_times_);
+    const std::vector<T> last_contact = std::move(last_contact_);
     const BodyIndex from = body(first_);
     const Slot first = first_, fronts[2] = {front_left_, front_right_};
     const bool collided = front_left_ <= front_right_;
@@ -161,7 +135,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
         last_contact_.resize(gaps_.size(), longest_ago_);
         last_contact_[static_cast<Slot>(b - body_of_slot_0_)] = last_contact[old];
       }
-      lag_[static_cast<Slot>(b - body_of_slot_0_)] = lag[old];
+      local_times_.set_lag(static_cast<Slot>(b - body_of_slot_0_), local_times.lag(old));
       return gaps[old];
     });
     if (collided) front_left_ = fronts[0] - first + first_, front_right_ = fronts[1] - first + first_;
@@ -188,8 +162,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // ---- reading, at a local time not before the last contact
   T gap_at(Slot s, const T& time) const {
     const Gap<T>& g = gaps_[s];
-    const T flown = time - g.time;
-    return g.gap - g.closing * (is_negative(g.time) ? T(flown - lag_[s]) : flown);
+    return g.gap - g.closing * local_times_.flown(s, g.time, time);
   }
   // Positions of the outermost bodies that have collided; only once there are some.
   T front_left(const T& time) const {
@@ -244,7 +217,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     const BodyIndex room_left = std::min(from, growth) + 2;
     const BodyIndex room_right = std::clamp(bodies_->count() - 2 - to, BodyIndex{0}, growth) + 2;
     gaps_.assign(static_cast<std::size_t>(room_left + held + room_right), Gap<T>{});
-    lag_.assign(gaps_.size(), T(0));
+    local_times_.resize(gaps_.size());
     masses_.resize(gaps_.size());
     body_of_slot_0_ = from - room_left;
     first_ = static_cast<Slot>(room_left);
@@ -275,14 +248,13 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   [[gnu::always_inline]] Collision<T> strike(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
                                              Notice notice) {
     Gap<T>& pair = gaps_[s];
-    notice |= short_flight(time, pair.time);
-    if (is_negative(pair.time)) [[unlikely]]
-      lag_[s] = T(0);
-    if (time < pair.time) [[unlikely]]  // a gap's local time never goes back
-      pair.gap = -outcome.closing * (pair.time - time);
+    const T flown = local_times_.flown(s, pair.time, time);
+    notice |= notice::of_flight(queue_time(flown), queue_time(time));
+    if (is_negative(flown)) [[unlikely]]  // a gap's local time never goes back
+      pair.gap = outcome.closing * flown;
     else {
       pair.gap = T(0);
-      pair.time = time;
+      local_times_.renew(s, pair.time, time);
     }
     pair.closing = outcome.closing;
     if constexpr (keys_are_exact) pair.due = EventQueue::never;
@@ -331,7 +303,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     gaps_[s] = Gap<T>{};
     gaps_[s].closing = -(handed + handed) - T(1);
     gaps_[s].time = time;
-    lag_[s] = T(0);
+    local_times_.set_lag(s, T(0));
   }
 
   // Whether both bodies of the gap have had their last contact longer ago than that. Remembers this one.
@@ -349,16 +321,12 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // Brings a gap up to date and adds to its closing speed.
   [[gnu::always_inline]] Notice kick(Slot s, const T& time, const T& gain) {
     Gap<T>& g = gaps_[s];
-    T flown = time - g.time;
-    if (is_negative(g.time)) [[unlikely]]
-      flown -= lag_[s];
+    const T flown = local_times_.flown(s, g.time, time);
     if (is_negative(flown)) [[unlikely]]  // keeps its local time: as if it had had the new speed since the contact
       g.gap += gain * flown;
     else {
       g.gap -= g.closing * flown;
-      if (is_negative(g.time)) [[unlikely]]
-        lag_[s] = T(0);
-      g.time = time;
+      local_times_.renew(s, g.time, time);
     }
     g.closing += gain;
     if (g.gap < floor_) [[unlikely]]
@@ -372,11 +340,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     // Times are rounded in units of the offset, the way flown in units of the way.
     const T rounding =
         T(16) * T(std::numeric_limits<T>::epsilon()) * magnitude(g.closing) * (magnitude(time) + magnitude(flown));
-    if (-g.gap > rounding) {
-      if (account_.order_lost++ == 0) account_.first_order_lost = {clock_.time(time), body(s), g.gap};
-    } else {
-      ++account_.simultaneous;
-    }
+    account_.enter({clock_.time(time), body(s), g.gap}, rounding);
     return notice::tight;
   }
 
@@ -404,18 +368,6 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     }
   }
 
-  // Whether the flight since the gap was last touched is short against the time since the origin.
-  Notice short_flight(const T& time, const T& before) const {
-    if constexpr (keys_are_exact) {
-      const T flown = time - before;
-      return notice::crowded * (flown < time * 0x1p-20) | notice::pressing * (flown < time * 0x1p-40);
-    } else {
-      const double flown = queue_time(T(time - before)), offset = queue_time(time);
-      if (!(flown < offset * 0x1p-20)) return notice::none;
-      return flown < offset * 0x1p-40 ? notice::crowded | notice::pressing : notice::crowded;
-    }
-  }
-
   // Queue times are local times in units of 2^-shift, such that the next contact is within the range of double.
   void choose_shift() {
     long least = std::numeric_limits<long>::max();
@@ -431,7 +383,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   std::vector<Gap<T>> gaps_;
   std::vector<T> last_contact_;  // local time of the last contact at each gap; empty unless the law remembers
   T longest_ago_{0};             // what stands there for none
-  std::vector<T> lag_;           // local time of gap s is gaps_[s].time + lag_[s]; not zero only if gaps_[s].time < 0
+  LocalTimes<T> local_times_;    // beside Gap::time
   Slot first_ = 0, last_ = 0;
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;  // gaps of the outermost contacts so far
   BodyIndex body_of_slot_0_ = 0;

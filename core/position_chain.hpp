@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/account.hpp"
 #include "cradle/core/clock.hpp"
+#include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
 
@@ -148,13 +150,7 @@ template <Real T> class PositionChain {
     const T unit = epsilon * (x_left < x_right ? x_right : x_left);
     const T rounding = T(16) * (unit + epsilon * magnitude(time) * (magnitude(at(s).v) + magnitude(at(s + 1).v)));
     if (gap < unit * T(1000000) && account_.unresolved++ == 0) account_.first_unresolved = {time, body(s), gap};
-    if (!(gap > T(0))) {
-      if (-gap > rounding) {
-        if (account_.order_lost++ == 0) account_.first_order_lost = {time, body(s), gap};
-      } else {
-        ++account_.simultaneous;
-      }
-    }
+    if (!(gap > T(0))) account_.enter({time, body(s), gap}, rounding);
     return gap < floor_ ? notice::tight : notice::none;
   }
 

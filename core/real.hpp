@@ -53,7 +53,8 @@ inline double scale(double mantissa, long exponent) {
   return mantissa * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
 
-inline double split(long double x, long& exponent) {
+// Not for doubles, which would convert: they are queue times as they are.
+template <std::same_as<long double> T> double split(T x, long& exponent) {
   if constexpr (std::numeric_limits<long double>::digits == 64) {  // x87: read off the bits, frexp is a slow call
     std::uint64_t mantissa = 0;
     std::uint16_t sign_and_exponent = 0;
@@ -75,6 +76,7 @@ template <class T>
 concept WiderRange = requires(const T x, long exponent) {
   { split(x, exponent) } -> std::same_as<double>;
 };
+static_assert(WiderRange<long double> && !WiderRange<double> && !WiderRange<float>);
 
 // An unevaluated sum high + low, |low| at most half a unit in the last place of high.
 template <Real T> struct Pair {

@@ -14,7 +14,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "cradle/core/account.hpp"
 #include "cradle/core/collapse.hpp"
+#include "cradle/core/collision.hpp"
+#include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
 #include "cradle/core/law.hpp"
 

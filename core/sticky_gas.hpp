@@ -20,6 +20,7 @@
 #include <memory>
 #include <utility>
 
+#include "cradle/core/account.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/simulation.hpp"
 

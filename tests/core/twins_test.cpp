@@ -195,4 +195,24 @@ TEST(Twins, ObserverDoesNotChangeABit) {
   expect_identical(plain, observed, {200});
 }
 
+TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {
+  constexpr double end = 150;
+  std::vector<GapRun<double>> in_turn, side_by_side;
+  for (const BodyIndex particles : {200, 300}) {
+    in_turn.push_back(gap_run(rshock<double>(particles), softer));
+    side_by_side.push_back(gap_run(rshock<double>(particles), softer));
+    ASSERT_EQ(in_turn.back().advance(end), Status::reached);
+  }
+  auto first = side_by_side[0].course_to(end), second = side_by_side[1].course_to(end);
+  for (bool going[2] = {true, true}; going[0] || going[1];) {
+    going[0] = going[0] && side_by_side[0].step(first);
+    going[1] = going[1] && side_by_side[1].step(second);
+  }
+  EXPECT_EQ(first.status, Status::reached);
+  for (std::size_t k : {0U, 1U}) {
+    EXPECT_TRUE(identical(configuration_at(in_turn[k], end), configuration_at(side_by_side[k], end)));
+    EXPECT_TRUE(identical(in_turn[k].counts(), side_by_side[k].counts()));
+  }
+}
+
 }  // namespace

@@ -29,6 +29,21 @@ TEST(WetLaw, ThresholdFromBothSides) {
   EXPECT_EQ(passed.energy_lost, 0.25);
 }
 
+// The law decides without the root where it can: never other than the root would.
+TEST(WetLaw, IsTheSameWhereItIsToldWithoutTheRoot) {
+  const Wet law(0.05);
+  for (const double left : {1.0, 3.0, 7e5, 1e12})
+    for (const double right : {1.0, 2.5, 1e9}) {
+      const double critical = std::sqrt(0.1 * (left + right) / (left * right));
+      for (int k = 0; k <= 40; ++k) {  // the root itself is rounded in the 53rd bit
+        EXPECT_EQ(law(critical * (1 - std::exp2(-k)), left, right).event, Event::merge)
+            << left << " " << right << " " << k;
+        EXPECT_EQ(law(critical * (1 + std::exp2(-k)), left, right).event, Event::pass)
+            << left << " " << right << " " << k;
+      }
+    }
+}
+
 TEST(WetLaw, LosesTheSameEnergyAtAnyMass) {
   for (const double heavy : {1.0, 3.0, 1e6, 1e12}) {
     const Wet law(0.05);

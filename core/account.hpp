@@ -1,0 +1,38 @@
+#pragma once
+// What could not be resolved, and how often; nothing is clamped or skipped.
+
+#include <cstdint>
+
+#include "cradle/core/bodies.hpp"
+
+namespace cradle {
+
+// A place and time in a run that a report names.
+template <Real T> struct Incident {
+  T time{0};
+  BodyIndex body = -1;  // the body on the left of the gap
+  T gap{0};
+};
+
+template <Real T> struct Account {
+  // Gaps closed to zero, or below it by no more than rounding, at a contact next to them: three bodies met. The tie
+  // rule (earlier time, then further left) decides the outcome.
+  std::uint64_t simultaneous = 0;
+  // Gaps found negative beyond rounding: a contact came too late in the order of events.
+  std::uint64_t order_lost = 0;
+  Incident<T> first_order_lost;
+  // Positions only: gaps next to a contact below 1e6 units in the last place of the position.
+  std::uint64_t unresolved = 0;
+  Incident<T> first_unresolved;
+
+  // A gap that is not positive although no contact was made there.
+  void enter(const Incident<T>& closed, const T& rounding) {
+    if (-closed.gap > rounding) {
+      if (order_lost++ == 0) first_order_lost = closed;
+    } else {
+      ++simultaneous;
+    }
+  }
+};
+
+}  // namespace cradle

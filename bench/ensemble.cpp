@@ -124,8 +124,8 @@ int main(int argc, char** argv) {
                                               "wet.toml");
   const tools::Scene dry = tools::read_scene(
       "fig2", {"run.until=4000", "output.series.points=101", "output.snapshots=", "output.profiles.times="});
-  enter_scene("wet", wet, 400);
-  enter_scene("dry", dry, 4);
+  enter_scene("wet", wet, 2000);
+  enter_scene("dry", dry, 8);
   enter_engine("wet", 400, 9900, [](int replica) {
     return cradle::Simulation(cradle::Wet<double>(0.05), cradle::ClusterChain<double>(rows(10'000, replica), 0.0));
   });

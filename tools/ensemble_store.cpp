@@ -208,7 +208,7 @@ void EnsembleStore::keep_safe() {
   {
     const std::scoped_lock lock(appending_);
     const auto now = std::chrono::steady_clock::now();
-    due = now - synced_ > 5s;
+    due = now - synced_ > 20s;
     large = journal_->bytes() > largest_;
     if (due) synced_ = now;
   }

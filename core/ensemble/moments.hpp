@@ -56,13 +56,19 @@ inline Moments moments_of(std::vector<double> values) {
 
 namespace detail {
 
-// One entry: `right` joins `left`. With n = a + b replicas, delta = mean_b - mean_a:
+// Two sets of a and b replicas, n = a + b, delta = mean_b - mean_a:
 // mean = mean_a + delta b/n, squares = squares_a + squares_b + delta^2 a b/n.
-inline void join(double a, double b, double& mean, double mean_b, double& squares, double squares_b) {
-  const double share = b / (a + b), delta = mean_b - mean;
-  mean += delta * share;
-  squares = (squares + squares_b) + delta * delta * (a * share);
-}
+struct Join {
+  Join(std::uint64_t left, std::uint64_t right)
+      : share(static_cast<double>(right) / (static_cast<double>(left) + static_cast<double>(right))),
+        weight(static_cast<double>(left) * share) {}
+  void operator()(double& mean, double mean_b, double& squares, double squares_b) const {
+    const double delta = mean_b - mean;
+    mean += delta * share;
+    squares = (squares + squares_b) + delta * delta * weight;
+  }
+  double share, weight;
+};
 
 inline void join_extremes(Moments& left, const Moments& right) {
   const std::size_t n = left.entries();
@@ -80,21 +86,20 @@ inline Moments combine(Moments left, Moments right) {
   if (left.replicas == 0) return right;
   const std::size_t n = left.entries();
   if (right.entries() != n) throw std::invalid_argument("statistics of vectors of different lengths");
-  const auto a = static_cast<double>(left.replicas), b = static_cast<double>(right.replicas);
+  const detail::Join join_all(left.replicas, right.replicas);
   if (left.complete() && right.complete()) {
-    for (std::size_t i = 0; i < n; ++i)
-      detail::join(a, b, left.mean[i], right.mean[i], left.squares[i], right.squares[i]);
+    for (std::size_t i = 0; i < n; ++i) join_all(left.mean[i], right.mean[i], left.squares[i], right.squares[i]);
   } else {
     if (left.complete()) left.counts.assign(n, left.replicas);
     for (std::size_t i = 0; i < n; ++i) {
       const std::uint64_t of_left = left.counts[i], of_right = right.count(i);
       left.counts[i] += of_right;
-      if (of_right == 0) continue;
-      if (of_left == 0)
+      if (of_left == left.replicas && of_right == right.replicas)
+        join_all(left.mean[i], right.mean[i], left.squares[i], right.squares[i]);
+      else if (of_left > 0 && of_right > 0)
+        detail::Join(of_left, of_right)(left.mean[i], right.mean[i], left.squares[i], right.squares[i]);
+      else if (of_right > 0)
         left.mean[i] = right.mean[i], left.squares[i] = right.squares[i];
-      else
-        detail::join(static_cast<double>(of_left), static_cast<double>(of_right), left.mean[i], right.mean[i],
-                     left.squares[i], right.squares[i]);
     }
   }
   detail::join_extremes(left, right);

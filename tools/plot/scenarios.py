@@ -100,7 +100,8 @@ def draw_regimes(result):
             below += share
         ax.set(ylim=(0, 1))
         ax.set_ylabel(f"perturbation {size:g} $l$")
-        ax.set_xticks(places, [f"{point.setting('law', 'loss'):.2g}" for point in points], fontsize=7)
+        losses = [f"{point.setting('law', 'loss'):.2g}" for point in points]
+        ax.set_xticks(places, losses, fontsize=7, rotation=90 if len(points) > 13 else 0)
     axes = np.atleast_1d(axes)
     axes[-1].set_xlabel(r"$E_\mathrm{loss}$")
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)

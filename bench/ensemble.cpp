@@ -2,7 +2,7 @@
 // one thread go faster than one after the other.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_ensemble
-//   build/release/bench/bench_ensemble --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
+//   build/release/bench/bench_ensemble --benchmark_enable_random_interleaving=true --benchmark_repetitions=5
 //                                      --benchmark_report_aggregates_only=true
 //
 // wet   replicas of 1e4 bodies, E_loss = .05, to t = 9900, 101 samples (30,000 contacts each)
@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
                                               "wet.toml");
   const tools::Scene dry = tools::read_scene(
       "fig2", {"run.until=4000", "output.series.points=101", "output.snapshots=", "output.profiles.times="});
-  enter_scene("wet", wet, 2000);
+  enter_scene("wet", wet, 8000);
   enter_scene("dry", dry, 8);
   enter_engine("wet", 400, 9900, [](int replica) {
     return cradle::Simulation(cradle::Wet<double>(0.05), cradle::ClusterChain<double>(rows(10'000, replica), 0.0));

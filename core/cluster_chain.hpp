@@ -55,7 +55,9 @@ template <Real T> class ClusterChain {
 
   // ---- times: offsets from the chain's origin
   const Clock<T>& clock() const { return clock_; }
+  const T& start() const { return clock_.start(); }
   T local_time(const T& time) const { return clock_.offset(time); }
+  Pair<T> stamp(const T& local) const { return clock_.stamp(local); }
   double queue_time(const T& local) const { return to_double(local); }
 
   // ---- slots: cells held are first() to last(), vacant ones among them; the last one's gap is none
@@ -85,11 +87,12 @@ template <Real T> class ClusterChain {
   T closing(Slot s) const { return cells_[s].velocity - cells_[cells_[s].right].velocity; }
 
   // ---- events (inlined by force, see gap_chain.hpp)
-  template <class Law> [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) {
+  template <class Law>
+  [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) requires(!LawWithMemory<Law, T>) {
     Cell& l = cells_[s];
-    const Outcome<T> outcome = law(closing(s), l.mass, cells_[l.right].mass);
+    const Outcome<T> outcome = law(closing(s), TwoMasses<T>{l.mass, cells_[l.right].mass});
     const T flown = local_times_.flown(s, l.time, time);
-    Notice notice = notice::of_flight(queue_time(flown), queue_time(time));
+    Notice notice = of_flight(queue_time(flown), queue_time(time));
     if ((s <= front_left_) | (l.right >= front_right_)) [[unlikely]] {
       if (ring_)
         cross_seam(s, outcome.event);
@@ -295,7 +298,7 @@ template <Real T> class ClusterChain {
       cells_[n].right = last_;
       place_end(last_ + 1, last_);
     }
-    return cramped() ? notice::cramped : notice::none;
+    return cramped() ? Notice::needs_slots : Notice::none;
   }
 
   // Keeps account of the mass that goes from the first cell of a ring to the last one, that is, by a turn to the right.
@@ -326,7 +329,7 @@ template <Real T> class ClusterChain {
     if (front_right_ == n) front_right_ = s;
     --active_;
     ++vacated_;
-    return sparse() ? notice::cramped : notice::none;
+    return sparse() ? Notice::needs_slots : Notice::none;
   }
 
   // Brings a gap up to date; where the local time is ahead of the contact it stays, and how far is returned (negative).
@@ -343,11 +346,11 @@ template <Real T> class ClusterChain {
   Notice inspect(Slot s, const T& time) {
     const Cell& c = cells_[s];
     if (!(c.gap < floor_)) [[likely]]
-      return notice::none;
-    if (is_positive(c.gap)) return notice::tight;
+      return Notice::none;
+    if (is_positive(c.gap)) return Notice::gap_below_floor;
     const T rounding = T(16) * T(std::numeric_limits<T>::epsilon()) * magnitude(closing(s)) * magnitude(time);
     account_.enter({clock_.time(time), c.body, c.gap}, rounding);
-    return notice::tight;
+    return Notice::gap_below_floor;
   }
 
   // Off the hot path.

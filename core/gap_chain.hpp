@@ -53,7 +53,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 
   // ---- times: what a chain calls a local time is an offset from its origin
   const Clock<T>& clock() const { return clock_; }
+  const T& start() const { return clock_.start(); }
   T local_time(const T& time) const { return clock_.offset(time); }
+  Pair<T> stamp(const T& local) const { return clock_.stamp(local); }
   double queue_time(const T& local) const {
     if constexpr (WiderRange<T>) {
       long exponent = 0;
@@ -96,10 +98,11 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 
   // ---- events. Inlined by force: the loop comes in two versions, observed or not, and as a call this passes all
   // results through memory, a fifth of the time per contact.
-  template <class Law> [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) {
+  template <class Law>
+  [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
     if ((s <= front_left_) | (s >= front_right_)) [[unlikely]]
       return collide_at_end(law, s, time);
-    return strike(s - 1, s, s + 1, time, outcome(law, s, time), notice::none);
+    return strike(s - 1, s, s + 1, time, outcome(law, s, time), Notice::none);
   }
 
   // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
@@ -141,7 +144,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     if (collided) front_left_ = fronts[0] - first + first_, front_right_ = fronts[1] - first + first_;
   }
 
-  // Contacts that leave a gap below `floor` beside them are noticed as tight.
+  // Contacts that leave a gap below `floor` beside them are noticed (gap_below_floor).
   void set_floor(const T& floor) { floor_ = floor; }
   // The smaller gap next to a contact, as of its local time; an end of the line counts as far away.
   T nearest_gap(Slot s) const {
@@ -234,13 +237,14 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
-    return law.remembers() ? masses_.outcome(law, s, closing(s), rested(s, time, law.contact_time()))
-                           : masses_.outcome(law, s, closing(s));
+    if constexpr (LawWithMemory<Law, T>)
+      if (!rested(s, time, law.contact_time())) return law.elastic(closing(s), masses_.of_pair(s));
+    return law(closing(s), masses_.of_pair(s));
   }
   // A contact at an end of the active zone, or at the seam of a ring.
   template <class Law> [[gnu::noinline]] Collision<T> collide_at_end(const Law& law, Slot s, const T& time) {
     const Outcome<T> of_law = outcome(law, s, time);
-    const Notice notice = ring_ ? notice::none : widen(s, time, of_law);
+    const Notice notice = ring_ ? Notice::none : widen(s, time, of_law);
     return strike(left(s), s, right(s), time, of_law, notice);
   }
 
@@ -249,7 +253,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
                                              Notice notice) {
     Gap<T>& pair = gaps_[s];
     const T flown = local_times_.flown(s, pair.time, time);
-    notice |= notice::of_flight(queue_time(flown), queue_time(time));
+    notice |= of_flight(queue_time(flown), queue_time(time));
     if (is_negative(flown)) [[unlikely]]  // a gap's local time never goes back
       pair.gap = outcome.closing * flown;
     else {
@@ -295,7 +299,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
         seal(s + 1, time, outcome.to_right);
       }
     }
-    return cramped() ? notice::cramped : notice::none;
+    return cramped() ? Notice::needs_slots : Notice::none;
   }
 
   // There is no gap beyond the last body: what stands in its slot keeps opening, whatever it is handed.
@@ -331,17 +335,17 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     g.closing += gain;
     if (g.gap < floor_) [[unlikely]]
       return note(s, time, flown);
-    return notice::none;
+    return Notice::none;
   }
 
   Notice note(Slot s, const T& time, const T& flown) {
     const Gap<T>& g = gaps_[s];
-    if (is_positive(g.gap)) return notice::tight;
+    if (is_positive(g.gap)) return Notice::gap_below_floor;
     // Times are rounded in units of the offset, the way flown in units of the way.
     const T rounding =
         T(16) * T(std::numeric_limits<T>::epsilon()) * magnitude(g.closing) * (magnitude(time) + magnitude(flown));
     account_.enter({clock_.time(time), body(s), g.gap}, rounding);
-    return notice::tight;
+    return Notice::gap_below_floor;
   }
 
   // Queue time of the next contact of a gap touched just now. Wide types: a rounded time will do, the queue knows.
@@ -381,7 +385,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   std::vector<Gap<T>> gaps_;
-  std::vector<T> last_contact_;  // local time of the last contact at each gap; empty unless the law remembers
+  std::vector<T> last_contact_;  // local time of the last contact at each gap; empty unless the law has a memory
   T longest_ago_{0};             // what stands there for none
   LocalTimes<T> local_times_;    // beside Gap::time
   Slot first_ = 0, last_ = 0;

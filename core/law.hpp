@@ -1,12 +1,13 @@
 #pragma once
-// Collision laws: closing speed and masses in, outcome out; pure functions of values.
+// Collision laws: closing speed and masses in, outcome out; pure functions of values, all called in one way,
 //
-//   w   closing speed u_l - u_r > 0 of the two bodies in contact
-//   m   their masses, mu = m_l m_r / (m_l + m_r) the reduced mass
+//   law(w, masses)
 //
-// A law is called with w and the masses and says what the two bodies do: bounce, pass through each other (Newton's
-// cradle: the one that was left comes out on the right) or merge. Bodies lose J/m_l and gain J/m_r for an impulse J
-// from left to right.
+//   w        closing speed u_l - u_r > 0 of the two bodies in contact
+//   masses   theirs, as TwoMasses or EqualMasses; mu = m_l m_r / (m_l + m_r) is the reduced mass
+//
+// A law says what the two bodies do: bounce, pass through each other (Newton's cradle: the one that was left comes out
+// on the right) or merge. For an impulse J from left to right the left body loses J/m_l and the right one gains J/m_r.
 //
 // Inelastic law (paper, section II and III): w' = -eps w, energy lost mu w^2 (1 - eps^2)/2; below the velocity cut-off
 // delta the contact is elastic. The closing speed handed to the neighbours, w - w', is formed such that the sum of all
@@ -14,6 +15,7 @@
 // comes first because there the difference would cancel.
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 
 #include "cradle/core/real.hpp"
@@ -32,46 +34,76 @@ template <Real T> struct Outcome {
   Event event = Event::bounce;
 };
 
+// What each of two bodies does to the closing speed, J/m_l and J/m_r; together w - w'.
+template <Real T> struct Shares { T left, right; };
+
+// The masses of two bodies in contact. They refer to numbers held elsewhere: to be passed on, not to be kept.
+template <Real T> struct TwoMasses {
+  const T &left, &right;
+
+  T reduced() const { return left * (right / (left + right)); }
+  // The lighter body takes the larger part: form that one by subtraction, so that both parts add up.
+  Shares<T> shares(const T& half) const {
+    const T handed = half + half;
+    const bool left_lighter = left < right;
+    const T small = handed * ((left_lighter ? left : right) / (left + right));
+    const T large = handed - small;
+    return {left_lighter ? large : small, left_lighter ? small : large};
+  }
+};
+
+// The same mass twice, and half of it: no quotients. The bits are those of TwoMasses.
+template <Real T> struct EqualMasses {
+  const T &left, &half;
+  const T& right = left;
+
+  const T& reduced() const { return half; }
+  Shares<T> shares(const T& half_of_change) const { return {half_of_change, half_of_change}; }
+};
+
+// A collision law in the scalar T, with `bounces_only` telling chains whether bodies keep their order and number.
+template <class L, class T>
+concept Law = Real<T> && requires(const L law, const T& w, const TwoMasses<T>& two, const EqualMasses<T>& equal) {
+  { L::bounces_only } -> std::convertible_to<bool>;
+  { law(w, two) } -> std::same_as<Outcome<T>>;
+  { law(w, equal) } -> std::same_as<Outcome<T>>;
+};
+
+// A law by which a contact is elastic(w, masses) where one of the bodies has had another one within contact_time() > 0
+// before it; the chain remembers when.
+template <class L, class T>
+concept LawWithMemory = Law<L, T> && requires(const L law, const T& w, const TwoMasses<T>& two) {
+  { law.contact_time() } -> std::convertible_to<T>;
+  { law.elastic(w, two) } -> std::same_as<Outcome<T>>;
+};
+
 template <Real T> class Inelastic {
  public:
-  // restitution in [0, 1]; cutoff >= 0, a speed (0: the plain law); contact_time >= 0: contacts are elastic too where
-  // one of the bodies has had another one less than that before (TC model: Luding and McNamara 1998,
-  // doi 10.1007/s100350050017).
-  explicit Inelastic(const T& restitution, const T& cutoff = T(0), const T& contact_time = T(0))
+  static constexpr bool bounces_only = true;
+
+  // restitution in [0, 1]; cutoff >= 0, a speed (0: the plain law).
+  explicit Inelastic(const T& restitution, const T& cutoff = T(0))
       : restitution_(restitution), cutoff_(cutoff), half_sum_((T(1) + restitution) / T(2)),
-        lost_((T(1) - restitution) * (T(1) + restitution) / T(2)), soft_(restitution * T(2) < T(1)),
-        contact_time_(contact_time), remembers_(contact_time > T(0)) {}
+        lost_((T(1) - restitution) * (T(1) + restitution) / T(2)), soft_(restitution * T(2) < T(1)) {}
 
-  // Two bodies of the same mass m: mu = m/2.
-  Outcome<T> operator()(const T& w, const T& reduced_mass, bool rested = true) const {
-    const bool elastic = w < cutoff_ || !rested;
-    const T after = closing_after(w, elastic);
-    const T handed = soft_ ? T((w - after) / T(2)) : T(share(elastic) * w);
-    return {after, handed, handed, energy_lost(w, reduced_mass, elastic), elastic};
+  template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const {
+    return outcome(w, masses, w < cutoff_);
   }
-
-  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right, bool rested = true) const {
-    const bool elastic = w < cutoff_ || !rested;
-    const T total_mass = mass_left + mass_right;
-    const T after = closing_after(w, elastic);
-    const T handed = soft_ ? T(w - after) : T(T(2) * (share(elastic) * w));
-    // The lighter body takes the larger part: form that one by subtraction, so that both parts add up to w - w'.
-    const bool left_lighter = mass_left < mass_right;
-    const T small = handed * ((left_lighter ? mass_left : mass_right) / total_mass);
-    const T large = handed - small;
-    return {after, left_lighter ? large : small, left_lighter ? small : large,
-            energy_lost(w, mass_left * (mass_right / total_mass), elastic), elastic};
+  // As below the cut-off, whatever the speed.
+  template <class Masses> Outcome<T> elastic(const T& w, const Masses& masses) const {
+    return outcome(w, masses, true);
   }
 
   const T& restitution() const { return restitution_; }
   const T& cutoff() const { return cutoff_; }
 
-  // Whether outcomes depend on when the bodies last had a contact: `rested` says that it was longer ago than
-  // contact_time().
-  bool remembers() const { return remembers_; }
-  const T& contact_time() const { return contact_time_; }
-
  private:
+  template <class Masses> Outcome<T> outcome(const T& w, const Masses& masses, bool elastic) const {
+    const T after = closing_after(w, elastic);
+    const Shares<T> shares = masses.shares(soft_ ? T((w - after) / T(2)) : T(share(elastic) * w));
+    return {after, shares.left, shares.right, energy_lost(w, masses.reduced(), elastic), elastic};
+  }
+
   // Choices between two numbers at hand, not between two computations: late in a collapse they cannot be predicted.
   const T& share(bool elastic) const { return elastic ? one_ : half_sum_; }
   T closing_after(const T& w, bool elastic) const {
@@ -89,24 +121,42 @@ template <Real T> class Inelastic {
   T lost_;      // (1 - eps)(1 + eps) / 2, the share of mu w^2 that is lost
   T one_{1}, zero_{0};
   bool soft_;  // eps < 1/2
+};
+
+// The inelastic law with a duration of contacts (TC model: Luding and McNamara 1998, doi 10.1007/s100350050017):
+// elastic too where one of the bodies has had another contact less than that before.
+template <Real T> class ContactTime {
+ public:
+  static constexpr bool bounces_only = true;
+
+  // contact_time > 0.
+  ContactTime(const Inelastic<T>& law, const T& contact_time) : law_(law), contact_time_(contact_time) {}
+
+  template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const { return law_(w, masses); }
+  template <class Masses> Outcome<T> elastic(const T& w, const Masses& masses) const { return law_.elastic(w, masses); }
+  const T& contact_time() const { return contact_time_; }
+
+ private:
+  Inelastic<T> law_;
   T contact_time_;
-  bool remembers_;
 };
 
 // Inelastic law whose bodies stick below a closing speed (collapse policy `merge`).
 template <Real T> class InelasticMerging {
  public:
+  static constexpr bool bounces_only = false;
+
   InelasticMerging(const Inelastic<T>& law, const T& merge_speed) : law_(law), merge_speed_(merge_speed) {}
 
-  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
-    return w < merge_speed_ ? merged(w, mass_left, mass_right) : law_(w, mass_left, mass_right);
+  template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const {
+    return w < merge_speed_ ? merged(w, masses) : law_(w, masses);
   }
 
   // They go on as one: all relative kinetic energy mu w^2/2 is lost.
-  static Outcome<T> merged(const T& w, const T& mass_left, const T& mass_right) {
-    const T total_mass = mass_left + mass_right;
-    const T to_right = w * (mass_left / total_mass);
-    return {T(0), w * (mass_right / total_mass), to_right, mass_right * to_right * w / T(2), false, Event::merge};
+  template <class Masses> static Outcome<T> merged(const T& w, const Masses& masses) {
+    const T total_mass = masses.left + masses.right;
+    const T to_right = w * (masses.left / total_mass);
+    return {T(0), w * (masses.right / total_mass), to_right, masses.right * to_right * w / T(2), false, Event::merge};
   }
 
  private:
@@ -116,8 +166,10 @@ template <Real T> class InelasticMerging {
 
 // Sticky law: every contact merges.
 template <Real T> struct Sticky {
-  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
-    return InelasticMerging<T>::merged(w, mass_left, mass_right);
+  static constexpr bool bounces_only = false;
+
+  template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const {
+    return InelasticMerging<T>::merged(w, masses);
   }
 };
 
@@ -127,19 +179,21 @@ template <Real T> struct Sticky {
 // w_c, which of the two happens is told without the root, so that the processor guesses right or learns soon.
 template <Real T> class Wet {
  public:
+  static constexpr bool bounces_only = false;
+
   explicit Wet(const T& loss)
       : loss_(loss), twice_loss_(loss + loss), below_(twice_loss_ - twice_loss_ / T(1024)),
         above_(twice_loss_ + twice_loss_ / T(1024)) {}
 
-  Outcome<T> operator()(const T& w, const T& mass_left, const T& mass_right) const {
+  template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const {
     using std::sqrt;
-    const T total = mass_left + mass_right, product = mass_left * mass_right, scaled = w * w * product;
-    if (scaled < below_ * total) return InelasticMerging<T>::merged(w, mass_left, mass_right);
+    const T total = masses.left + masses.right, product = masses.left * masses.right, scaled = w * w * product;
+    if (scaled < below_ * total) return InelasticMerging<T>::merged(w, masses);
     const T critical = sqrt(T(twice_loss_ * (total / product)));
-    if (!(scaled > above_ * total) && !(w > critical)) return InelasticMerging<T>::merged(w, mass_left, mass_right);
+    if (!(scaled > above_ * total) && !(w > critical)) return InelasticMerging<T>::merged(w, masses);
     const T after = sqrt(T((w - critical) * (w + critical)));
     const T impulse = twice_loss_ / (w + after);
-    return {-after, impulse / mass_left, impulse / mass_right, loss_, false, Event::pass};
+    return {-after, impulse / masses.left, impulse / masses.right, loss_, false, Event::pass};
   }
 
  private:

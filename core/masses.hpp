@@ -16,12 +16,7 @@ template <Real T> struct IdenticalMasses {
   void resize(std::size_t) {}
   void set(Slot, const T&) {}
   const T& operator[](Slot) const { return mass; }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing) const {
-    return law(closing, reduced_mass);
-  }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot, const T& closing, bool rested) const {
-    return law(closing, reduced_mass, rested);
-  }
+  EqualMasses<T> of_pair(Slot) const { return {mass, reduced_mass}; }
 };
 
 template <Real T> struct IndividualMasses {
@@ -30,12 +25,7 @@ template <Real T> struct IndividualMasses {
   void resize(std::size_t slots) { masses.assign(slots, T(1)); }
   void set(Slot s, const T& mass) { masses[s] = mass; }
   const T& operator[](Slot s) const { return masses[s]; }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot s, const T& closing) const {
-    return law(closing, masses[s], masses[s + 1]);
-  }
-  template <class Law> Outcome<T> outcome(const Law& law, Slot s, const T& closing, bool rested) const {
-    return law(closing, masses[s], masses[s + 1], rested);
-  }
+  TwoMasses<T> of_pair(Slot s) const { return {masses[s], masses[s + 1]}; }
 };
 
 }  // namespace cradle

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cradle/core/account.hpp"
-#include "cradle/core/clock.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
@@ -34,7 +33,8 @@ template <Real T> class PositionChain {
   // ---- times: absolute; only the queue's keys are told from an origin that moves
   T local_time(const T& time) const { return time; }
   double queue_time(const T& time) const { return to_double(T(time - origin_)); }
-  Clock<T> clock() const { return Clock<T>(T(0)); }
+  const T& start() const { return start_; }
+  Pair<T> stamp(const T& time) const { return {time, T(0)}; }
 
   // ---- slots: two empty ones at either end
   std::size_t slots() const { return bodies_.size() + 3; }
@@ -53,21 +53,19 @@ template <Real T> class PositionChain {
 
   const T& closing(Slot s) const { return closing_[s]; }
 
-  template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) {
+  template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
     Particle &left = at(s), &right = at(s + 1);
-    const bool rested =
-        !law.remembers() || (left.rested(time, law.contact_time()) && right.rested(time, law.contact_time()));
+    const Outcome<T> outcome = left.m == right.m ? outcome_of(law, s, time, EqualMasses<T>{left.m, T(left.m / T(2))})
+                                                 : outcome_of(law, s, time, TwoMasses<T>{left.m, right.m});
     advance(left, time);
     advance(right, time);
     right.x = left.x;
-    const Outcome<T> outcome =
-        left.m == right.m ? law(closing_[s], T(left.m / T(2)), rested) : law(closing_[s], left.m, right.m, rested);
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
     front_left_ = std::min(front_left_, s);
     front_right_ = std::max(front_right_, s);
 
-    Notice notice = notice::none;
+    Notice notice = Notice::none;
     predict(s, time);
     if (s > first()) notice |= resolve(s - 1, time);
     if (s < last()) notice |= resolve(s + 1, time);
@@ -75,8 +73,6 @@ template <Real T> class PositionChain {
   }
 
   T move_origin(const T& local) { return origin_ = local; }
-  bool cramped() const { return false; }
-  void make_room() {}
 
   void set_floor(const T& floor) { floor_ = floor; }
   T nearest_gap(Slot s) const {
@@ -127,6 +123,14 @@ template <Real T> class PositionChain {
     bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
   };
 
+  template <class Law, class Masses>
+  Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
+    if constexpr (LawWithMemory<Law, T>)
+      if (!at(s).rested(time, law.contact_time()) || !at(s + 1).rested(time, law.contact_time()))
+        return law.elastic(closing_[s], masses);
+    return law(closing_[s], masses);
+  }
+
   Particle& at(Slot s) { return bodies_[s - 2]; }  // the body on the left of a gap
   const Particle& at(Slot s) const { return bodies_[s - 2]; }
 
@@ -151,7 +155,7 @@ template <Real T> class PositionChain {
     const T rounding = T(16) * (unit + epsilon * magnitude(time) * (magnitude(at(s).v) + magnitude(at(s + 1).v)));
     if (gap < unit * T(1000000) && account_.unresolved++ == 0) account_.first_unresolved = {time, body(s), gap};
     if (!(gap > T(0))) account_.enter({time, body(s), gap}, rounding);
-    return gap < floor_ ? notice::tight : notice::none;
+    return gap < floor_ ? Notice::gap_below_floor : Notice::none;
   }
 
   std::vector<Particle> bodies_;

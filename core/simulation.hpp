@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "cradle/core/account.hpp"
+#include "cradle/core/chain.hpp"
 #include "cradle/core/collapse.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
@@ -69,7 +70,9 @@ template <Real T> class Ledger {
   CompensatedSum<T> sum_;
 };
 
-template <Real T, class Law, class Chain> class Simulation {
+template <Real T, class Law, class Chain>
+requires CollidesBy<Chain, Law> && std::same_as<T, typename Chain::Scalar>
+class Simulation {
  public:
   using Scalar = T;
 
@@ -117,7 +120,7 @@ template <Real T, class Law, class Chain> class Simulation {
     }
     const T time = chain_.due(s);
     if constexpr (observed) {
-      observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.clock().stamp(time), time - previous_,
+      observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.stamp(time), time - previous_,
                           chain_.closing(s)});
       previous_ = time;
     }
@@ -126,7 +129,7 @@ template <Real T, class Law, class Chain> class Simulation {
     lost_.add(collision.outcome.energy_lost);
     counts_.below_cutoff += collision.outcome.below_cutoff;
     counts_.merges += collision.outcome.event == Event::merge;
-    if (++counts_.contacts == next_review_ || collision.notice != notice::none) [[unlikely]] {
+    if (++counts_.contacts == next_review_ || collision.notice != Notice::none) [[unlikely]] {
       course.status = review(s, time, collision.notice);
       if (course.status != Status::reached) return false;
       course = course_to(course.until);
@@ -147,14 +150,15 @@ template <Real T, class Law, class Chain> class Simulation {
 
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
-  T last_contact_time() const { return chain_.clock().time(last_contact_); }
+  T last_contact_time() const { return chain_.stamp(last_contact_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report(); }
 
  private:
   T smallest_gap() const {
-    T least = chain_.gap_at(chain_.first(), chain_.local_time(chain_.clock().start()));
+    const T start = chain_.local_time(chain_.start());
+    T least = chain_.gap_at(chain_.first(), start);
     for (Slot s = chain_.first(); s <= chain_.last(); ++s) {
-      const T gap = chain_.gap_at(s, chain_.local_time(chain_.clock().start()));
+      const T gap = chain_.gap_at(s, start);
       if (gap < least) least = gap;
     }
     return least;
@@ -206,11 +210,12 @@ template <Real T, class Law, class Chain> class Simulation {
   Status review(Slot s, const T& time, Notice notice) {
     last_contact_ = time;
     Status status = Status::reached;
-    if (notice & notice::tight) status = judge(s, time);
-    if (notice & notice::cramped) {
-      chain_.make_room();
-      fill_queue();
-    }
+    if (asks(notice, Notice::gap_below_floor)) status = judge(s, time);
+    if constexpr (StreamingChain<Chain>)
+      if (asks(notice, Notice::needs_slots)) {
+        chain_.make_room();
+        fill_queue();
+      }
     if (time > reviewed_) progress_ = counts_.contacts;
     const auto active = static_cast<std::uint64_t>(chain_.collided_bodies());
     // Many bodies may meet at one time, n(n - 1)/2 contacts if elastic; more than that, and time stands still.
@@ -218,7 +223,7 @@ template <Real T, class Law, class Chain> class Simulation {
     const bool moved = time_to_move(time, notice, active);
     if (moved) {
       move_origin(time);
-      if (policy_.progress) policy_.progress(chain_.clock().time(reviewed_), counts_);
+      if (policy_.progress) policy_.progress(chain_.stamp(reviewed_).value(), counts_);
       if (status == Status::reached && policy_.interrupt && policy_.interrupt()) status = Status::interrupted;
     } else {
       reviewed_ = time;
@@ -236,7 +241,8 @@ template <Real T, class Law, class Chain> class Simulation {
   // (Looked at when due, never when the chain asks for room: that depends on what is streamed.)
   bool time_to_move(const T& time, Notice notice, std::uint64_t active) const {
     const std::uint64_t since_move = counts_.contacts - last_move_;
-    if ((notice & notice::pressing) || ((notice & notice::crowded) && 16 * since_move >= active)) return true;
+    if (asks(notice, Notice::origin_must_move)) return true;
+    if (asks(notice, Notice::origin_should_move) && 16 * since_move >= active) return true;
     if (counts_.contacts < next_review_) return false;
     if (Chain::may_collapse || since_move >= 32 * active + 16) return true;
     return T(static_cast<std::int64_t>(2 * since_move)) * (time - paced_) <
@@ -256,7 +262,7 @@ template <Real T, class Law, class Chain> class Simulation {
     const T gap = chain_.nearest_gap(s);
     if (policy_.collapse == CollapsePolicy::stop) {
       const bool settled =
-          watch_.settled(chain_.body(s), chain_.clock().stamp(time), time, gap, chain_.time_resolution(s, time));
+          watch_.settled(chain_.body(s), chain_.stamp(time), time, gap, chain_.time_resolution(s, time));
       // Without a time that settles (irregular collapse of many bodies) the end of the type's range is the end too.
       const T stop_gap = policy_.stop_gap > T(0) ? policy_.stop_gap : underflow_;
       if ((settled && !(policy_.stop_gap > T(0))) || (is_positive(gap) && gap < stop_gap)) return Status::collapsed;

@@ -317,12 +317,16 @@ template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& optio
                                   sticky ? std::numeric_limits<T>::max() : number<T>(scene.run.merge_speed));
     return run_on<T>(scene, bodies, law, ClusterChain<T>(bodies, start), options, progress);
   }
-  const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff),
-                         scene.run.collapse == CollapsePolicy::contact_time ? number<T>(scene.run.contact_time) : T(0));
-  if (scene.run.coordinates == Coordinates::absolute)
-    return run_on<T>(scene, bodies, law, PositionChain<T>(bodies, start), options, progress);
-  if (bodies->identical_masses()) return run_on<T>(scene, bodies, law, GapChain<T>(bodies, start), options, progress);
-  return run_on<T>(scene, bodies, law, GapChain<T, IndividualMasses<T>>(bodies, start), options, progress);
+  const auto bouncing = [&](auto law) {
+    if (scene.run.coordinates == Coordinates::absolute)
+      return run_on<T>(scene, bodies, law, PositionChain<T>(bodies, start), options, progress);
+    if (bodies->identical_masses()) return run_on<T>(scene, bodies, law, GapChain<T>(bodies, start), options, progress);
+    return run_on<T>(scene, bodies, law, GapChain<T, IndividualMasses<T>>(bodies, start), options, progress);
+  };
+  const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff));
+  if (scene.run.collapse == CollapsePolicy::contact_time)
+    return bouncing(ContactTime<T>(law, number<T>(scene.run.contact_time)));
+  return bouncing(law);
 }
 
 }  // namespace cradle::tools

@@ -26,7 +26,7 @@ std::shared_ptr<const Bodies<double>> three_bodies() {
 TEST(ContactTime, OnlyRestedBodiesDissipate) {
   // Contacts of the plain law at t = 1, then ever faster: with t_c above all later intervals only the first dissipates,
   // mu w^2 (1 - eps^2)/2 = (1/2)(1)(1 - 1/400)/2, since the second has a body of the first.
-  Simulation run(Inelastic(0.05, 0.0, 10.0), GapChain<double>(three_bodies(), 0.0));
+  Simulation run(ContactTime(Inelastic(0.05), 10.0), GapChain<double>(three_bodies(), 0.0));
   EXPECT_EQ(run.advance(100.0), Status::reached);
   EXPECT_NEAR(run.energy_lost(), (1 - 0.0025) / 4, 1e-16);
   EXPECT_EQ(run.counts().below_cutoff, run.counts().contacts - 1);
@@ -34,7 +34,7 @@ TEST(ContactTime, OnlyRestedBodiesDissipate) {
 
 TEST(ContactTime, ShorterThanEveryIntervalItIsThePlainLaw) {
   Simulation plain(Inelastic(0.9), GapChain<double>(shock(200), 0.0));
-  Simulation timed(Inelastic(0.9, 0.0, 1e-300), GapChain<double>(shock(200), 0.0));
+  Simulation timed(ContactTime(Inelastic(0.9), 1e-300), GapChain<double>(shock(200), 0.0));
   plain.advance(40.0);
   timed.advance(40.0);
   EXPECT_EQ(plain.counts().contacts, timed.counts().contacts);
@@ -43,7 +43,7 @@ TEST(ContactTime, ShorterThanEveryIntervalItIsThePlainLaw) {
 }
 
 TEST(ContactTime, BothRepresentationsAndStreamingAgree) {
-  const Inelastic law(0.9, 0.0, 1e-3);
+  const ContactTime law(Inelastic(0.9), 1e-3);
   Simulation gaps(law, GapChain<double>(shock(400), 0.0)), held(law, GapChain<double>(shock(400), 0.0, true));
   Simulation positions(law, PositionChain<double>(shock(400), 0.0));
   for (const double t : {20.0, 60.0, 80.0}) {

@@ -38,10 +38,10 @@ template <class Law, class Chain> class SlowLoop {
 
   Step<T> collide(Slot s) {
     const T time = chain_.due(s);
-    Step<T> step{chain_.body(s), chain_.clock().stamp(time), time, chain_.closing(s), T(0)};
+    Step<T> step{chain_.body(s), chain_.stamp(time), time, chain_.closing(s), T(0)};
     const Collision<T> collision = chain_.collide(law_, s, time);
     step.nearest_gap = chain_.nearest_gap(s);
-    if (collision.notice & notice::cramped) chain_.make_room();
+    if (asks(collision.notice, Notice::needs_slots)) chain_.make_room();
     if (++since_move_ == contacts_per_move_) {
       chain_.move_origin(time);
       since_move_ = 0;

@@ -66,7 +66,7 @@ template <Real T> class SlowRing {
   template <class Law> void collide(const Law& law, std::size_t i) {
     Body& l = ring_[i];
     Body& r = ring_[next(i)];
-    const Outcome<T> outcome = law(T(l.v - r.v), l.m, r.m);
+    const Outcome<T> outcome = law(T(l.v - r.v), TwoMasses<T>{l.m, r.m});
     l.v -= outcome.to_left;
     r.v += outcome.to_right;
     if (outcome.event == Event::pass) {

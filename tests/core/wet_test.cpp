@@ -19,10 +19,10 @@ namespace {
 TEST(WetLaw, ThresholdFromBothSides) {
   // u0 = 1/2, E = 1/4: closing at 1, mu = 1/2, sqrt(2 E/mu) = 1 exactly; equality merges.
   const Wet law(0.25);
-  EXPECT_EQ(law(1.0, 1.0, 1.0).event, Event::merge);
-  EXPECT_EQ(law(std::nextafter(1.0, 0.0), 1.0, 1.0).event, Event::merge);
+  EXPECT_EQ(law(1.0, TwoMasses<double>{1, 1}).event, Event::merge);
+  EXPECT_EQ(law(std::nextafter(1.0, 0.0), TwoMasses<double>{1, 1}).event, Event::merge);
   const double above = std::nextafter(1.0, 2.0), excess = above - 1;
-  const auto passed = law(above, 1.0, 1.0);
+  const auto passed = law(above, TwoMasses<double>{1, 1});
   EXPECT_EQ(passed.event, Event::pass);
   // w'^2 = (w - 1)(w + 1) to rounding: nothing cancels.
   EXPECT_NEAR(passed.closing, -std::sqrt(excess * (2 + excess)), 4e-16 * std::sqrt(2 * excess));
@@ -36,9 +36,9 @@ TEST(WetLaw, IsTheSameWhereItIsToldWithoutTheRoot) {
     for (const double right : {1.0, 2.5, 1e9}) {
       const double critical = std::sqrt(0.1 * (left + right) / (left * right));
       for (int k = 0; k <= 40; ++k) {  // the root itself is rounded in the 53rd bit
-        EXPECT_EQ(law(critical * (1 - std::exp2(-k)), left, right).event, Event::merge)
+        EXPECT_EQ(law(critical * (1 - std::exp2(-k)), TwoMasses<double>{left, right}).event, Event::merge)
             << left << " " << right << " " << k;
-        EXPECT_EQ(law(critical * (1 + std::exp2(-k)), left, right).event, Event::pass)
+        EXPECT_EQ(law(critical * (1 + std::exp2(-k)), TwoMasses<double>{left, right}).event, Event::pass)
             << left << " " << right << " " << k;
       }
     }
@@ -48,7 +48,7 @@ TEST(WetLaw, LosesTheSameEnergyAtAnyMass) {
   for (const double heavy : {1.0, 3.0, 1e6, 1e12}) {
     const Wet law(0.05);
     const double w = 1.25, u = 0.5;  // right body at u, left at u + w
-    const auto o = law(w, heavy, 1.0);
+    const auto o = law(w, TwoMasses<double>{heavy, 1});
     const double left = u + w - o.to_left, right = u + o.to_right;
     // Energies of order `heavy`: what is left of 0.05 carries their rounding.
     const double before = heavy * (u + w) * (u + w) + u * u, after = heavy * left * left + right * right;

@@ -77,9 +77,9 @@ template <class T> Events<T> unfiltered(const Scene<T>& bodies, const Inelastic<
       if (first == chain.slots() || due < time) first = s, time = due;
     }
     if (first == chain.slots()) break;
-    note(events, chain.body(first), chain.clock().stamp(time).value());
+    note(events, chain.body(first), chain.stamp(time).value());
     const Collision<T> collision = chain.collide(law, first, time);
-    if (collision.notice & notice::cramped) chain.make_room();
+    if (asks(collision.notice, Notice::needs_slots)) chain.make_room();
     if (origin != run.origins.end() && origin->contacts == n) chain.move_origin((origin++)->offset);
   }
   return events;

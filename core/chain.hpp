@@ -1,0 +1,80 @@
+#pragma once
+// What the event loop asks of a chain: the bodies of a run in order, in coordinates of the chain's choice. A chain
+// knows the next contact of each gap, makes one contact at a time and says what came of it; which contact is next is
+// the loop's to decide.
+//
+// Slots number the gaps from left to right; those held are first() to last(), and two empty ones stand at either end.
+// Local times are the chain's own name for times of the scene: offsets from an origin that moves, or the times as they
+// are. A local time is good until the origin moves.
+
+#include <concepts>
+#include <cstddef>
+
+#include "cradle/core/account.hpp"
+#include "cradle/core/collision.hpp"
+#include "cradle/core/configuration.hpp"
+#include "cradle/core/event_queue.hpp"
+#include "cradle/core/law.hpp"
+
+namespace cradle {
+
+template <class C>
+concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, Slot s, const typename C::Scalar time) {
+  typename C::Scalar;
+  // Whether queue times are the exact local times, not roundings of them; whether gaps can shrink without end.
+  { C::keys_are_exact } -> std::convertible_to<bool>;
+  { C::may_collapse } -> std::convertible_to<bool>;
+
+  // The time of the scene at which the run starts; times of the scene to local ones and back; local times as the queue
+  // takes them. `move_origin` takes the local time to become the new origin and returns what that time is called then.
+  { chain.start() } -> std::convertible_to<typename C::Scalar>;
+  { chain.local_time(time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.stamp(time) } -> std::same_as<Pair<typename C::Scalar>>;
+  { chain.queue_time(time) } -> std::same_as<double>;
+  { changing.move_origin(time) } -> std::convertible_to<typename C::Scalar>;
+
+  // The gaps held: how many slots there are, the neighbours of one, the body on its left.
+  { chain.slots() } -> std::same_as<std::size_t>;
+  { chain.first() } -> std::same_as<Slot>;
+  { chain.last() } -> std::same_as<Slot>;
+  { chain.left(s) } -> std::same_as<Slot>;
+  { chain.right(s) } -> std::same_as<Slot>;
+  { chain.body(s) } -> std::same_as<BodyIndex>;
+  { chain.on_ring() } -> std::same_as<bool>;
+
+  // Closing speed; local time of the next contact of a gap that is closing; the same as queue time, `never` if it
+  // opens.
+  { chain.closing(s) } -> std::convertible_to<typename C::Scalar>;
+  { chain.due(s) } -> std::convertible_to<typename C::Scalar>;
+  { chain.queue_due(s) } -> std::same_as<double>;
+
+  // Contacts that leave a gap below the floor beside them say so. The smaller gap beside the last contact; by how much
+  // times of contacts at a place must differ to be told apart; what could not be resolved.
+  changing.set_floor(time);
+  { chain.nearest_gap(s) } -> std::convertible_to<typename C::Scalar>;
+  { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.account() } -> std::same_as<const Account<typename C::Scalar>&>;
+
+  // Reading, at a local time not before the last contact: a gap; the outermost bodies that have collided and how many
+  // there are from one to the other; everything.
+  { chain.gap_at(s, time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.front_left(time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.front_right(time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.collided_bodies() } -> std::same_as<BodyIndex>;
+  { chain.configuration(time) } -> std::same_as<Configuration<typename C::Scalar>>;
+};
+
+// A chain that asks for slots (Notice::needs_slots) when bodies come into it. Afterwards slots are others.
+template <class C>
+concept StreamingChain = Chain<C> && requires(C chain) {
+  chain.make_room();
+};
+
+// The contact at slot s, due at the local time given, by a law that this chain can follow.
+template <class C, class L>
+concept CollidesBy = Chain<C> && Law<L, typename C::Scalar> &&
+    requires(C chain, const L& law, Slot s, const typename C::Scalar& time) {
+  { chain.collide(law, s, time) } -> std::same_as<Collision<typename C::Scalar>>;
+};
+
+}  // namespace cradle

@@ -27,7 +27,7 @@
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/rows.hpp"
 #include "cradle/core/simulation.hpp"
-#include "cradle/tools/ensemble.hpp"
+#include "cradle/tools/ensemble/ensemble.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <new>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/version.hpp"
+#include "cradle/tools/support/version.hpp"
 
 using namespace cradle::tools;
 

@@ -1,7 +1,7 @@
 # Files that the program carries: they become string literals in a source file of the build tree, written again when one
 # of them changes, comes or goes.
-#   embed_scenes(TARGET FOLDER)             bundled_scenes() of tools/scene.hpp, from the TOML files of a folder
-#   embed_files(TARGET PATTERN FUNCTION)    std::span<const EmbeddedFile> FUNCTION() of tools/FUNCTION.hpp, from all
+#   embed_scenes(TARGET FOLDER)             bundled_scenes() of tools/scene/scene.hpp, from the TOML files of a folder
+#   embed_files(TARGET PATTERN FUNCTION)    std::span<const EmbeddedFile> FUNCTION() of tools/plot/FUNCTION.hpp, from all
 #                                           files of that pattern
 # The same file is the script that writes them: cmake -DFILES=... -DOUTPUT=... [-DFUNCTION=...] -P embed.cmake
 
@@ -33,12 +33,12 @@ if(CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
   set(code "// Written by embed.cmake.\n")
   if(FUNCTION)
     set(type EmbeddedFile)
-    set(header ${FUNCTION})
+    set(header plot/${FUNCTION})
     set(part NAME)
   else()
     set(FUNCTION bundled_scenes)
     set(type BundledScene)
-    set(header scene)
+    set(header scene/scene)
     set(part NAME_WLE)
   endif()
   string(APPEND code "#include \"cradle/tools/${header}.hpp\"\n\nnamespace cradle::tools {\nnamespace {\n")

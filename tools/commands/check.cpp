@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/in_precision.hpp"
-#include "cradle/tools/list_file.hpp"
-#include "cradle/tools/run.hpp"
-#include "cradle/tools/schedule.hpp"
+#include "cradle/tools/run/in_precision.hpp"
+#include "cradle/tools/run/run.hpp"
+#include "cradle/tools/run/schedule.hpp"
+#include "cradle/tools/scene/list_file.hpp"
 
 namespace cradle::tools {
 

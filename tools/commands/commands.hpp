@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cradle/tools/errors.hpp"
-#include "cradle/tools/scene.hpp"
+#include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace CLI {
 class App;

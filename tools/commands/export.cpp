@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result.hpp"
+#include "cradle/tools/result/result.hpp"
 
 namespace cradle::tools {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble_store.hpp"
+#include "cradle/tools/ensemble/store.hpp"
 
 namespace cradle::tools {
 

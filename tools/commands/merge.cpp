@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble_store.hpp"
-#include "cradle/tools/sweep.hpp"
+#include "cradle/tools/ensemble/store.hpp"
+#include "cradle/tools/ensemble/sweep.hpp"
 
 namespace cradle::tools {
 

@@ -10,9 +10,9 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/plot_files.hpp"
-#include "cradle/tools/result.hpp"
-#include "cradle/tools/theory_table.hpp"
+#include "cradle/tools/plot/plot_files.hpp"
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/theory/table.hpp"
 
 namespace cradle::tools {
 

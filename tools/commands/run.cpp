@@ -1,4 +1,4 @@
-#include "cradle/tools/run.hpp"
+#include "cradle/tools/run/run.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/interrupt.hpp"
+#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 

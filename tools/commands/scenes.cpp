@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/scene_fields.hpp"
+#include "cradle/tools/scene/fields.hpp"
 
 namespace cradle::tools {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <memory>
 
-#include "cradle/tools/interrupt.hpp"
+#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble.hpp"
+#include "cradle/tools/ensemble/ensemble.hpp"
 
 namespace cradle::tools {
 

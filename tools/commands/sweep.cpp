@@ -1,4 +1,4 @@
-#include "cradle/tools/sweep.hpp"
+#include "cradle/tools/ensemble/sweep.hpp"
 
 #include <CLI/CLI.hpp>
 #include <memory>

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/theory_table.hpp"
+#include "cradle/tools/theory/table.hpp"
 
 namespace cradle::tools {
 

@@ -1,4 +1,4 @@
-#include "cradle/tools/trust.hpp"
+#include "cradle/tools/run/trust.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/interrupt.hpp"
+#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 

@@ -1,0 +1,240 @@
+// What the numbers in files of ensembles are: statistics against those of single runs, how replicas ended, replicas
+// that collapse or fail.
+
+#include "cradle/tools/ensemble/ensemble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
+
+namespace cradle::tests {
+namespace {
+
+using tools::RunOutcome;
+
+class StatisticsOf : public Ensembles, public testing::WithParamInterface<const char*> {};
+
+TEST_P(StatisticsOf, ReplicasAreThoseOfTheRunsOneByOne) {
+  constexpr std::size_t n = 12;
+  const std::string scene = std::string(GetParam()) + ".toml";
+  run("ensemble " + scene + " --replicas 12 -o all.h5");
+  const Result all = result("all.h5");
+  std::vector<Result> runs;
+  for (std::size_t k = 0; k < n; ++k) {
+    run(fmt::format("run {} --quiet --set initial.replica={} -o run.h5", scene, k));
+    runs.push_back(result("run.h5"));
+  }
+  EXPECT_EQ(numbers(all, "ensemble/series", "time"), numbers(runs[0], "series", "time"));
+  EXPECT_EQ(numbers(all, "ensemble/profiles/0000", "x"), numbers(runs[0], "profiles/0000", "x"));
+  EXPECT_EQ(attribute<double>(all.find("ensemble/profiles/0000")->attributes, "time", ""),
+            attribute<double>(runs[0].find("profiles/0000")->attributes, "time", ""));
+  std::size_t compared = 0;
+  for (const auto& group : runs[0].groups) {
+    const bool kept = group.name.starts_with("series") || group.name.starts_with("profiles/") || group.name == "zone";
+    if (!kept) continue;
+    for (const Column& quantity : group.columns) {
+      if (quantity.name == "time" || (quantity.name == "x" && !group.name.starts_with("series"))) continue;
+      const std::string place = "ensemble/" + group.name + "/" + quantity.name;
+      if (quantity.name == "index") {
+        EXPECT_EQ(all.find(place), nullptr) << "numbers that name bodies have no mean";
+        continue;
+      }
+      const auto mean = numbers(all, place, "mean"), sem = numbers(all, place, "sem"),
+                 least = numbers(all, place, "min"), greatest = numbers(all, place, "max");
+      std::vector<std::vector<double>> of_runs;
+      for (const Result& one : runs) of_runs.push_back(numbers(one, group.name, quantity.name));
+      ASSERT_EQ(mean.size(), of_runs[0].size());
+      EXPECT_EQ(column(all, place, "mean").width, quantity.width) << place;
+      EXPECT_EQ(column(all, place, "mean").unit, quantity.unit) << place;
+      for (std::size_t i = 0; i < mean.size(); ++i) {
+        std::vector<double> values;
+        for (const auto& values_of_run : of_runs)
+          if (!std::isnan(values_of_run[i])) values.push_back(values_of_run[i]);
+        const auto count = static_cast<double>(values.size());
+        if (values.empty()) {
+          EXPECT_TRUE(std::isnan(mean[i])) << place;
+          continue;
+        }
+        if (values.size() < n) {
+          EXPECT_EQ(numbers(all, place, "count")[i], count);
+        }
+        const double plain = std::accumulate(values.begin(), values.end(), 0.0) / count;
+        double squares = 0, size = 0;
+        for (const double x : values) squares += (x - plain) * (x - plain), size = std::max(size, std::abs(x));
+        // A dozen roundings each of at most half a unit of the largest value.
+        EXPECT_NEAR(mean[i], plain, 3 * n * 0x1p-53 * size) << place << " " << i;
+        if (values.size() > 1) {
+          EXPECT_NEAR(sem[i], std::sqrt(squares / (count - 1) / count), 1e-12 * size) << place << " " << i;
+        }
+        EXPECT_EQ(least[i], *std::min_element(values.begin(), values.end())) << place;
+        EXPECT_EQ(greatest[i], *std::max_element(values.begin(), values.end())) << place;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GT(compared, 300U);
+  for (std::size_t k = 0; k < n; ++k) {  // the table of replicas
+    EXPECT_EQ(numbers(all, "replicas", "index")[k], static_cast<double>(k));
+    EXPECT_EQ(numbers(all, "replicas", "outcome")[k], 0);
+    for (const auto* name : {"contacts", "merges", "energy"})
+      EXPECT_EQ(numbers(all, "replicas", name)[k], numbers(runs[k], "series", name).back()) << name << k;
+  }
+  EXPECT_NE(numbers(all, "replicas", "contacts")[0], numbers(all, "replicas", "contacts")[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, StatisticsOf, testing::Values("shock", "wet"),
+                         [](const auto& parameter) { return std::string(parameter.param); });
+
+TEST_F(Ensembles, OneReplicaAloneIsTheRunOfThatReplica) {
+  run("ensemble shock.toml --first 17 --replicas 1 -o alone.h5");
+  run("run shock.toml --quiet --set initial.replica=17 -o run.h5");
+  EXPECT_EQ(numbers(result("alone.h5"), "ensemble/series/energy", "mean"),
+            numbers(result("run.h5"), "series", "energy"));
+}
+
+TEST_F(Ensembles, SeedIsPartOfTheScene) {
+  run("ensemble shock.toml --replicas 3 --seed 1 -o a.h5");
+  run("ensemble shock.toml --replicas 3 --seed 2 -o b.h5");
+  EXPECT_NE(numbers(result("a.h5"), "replicas", "contacts"), numbers(result("b.h5"), "replicas", "contacts"));
+}
+
+TEST_F(Ensembles, CollapseIsAnOutcome) {
+  run("ensemble collapse.toml --replicas 40 --threads 2 -o c.h5");
+  run("ensemble collapse.toml --replicas 15 -o d.h5");
+  run("ensemble collapse.toml --replicas 40 --threads 1 -o d.h5");
+  expect_same("c.h5", "d.h5");
+  const Result all = result("c.h5");
+  const auto outcome = numbers(all, "replicas", "outcome"), time = numbers(all, "replicas", "collapse_time");
+  const auto times = numbers(all, "ensemble/series", "time");
+  std::vector<double> expected(times.size(), 0), profiled(2, 0);
+  std::size_t collapsed = 0;
+  for (std::size_t k = 0; k < outcome.size(); ++k) {
+    collapsed += outcome[k] == 1;
+    EXPECT_EQ(outcome[k] == 1, !std::isnan(time[k])) << k;
+    for (std::size_t i = 0; i < times.size(); ++i) expected[i] += outcome[k] == 0 || times[i] < time[k];
+    for (std::size_t i = 0; i < 2; ++i) profiled[i] += outcome[k] == 0 || (i == 0 ? 0.5 : 1.5) < time[k];
+  }
+  EXPECT_GT(collapsed, 10U);
+  EXPECT_LT(expected.back(), expected.front()) << "some collapse before the end";
+  EXPECT_EQ(numbers(all, "ensemble/series/energy", "count"), expected);
+  for (std::size_t i = 0; i < 2; ++i)  // a bin without bodies has no number either, but a density
+    EXPECT_EQ(profiled[i] < 40 ? numbers(all, fmt::format("ensemble/profiles/000{}/density", i), "count")[0] : 40,
+              profiled[i])
+        << i;
+}
+
+TEST_F(Ensembles, ValuesAreCountedInBinsWhereAskedFor) {
+  const std::string spread = " --spread energy=0:40:4000 --spread profiles/0000/density=0:4:8 ";
+  run("ensemble shock.toml --replicas 25" + spread + "-o a.h5");
+  run("ensemble shock.toml --first 25 --replicas 26" + spread + "-o b.h5");
+  run("merge b.h5 a.h5 -o ab.h5");
+  run("ensemble shock.toml --replicas 51" + spread + "-o a.h5");
+  expect_same("a.h5", "ab.h5");
+  const Result all = result("a.h5");
+  const Column& counts = column(all, "ensemble/spread/series/energy", "counts");
+  EXPECT_EQ(counts.width, 4002U);
+  const auto& of_bins = std::get<std::vector<std::uint64_t>>(counts.values);
+  for (std::size_t row = 0; row < counts.rows(); ++row)
+    EXPECT_EQ(std::accumulate(of_bins.begin() + static_cast<std::ptrdiff_t>(row * 4002),
+                              of_bins.begin() + static_cast<std::ptrdiff_t>((row + 1) * 4002), std::uint64_t{0}),
+              51U);
+  auto energies = numbers(all, "replicas", "energy");
+  std::sort(energies.begin(), energies.end());
+  EXPECT_NEAR(numbers(all, "ensemble/spread/series/energy", "quantile_50").back(), energies[25], 0.01);
+  EXPECT_EQ(shell("cradle ensemble shock.toml --replicas 60 -o a.h5").status, 2)
+      << "without the bins: another ensemble";
+  EXPECT_EQ(shell("cradle ensemble shock.toml --replicas 60 --spread enrgy=0:1:2 -o e.h5").status, 2);
+  EXPECT_EQ(shell("cradle ensemble shock.toml --replicas 60 --spread energy=0:1 -o e.h5").status, 2);
+}
+
+TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
+  const Scene shocks = scene("shock.toml");
+  const auto fails = [](const Scene& replica) { return replica.initial.replica % 5 == 2; };
+  tools::EnsembleOptions options;
+  options.replicas = {0, 23};
+  options.progress = tools::ProgressLine::Show::never;
+  options.runner = [&](const Scene& replica) -> RunOutcome {
+    Scene changed = replica;
+    if (fails(replica)) {  // an initial state that throws: bodies of a list out of order
+      changed.initial = {};
+      changed.initial.type = tools::InitialType::list;
+      changed.initial.x = {tools::Decimal("1"), tools::Decimal("0")};
+      changed.initial.v = {tools::Decimal("0"), tools::Decimal("0")};
+    }
+    return tools::run_scene(changed, {tools::ProgressLine::Show::never});
+  };
+  for (const unsigned threads : {1U, 2U}) {
+    options.threads = threads;
+    const auto end = tools::run_ensemble(shocks, options, path(fmt::format("failed-{}.h5", threads)));
+    EXPECT_EQ(end.status, Exit::lost);
+    EXPECT_NE(end.warning.find("replica 7 failed: "), std::string::npos) << end.warning;
+    EXPECT_EQ(end.outcome, "18 reached the end, 5 failed");
+  }
+  expect_same("failed-1.h5", "failed-2.h5");
+  const Result failed = result("failed-1.h5");
+  EXPECT_EQ(numbers(failed, "replicas/failed", "index"), (std::vector<double>{2, 7, 12, 17, 22}));
+  const auto& messages = attribute<std::string>(failed.find("replicas/failed")->attributes, "messages", "");
+  EXPECT_EQ(std::count(messages.begin(), messages.end(), '\n'), 4) << messages;
+  EXPECT_EQ(messages.rfind("replica 2: ", 0), 0U) << messages;
+
+  // The others: what they give without those that failed.
+  run("ensemble shock.toml --replicas 2 -o others.h5");
+  for (const auto* first : {"3", "8", "13", "18"}) {
+    run(std::string("ensemble shock.toml --replicas 4 -o part.h5 --first ") + first);
+    run("merge others.h5 part.h5 -o others.h5");
+    std::filesystem::remove(folder / "part.h5");
+  }
+  const Result others = result("others.h5");
+  for (const auto* statistic : {"mean", "sem", "min", "max"})
+    EXPECT_EQ(numbers(failed, "ensemble/series/energy", statistic),
+              numbers(others, "ensemble/series/energy", statistic));
+
+  // They are not run again, and stay listed when the file grows, by the program too.
+  const Printed more = shell("cradle ensemble shock.toml --replicas 26 -o failed-1.h5");
+  EXPECT_EQ(more.status, 5) << more.err;
+  EXPECT_NE(more.out.find("3 of them now"), std::string::npos) << more.out;
+  EXPECT_NE(more.err.find("replica 7 failed: "), std::string::npos) << more.err;
+  const Result grown = result("failed-1.h5");
+  EXPECT_EQ(attribute<std::string>(grown.find("replicas/failed")->attributes, "messages", ""), messages);
+}
+
+TEST_F(Ensembles, AllReplicasMayFail) {
+  tools::EnsembleOptions options;
+  options.replicas = {0, 3};
+  options.runner = [](const Scene&) -> RunOutcome { throw std::runtime_error("two\nlines"); };
+  EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("none.h5")).status, Exit::lost);
+  EXPECT_TRUE(std::isnan(numbers(result("none.h5"), "ensemble/series/energy", "mean")[0]));
+  run("ensemble shock.toml --replicas 4 -o none.h5", 5);
+}
+
+TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
+  // What run_scene tells in RunOutcome::summary, whatever it is, and energy, are there for every replica.
+  tools::EnsembleOptions options;
+  options.replicas = {0, 3};
+  tools::run_ensemble(scene("shock.toml"), options, path("a.h5"));
+  const Scene replica = tools::replica_scene(scene("shock.toml"), 1);
+  const RunOutcome alone = tools::run_scene(replica, {tools::ProgressLine::Show::never});
+  EXPECT_EQ(numbers(result("a.h5"), "replicas", "energy")[1], alone.energy);
+  for (const auto& [name, value] : alone.summary) EXPECT_EQ(numbers(result("a.h5"), "replicas", name)[1], value);
+}
+
+TEST_F(Ensembles, InfoTellsWhatFilesAndJournalsHold) {
+  run("ensemble shock.toml --replicas 3 -o a.h5");
+  const Printed file = shell("cradle info a.h5");
+  for (const auto* text : {"3 reached the end", "law.restitution = 0.99", "/replicas", "max of bodies, contacts"})
+    EXPECT_NE(file.out.find(text), std::string::npos) << text << "\n" << file.out;
+  EXPECT_EQ(file.out.find("ensemble/nodes"), std::string::npos) << "only with --all";
+  EXPECT_EQ(shell(until_journalled(std::string(long_one) + "b.h5", "b.h5", "KILL")).status, 137);
+  const Printed journal = shell("cradle info b.h5.part");
+  EXPECT_EQ(journal.status, 0) << journal.err;
+  for (const auto* text : {" replicas finished", "law.restitution = 0.99"})
+    EXPECT_NE(journal.out.find(text), std::string::npos) << text << "\n" << journal.out;
+}
+
+}  // namespace
+}  // namespace cradle::tests

@@ -1,0 +1,118 @@
+#pragma once
+// Small scenes to make ensembles of, and what their files hold.
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tests {
+
+using tools::attribute;
+using tools::Column;
+using tools::Exit;
+using tools::read_result;
+using tools::Result;
+using tools::Scene;
+
+inline constexpr const char* shock = R"(
+[law]
+type = "inelastic"
+restitution = 0.99
+cutoff = 1e-5
+[initial]
+type = "rows"
+particles = 300
+speed = 0.5
+perturbation = 0.05
+[run]
+until = 200
+[output]
+series = { points = 50 }
+snapshots = [100]
+profiles = { times = [50, 100], bins = 20, range = [-30, 30] }
+)";
+
+// Two of the three bodies collapse, at a time that depends on the replica, before until.
+inline constexpr const char* collapse = R"(
+[law]
+type = "inelastic"
+restitution = 0.05
+[initial]
+type = "rows"
+particles = 4
+speed = 1
+perturbation = 0.4
+[run]
+until = 2
+collapse = "stop"
+[output]
+series = { points = 41 }
+profiles = { times = [0.5, 1.5], bins = 2, range = [-2, 2] }
+)";
+
+// Clusters in two columns (left and right), missing until there are any; an average over the interaction zone.
+inline constexpr const char* wet = R"(
+[law]
+type = "wet"
+loss = 0.05
+[initial]
+type = "rows"
+particles = 400
+speed = 0.5
+perturbation = 0.05
+[run]
+until = 380
+[output]
+series = { points = 20 }
+profiles = { times = [300], bins = 10, range = [-20, 20] }
+zone = { from = 200, samples = 16, bins = 8 }
+)";
+
+class Ensembles : public ProgramTest {
+ protected:
+  Ensembles() {
+    write("wet.toml", wet);
+    write("shock.toml", shock);
+    write("collapse.toml", collapse);
+  }
+
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  Result result(const std::string& name) const { return read_result(path(name)); }
+  Scene scene(const std::string& name) const { return tools::read_scene(path(name)); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
+
+  void run(const std::string& command, int status = 0) const {
+    const Printed printed = shell("cradle " + command);
+    ASSERT_EQ(printed.status, status) << command << "\n" << printed.err;
+  }
+  void expect_same(const std::string& a, const std::string& b) const {
+    ASSERT_FALSE(contents(folder / a).empty()) << a;
+    EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
+  }
+
+  static const Column& column(const Result& result, const std::string& group, const std::string& name) {
+    if (const auto* found = result.find(group))
+      for (const Column& c : found->columns)
+        if (c.name == name) return c;
+    throw std::out_of_range(group + "/" + name);
+  }
+  static std::vector<double> numbers(const Result& result, const std::string& group, const std::string& name) {
+    return std::visit([](const auto& v) { return std::vector<double>(v.begin(), v.end()); },
+                      column(result, group, name).values);
+  }
+};
+
+inline constexpr const char* long_one = "ensemble shock.toml --replicas 3000 --threads 2 -o ";
+
+// Runs a command until its journal has grown by some replicas, then sends it a signal.
+inline std::string until_journalled(const std::string& command, const std::string& file, const std::string& signal) {
+  return "size() { stat -c %s " + file + ".part 2>/dev/null || echo 0; }; enough=$(($(size) + 300000)); cradle " +
+         command + " & pid=$!; while [ $(size) -lt $enough ]; do sleep 0.01; done; kill -" + signal +
+         " $pid; wait $pid";
+}
+
+}  // namespace cradle::tests

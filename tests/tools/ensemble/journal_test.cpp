@@ -1,0 +1,148 @@
+// Journals after every way of ending: whatever is on the disk, a reader gives the records before the damage, whole and
+// nothing else. The checksum against Boost's, bit by bit.
+
+#include "cradle/tools/ensemble/journal.hpp"
+
+#include <boost/crc.hpp>
+
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/ensemble/bytes.hpp"
+#include "cradle/tools/ensemble/checksum.hpp"
+
+namespace cradle::tests {
+namespace {
+
+using tools::JournalReader;
+using tools::JournalWriter;
+
+TEST(Checksum, IsTheCrc64OfXz) {
+  EXPECT_EQ(tools::crc64("123456789"), 0x995DC9BBDF1939FAU);  // the check value of the catalogue of CRC algorithms
+  std::string text;
+  for (int i = 0; i < 300; ++i) {
+    boost::crc_optimal<64, 0x42F0E1EBA9EA3693, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> slow;
+    slow.process_bytes(text.data(), text.size());
+    ASSERT_EQ(tools::crc64(text), slow.checksum()) << i;
+    ASSERT_EQ(tools::crc64(text.substr(text.size() / 3), tools::crc64(text.substr(0, text.size() / 3))),
+              slow.checksum());
+    text += static_cast<char>(hash(static_cast<std::uint64_t>(i)));
+  }
+}
+
+TEST(Bytes, ComeBackAsTheyWere) {
+  const std::vector<double> numbers{1.5, -0.0, 1e-310, std::numeric_limits<double>::infinity()};
+  tools::ByteWriter writer;
+  writer.put(std::uint64_t{7}).put("text").put(numbers).put(std::vector<std::uint64_t>{}).put(2.5);
+  tools::ByteReader reader(writer.bytes());
+  EXPECT_EQ(reader.integer(), 7U);
+  EXPECT_EQ(reader.text(), "text");
+  EXPECT_EQ(reader.numbers<double>(), numbers);
+  EXPECT_TRUE(reader.numbers<std::uint64_t>().empty());
+  EXPECT_EQ(reader.number<double>(), 2.5);
+  EXPECT_TRUE(reader.empty());
+  EXPECT_THROW(reader.integer(), tools::Error);
+}
+
+TEST(Bytes, LengthsThatCannotBeAreRefused) {
+  tools::ByteWriter writer;
+  writer.put(~std::uint64_t{0});
+  EXPECT_THROW(tools::ByteReader(writer.bytes()).numbers<double>(), tools::Error);
+  EXPECT_THROW(tools::ByteReader(writer.bytes()).text(), tools::Error);
+}
+
+class Journal : public ProgramTest {
+ protected:
+  std::string path() const { return (folder / "journal").string(); }
+  void write_three() const {
+    JournalWriter writer(path(), "header");
+    for (const auto* record : {"first", "", "the third one"}) writer.append(record);
+  }
+  std::vector<std::string> records() const {
+    JournalReader reader(path());
+    std::vector<std::string> all;
+    for (std::string record; reader.next(record);) all.push_back(record);
+    return all;
+  }
+};
+
+const std::vector<std::string> three{"first", "", "the third one"};
+
+TEST_F(Journal, GivesBackWhatWasAppended) {
+  write_three();
+  EXPECT_EQ(JournalReader(path()).header(), "header");
+  EXPECT_EQ(records(), three);
+  JournalWriter again(path());
+  again.go_on_after(std::filesystem::file_size(path()));
+  again.append("fourth");
+  EXPECT_EQ(records().back(), "fourth");
+}
+
+TEST_F(Journal, CutAnywhereGivesTheWholeRecordsBeforeTheCut) {
+  write_three();
+  const std::string whole = contents(path());
+  std::size_t at_least = 0;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    write("journal", whole.substr(0, size));
+    if (size < 8 + 16 + 6) {  // magic, and the header's frame
+      EXPECT_THROW(JournalReader{path()}, tools::Error) << size;
+      continue;
+    }
+    JournalReader reader(path());
+    std::vector<std::string> found;
+    for (std::string record; reader.next(record);) found.push_back(record);
+    ASSERT_LE(found.size(), 2U) << size;
+    EXPECT_TRUE(std::equal(found.begin(), found.end(), three.begin())) << size;
+    EXPECT_GE(found.size(), at_least) << size;
+    at_least = found.size();
+    EXPECT_EQ(reader.whole_bytes() + reader.torn_bytes(), size);
+    // Whoever goes on cuts off what is torn.
+    {
+      JournalWriter writer(path());
+      writer.go_on_after(reader.whole_bytes());
+      writer.append("more");
+    }
+    found.emplace_back("more");
+    EXPECT_EQ(records(), found) << size;
+  }
+  EXPECT_EQ(at_least, 2U);
+}
+
+TEST_F(Journal, AnyChangedByteIsSeen) {
+  write_three();
+  const std::string whole = contents(path());
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    write("journal", changed);
+    if (at < 8 + 16 + 6) {
+      EXPECT_THROW(JournalReader{path()}, tools::Error) << at;
+      continue;
+    }
+    const auto found = records();
+    EXPECT_LT(found.size(), 3U) << at;
+    EXPECT_TRUE(std::equal(found.begin(), found.end(), three.begin())) << at;
+  }
+}
+
+TEST_F(Journal, WrittenAnewAppearsOnlyWhole) {
+  write_three();
+  EXPECT_THROW(JournalWriter(path(), "header",
+                             [](const JournalWriter::Put& put) {
+                               put("half of it");
+                               throw std::runtime_error("disk full");
+                             }),
+               std::runtime_error);
+  EXPECT_EQ(records(), three) << "the old one stays";
+  const JournalWriter anew(path(), "header", [](const JournalWriter::Put& put) { put("all"); });
+  EXPECT_EQ(records(), std::vector<std::string>{"all"});
+}
+
+TEST_F(Journal, HasOneWriterAtATime) {
+  write_three();
+  const JournalWriter first(path());
+  EXPECT_THROW(JournalWriter{path()}, tools::Error);
+}
+
+}  // namespace
+}  // namespace cradle::tests

@@ -1,0 +1,59 @@
+// What ensembles refuse: files, journals and scenes that are not theirs.
+
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
+
+namespace cradle::tests {
+namespace {
+
+TEST_F(Ensembles, OtherScenesAndOtherFilesAreRefused) {
+  run("ensemble shock.toml --replicas 3 -o a.h5");
+  run("run shock.toml --quiet -o run.h5");
+  write("not.h5.part", "not a journal");
+  const std::string before = contents(folder / "a.h5");
+  struct Refused {
+    const char* command;
+    int status;
+    const char* message;
+  };
+  for (const auto& [command, status, message] :
+       {Refused{"ensemble shock.toml --replicas 5 --set law.restitution=0.98 -o a.h5", 2,
+                "a.h5: holds ensembles of something else (found law.restitution = 0.99, here 0.98)"},
+        Refused{"ensemble shock.toml --replicas 5 -o run.h5", 2, "run.h5: holds no ensemble"},
+        Refused{"ensemble shock.toml --replicas 5 -o not.h5", 4, "not.h5.part: not a journal"},
+        Refused{"ensemble shock.toml --replicas 5 --set initial.replica=3 -o b.h5", 2, "initial.replica: "},
+        Refused{"ensemble shock.toml --replicas 5 --set output.profiles.range= -o b.h5", 2, "output.profiles.range: "},
+        Refused{"ensemble shock.toml -o b.h5", 2, ""}, Refused{"ensemble shock.toml --replicas 0 -o b.h5", 2, ""},
+        Refused{"ensemble shock.toml --replicas many -o b.h5", 2, ""},
+        Refused{"ensemble shock.toml --replicas 3 -o no/such/folder/b.h5", 4, ""},
+        Refused{"merge a.h5 run.h5 -o b.h5", 2, "run.h5: holds no ensemble"},
+        Refused{"merge run.h5 a.h5 -o b.h5", 2, "run.h5: holds no ensemble"},
+        Refused{"merge a.h5 nothing.h5 -o b.h5", 4, "nothing.h5: "}}) {
+    const Printed refused = shell(std::string("cradle ") + command);
+    EXPECT_EQ(refused.status, status) << command << refused.err;
+    EXPECT_EQ(refused.err.rfind(std::string("cradle: ") + message, 0), 0U) << command << "\n" << refused.err;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+  }
+  EXPECT_FALSE(exists("b.h5"));
+  EXPECT_TRUE(contents(folder / "a.h5") == before);
+}
+
+TEST_F(Ensembles, JournalOfAnotherSceneIsRefused) {
+  EXPECT_EQ(shell(until_journalled(std::string(long_one) + "a.h5", "a.h5", "KILL")).status, 137);
+  const Printed other = shell("cradle ensemble shock.toml --set law.cutoff=1e-4 --replicas 5 -o a.h5");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("a.h5.part: holds ensembles of something else (found law.cutoff = 1e-5, here 1e-4)"),
+            std::string::npos)
+      << other.err;
+}
+
+TEST_F(Ensembles, ListedBodiesArePartOfTheScene) {
+  write("list.toml", "[law]\ntype = \"inelastic\"\nrestitution = 0.9\n[initial]\ntype = \"list\"\nfile = "
+                     "\"bodies.csv\"\n[run]\nuntil = 5\n");
+  write("bodies.csv", "x,v\n0,1\n1,0\n");
+  run("ensemble list.toml --replicas 2 -o list.h5");
+  write("bodies.csv", "x,v\n0,1\n2,0\n");
+  run("ensemble list.toml --replicas 4 -o list.h5", 2);
+}
+
+}  // namespace
+}  // namespace cradle::tests

@@ -1,0 +1,161 @@
+// Ensembles give the same file however it came about: on any number of threads, continued, split and merged,
+// interrupted, killed, with damaged or left-over journals.
+
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
+#include "cradle/tools/ensemble/ensemble.hpp"
+
+namespace cradle::tests {
+namespace {
+
+TEST_F(Ensembles, SameBytesOnAnyNumberOfThreads) {
+  run("ensemble shock.toml --replicas 60 --threads 1 -o one.h5");
+  for (const auto* threads : {"2", "3", "8"}) {
+    run(std::string("ensemble shock.toml --replicas 60 -o other.h5 --threads ") + threads);
+    expect_same("one.h5", "other.h5");
+    std::filesystem::remove(folder / "other.h5");
+  }
+}
+
+TEST_F(Ensembles, MoreReplicasAreAddedToAFinishedFile) {
+  run("ensemble shock.toml --replicas 60 -o whole.h5");
+  run("ensemble shock.toml --replicas 13 -o grown.h5");
+  const Printed more = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5");
+  EXPECT_NE(more.out.find("47 of them now"), std::string::npos) << more.out;
+  expect_same("whole.h5", "grown.h5");
+  const Printed nothing = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5");
+  EXPECT_EQ(nothing.status, 0);
+  EXPECT_NE(nothing.out.find("nothing to do"), std::string::npos) << nothing.out;
+  expect_same("whole.h5", "grown.h5");
+  EXPECT_FALSE(exists("grown.h5.part"));
+}
+
+TEST_F(Ensembles, SplitAndMergedInAnyOrder) {
+  run("ensemble shock.toml --replicas 60 -o whole.h5");
+  run("ensemble shock.toml --replicas 21 -o a.h5");
+  run("ensemble shock.toml --first 21 --replicas 19 -o b.h5");
+  run("ensemble shock.toml --first 40 --replicas 20 -o c.h5");
+  run("merge a.h5 b.h5 c.h5 -o abc.h5");
+  run("merge c.h5 a.h5 -o ca.h5");
+  run("merge ca.h5 b.h5 -o cab.h5");
+  expect_same("whole.h5", "abc.h5");
+  expect_same("whole.h5", "cab.h5");
+  // A gap filled later.
+  run("ensemble shock.toml --replicas 60 -o ca.h5");
+  expect_same("whole.h5", "ca.h5");
+  const Printed overlap = shell("cradle merge a.h5 ca.h5 -o d.h5");
+  EXPECT_EQ(overlap.status, 2);
+  EXPECT_NE(overlap.err.find("ca.h5: has replicas that another of the files has too"), std::string::npos)
+      << overlap.err;
+  EXPECT_FALSE(exists("d.h5"));
+}
+
+TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
+  run(std::string(long_one) + "whole.h5");
+  for (int kill = 0; kill < 3; ++kill) {
+    EXPECT_EQ(shell(until_journalled(std::string(long_one) + "killed.h5", "killed.h5", "KILL")).status, 137);
+    ASSERT_TRUE(exists("killed.h5.part"));
+    EXPECT_FALSE(exists("killed.h5"));
+  }
+  const Printed go_on = shell("cradle " + std::string(long_one) + "killed.h5");
+  EXPECT_EQ(go_on.status, 0) << go_on.err;
+  EXPECT_NE(go_on.err.find("killed.h5.part: "), std::string::npos) << "says what it took from there: " << go_on.err;
+  EXPECT_EQ(go_on.out.find("3000 of them now"), std::string::npos) << "not all of them again: " << go_on.out;
+  expect_same("whole.h5", "killed.h5");
+  EXPECT_FALSE(exists("killed.h5.part"));
+}
+
+TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {
+  run(std::string(long_one) + "whole.h5");
+  for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143), std::pair("USR1", 143)}) {
+    const Printed stopped = shell(until_journalled(std::string(long_one) + "stopped.h5", "stopped.h5", signal));
+    EXPECT_EQ(stopped.status, status) << stopped.err;
+    EXPECT_NE(stopped.err.find("stopped.h5.part"), std::string::npos) << stopped.err;
+    EXPECT_FALSE(exists("stopped.h5"));
+  }
+  run(std::string(long_one) + "stopped.h5");
+  expect_same("whole.h5", "stopped.h5");
+}
+
+TEST_F(Ensembles, DamagedJournalLosesOnlyWhatIsDamaged) {
+  run("ensemble shock.toml --replicas 200 -o whole.h5");
+  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --replicas 3000 -o damaged.h5", "damaged.h5", "KILL")).status,
+            137);
+  const std::string journal = contents(folder / "damaged.h5.part");
+  for (const bool torn : {true, false}) {
+    std::string damaged = journal.substr(0, 200000);
+    if (!torn) damaged[100000] = static_cast<char>(damaged[100000] ^ 1);
+    write("damaged.h5.part", damaged);
+    const Printed go_on = shell("cradle ensemble shock.toml --replicas 200 -o damaged.h5");
+    EXPECT_EQ(go_on.status, 0) << go_on.err;
+    EXPECT_NE(go_on.err.find("its end was damaged"), std::string::npos) << go_on.err;
+    expect_same("whole.h5", "damaged.h5");
+    std::filesystem::remove(folder / "damaged.h5");
+  }
+}
+
+TEST_F(Ensembles, JournalLeftBehindAFinishedFileAddsNothing) {
+  run(std::string(long_one) + "whole.h5");
+  EXPECT_EQ(shell(until_journalled(std::string(long_one) + "a.h5", "a.h5", "KILL")).status, 137);
+  // Killed between writing the file and removing the journal.
+  run("ensemble shock.toml --replicas 3000 -o finished.h5");
+  std::filesystem::copy(folder / "a.h5.part", folder / "finished.h5.part");
+  run("ensemble shock.toml --replicas 3001 -o finished.h5");
+  run("ensemble shock.toml --replicas 3001 -o whole.h5");
+  expect_same("whole.h5", "finished.h5");
+  EXPECT_FALSE(exists("finished.h5.part"));
+}
+
+TEST_F(Ensembles, JournalsOfRanksThatAreGoneAreTaken) {
+  // As a killed MPI job leaves them: one for each rank.
+  run("ensemble shock.toml --replicas 3000 -o whole.h5");
+  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --replicas 1500 -o a.h5", "a.h5", "KILL")).status, 137);
+  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --first 1500 --replicas 1500 -o b.h5", "b.h5", "KILL")).status,
+            137);
+  std::filesystem::rename(folder / "b.h5.part", folder / "a.h5.part.3");
+  const Printed go_on = shell("cradle ensemble shock.toml --replicas 3000 -o a.h5");
+  EXPECT_NE(go_on.err.find("a.h5.part.3: "), std::string::npos) << go_on.err;
+  expect_same("whole.h5", "a.h5");
+  EXPECT_FALSE(exists("a.h5.part.3"));
+}
+
+TEST_F(Ensembles, OneProgramAtATimeWritesAFile) {
+  const Printed both = shell(
+      "cradle ensemble shock.toml --replicas 100000 -o a.h5 & pid=$!; while [ ! -e a.h5.part ]; do sleep 0.01; done; "
+      "cradle ensemble shock.toml --replicas 10 -o a.h5; status=$?; kill $pid; wait $pid; exit $status");
+  EXPECT_EQ(both.status, 4);
+  EXPECT_NE(both.err.find("another program"), std::string::npos) << both.err;
+}
+
+TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
+  const tools::Study study = tools::ensemble_of(scene("shock.toml"));
+  run("ensemble shock.toml --replicas 100 -o whole.h5");
+  {
+    tools::EnsembleStore store(study, path("anew.h5"));
+    store.start_journal(0, 1);  // as soon as it is larger than a byte, and then when it has grown fourfold
+    const auto& layout = store.states()[0]->layout();
+    for (std::uint64_t k = 0; k < 64; ++k) {
+      const tools::RunOutcome end =
+          tools::run_scene(tools::replica_scene(study.scene, k), {tools::ProgressLine::Show::never});
+      store.add(0, layout.row(k, end), layout.values(end));
+    }
+    EXPECT_LT(std::filesystem::file_size(folder / "anew.h5.part"), 32 * 8 * layout.entries) << "64 vectors otherwise";
+  }
+  run("ensemble shock.toml --replicas 100 -o anew.h5");
+  expect_same("whole.h5", "anew.h5");
+}
+
+TEST_F(Ensembles, WideTypesOnSeveralThreads) {
+  for (const auto* precision : {"double-double", "mpfr --set run.digits=40"}) {
+    const std::string scene = std::string("ensemble shock.toml --replicas 6 --set initial.particles=60 --set "
+                                          "run.until=50 --set output.profiles.times=[] --set run.precision=") +
+                              precision;
+    run(scene + " --threads 1 -o a.h5");
+    run(scene + " --threads 2 -o b.h5");
+    expect_same("a.h5", "b.h5");
+    std::filesystem::remove(folder / "a.h5");
+    std::filesystem::remove(folder / "b.h5");
+  }
+}
+
+}  // namespace
+}  // namespace cradle::tests

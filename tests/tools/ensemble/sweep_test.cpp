@@ -1,0 +1,121 @@
+// Sweeps: which points the texts mean, what is refused, and the table of a small sweep against runs made one by one.
+#include "cradle/tools/ensemble/sweep.hpp"
+
+#include <cmath>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/result.hpp"
+
+namespace cradle::tests {
+namespace {
+
+using namespace cradle::tools;
+
+Sweep of(std::vector<std::string> vary, bool cuts = false, std::vector<std::string> points = {}) {
+  Sweep sweep;
+  sweep.vary = std::move(vary);
+  sweep.cuts = cuts;
+  sweep.points = std::move(points);
+  return sweep;
+}
+
+TEST(SweepPoints, AreEvenAndKeepTheEndsAsWritten) {
+  const auto points = sweep_points(of({"law.loss=0.1:0.5:5"}));
+  ASSERT_EQ(points.size(), 5U);
+  for (const char* value : {"0.1", "0.2", "0.3", "0.4", "0.5"})
+    EXPECT_EQ(points[static_cast<std::size_t>(value[2] - '1')], (SweepPoint{{"law.loss", value}}));
+  const auto decades = sweep_points(of({"law.loss=1e-3:1e1:5:log"}));
+  ASSERT_EQ(decades.size(), 5U);
+  EXPECT_EQ(decades.front()[0].second, "1e-3");
+  EXPECT_EQ(decades[1][0].second, "0.01");
+  EXPECT_EQ(decades[2][0].second, "0.1");
+  EXPECT_EQ(decades.back()[0].second, "1e1");
+}
+
+TEST(SweepPoints, CombineOrCutOrStandOneByOne) {
+  const std::vector<std::string> two{"law.loss=0.1,0.2", "initial.speed=1:3:3"};
+  const auto grid = sweep_points(of(two));
+  ASSERT_EQ(grid.size(), 6U);
+  EXPECT_EQ(grid[1], (SweepPoint{{"law.loss", "0.1"}, {"initial.speed", "2"}}));
+  EXPECT_EQ(grid[3], (SweepPoint{{"law.loss", "0.2"}, {"initial.speed", "1"}}));
+  const auto cuts = sweep_points(of(two, true));
+  ASSERT_EQ(cuts.size(), 5U);
+  EXPECT_EQ(cuts[4], (SweepPoint{{"initial.speed", "3"}}));
+  const auto given = sweep_points(of({}, false, {"law.type=wet law.loss=0.3", "law.type=sticky"}));
+  ASSERT_EQ(given.size(), 2U);
+  EXPECT_EQ(given[0], (SweepPoint{{"law.type", "wet"}, {"law.loss", "0.3"}}));
+}
+
+TEST(SweepPoints, RefuseWhatTheyCannotRead) {
+  for (const char* text : {"law.loss", "=1", "law.loss=", "law.loss=1:2", "law.loss=1:2:1", "law.loss=1:2:2.5",
+                           "law.loss=0:2:3:log", "law.loss=a:b:3", "law.loss=1:2:3:lin", "law.loss=nan:2:3"})
+    EXPECT_THROW(sweep_points(of({text})), Error) << text;
+  EXPECT_THROW(sweep_points(of({})), Error);
+  EXPECT_THROW(sweep_points(of({}, false, {"law.loss"})), Error);
+}
+
+class SweepCommand : public ProgramTest {};
+
+const std::vector<double>& column(const Group& group, const std::string& name) {
+  for (const auto& c : group.columns)
+    if (c.name == name) return std::get<std::vector<double>>(c.values);
+  throw std::runtime_error("no column " + name);
+}
+
+TEST_F(SweepCommand, TableIsTheMeanOfTheRuns) {
+  const std::string scene = "fig7 --set initial.particles=200 --set run.until=60 --set output.zone.from=20 "
+                            "--set output.series.points=3 ";
+  ASSERT_EQ(shell("cradle sweep " + scene + "--vary law.loss=0.01,0.02 --replicas 3 --quiet -o sweep.h5").status, 0);
+  const Result result = read_result((folder / "sweep.h5").string());
+  const Group* table = result.find("sweep");
+  ASSERT_NE(table, nullptr);
+  EXPECT_EQ(column(*table, "law.loss"), (std::vector<double>{0.01, 0.02}));
+  EXPECT_EQ(column(*table, "replicas"), (std::vector<double>{3, 3}));
+  double sum = 0, squares = 0;
+  for (const int replica : {0, 1, 2}) {
+    const std::string number = std::to_string(replica);
+    ASSERT_EQ(
+        shell("cradle run " + scene + "--set law.loss=0.02 --set initial.replica=" + number + " --quiet -o one.h5")
+            .status,
+        0);
+    const Result one = read_result((folder / "one.h5").string());
+    const double energy = column(*one.find("series"), "energy").back();
+    sum += energy;
+    squares += energy * energy;
+  }
+  // Rounding of sums of energies of order 25.
+  EXPECT_NEAR(column(*table, "energy")[1], sum / 3, 1e-13);
+  EXPECT_NEAR(column(*table, "energy_error")[1], std::sqrt((squares - sum * sum / 3) / 6), 1e-6);
+  // The points are ensembles; the same command finds nothing left to do, another sweep is refused.
+  EXPECT_NE(result.find("points/0001/replicas"), nullptr);
+  const auto before = contents((folder / "sweep.h5").string());
+  EXPECT_EQ(shell("cradle sweep " + scene + "--vary law.loss=0.01,0.02 --replicas 3 --quiet -o sweep.h5").status, 0);
+  EXPECT_EQ(contents((folder / "sweep.h5").string()), before);
+  EXPECT_EQ(shell("cradle sweep " + scene + "--vary law.loss=0.01,0.03 --replicas 3 --quiet -o sweep.h5").status, 2);
+  EXPECT_EQ(shell("cradle sweep " + scene + "--vary law.los=0.01,0.03 --quiet -o other.h5").status, 2);
+}
+
+TEST_F(SweepCommand, SplitAndMergedIsTheSameFile) {
+  const std::string sweep =
+      "cradle sweep fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
+      "--vary law.loss=0.01,0.02,0.03 --quiet ";
+  ASSERT_EQ(shell(sweep + "--replicas 7 -o whole.h5").status, 0);
+  ASSERT_EQ(shell(sweep + "--replicas 3 -o a.h5").status, 0);
+  ASSERT_EQ(shell(sweep + "--first 3 --replicas 4 -o b.h5").status, 0);
+  for (const auto* files : {"a.h5 b.h5", "b.h5 a.h5"}) {
+    const Printed merged = shell(std::string("cradle merge ") + files + " -o ab.h5");
+    ASSERT_EQ(merged.status, 0) << merged.err;
+    EXPECT_TRUE(contents(folder / "whole.h5") == contents(folder / "ab.h5")) << files;
+  }
+  ASSERT_EQ(shell(sweep + "--replicas 7 -o a.h5").status, 0);
+  EXPECT_TRUE(contents(folder / "whole.h5") == contents(folder / "a.h5")) << "continued";
+  EXPECT_EQ(shell("cradle merge whole.h5 b.h5 -o c.h5").status, 2) << "replicas in common";
+  ASSERT_EQ(shell("cradle ensemble fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
+                  "--first 7 --replicas 2 --quiet -o e.h5")
+                .status,
+            0);
+  EXPECT_EQ(shell("cradle merge whole.h5 e.h5 -o c.h5").status, 2) << "an ensemble is no sweep";
+}
+
+}  // namespace
+}  // namespace cradle::tests

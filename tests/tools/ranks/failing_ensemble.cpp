@@ -1,0 +1,35 @@
+// An ensemble as `cradle ensemble` makes it, under MPI too, of whose replicas every fifth one fails: its bodies are out
+// of order, which throws.
+//   failing_ensemble SCENE REPLICAS FILE
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <string>
+
+#include "cradle/tools/ensemble/ensemble.hpp"
+
+int main(int, char** arguments) {
+  using namespace cradle::tools;
+  try {
+    const auto crew = make_crew();
+    EnsembleOptions options;
+    options.replicas = {0, std::stoull(arguments[2])};
+    options.runner = [](const Scene& replica) {
+      Scene changed = replica;
+      if (replica.initial.replica % 5 == 2) {
+        changed.initial = {};
+        changed.initial.type = InitialType::list;
+        changed.initial.x = {Decimal("1"), Decimal("0")};
+        changed.initial.v = {Decimal("0"), Decimal("0")};
+      }
+      return run_scene(changed, {ProgressLine::Show::never});
+    };
+    const EnsembleOutcome end = run_study(ensemble_of(read_scene(arguments[1])), options, arguments[3], *crew);
+    fmt::print("{}\n", end.outcome);
+    return static_cast<int>(end.status);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

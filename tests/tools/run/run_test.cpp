@@ -1,0 +1,255 @@
+// The program from scene to file: the Fig. 2 shock from a list of bodies against counts of an independent event-driven
+// N-body program (identical in double, binary128 and 100 digits), the three-body collapse against its closed form, and
+// the bits of result files.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/result.hpp"
+
+namespace cradle::tests {
+namespace {
+
+using tools::read_result;
+
+class Run : public ProgramTest {
+ protected:
+  // x_i = (2i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28, exact in decimals of 28 and fewer places.
+  void write_shock(int n) const {
+    std::string csv = "x,v\n";
+    for (int i = 0; i < n; ++i) {
+      const auto units =
+          static_cast<double>(static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072);
+      csv += fmt::format("{:.28f},{}\n", (2 * i - n + 1) / 2.0 + units / 268435456.0, i < n / 2 ? "0.5" : "-0.5");
+    }
+    write("bodies.csv", csv);
+    write("shock.toml", R"(
+[law]
+type = "inelastic"
+restitution = 0.999
+cutoff = 1e-5
+[initial]
+type = "list"
+file = "bodies.csv"
+[run]
+until = 6000
+[output]
+series = { times = [999.5, 1999, 4000, 6000] }
+)");
+  }
+
+  void expect_published_counts(const std::string& coordinates) const {
+    const Printed run = shell("cradle run shock.toml -o shock.h5 --set run.coordinates=" + coordinates);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto result = read_result((folder / "shock.h5").string());
+    const auto& columns = result.find("series")->columns;
+    const auto& named = [&](const std::string& name) -> const tools::Numbers& {
+      for (const auto& column : columns)
+        if (column.name == name) return column.values;
+      throw std::out_of_range(name);
+    };
+    EXPECT_EQ(std::get<std::vector<std::uint64_t>>(named("contacts")),
+              (std::vector<std::uint64_t>{384155, 1299216, 4685816, 16156905}));
+    const std::vector<double> energies{887.274363235560075, 738.145120941488556, 492.025770085541422,
+                                       262.948286528987387};
+    for (std::size_t k = 0; k < energies.size(); ++k)
+      EXPECT_NEAR(std::get<std::vector<double>>(named("energy"))[k], energies[k], 1e-12 * 1000) << k;
+  }
+};
+
+TEST_F(Run, ListOfTheFig2ShockGivesThePublishedCountsInGaps) {
+  write_shock(8000);
+  expect_published_counts("gaps");
+}
+
+TEST_F(Run, ListOfTheFig2ShockGivesThePublishedCountsInAbsoluteCoordinates) {
+  write_shock(8000);
+  expect_published_counts("absolute");
+}
+
+TEST_F(Run, CollapseIsFollowedToUnderflowAndItsTimeReported) {
+  const Printed run = shell("cradle run collapse3");
+  EXPECT_EQ(run.status, 3);
+  const auto at = run.out.find("t_c = ");
+  ASSERT_NE(at, std::string::npos) << run.out;
+  EXPECT_NEAR(std::stod(run.out.substr(at + 6)), 12.0 / 7.0, 1e-15);
+  const auto result = read_result((folder / "collapse3.h5").string());
+  const auto& collapse = result.find("collapse")->attributes;
+  EXPECT_LT(tools::attribute<double>(collapse, "gap", ""), 1e-290);
+  EXPECT_GT(tools::attribute<double>(collapse, "gap", ""), 0.0);
+  // Intervals at one gap shrink by (lam-/lam+)^2 = (5/16)^2.
+  EXPECT_NEAR(tools::attribute<double>(collapse, "ratio", ""), 25.0 / 256.0, 1e-14);
+}
+
+TEST_F(Run, CollapseStopsOnceItsTimeIsSettled) {
+  const Printed run = shell("cradle run collapse3 --set run.stop_gap= --quiet");
+  EXPECT_EQ(run.status, 3);
+  const auto result = read_result((folder / "collapse3.h5").string());
+  const auto& collapse = result.find("collapse")->attributes;
+  EXPECT_NEAR(tools::attribute<double>(collapse, "time", ""), 12.0 / 7.0, 1e-15);
+  EXPECT_GT(tools::attribute<double>(collapse, "gap", ""), 1e-30);
+  EXPECT_NE(run.out.find("t_c = "), std::string::npos) << "the report is printed under --quiet too";
+}
+
+TEST_F(Run, AbsoluteCoordinatesSayWhereTheyStopResolvingACollapse) {
+  const Printed run = shell("cradle run collapse3 --set run.coordinates=absolute");
+  EXPECT_EQ(run.status, 5);
+  EXPECT_NE(run.err.find("gaps below 1e6 units in the last place of x"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("first at t = 1.7142"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("resolution exhausted"), std::string::npos) << run.err;
+}
+
+TEST_F(Run, PlainLawWithoutAPolicyAgainstCollapseEndsInsteadOfHanging) {
+  const Printed run = shell("cradle run collapse3 --set run.stop_gap= --set run.collapse=cutoff");
+  EXPECT_EQ(run.status, 5);
+  EXPECT_NE(run.err.find("resolution exhausted"), std::string::npos) << run.err;
+}
+
+TEST_F(Run, EveryPrecisionReportsTheCollapseTimeToItsLastDigits) {
+  // 12/7 = 1.(714285): as many digits as the type has, its last one or two left to rounding.
+  const std::string exact =
+      "1.714285714285714285714285714285714285714285714285714285714285714285714285714285714285714285";
+  const std::vector<std::pair<std::string, std::size_t>> digits{{"double", 15},
+                                                                {"'long double'", 18},
+                                                                {"double-double", 30},
+                                                                {"float128", 32},
+                                                                {"cpp_bin_float", 90},
+                                                                {"mpfr --set run.digits=20", 19},
+                                                                {"mpfr --set run.digits=80", 79}};
+  for (const auto& [precision, right] : digits) {
+    const Printed run = shell("cradle run collapse3 --set run.precision=" + precision);
+    EXPECT_EQ(run.status, 3) << precision << run.err;
+    EXPECT_NE(run.out.find("t_c = " + exact.substr(0, right - 1)), std::string::npos) << precision << "\n" << run.out;
+  }
+}
+
+TEST_F(Run, CollapseIsFollowedBelowTheRangeOfDouble) {
+  const Printed run =
+      shell("cradle run collapse3 --set run.precision=mpfr --set run.digits=40 --set run.stop_gap=1e-2000");
+  EXPECT_EQ(run.status, 3) << run.err;
+  EXPECT_NE(run.out.find("e-2001 beside it"), std::string::npos) << run.out;
+}
+
+TEST_F(Run, PoliciesAgainstCollapseReachTheEnd) {
+  for (const auto* policy : {"contact-time --set run.contact_time=1e-6", "merge --set run.merge_speed=1e-3"})
+    EXPECT_EQ(shell(std::string("cradle run collapse3 --set run.stop_gap= --set run.collapse=") + policy).status, 0)
+        << policy;
+}
+
+TEST_F(Run, TrustSaysThatDoubleInGapsIsRightToUnderflow) {
+  const Printed trust = shell("cradle trust collapse3 --both");
+  EXPECT_EQ(trust.status, 0) << trust.err;
+  const auto line = [&](const std::string& begin) {
+    const auto at = trust.out.find(begin);
+    return at == std::string::npos ? std::string() : trust.out.substr(at, trust.out.find('\n', at) - at);
+  };
+  EXPECT_NE(line("double            gaps").find("(end)"), std::string::npos) << trust.out;
+  EXPECT_EQ(line("double            absolute").find("(end)"), std::string::npos) << trust.out;
+  EXPECT_EQ(shell("cradle plot collapse3-trust.h5").status, 0);
+}
+
+TEST_F(Run, TrustedTimesOfAChaoticSceneRiseWithDigits) {
+  write("wet.toml", R"(
+[law]
+type = "wet"
+loss = 0.01
+[initial]
+type = "rows"
+particles = 20000
+speed = 0.5
+perturbation = 0.0005
+[run]
+until = 19500
+[output]
+series = { every = 500 }
+)");
+  ASSERT_EQ(shell("cradle trust wet.toml --digits 16,31,50,100,200").status, 0);
+  const auto result = read_result((folder / "wet-trust.h5").string());
+  std::vector<double> times;
+  for (const auto& group : result.groups)
+    times.push_back(tools::attribute<double>(group.attributes, "contacts_right_until", ""));
+  ASSERT_EQ(times.size(), 5U);
+  EXPECT_LT(times[0], times[1]);
+  EXPECT_LT(times[1], times[2]);
+  EXPECT_LT(times[2], times[3]);
+  EXPECT_EQ(times[3], 19500) << "100 digits reach the end";
+}
+
+constexpr const char* small_shock = "cradle run fig2 --quiet --set initial.particles=600 --set run.until=400 "
+                                    "--set output.snapshots=[100,400] --set output.profiles.times=[50,200] ";
+
+TEST_F(Run, TwoRunsGiveTheSameBytes) {
+  ASSERT_EQ(shell(std::string(small_shock) + "-o a.h5").status, 0);
+  ASSERT_EQ(shell("sleep 1.1 && " + std::string(small_shock) + "-o b.h5").status, 0);
+  EXPECT_FALSE(contents(folder / "a.h5").empty());
+  EXPECT_EQ(contents(folder / "a.h5"), contents(folder / "b.h5"));
+}
+
+TEST_F(Run, OutputCadenceChangesNothingElse) {
+  ASSERT_EQ(shell(std::string(small_shock) + "--set output.series.points=10 -o a.h5").status, 0);
+  ASSERT_EQ(shell(std::string(small_shock) + "--set output.series.points=10000 -o b.h5").status, 0);
+  const auto a = read_result((folder / "a.h5").string()), b = read_result((folder / "b.h5").string());
+  ASSERT_EQ(a.groups.size(), b.groups.size());
+  const auto bits = [](const tools::Numbers& values) {
+    return std::visit(
+        [](const auto& v) {
+          return v.empty() ? std::string()
+                           : std::string(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
+        },
+        values);
+  };
+  for (std::size_t g = 0; g < a.groups.size(); ++g) {
+    ASSERT_EQ(a.groups[g].name, b.groups[g].name);
+    EXPECT_EQ(a.groups[g].attributes, b.groups[g].attributes);
+    for (std::size_t c = 0; c < a.groups[g].columns.size(); ++c) {
+      const auto &of_a = a.groups[g].columns[c], &of_b = b.groups[g].columns[c];
+      ASSERT_EQ(of_a.name, of_b.name);
+      if (a.groups[g].name != "series") {
+        EXPECT_EQ(bits(of_a.values), bits(of_b.values)) << a.groups[g].name << "/" << of_a.name;
+        continue;
+      }
+      // Both have the first and the last sample.
+      std::visit(
+          [&](const auto& v) {
+            const auto& w = std::get<std::remove_cvref_t<decltype(v)>>(of_b.values);
+            EXPECT_EQ(std::memcmp(&v.front(), &w.front(), sizeof(v.front())), 0) << of_a.name;
+            EXPECT_EQ(std::memcmp(&v.back(), &w.back(), sizeof(v.back())), 0) << of_a.name;
+          },
+          of_a.values);
+    }
+  }
+  for (const auto* name : {"simultaneous_contacts", "order_lost", "close_calls"})
+    EXPECT_EQ(tools::attribute<std::uint64_t>(a.attributes, name, ""),
+              tools::attribute<std::uint64_t>(b.attributes, name, ""));
+}
+
+TEST_F(Run, EventsAreEveryContactInOrder) {
+  ASSERT_EQ(shell("cradle run collapse3 --quiet").status, 3);
+  const auto result = read_result((folder / "collapse3.h5").string());
+  const auto* events = result.find("events");
+  ASSERT_NE(events, nullptr);
+  std::size_t count = 0;
+  for (const auto& column : events->columns) {
+    count = column.rows();
+    if (column.name != "interval") continue;
+    const auto& intervals = std::get<std::vector<double>>(column.values);
+    // Closed form: intervals shrink by lam-/lam+ = 5/16 per contact, resolved down to 1e-160.
+    for (std::size_t n = 20; n < intervals.size(); ++n) EXPECT_NEAR(intervals[n] / intervals[n - 1], 0.3125, 1e-6) << n;
+    EXPECT_LT(intervals.back(), 1e-160);
+  }
+  EXPECT_EQ(count, 322U);
+}
+
+TEST_F(Run, InterruptedRunLeavesWhatItHas) {
+  const Printed run =
+      shell("cradle run fig2 --set run.until=6600 -o long.h5 & pid=$!; sleep 0.7; kill -INT $pid; wait $pid");
+  EXPECT_EQ(run.status, 130) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "long.h5"));
+  EXPECT_EQ(tools::attribute<std::string>(read_result((folder / "long.h5.part").string()).attributes, "outcome", ""),
+            "interrupted");
+}
+
+}  // namespace
+}  // namespace cradle::tests

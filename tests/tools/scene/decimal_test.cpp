@@ -1,0 +1,74 @@
+// Decimal literals: canonical form, exact order against rational arithmetic done by hand, integers.
+#include "cradle/tools/scene/decimal.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace cradle::tools {
+namespace {
+
+TEST(Decimal, CanonicalForm) {
+  EXPECT_EQ(canonical_decimal("+1_000"), "1000");
+  EXPECT_EQ(canonical_decimal(".5"), "0.5");
+  EXPECT_EQ(canonical_decimal("5."), "5");
+  EXPECT_EQ(canonical_decimal("-007.50E+05"), "-7.50e05");
+  EXPECT_EQ(canonical_decimal("000"), "0");
+  for (const char* bad : {"",   "+",    "-",    ".",   "e5",  "1e",  "1e+", "1e5.0", "1__0", "_1",
+                          "1_", "1_.5", "0x10", "inf", "nan", "1 2", "--1", "1.2.3", "1,5",  "1e1234567890123456789"})
+    EXPECT_FALSE(canonical_decimal(bad)) << bad;
+  EXPECT_THROW(Decimal("nan"), std::invalid_argument);
+}
+
+TEST(Decimal, OrderIsExact) {
+  // Strictly increasing; every pair is compared both ways.
+  const char* increasing[] = {"-1e400",
+                              "-10",
+                              "-9.99",
+                              "-1",
+                              "-1e-400",
+                              "0",
+                              "1e-999999999999999999",
+                              "1e-400",
+                              "0.09",
+                              "0.1",
+                              "0.10000000000000000000000000000001",
+                              "1",
+                              "1.00000000000000000000001",
+                              "9",
+                              "10",
+                              "1e400",
+                              "1e999999999999999999"};
+  const auto n = std::size(increasing);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      EXPECT_EQ(compare_decimals(increasing[i], increasing[j]), i <=> j) << i << ' ' << j;
+  EXPECT_EQ(Decimal("1"), Decimal("1.000"));
+  EXPECT_EQ(Decimal("1000"), Decimal("0.001e6"));
+  EXPECT_EQ(Decimal("-0.0e9"), Decimal("0"));
+}
+
+TEST(Decimal, Integers) {
+  EXPECT_EQ(decimal_integer("2e7"), 20000000U);
+  EXPECT_EQ(decimal_integer("8000.0"), 8000U);
+  EXPECT_EQ(decimal_integer("0e5"), 0U);
+  EXPECT_EQ(decimal_integer("18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(decimal_integer("18446744073709551616"), std::nullopt);
+  EXPECT_EQ(decimal_integer("1e999999999"), std::nullopt);
+  EXPECT_EQ(decimal_integer("0.5"), std::nullopt);
+  EXPECT_EQ(decimal_integer("-1"), std::nullopt);
+  EXPECT_TRUE(is_whole("-120e-1"));
+  EXPECT_FALSE(is_whole("-121e-1"));
+}
+
+TEST(Decimal, NearestDouble) {
+  EXPECT_EQ(Decimal("0.999").value, 0.999);
+  EXPECT_EQ(Decimal("1e-400").value, 0.0);
+  EXPECT_EQ(Decimal("-1e400").value, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(Decimal("4.9406564584124654e-324").value, std::numeric_limits<double>::denorm_min());
+}
+
+}  // namespace
+}  // namespace cradle::tools

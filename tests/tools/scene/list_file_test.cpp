@@ -1,0 +1,80 @@
+// Lists of bodies: decimals of any length survive, and what is wrong in a file is named with its line.
+#include "cradle/tools/scene/list_file.hpp"
+
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+namespace cradle::tools {
+namespace {
+
+Bodies parse(const std::string& text) {
+  std::istringstream csv(text);
+  return parse_list(csv, "b.csv");
+}
+
+std::string message(const std::string& text) {
+  try {
+    parse(text);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status, Exit::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ListFile, AcceptsWhatEditorsWrite) {
+  const std::string digits(60, '3');
+  const Bodies bodies = parse("\xEF\xBB\xBF# bodies\r\n\r\n x , v , m \r\n-1e-400, +1_0 ,2\r\n# middle\r\n0." + digits +
+                              ",-0.5,1e-7\r\n\r\n");
+  ASSERT_EQ(bodies.x.size(), 2U);
+  EXPECT_EQ(bodies.x[0], "-1e-400");
+  EXPECT_EQ(bodies.v[0], "10");
+  EXPECT_EQ(bodies.m[0], "2");
+  EXPECT_EQ(bodies.x[1], "0." + digits);
+  EXPECT_EQ(bodies.v[1], "-0.5");
+  EXPECT_EQ(bodies.m[1], "1e-7");
+  EXPECT_TRUE(parse("x,v\n0,1\n1,2").m.empty());  // no line end at the end
+}
+
+TEST(ListFile, RefusesWithTheLine) {
+  EXPECT_EQ(message(""), "b.csv: no bodies (found an empty file): give a line x,v or x,v,m and then one line per body");
+  EXPECT_TRUE(message("x,v\n\n").starts_with("b.csv: no bodies (found only the names of the columns)"));
+  EXPECT_EQ(message("0,1\n"),
+            "b.csv:1: the columns are not named (found \"0,1\"): begin the file with a line x,v or x,v,m");
+  EXPECT_TRUE(message("v,x\n").starts_with("b.csv:1:"));
+  EXPECT_EQ(message("x,v\n0,1,2\n"), "b.csv:2: wrong number of columns (found 3): give 2 as in the first line");
+  EXPECT_EQ(message("x,v,m\n0,1\n"), "b.csv:2: wrong number of columns (found 2): give 3 as in the first line");
+  EXPECT_EQ(message("x,v\n0,nan\n"), "b.csv:2: v: not finite (found \"nan\"): give a decimal number");
+  EXPECT_EQ(message("x,v\n-Inf,0\n"), "b.csv:2: x: not finite (found \"-Inf\"): give a decimal number");
+  EXPECT_EQ(message("x,v\n0,\n"), "b.csv:2: v: not a decimal number (found \"\"): give a decimal number");
+  EXPECT_EQ(message("x,v\n0,1 2\n"), "b.csv:2: v: not a decimal number (found \"1 2\"): give a decimal number");
+  EXPECT_EQ(message("x,v,m\n0,1,0.0\n"), "b.csv:2: m: out of range (found 0.0): give a mass above 0");
+}
+
+TEST(ListFile, OrderIsDecidedExactly) {
+  const std::string zeros(40, '0');
+  EXPECT_EQ(message("x,v\n1,0\n1." + zeros + "1,0\n"), "no error");
+  EXPECT_EQ(message("x,v\n1,0\n\n1." + zeros + ",0\n"),
+            "b.csv:4: x: coincident bodies (found 1." + zeros + " after 1): give the bodies in order of increasing x");
+  EXPECT_EQ(message("x,v\n-1,0\n-1e1,0\n"),
+            "b.csv:3: x: not increasing (found -1e1 after -1): give the bodies in order of increasing x");
+}
+
+TEST(ListFile, BodiesOfAScene) {
+  const std::string head = "law.type = 'sticky'\nrun.until = 1\ninitial.type = 'list'\n";
+  const Bodies bodies = read_bodies(parse_scene(head + "initial.x = [0, 1e-500]\ninitial.v = [1, -1]", "s.toml"));
+  ASSERT_EQ(bodies.x.size(), 2U);
+  EXPECT_EQ(bodies.x[1], "1e-500");
+  EXPECT_TRUE(bodies.m.empty());
+  try {
+    read_bodies(parse_scene(head + "initial.file = 'absent.csv'", "nowhere/s.toml"));
+    FAIL() << "the file does not exist";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status, Exit::io);
+    EXPECT_TRUE(std::string(error.what()).starts_with("nowhere/absent.csv: the list of bodies cannot be read (found "));
+  }
+}
+
+}  // namespace
+}  // namespace cradle::tools

@@ -1,0 +1,437 @@
+// Scenes as a user writes them: literals survive exactly, every mistake has its own message with file, line and key,
+// and the effective scene reads back as the same scene.
+#include "cradle/tools/scene/scene.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "cradle/tools/scene/fields.hpp"
+
+namespace cradle::tools {
+namespace {
+
+const std::string good = R"([law]
+type = "inelastic"
+restitution = 0.999
+[initial]
+type = "rows"
+particles = 8000
+[run]
+until = 6500
+)";
+
+// `good` with one line replaced (lines count from 1), or with more lines at the end (from line 9, in [run]).
+std::string with_line(std::size_t number, const std::string& line) {
+  std::string result, rest = good;
+  for (std::size_t i = 1; !rest.empty(); ++i) {
+    const auto end = rest.find('\n');
+    result += (i == number ? line : rest.substr(0, end)) + '\n';
+    rest.erase(0, end + 1);
+  }
+  return result;
+}
+
+Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_scene(text, "s.toml", overrides);
+}
+
+std::string message(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    parse(text, overrides);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status, Exit::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+testing::AssertionResult begins(const std::string& text, const std::string& beginning) {
+  if (text.starts_with(beginning)) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << text << "\n  does not begin with\n" << beginning;
+}
+
+std::vector<std::string> texts(const std::vector<Decimal>& numbers) {
+  std::vector<std::string> result;
+  for (const auto& number : numbers) result.push_back(number.text);
+  return result;
+}
+
+using Strings = std::vector<std::string>;
+
+TEST(Errors, FormAndStatus) {
+  const Error error({"a.toml", 3, "run.until"}, "wrong type", "true", "give a number", Exit::io);
+  EXPECT_STREQ(error.what(), "a.toml:3: run.until: wrong type (found true): give a number");
+  EXPECT_EQ(error.exit_code(), 4);
+  EXPECT_EQ((Place{"--set", 0, "run.until"}.prefix()), "--set run.until: ");
+  EXPECT_EQ((Place{}.prefix()), "");
+}
+
+TEST(Scene, DefaultsAreThoseOfTheTable) {
+  const Scene scene = parse(good);
+  EXPECT_EQ(scene.name, "s");
+  EXPECT_EQ(scene.folder, "");
+  EXPECT_EQ(scene.law.cutoff.text, "0");
+  EXPECT_EQ(scene.initial.speed.text, "0.5");
+  EXPECT_EQ(scene.initial.spacing, Decimal("1"));
+  EXPECT_EQ(scene.initial.perturbation, Decimal("0"));
+  EXPECT_EQ(scene.initial.seed, 1U);
+  EXPECT_EQ(scene.initial.replica, 0U);
+  EXPECT_FALSE(scene.initial.general_rows());
+  EXPECT_EQ(scene.run.precision, Precision::double_);
+  EXPECT_EQ(scene.run.coordinates, Coordinates::gaps);
+  EXPECT_EQ(scene.run.collapse, CollapsePolicy::stop);
+  EXPECT_EQ(parse(good, {"law.cutoff=1e-5"}).run.collapse, CollapsePolicy::cutoff);
+  EXPECT_EQ(scene.output.series.points, 1000U);
+  EXPECT_EQ(scene.output.profiles.bins, 50U);
+  EXPECT_EQ(scene.output.checkpoint_every.text, "60");
+  EXPECT_FALSE(scene.output.events);
+}
+
+TEST(Scene, OnlyTheContractsKeysAreRequired) {
+  const std::string least = "law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 1\n";
+  EXPECT_EQ(parse(least).initial.particles, 8000U);
+  EXPECT_EQ(message(with_line(2, "")), "s.toml: law.type: missing: give one of inelastic, wet, sticky");
+  EXPECT_EQ(message(with_line(3, "")), "s.toml: law.restitution: missing: give a number from 0 to 1");
+  EXPECT_EQ(message(with_line(5, "")), "s.toml: initial.type: missing: give one of rows, ring, list, clusters");
+  EXPECT_EQ(message(with_line(8, "")), "s.toml: run.until: missing: give a number of run.start = 0 or more");
+  EXPECT_EQ(message("law.type = 'wet'\ninitial.type = 'ring'\nrun.until = 1"),
+            "s.toml: law.loss: missing: give a number of 0 or more");
+}
+
+TEST(Scene, LiteralsAreKeptExactly) {
+  const std::string digits(60, '9');
+  EXPECT_EQ(parse(with_line(3, "restitution = 0." + digits)).law.restitution.text, "0." + digits);
+  EXPECT_EQ(parse(with_line(3, "restitution = 0." + std::string(5000, '9') + " # many")).law.restitution.text.size(),
+            5002U);
+  EXPECT_EQ(parse(with_line(3, "restitution = \"0.999\"")).law.restitution.text, "0.999");
+  EXPECT_EQ(parse(with_line(3, "restitution = +0.99_9")).law.restitution.text, "0.999");
+  EXPECT_EQ(parse(with_line(3, "restitution = '.5'")).law.restitution.text, "0.5");
+  const Scene scene = parse(good + "start = -1_0.25E-1\nstop_gap = 1e-400\n");
+  EXPECT_EQ(scene.run.start.text, "-10.25e-1");
+  EXPECT_EQ(scene.run.start.value, -1.025);
+  ASSERT_TRUE(scene.run.stop_gap);
+  EXPECT_EQ(scene.run.stop_gap->text, "1e-400");
+  EXPECT_EQ(scene.run.stop_gap->value, 0.0);
+  EXPECT_GT(*scene.run.stop_gap, Decimal("0"));
+  // Other characters of several bytes before a literal on its line.
+  const Scene list = parse("title = 'é 1e-999, 1e-999'\nlaw = { type = 'sticky' }\nrun = { until = 1 }\n"
+                           "initial = { 'type' = 'list', x = [-1e-500, 0, 1.5], v = [ 1 , '1e-7' , 0x10 ] }");
+  EXPECT_EQ(list.title, "é 1e-999, 1e-999");
+  EXPECT_EQ(texts(list.initial.x), (Strings{"-1e-500", "0", "1.5"}));
+  EXPECT_EQ(texts(list.initial.v), (Strings{"1", "1e-7", "16"}));
+}
+
+TEST(Scene, IntegersMayBeWrittenAsFloats) {
+  EXPECT_EQ(parse(with_line(6, "particles = 2e7")).initial.particles, 20000000U);
+  EXPECT_EQ(parse(with_line(6, "particles = 8000.0")).initial.particles, 8000U);
+  EXPECT_EQ(parse(with_line(6, "seed = 18446744073709551615")).initial.seed, std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(message(with_line(6, "particles = 80.5")),
+            "s.toml:6: initial.particles: not an integer (found 80.5): give an even integer from 2 to 1e15");
+  EXPECT_EQ(message(with_line(6, "particles = 8001")),
+            "s.toml:6: initial.particles: odd (found 8001): give an even integer from 2 to 1e15");
+  EXPECT_TRUE(
+      begins(message(with_line(6, "seed = 18446744073709551616")), "s.toml:6: initial.seed: out of range (found 1844"));
+}
+
+TEST(Scene, RangesAreExact) {
+  EXPECT_EQ(message(with_line(3, "restitution = 1.5")),
+            "s.toml:3: law.restitution: out of range (found 1.5): give a number from 0 to 1");
+  const std::string just_above = "1.00000000000000000000001";
+  EXPECT_EQ(message(with_line(3, "restitution = " + just_above)),
+            "s.toml:3: law.restitution: out of range (found " + just_above + "): give a number from 0 to 1");
+  EXPECT_EQ(message(with_line(3, "restitution = 1.0000000000000000000000")), "no error");
+  EXPECT_EQ(message(with_line(3, "restitution = -1e-400")),
+            "s.toml:3: law.restitution: out of range (found -1e-400): give a number from 0 to 1");
+  EXPECT_EQ(message(with_line(6, "perturbation = 0.5")),
+            "s.toml:6: initial.perturbation: out of range (found 0.5): give a number from 0 to below 0.5");
+  EXPECT_EQ(message(with_line(6, "perturbation = 0.49999999999999999999999")), "no error");
+  EXPECT_EQ(message(with_line(6, "spacing = 0")),
+            "s.toml:6: initial.spacing: out of range (found 0): give a number above 0");
+  EXPECT_EQ(message(good + "start = 7000"),
+            "s.toml:8: run.until: out of range (found 6500): give a number of run.start = 7000 or more");
+}
+
+TEST(Scene, NonFiniteNumbersAreRefused) {
+  EXPECT_EQ(message(with_line(8, "until = inf")),
+            "s.toml:8: run.until: not finite (found inf): give a number of run.start = 0 or more");
+  EXPECT_EQ(message(with_line(3, "restitution = -nan")),
+            "s.toml:3: law.restitution: not finite (found -nan): give a number from 0 to 1");
+  EXPECT_TRUE(begins(message(with_line(3, "restitution = \"nan\"")), "s.toml:3: law.restitution: not finite"));
+  EXPECT_EQ(message(with_line(8, "until = 1e400")),
+            "s.toml:8: run.until: too large for the precision (found 1e400 with \"double\"): "
+            "give a smaller number or another run.precision");
+  EXPECT_EQ(message(with_line(8, "until = 1e400\nprecision = \"float128\"")), "no error");
+}
+
+TEST(Scene, WrongTypes) {
+  EXPECT_EQ(message(with_line(3, "restitution = \"much\"")),
+            "s.toml:3: law.restitution: wrong type (found \"much\"): give a number from 0 to 1");
+  EXPECT_EQ(message(with_line(3, "restitution = [1, 2]")),
+            "s.toml:3: law.restitution: wrong type (found an array of 2 values): give a number from 0 to 1");
+  EXPECT_EQ(message(with_line(3, "restitution = { value = 1 }")),
+            "s.toml:3: law.restitution: wrong type (found a table): give a number from 0 to 1");
+  EXPECT_TRUE(begins(message(with_line(3, "restitution = true")), "s.toml:3: law.restitution: wrong type (found true"));
+  EXPECT_EQ(message(with_line(2, "type = 5")),
+            "s.toml:2: law.type: wrong type (found 5): give one of inelastic, wet, sticky");
+  EXPECT_EQ(message(with_line(2, "type = \"dry\"")),
+            "s.toml:2: law.type: no such choice (found \"dry\"): give one of inelastic, wet, sticky");
+  EXPECT_EQ(message("title = 5\n" + good), "s.toml:1: title: wrong type (found 5): give a text");
+  EXPECT_TRUE(begins(message("output = 5\n" + good), "s.toml:1: output: wrong type (found 5)"));
+  EXPECT_EQ(message(good + "[output]\nevents = 1"),
+            "s.toml:10: output.events: wrong type (found 1): give true or false");
+  EXPECT_TRUE(
+      begins(message(good + "[output]\nsnapshots = 5"), "s.toml:10: output.snapshots: wrong type (found 5): gi"));
+  // An element is reported at its own line.
+  EXPECT_EQ(message(good + "[output]\nsnapshots = [1,\n 2, true]"),
+            "s.toml:11: output.snapshots: wrong type (found true): "
+            "give a list of numbers from run.start = 0 to run.until = 6500");
+}
+
+TEST(Scene, UnknownKeysNameTheNearestKnownOne) {
+  EXPECT_EQ(message(with_line(3, "restituton = 0.9")),
+            "s.toml:3: law.restituton: unknown key (found 0.9): did you mean law.restitution?");
+  EXPECT_EQ(message(good + "restitution = 0.9"),
+            "s.toml:9: run.restitution: unknown key (found 0.9): did you mean law.restitution?");
+  EXPECT_EQ(message(good + "[otuput]\nevents = true"),
+            "s.toml:10: otuput.events: unknown key (found true): did you mean output.events?");
+  EXPECT_EQ(message(good + "[weather]\n"),
+            "s.toml:9: weather: unknown key (found a table): remove it; the manual lists all keys");
+}
+
+TEST(Scene, KeysThatDoNotApply) {
+  EXPECT_EQ(message(with_line(3, "restitution = 0.9\nloss = 1")),
+            "s.toml:4: law.loss: key of another law (found law.type = \"inelastic\"): "
+            "remove it, it belongs to law.type = \"wet\"");
+  EXPECT_TRUE(begins(message(with_line(2, "type = \"sticky\"")),
+                     "s.toml:3: law.restitution: key of another law (found law.type = \""));
+  // More telling than the loss that is missing.
+  EXPECT_TRUE(begins(message(with_line(2, "type = \"wet\"")), "s.toml:3: law.restitution: key of another law "));
+  EXPECT_EQ(message(with_line(6, "length = 10")),
+            "s.toml:6: initial.length: key of another initial state (found initial.type = \"rows\"): "
+            "remove it, it belongs to initial.type = \"ring\"");
+  EXPECT_TRUE(begins(message(with_line(5, "type = \"ring\"\nspeed = 1")),
+                     "s.toml:6: initial.speed: key of another initial state (found initial.type = \"rin"));
+  EXPECT_EQ(message(good + "digits = 50"),
+            "s.toml:9: run.digits: key of another precision (found run.precision = \"double\"): "
+            "remove it, it belongs to run.precision = \"mpfr\"");
+  EXPECT_EQ(message(good + "collapse = 'merge'\nmerge_speed = 1e-8\ncontact_time = 1"),
+            "s.toml:11: run.contact_time: key of another collapse policy (found run.collapse = \"merge\"): "
+            "remove it, it belongs to run.collapse = \"contact-time\"");
+  EXPECT_TRUE(
+      begins(message(good + "merge_speed = 1"), "s.toml:9: run.merge_speed: key of another collapse policy (f"));
+  EXPECT_TRUE(begins(message(good + "collapse = 'cutoff'\nstop_gap = 1"), "s.toml:10: run.stop_gap: "));
+  EXPECT_EQ(message(good + "collapse = 'contact-time'"), "s.toml: run.contact_time: missing: give a number above 0");
+  EXPECT_EQ(message(good + "[output]\nseries = { points = 10, every = 1 }"),
+            "s.toml:10: output.series.points: second way to say when the series is sampled "
+            "(found output.series.every = 1): remove it, it belongs to a series without every and times");
+}
+
+TEST(Scene, NotToml) {
+  EXPECT_TRUE(begins(message(with_line(4, "[initial")), "s.toml:4: not valid TOML (f"));
+  EXPECT_TRUE(begins(message(with_line(6, "type = 'rows'")), "s.toml:6: not valid TOML (f"));
+  EXPECT_TRUE(begins(message(with_line(6, "particles = 1 2")), "s.toml:6: not valid TOML (f"));
+}
+
+TEST(Scene, TimesAreSortedAndWithinTheRun) {
+  const Scene scene = parse(good + "start = -1\n[output]\nsnapshots = [6500, 1e3, 5, 1000.0, -1]\n"
+                                   "series = { times = [3, 2] }\nprofiles = { times = [7], range = [-4, 4e1] }");
+  EXPECT_EQ(texts(scene.output.snapshots), (Strings{"-1", "5", "1e3", "6500"}));
+  EXPECT_EQ(texts(scene.output.series.times), (Strings{"2", "3"}));
+  EXPECT_FALSE(scene.output.series.points);
+  EXPECT_EQ(texts(scene.output.profiles.range), (Strings{"-4", "4e1"}));
+  EXPECT_EQ(message(good + "[output]\nsnapshots = [1, 6500.001]"),
+            "s.toml:10: output.snapshots: out of range (found 6500.001): "
+            "give a list of numbers from run.start = 0 to run.until = 6500");
+  EXPECT_EQ(message(good + "[output]\nseries.times = []"),
+            "s.toml:10: output.series.times: no times (found an empty list): give at least one time");
+  EXPECT_EQ(
+      message(good + "[output]\nprofiles.range = [4, -4]"),
+      "s.toml:10: output.profiles.range: not a range (found from 4 to -4): give two positions, the lower one first");
+  EXPECT_TRUE(begins(message(good + "[output]\nprofiles.range = [4]"),
+                     "s.toml:10: output.profiles.range: not a range (found an array of 1 "));
+}
+
+TEST(Scene, RunCutShortOnTheCommandLineKeepsTheTimesWithinIt) {
+  const std::string scene = good + "[output]\nsnapshots = [1, 50, 6000]\nprofiles.times = [6000]";
+  EXPECT_EQ(texts(parse(scene, {"run.until=100"}).output.snapshots), (Strings{"1", "50"}));
+  EXPECT_TRUE(parse(scene, {"run.until=100"}).output.profiles.times.empty());
+  EXPECT_EQ(texts(parse(scene, {"run.until=100", "run.start=2"}).output.snapshots), (Strings{"50"}));
+  EXPECT_TRUE(
+      begins(message(scene, {"run.until=100", "output.snapshots=[200]"}), "--set output.snapshots: out of range"));
+}
+
+TEST(Scene, GeneralRows) {
+  const std::string head = "law.type = 'sticky'\nrun.until = 9\ninitial.type = 'rows'\n";
+  const std::string left = "[initial.left]\nparticles = 3\nspeed = 1\n";
+  const std::string right = "[initial.right]\nparticles = 5\nspeed = 0.5\ndensity = 2\n";
+  const Scene scene = parse(head + left + right + "[initial.centre]\nmass = 4\nspeed = 0.75");
+  EXPECT_TRUE(scene.initial.general_rows());
+  EXPECT_EQ(scene.initial.left.particles, 3U);
+  EXPECT_EQ(scene.initial.left.density.text, "1");
+  EXPECT_EQ(scene.initial.right.density.text, "2");
+  EXPECT_EQ(scene.initial.centre.mass.text, "4");
+  EXPECT_EQ(message(head + left), "s.toml: initial.right.particles: missing: give an integer from 1 to 1e15");
+  EXPECT_EQ(message(head + left + "[initial.right]\nparticles = 5\nspeed = 1.0"),
+            "s.toml:9: initial.right.speed: the rows do not meet (found left row at 1, right row at 1.0): "
+            "give the right row a lower velocity than the left row");
+  EXPECT_EQ(message(head + left + right + "[initial.centre]\nmass = 1\nspeed = 2"),
+            "s.toml:13: initial.centre.speed: a row does not reach the body between the rows "
+            "(found left row at 1, centre at 2, right row at 0.5): give a velocity between those of the rows");
+  EXPECT_TRUE(begins(message(head + left + right + "[initial.centre]\nspeed = 2"), "s.toml:12: initial.centre.speed:"));
+  EXPECT_EQ(message(head + "initial.particles = 8\n" + left + right),
+            "s.toml:4: initial.particles: key of another initial state (found initial.left.particles = 3): "
+            "remove it, it belongs to initial.type = \"rows\" without [initial.left] and [initial.right]");
+  EXPECT_TRUE(begins(message("law.type = 'sticky'\nrun.until = 9\ninitial.type = 'ring'\n" + left),
+                     "s.toml:5: initial.left.particles: key of another initial st"));
+}
+
+TEST(Scene, RingIsAsLongAsItHasBodies) {
+  const std::string text = "law.type = 'sticky'\nrun.until = 9\ninitial.type = 'ring'\ninitial.particles = 7\n";
+  EXPECT_EQ(parse(text).initial.length.text, "7");
+  EXPECT_EQ(parse(text + "initial.velocities = 'uniform'").initial.velocities, Velocities::uniform);
+  EXPECT_EQ(parse(text + "initial.length = 1e-2").initial.length.text, "1e-2");
+}
+
+TEST(Scene, BodiesInTheScene) {
+  const std::string head = "law.type = 'sticky'\nrun.until = 9\n[initial]\ntype = 'list'\n";
+  EXPECT_EQ(message(head), "s.toml: initial.file: missing: name a CSV file of bodies, or give initial.x and initial.v");
+  EXPECT_EQ(message(head + "file = 'b.csv'\nx = [1]"),
+            "s.toml:5: initial.file: two lists of bodies (found initial.file and initial.x): remove one of them");
+  EXPECT_EQ(message(head + "x = [1, 2]\nv = [1]"),
+            "s.toml:6: initial.v: not one per body (found 1 for 2 positions): give 2 numbers");
+  EXPECT_EQ(message(head + "x = [1, 2]"),
+            "s.toml: initial.v: not one per body (found 0 for 2 positions): give 2 numbers");
+  EXPECT_EQ(message(head + "x = [1,\n 1.0]\nv = [1, 2]"),
+            "s.toml:6: initial.x: coincident bodies (found 1.0 after 1): give increasing positions");
+  EXPECT_TRUE(
+      begins(message(head + "x = [1, 2]\nv = [1, 2]\nm = [1, 0]"), "s.toml:7: initial.m: out of range (found 0"));
+  EXPECT_TRUE(begins(message(head + "x = []\nv = []"), "s.toml:5: initial.x: no bodies "));
+  EXPECT_EQ(parse_scene(head + "file = 'b.csv'", "some/where/t.toml").folder, "some/where");
+}
+
+TEST(Overrides, ReplaceAddAndRemove) {
+  const Scene scene =
+      parse(good, {"law.restitution=0.5", "run.precision=long double", "initial.replica = 17",
+                   "output.series={ points = 10, spacing = \"log\" }", "title=2026", "run.stop_gap=1e-4000"});
+  EXPECT_EQ(scene.law.restitution.text, "0.5");
+  EXPECT_EQ(scene.run.precision, Precision::long_double);
+  EXPECT_EQ(scene.initial.replica, 17U);
+  EXPECT_EQ(scene.output.series.points, 10U);
+  EXPECT_EQ(scene.output.series.spacing, Spacing::log);
+  EXPECT_EQ(scene.title, "2026");
+  EXPECT_EQ(scene.run.stop_gap->text, "1e-4000");
+  EXPECT_EQ(parse(good, {"law.type=wet", "law.restitution=", "law.loss=0.1"}).law.type, LawType::wet);
+  // The series has one way of sampling: the last one wins.
+  const Scene every = parse(good + "[output]\nseries = { points = 5, spacing = 'log' }", {"output.series.every=0.5"});
+  EXPECT_FALSE(every.output.series.points);
+  EXPECT_EQ(every.output.series.every->text, "0.5");
+}
+
+TEST(Overrides, ErrorsNameTheAssignment) {
+  EXPECT_EQ(message(good, {"law.restitution=1.5"}),
+            "--set law.restitution: out of range (found 1.5): give a number from 0 to 1");
+  EXPECT_EQ(message(good, {"law.restituton=0.5"}),
+            "--set law.restituton: unknown key (found 0.5): did you mean law.restitution?");
+  EXPECT_TRUE(begins(message(good, {"run.until=soon"}), "--set run.until: wrong type (found \"soon\"): "));
+  EXPECT_EQ(message(good, {"law.restitution"}),
+            "--set: not an assignment (found law.restitution): write table.key=value");
+  EXPECT_TRUE(begins(message(good, {"output.snapshots=[1, 9999]"}), "--set output.snapshots: out of range (found "));
+}
+
+TEST(EffectiveScene, ReadsBackAsTheSameScene) {
+  const std::vector<std::string> scenes = {
+      good,
+      good +
+          "collapse = 'contact-time'\ncontact_time = 1e-6\nprecision = 'mpfr'\ndigits = 77\n[output]\nevents = true\n",
+      "title = \"a \\\"quoted\\\" \\\\ name\\twith é\"\nlaw = {type = 'wet', loss = 1e-4}\ninitial = {type = 'ring', "
+      "seed = '18446744073709551615'}\n"
+      "run = {until = 1e400, precision = 'float128'}\noutput.series.every = '.5'",
+      "law.type = 'sticky'\nrun.until = 5\ninitial = {type = 'rows', left = {particles = 2, speed = 1}, right = "
+      "{particles = 1, speed = -1}}"};
+  for (const auto& text : scenes) {
+    const Scene scene = parse(text);
+    const std::string effective = effective_toml(scene);
+    const Scene again = parse_scene(effective, "elsewhere/t.toml");
+    EXPECT_TRUE(again == scene) << effective;
+    EXPECT_EQ(effective_toml(again), effective);
+  }
+  for (const BundledScene& bundled : bundled_scenes()) {
+    const Scene scene = read_scene(std::string(bundled.name));
+    EXPECT_TRUE(parse(effective_toml(scene)) == scene) << bundled.name;
+  }
+  EXPECT_FALSE(parse(good) == parse(good, {"law.restitution=0.9990000000000000000000000001"}));
+  EXPECT_TRUE(parse(good) == parse(good, {"law.restitution=999e-3"}));
+}
+
+TEST(EffectiveScene, ValuesThatDifferFromTheirDefaults) {
+  using Pairs = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(values(parse(with_line(6, "particles = 8000.0\nspacing = 2")), false), (Pairs{{"law.type", "\"inelastic\""},
+                                                                                          {"law.restitution", "0.999"},
+                                                                                          {"initial.type", "\"rows\""},
+                                                                                          {"initial.spacing", "2"},
+                                                                                          {"run.until", "6500"}}));
+  const auto all = values(parse(good), true);
+  EXPECT_NE(std::ranges::find(all, std::pair<std::string, std::string>("output.series.points", "1000")), all.end());
+  for (const auto& [key, value] : all) EXPECT_NE(key, "law.loss");
+}
+
+TEST(Manual, NamesEveryKeyWithItsFacts) {
+  const std::string manual = describe_fields();
+  for (const Field& field : scene_fields()) EXPECT_NE(manual.find(std::string(field.key) + "  ("), std::string::npos);
+  EXPECT_NE(manual.find("law.restitution  (number [0, 1], required)"), std::string::npos);
+  EXPECT_NE(manual.find("law.cutoff  (number [0, inf), in l/t, default 0)"), std::string::npos);
+}
+
+TEST(BundledScenes, HoldThePapersParameters) {
+  Strings names;
+  for (const BundledScene& bundled : bundled_scenes()) names.emplace_back(bundled.name);
+  EXPECT_TRUE(std::ranges::is_sorted(names));
+  for (const char* name : {"fig2", "fig3", "fig4", "collapse3"})
+    EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
+  for (const auto& name : names) EXPECT_EQ(read_scene(name).name, name);
+  for (const char* name : {"fig2", "fig3", "fig4"}) {
+    const Scene scene = read_scene(name);
+    EXPECT_EQ(scene.law.restitution.text, "0.999");
+    EXPECT_EQ(scene.law.cutoff.text, "1e-5");
+    EXPECT_EQ(scene.initial.particles, 8000U);
+    EXPECT_EQ(scene.initial.speed.text, "0.5");
+    EXPECT_EQ(scene.run.until.text, "6500");
+  }
+  EXPECT_EQ(texts(read_scene("fig3").output.snapshots), (Strings{"6500"}));
+  const Scene collapse = read_scene("collapse3");
+  EXPECT_EQ(texts(collapse.initial.x), (Strings{"0", "1", "3"}));
+  EXPECT_EQ(texts(collapse.initial.v), (Strings{"1", "0", "-1"}));
+  EXPECT_EQ(collapse.run.collapse, CollapsePolicy::stop);
+}
+
+TEST(ReadScene, FilesComeBeforeBundledNames) {
+  const auto folder = std::filesystem::temp_directory_path() / ("cradle_scene_test_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const auto path = (folder / "mine.toml").string();
+  std::ofstream(path) << good;
+  const Scene scene = read_scene(path, {"run.until=7"});
+  EXPECT_EQ(scene.name, "mine");
+  EXPECT_EQ(scene.folder, folder.string());
+  EXPECT_EQ(scene.run.until.text, "7");
+  std::filesystem::remove_all(folder);
+  try {
+    read_scene("fig99");
+    FAIL() << "fig99 does not exist";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status, Exit::io);
+    const std::string what = error.what();
+    EXPECT_EQ(what.substr(0, what.find("one of")),
+              "fig99: no such scene (found neither a file nor a bundled scene): give the path of a scene file or ");
+    EXPECT_NE(what.find("fig2"), std::string::npos);
+    EXPECT_NE(what.find("collapse3"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace cradle::tools

@@ -1,0 +1,172 @@
+// Predictions as `cradle theory` gives them for the wet and the sticky gas: numbers of the validation table, curves
+// that meet in their known points, and misprints that fit the law.
+#include "cradle/tools/theory/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cradle::tools {
+namespace {
+
+std::vector<Prediction> table_of(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+  return predictions(read_scene(scene, overrides));
+}
+
+std::optional<double> number(const std::vector<Prediction>& table, const std::string& quantity,
+                             const std::string& form) {
+  for (const auto& p : table)
+    if (p.quantity == quantity && p.form == form && !p.t) return p.value;
+  return std::nullopt;
+}
+
+std::vector<Prediction> curve(const std::vector<Prediction>& table, const std::string& quantity,
+                              const std::string& form) {
+  std::vector<Prediction> points;
+  for (const auto& p : table)
+    if (p.quantity == quantity && p.form == form && p.t) points.push_back(p);
+  return points;
+}
+
+TEST(WetPredictions, AreThoseOfTheValidationTable) {
+  const auto table = table_of("fig6");  // E_loss = 1e-4, u0 = 1/2
+  EXPECT_NEAR(*number(table, "turnover_time", "continuous"), 4998.99976654257587, 1e-11);
+  EXPECT_NEAR(*number(table, "turnover_time", "discrete"), 4999.69313159489030, 1e-11);
+  EXPECT_EQ(*number(table, "turnover_contacts", "discrete"), 3750);
+  EXPECT_NEAR(*number(table, "maximal_front", "continuous"), 1249.80681947309957, 1e-11);
+  EXPECT_NEAR(*number(table, "maximal_front", "discrete"), 1250.15343420255485, 1e-11);
+  EXPECT_NEAR(*number(table, "zone_width", "continuous"), 561.862178, 5e-7);
+  EXPECT_NEAR(*number(table, "density_excess", "continuous"), 2.449489742783178, 1e-15);
+  EXPECT_NEAR(*number(table, "critical_closing_speed", "continuous"), 0.02, 1e-17);
+  EXPECT_NEAR(*number(table, "critical_closing_speed", "printed"), 0.02 * std::sqrt(2.), 1e-17);
+  EXPECT_NEAR(*number(table_of("fig11"), "outer_force", "continuous"), .0563508, 5e-8);
+  EXPECT_EQ(*number(table_of("fig11"), "outer_force", "printed"), .05);
+  EXPECT_EQ(*number(table, "frequency_exponent", "continuous"), -2. / 3);
+  // NB: 1918 merges by t = 6000, none by 4999
+  EXPECT_GT(*number(table, "first_sticking_time", "discrete"), 4999);
+  EXPECT_LT(*number(table, "first_sticking_time", "discrete"), 6000);
+}
+
+TEST(WetPredictions, EnergyIsThatOfTheRun) {
+  // NB: energies at t = 2000 and 4999, E(0) = 6250; sampled where the curve has its points
+  const std::vector<std::string> until{"run.until=4999", "output.series.points=2",
+                                       "output.snapshots=", "output.profiles.times=", "output.masses="};
+  const auto table = table_of("fig6", until);
+  for (const auto* form : {"continuous", "discrete"}) {
+    const auto energy = curve(table, "energy", form);
+    ASSERT_FALSE(energy.empty()) << form;
+    EXPECT_EQ(energy.front().value, 6250) << form;
+    EXPECT_EQ(*energy.back().t, 4999) << form;
+    EXPECT_NEAR(energy.back().value, 5481.7771, 4e-4 * 768.2229) << form;
+  }
+  const auto discrete = curve(table, "energy", "discrete");
+  EXPECT_NEAR(discrete.back().value, 5481.7771, 4e-4) << "a few contacts";
+  const auto sticky = curve(table, "energy_sticky", "continuous");
+  EXPECT_NEAR(sticky.back().value, 6250 - 0.125 * 4999, 1e-9);
+}
+
+TEST(WetPredictions, CurvesOfTheFrontMeetItsTurnover) {
+  const auto table = table_of("fig6");
+  for (const auto* form : {"continuous", "discrete"}) {
+    const auto place = curve(table, "front_position", form);
+    const auto speed = curve(table, "front_velocity", form);
+    ASSERT_EQ(place.size(), speed.size());
+    EXPECT_EQ(place.front().value, -0.5);
+    EXPECT_EQ(speed.front().value, 0.5);
+    double highest = 0;
+    for (const auto& p : place) highest = std::max(highest, p.value);
+    EXPECT_LE(highest, *number(table, "maximal_front", form) - 0.5);
+    EXPECT_GT(highest, *number(table, "maximal_front", form) * 0.999);
+  }
+}
+
+TEST(WetPredictions, GoAsFarAsTheyApply) {
+  // bodies that stick at once (E > m u0^2), before they are slowed to rest (> m u0^2/4), or never (0)
+  const std::vector<std::string> short_run{"run.until=50",
+                                           "output.snapshots=", "output.profiles.times=", "output.masses="};
+  const auto with_loss = [&](const std::string& loss) {
+    auto overrides = short_run;
+    overrides.push_back("law.loss=" + loss);
+    return table_of("fig6", overrides);
+  };
+  const auto stuck = with_loss("0.3");
+  EXPECT_FALSE(number(stuck, "zone_width", "continuous"));
+  EXPECT_FALSE(number(stuck, "turnover_time", "continuous"));
+  EXPECT_TRUE(curve(stuck, "front_position", "continuous").empty());
+  EXPECT_EQ(*number(stuck, "first_sticking_time", "discrete"), 1);
+  EXPECT_FALSE(number(with_loss("0.1"), "turnover_time", "discrete"));
+  const auto free = with_loss("0");
+  EXPECT_EQ(curve(free, "energy", "continuous").back().value, 6250);
+  EXPECT_EQ(curve(free, "front_position", "discrete").back().value, 24.5);
+  EXPECT_FALSE(number(free, "zone_width", "continuous"));
+  // forms that go contact by contact are left out where that would take long
+  const auto tiny = table_of(
+      "fig6", {"law.loss=1e-12", "run.until=1e12", "output.snapshots=", "output.profiles.times=", "output.masses="});
+  EXPECT_TRUE(number(tiny, "turnover_time", "continuous"));
+  EXPECT_FALSE(number(tiny, "turnover_time", "discrete"));
+  EXPECT_TRUE(curve(tiny, "energy", "discrete").empty());
+  // a run of no length
+  for (const auto& p :
+       table_of("fig6", {"run.until=0", "output.snapshots=", "output.profiles.times=", "output.masses="}))
+    EXPECT_TRUE(std::isfinite(p.value)) << p.quantity;
+}
+
+TEST(WetPredictions, OfClustersAreThoseOfTheZone) {
+  const auto table = table_of("fig10");
+  EXPECT_NEAR(*number(table, "zone_width", "continuous"), 1.12372436, 5e-9);
+  EXPECT_TRUE(curve(table, "front_position", "continuous").empty());
+  EXPECT_TRUE(curve(table, "energy_sticky", "continuous").empty());
+}
+
+TEST(StickyPredictions, EqualRowsFeedOneClusterAtTheCentre) {
+  // l = 1, u0 = 1/2: mass 2 u0 t/l = t, energy E(0) - u0^3 t/l, up to t = N l/(2 u0) = 8000, where all is one
+  const Scene scene = parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 16000\n", "s.toml");
+  const auto rows = predictions(scene);
+  EXPECT_EQ(*number(rows, "initial_energy", "continuous"), 1000);
+  EXPECT_EQ(*number(rows, "central_mass_growth", "continuous"), 1);
+  EXPECT_EQ(*number(rows, "central_velocity", "continuous"), 0);
+  EXPECT_EQ(*number(rows, "energy_loss_rate", "continuous"), 0.125);
+  const auto mass = curve(rows, "central_mass", "continuous"), energy = curve(rows, "energy_sticky", "continuous");
+  ASSERT_EQ(mass.size(), energy.size());
+  EXPECT_EQ(*mass.back().t, 8000);
+  for (std::size_t k = 0; k < mass.size(); ++k) {
+    EXPECT_NEAR(mass[k].value, *mass[k].t, 1e-12 * *mass[k].t);
+    EXPECT_NEAR(energy[k].value, 1000 - 0.125 * *energy[k].t, 1e-9);
+  }
+}
+
+TEST(StickyPredictions, UnequalRowsMoveIt) {
+  // densities 4 and 1 at 1 and -1/2: mass sqrt(4) 3/2 per time, velocity (2 1 - 1 1/2)/3 (validation table, section 3)
+  const auto rows = predictions(parse_scene(R"(law.type = 'sticky'
+[initial]
+type = 'rows'
+left = { particles = 100, speed = 1, density = 4 }
+right = { particles = 100, speed = -0.5, density = 1 }
+[run]
+until = 10
+)",
+                                            "s.toml"));
+  EXPECT_NEAR(*number(rows, "central_mass_growth", "continuous"), 3, 1e-15);
+  EXPECT_NEAR(*number(rows, "central_velocity", "continuous"), 0.5, 1e-15);
+  EXPECT_EQ(*number(rows, "initial_energy", "continuous"), 50 + 12.5);
+  EXPECT_NEAR(curve(rows, "central_position", "continuous").back().value, 5, 1e-14);
+  EXPECT_EQ(*curve(rows, "central_mass", "continuous").back().t, 10);
+}
+
+TEST(StickyPredictions, SayNothingOfOtherStarts) {
+  EXPECT_TRUE(
+      predictions(parse_scene("law.type = 'sticky'\ninitial.type = 'ring'\nrun.until = 1\n", "s.toml")).empty());
+}
+
+TEST(Misprints, FitTheLaw) {
+  EXPECT_NE(misprints(read_scene("fig2")).find("(7)"), std::string::npos);
+  EXPECT_EQ(misprints(read_scene("fig2")).find("(17)"), std::string::npos);
+  EXPECT_NE(misprints(read_scene("fig6")).find("sqrt(2 E_loss/mu)"), std::string::npos);
+  EXPECT_EQ(misprints(read_scene("fig6")).find("(7)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cradle::tools

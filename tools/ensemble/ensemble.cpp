@@ -1,0 +1,161 @@
+#include "cradle/tools/ensemble/ensemble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <optional>
+#include <utility>
+
+#include "cradle/tools/support/interrupt.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+// ThreadSanitizer sees races in Debian's oneTBB that are none.
+#ifdef __SANITIZE_THREAD__
+using Workers = ThreadExecutor;
+#else
+using Workers = TbbExecutor;
+#endif
+
+struct Finished {
+  ReplicaRow row;
+  std::vector<double> values;
+};
+
+Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options) {
+  const RunOutcome run = options.runner(replica_scene(ensemble.scene(), replica));
+  if (run.status == Exit::interrupted || run.status == Exit::terminated) throw ReplicaAbandoned();
+  return {ensemble.layout().row(replica, run), ensemble.layout().values(run)};
+}
+
+std::vector<JobRange> missing(const EnsembleStore& store, ReplicaRange wanted) {
+  std::vector<JobRange> jobs;
+  for (std::size_t point = 0; point < store.states().size(); ++point)
+    for (const ReplicaRange& range : store.states()[point]->replicas().missing(wanted)) jobs.push_back({point, range});
+  return jobs;
+}
+
+std::uint64_t count(const std::vector<JobRange>& jobs) {
+  std::uint64_t sum = 0;
+  for (const auto& [point, range] : jobs) sum += range.count;
+  return sum;
+}
+
+// MPFR has one number of digits per process at a time.
+void check_digits(const Study& study) {
+  for (const Study::Point& point : study.points)
+    if (point.scene.run.digits != study.points.front().scene.run.digits)
+      throw Error({"", 0, "run.digits"}, "ensembles of different digits in one file",
+                  fmt::format("{} and {}", study.points.front().scene.run.digits, point.scene.run.digits),
+                  "run them one after the other");
+}
+
+std::string failure_warning(const EnsembleStates& states) {
+  constexpr int shown = 5;
+  std::string text;
+  int failures = 0;
+  std::uint64_t lost = 0;
+  for (const auto& state : states) {
+    const std::string place = state->group().empty() ? "" : state->group() + ": ";
+    for (const auto& [replica, message] : state->failures())
+      if (++failures <= shown) text += fmt::format("{}replica {} failed: {}\n", place, replica, message);
+    const auto outcomes = state->outcomes();
+    lost += outcomes[static_cast<std::size_t>(ReplicaOutcome::order_lost)] +
+            outcomes[static_cast<std::size_t>(ReplicaOutcome::exhausted)];
+  }
+  if (failures > shown) text += fmt::format("and {} more: see replicas/failed in the file\n", failures - shown);
+  if (lost > 0)
+    text += fmt::format("{} replicas lost the order of contacts or exhausted the resolution: see replicas/outcome in "
+                        "the file, and `cradle run SCENE --set initial.replica=K` for one of them\n",
+                        lost);
+  return text;
+}
+
+// Works off jobs on all threads of this process, into the store.
+void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew, const NextJob& next,
+          const std::function<void()>& finished) {
+  run_jobs(
+      Workers(options.threads > 0 ? options.threads : crew.threads()), next,
+      [&](const Job& job) { return run_replica(*store.states()[job.point], job.replica, options); },
+      [&](const Job& job, Finished&& done) {
+        store.add(job.point, done.row, std::move(done.values));
+        finished();
+      },
+      [&](const Job& job, const std::string& message) {
+        store.fail(job.point, job.replica, message);
+        finished();
+      },
+      [] { return noted_signal() != 0; });
+}
+
+EnsembleOutcome told(const EnsembleStore& store) {
+  EnsembleOutcome end;
+  end.replicas = store.replicas();
+  end.outcome = store.outcome();
+  end.warning = failure_warning(store.states());
+  if (!end.warning.empty()) end.status = Exit::lost;
+  return end;
+}
+
+// Rank 0: knows the files.
+EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, Crew& crew) {
+  const std::vector<JobRange> jobs = missing(store, options.replicas);
+  const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = count(jobs);
+  store.start_journal(0, options.journal_bytes);
+  ReplicaProgress progress(options.progress, wanted - fresh, wanted);
+  const int signal = crew.share(
+      jobs, [&](const NextJob& next) { work(store, options, crew, next, [&] { progress.done(); }); },
+      [&](std::uint64_t replicas) { progress.done(replicas); });
+  EnsembleOutcome end;
+  if (signal == 0) {
+    crew.gather([](const JournalWriter::Put&) {}, [&](std::string_view record) { store.apply(record); });
+    if (fresh > 0 || !store.result_there()) store.finish();
+    end = told(store);
+  } else {
+    store.sync();
+    end.status = signal == SIGINT ? Exit::interrupted : Exit::terminated;
+  }
+  end.fresh = fresh;
+  return end;
+}
+
+EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Crew& crew) {
+  store.start_journal(crew.rank(), options.journal_bytes);
+  const int signal = crew.share({}, [&](const NextJob& next) { work(store, options, crew, next, [] {}); }, {});
+  if (signal == 0)
+    crew.gather([&](const JournalWriter::Put& put) { store.put_records(put); }, [](std::string_view) {});
+  else
+    store.sync();
+  return {};
+}
+
+}  // namespace
+
+EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, const std::string& file, Crew& crew) {
+  std::optional<EnsembleStore> store;
+  std::string account;
+  const Exit failed = crew.together([&] {
+    check_digits(study);
+    store.emplace(study, file);
+    if (crew.rank() == 0) account = store->load();
+  });
+  if (failed != Exit::done) {
+    EnsembleOutcome none;
+    none.status = failed;
+    return none;
+  }
+  if (crew.rank() != 0) return follow(*store, options, crew);
+  EnsembleOutcome end = lead(*store, options, crew);
+  end.account = account;
+  return end;
+}
+
+EnsembleOutcome run_ensemble(const Scene& scene, const EnsembleOptions& options, const std::string& file) {
+  Alone alone;
+  return run_study(ensemble_of(scene), options, file, alone);
+}
+
+}  // namespace cradle::tools

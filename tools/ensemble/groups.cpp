@@ -1,0 +1,214 @@
+// An ensemble in a result file: statistics for whoever looks at it, and the nodes of the tree of replicas with every
+// bit, from which it is continued and merged. Everything depends on the set of replicas only.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "cradle/tools/ensemble/state.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+const Group& get(const Result& result, const std::string& name, const std::string& file) {
+  if (const Group* group = result.find(name)) return *group;
+  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", "no " + name,
+              "give a file that `cradle ensemble` or `cradle merge` wrote", Exit::io);
+}
+
+template <class T> const std::vector<T>& get(const Group& group, const std::string& name, const std::string& file) {
+  for (const Column& column : group.columns)
+    if (column.name == name)
+      if (const auto* values = std::get_if<std::vector<T>>(&column.values)) return *values;
+  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", fmt::format("no {}/{}", group.name, name),
+              "give a file that `cradle ensemble` or `cradle merge` wrote", Exit::io);
+}
+
+bool has(const Group& group, const std::string& name) {
+  return std::any_of(group.columns.begin(), group.columns.end(), [&](const Column& c) { return c.name == name; });
+}
+
+std::string node_name(std::size_t k) { return fmt::format("ensemble/nodes/{:04}", k); }
+
+Group node_group(const TreeNode& node, std::string name) {
+  const Moments& m = node.moments;
+  Group group{std::move(name),
+              {{"first", node.first}, {"level", std::uint64_t{node.level}}, {"replicas", m.replicas}},
+              {{"mean", "", "mean of each entry", m.mean},
+               {"squares", "", "sum of squared deviations from the mean", m.squares},
+               {"least", "", "least of each entry", m.least},
+               {"greatest", "", "greatest of each entry", m.greatest}}};
+  if (!m.complete()) group.columns.push_back({"counts", "1", "replicas that have the entry", m.counts});
+  return group;
+}
+
+TreeNode read_node(const Group& group, const std::string& file) {
+  TreeNode node{attribute<std::uint64_t>(group.attributes, "first", file),
+                static_cast<unsigned>(attribute<std::uint64_t>(group.attributes, "level", file)),
+                {}};
+  Moments& m = node.moments;
+  m.replicas = attribute<std::uint64_t>(group.attributes, "replicas", file);
+  m.mean = get<double>(group, "mean", file);
+  m.squares = get<double>(group, "squares", file);
+  m.least = get<double>(group, "least", file);
+  m.greatest = get<double>(group, "greatest", file);
+  if (has(group, "counts")) m.counts = get<std::uint64_t>(group, "counts", file);
+  return node;
+}
+
+}  // namespace
+
+Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& total) const {
+  std::vector<double> mean, sem, least, greatest;
+  std::vector<std::uint64_t> counts;
+  bool all_have_all = true;
+  for (std::size_t i = quantity.offset; i < quantity.offset + quantity.size(); ++i) {
+    const std::uint64_t count = total.replicas > 0 ? total.count(i) : 0;
+    mean.push_back(count > 0 ? total.mean[i] : none);
+    sem.push_back(count > 0 ? total.standard_error(i) : none);
+    least.push_back(count > 0 ? total.least[i] : none);
+    greatest.push_back(count > 0 ? total.greatest[i] : none);
+    counts.push_back(count);
+    all_have_all = all_have_all && count == total.replicas;
+  }
+  const std::size_t width = quantity.width;
+  Group group{name("ensemble/" + quantity.group + "/" + quantity.name),
+              {{"offset", std::uint64_t{quantity.offset}}},
+              {{"mean", quantity.unit, "mean over replicas: " + quantity.description, std::move(mean), width},
+               {"sem", quantity.unit, "standard error of the mean", std::move(sem), width},
+               {"min", quantity.unit, "least of all replicas", std::move(least), width},
+               {"max", quantity.unit, "greatest of all replicas", std::move(greatest), width}}};
+  if (!all_have_all) group.columns.push_back({"count", "1", "replicas that have it", std::move(counts), width});
+  return group;
+}
+
+Group EnsembleState::spread_group(std::size_t k) const {
+  const Quantity& quantity = layout_.quantities[spread_of_[k].quantity];
+  const Histograms& spread = spreads_[k];
+  const FixedBins& bins = spread.bins();
+  std::vector<double> edges;
+  for (std::size_t e = 0; e <= bins.bins; ++e) edges.push_back(bins.edge(e));
+  Group group{
+      name("ensemble/spread/" + quantity.group + "/" + quantity.name),
+      {{"from", bins.from}, {"to", bins.to}, {"bins", std::uint64_t{bins.bins}}},
+      {{"edges", quantity.unit, "edges of the bins", std::move(edges)},
+       {"counts", "1", "replicas below the bins, in each of them, above them", spread.all_counts(), bins.bins + 2}}};
+  for (const int percent : {5, 25, 50, 75, 95}) {
+    std::vector<double> quantiles;
+    for (std::size_t entry = 0; entry < spread.entries(); ++entry)
+      quantiles.push_back(spread.quantile(entry, percent / 100.0));
+    group.columns.push_back({fmt::format("quantile_{:02}", percent), quantity.unit,
+                             fmt::format("{} % of the replicas are below, to the width of a bin", percent),
+                             std::move(quantiles), quantity.width});
+  }
+  return group;
+}
+
+Group EnsembleState::replica_group() const {
+  std::vector<std::uint64_t> index, outcome, contacts, merges;
+  std::vector<std::vector<double>> numbers(layout_.numbers.size());
+  for (const std::size_t k : table_.order()) {
+    const ReplicaRow row = table_[k];
+    index.push_back(row.index);
+    outcome.push_back(static_cast<std::uint64_t>(row.outcome));
+    contacts.push_back(row.contacts);
+    merges.push_back(row.merges);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i].push_back(row.numbers[i]);
+  }
+  std::string outcomes;
+  for (std::size_t k = 0; k < outcome_count; ++k)
+    outcomes += fmt::format("{}{} {}", k == 0 ? "" : ", ", k, outcome_text(static_cast<ReplicaOutcome>(k)));
+  Group group{name("replicas"),
+              {},
+              {{"index", "1", "initial.replica of the run", std::move(index)},
+               {"outcome", "1", outcomes, std::move(outcome)},
+               {"contacts", "1", "contacts until the end", std::move(contacts)},
+               {"merges", "1", "merges until the end", std::move(merges)}}};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    group.columns.push_back(layout_.numbers[i]);
+    group.columns.back().values = std::move(numbers[i]);
+  }
+  return group;
+}
+
+std::vector<Group> EnsembleState::groups() const {
+  const Moments total = tree_.total();
+  std::vector<Group> groups{
+      {name("ensemble"), {{"replicas", tree_.size()}, {"failed", std::uint64_t{failures_.size()}}}, {}}};
+  if (!group_.empty()) groups.back().attributes.emplace_back("scene", effective_toml(scene_));
+  groups.push_back({name("ensemble/series"), {}, {layout_.time}});
+  auto binned = layout_.binned.begin();
+  for (const Quantity& quantity : layout_.quantities) {
+    if (binned != layout_.binned.end() && quantity.group == binned->group) {
+      groups.push_back({name("ensemble/" + binned->group), binned->attributes, {binned->x}});
+      ++binned;
+    }
+    groups.push_back(quantity_group(quantity, total));
+  }
+  for (std::size_t k = 0; k < spreads_.size(); ++k) groups.push_back(spread_group(k));
+  groups.push_back(replica_group());
+  if (!failures_.empty()) {
+    std::vector<std::uint64_t> index;
+    std::string messages;
+    for (const auto& [replica, message] : failures_) {
+      index.push_back(replica);
+      messages += fmt::format("{}replica {}: {}", messages.empty() ? "" : "\n", replica, message);
+    }
+    groups.push_back({name("replicas/failed"),
+                      {{"messages", messages}},
+                      {{"index", "1", "initial.replica of the runs that failed", std::move(index)}}});
+  }
+  groups.push_back({name("ensemble/nodes"),
+                    {{"entries", std::uint64_t{layout_.entries}},
+                     {"what", std::string("sets of 2^level replicas from `first` on, for continuation and merging")}},
+                    {}});
+  const std::vector<TreeNode> nodes = tree_.nodes();
+  for (std::size_t k = 0; k < nodes.size(); ++k) groups.push_back(node_group(nodes[k], name(node_name(k))));
+  return groups;
+}
+
+void EnsembleState::read(const Result& result, const std::string& file) {
+  for (std::size_t k = 0; const Group* group = result.find(name(node_name(k))); ++k) {
+    TreeNode node = read_node(*group, file);
+    if (node.moments.replicas > 0) check_length(node.moments.entries());
+    tree_.add(std::move(node));
+  }
+  const Group& table = get(result, name("replicas"), file);
+  const auto &index = get<std::uint64_t>(table, "index", file), &outcome = get<std::uint64_t>(table, "outcome", file),
+             &contacts = get<std::uint64_t>(table, "contacts", file),
+             &merges = get<std::uint64_t>(table, "merges", file);
+  std::vector<const std::vector<double>*> numbers;
+  for (const Column& column : layout_.numbers) numbers.push_back(&get<double>(table, column.name, file));
+  for (const Column& column : table.columns)
+    if (column.rows() != index.size())
+      throw Error({file, 0, ""}, "a damaged ensemble", "columns of /replicas of different lengths", "run it again",
+                  Exit::io);
+  for (std::size_t k = 0; k < index.size(); ++k) {
+    const auto how = static_cast<ReplicaOutcome>(std::min<std::uint64_t>(outcome[k], outcome_count - 1));
+    ReplicaRow row{index[k], how, contacts[k], merges[k], {}};
+    for (const auto* column : numbers) row.numbers.push_back((*column)[k]);
+    table_.add(row);
+  }
+  if (const Group* failed = result.find(name("replicas/failed"))) {
+    std::istringstream lines(attribute<std::string>(failed->attributes, "messages", file));
+    for (const std::uint64_t replica : get<std::uint64_t>(*failed, "index", file)) {
+      std::string line;
+      std::getline(lines, line);
+      const auto colon = line.find(": ");
+      failures_.emplace(replica, colon == line.npos ? line : line.substr(colon + 2));
+    }
+  }
+  for (std::size_t k = 0; k < spreads_.size(); ++k) {
+    const Group expected = spread_group(k);
+    const Group& spread = get(result, expected.name, file);
+    Histograms counts(spreads_[k].bins(), spreads_[k].entries());
+    counts.set_all_counts(get<std::uint64_t>(spread, "counts", file));
+    spreads_[k].add(counts);
+  }
+}
+
+}  // namespace cradle::tools

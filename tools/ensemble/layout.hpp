@@ -1,0 +1,65 @@
+// What the numbers of a replica mean: every column that a run of the scene records in its series, profiles and zone,
+// one after the other in one vector of doubles, which is what ensembles keep statistics of. Times and bins are common
+// to all replicas, so they are here and not among the numbers. Nothing is known of columns but what a run says about
+// them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/run.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+/// A column of "series", "series/heaviest", "profiles/0002", ...: `rows` times `width` numbers from `offset` on.
+struct Quantity {
+  std::string group, name, unit, description;
+  std::size_t offset = 0, rows = 0, width = 1;
+  std::size_t size() const { return rows * width; }
+};
+
+/// How a replica ended; what a run says about it, in this order.
+enum class ReplicaOutcome : std::uint64_t { reached, collapsed, order_lost, exhausted, failed };
+inline constexpr std::size_t outcome_count = 5;
+const std::string& outcome_text(ReplicaOutcome outcome);
+
+/// One line of the table of replicas.
+struct ReplicaRow {
+  std::uint64_t index = 0;
+  ReplicaOutcome outcome = ReplicaOutcome::reached;
+  std::uint64_t contacts = 0, merges = 0;
+  std::vector<double> numbers;  // one for each of ReplicaLayout::numbers; NaN: has none
+};
+
+struct ReplicaLayout {
+  struct Binned {  // "profiles/0002", "zone"
+    std::string group;
+    std::vector<Attribute> attributes;
+    Column x;
+  };
+
+  Column time;  // of the series
+  std::vector<Binned> binned;
+  std::vector<Quantity> quantities;
+  std::size_t entries = 0;      // length of the vector of all quantities
+  std::vector<Column> numbers;  // of a row: energy at the end and so on; without values
+
+  /// The vector of a run; NaN where it ended before. Throws std::logic_error for a run of another layout.
+  std::vector<double> values(const RunOutcome& run) const;
+  ReplicaRow row(std::uint64_t index, const RunOutcome& run) const;
+};
+
+/// Throws Error for a scene that no ensemble can be made of, naming the key.
+void check_ensemble(const Scene& scene);
+
+/// Of the scene's replicas, found out by a run that ends where it begins. Throws Error as check_ensemble does.
+ReplicaLayout replica_layout(const Scene& scene);
+
+/// The scene of one replica, without what ensembles do not keep: snapshots, masses and events.
+Scene replica_scene(const Scene& scene, std::uint64_t index);
+
+}  // namespace cradle::tools

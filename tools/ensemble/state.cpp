@@ -1,0 +1,102 @@
+#include "cradle/tools/ensemble/state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+
+namespace cradle::tools {
+
+void ReplicaTable::add(const ReplicaRow& row) {
+  integers_.insert(integers_.end(), {row.index, static_cast<std::uint64_t>(row.outcome), row.contacts, row.merges});
+  for (std::size_t k = 0; k < width_; ++k)
+    numbers_.push_back(k < row.numbers.size() ? row.numbers[k] : std::numeric_limits<double>::quiet_NaN());
+}
+
+ReplicaRow ReplicaTable::operator[](std::size_t k) const {
+  const auto numbers = std::span(numbers_).subspan(k * width_, width_);
+  const auto of_row = std::span(integers_).subspan(k * integers, integers);
+  return {of_row[0], static_cast<ReplicaOutcome>(of_row[1]), of_row[2], of_row[3], {numbers.begin(), numbers.end()}};
+}
+
+std::vector<std::size_t> ReplicaTable::order() const {
+  std::vector<std::size_t> rows(size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::sort(rows.begin(), rows.end(),
+            [&](std::size_t a, std::size_t b) { return integers_[a * integers] < integers_[b * integers]; });
+  return rows;
+}
+
+EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<SpreadRequest>& spreads)
+    : group_(std::move(group)), scene_(std::move(scene)), layout_(replica_layout(scene_)),
+      table_(layout_.numbers.size()) {
+  for (const SpreadRequest& request : spreads) {
+    const auto found =
+        std::find_if(layout_.quantities.begin(), layout_.quantities.end(),
+                     [&](const Quantity& quantity) { return quantity.group + "/" + quantity.name == request.name; });
+    if (found == layout_.quantities.end())
+      throw Error({"--spread", 0, ""}, "nothing of this name in the series or profiles", request.name,
+                  "choose one of those that `cradle info` lists for a result of this scene");
+    spread_of_.push_back({request, static_cast<std::size_t>(found - layout_.quantities.begin())});
+    spreads_.emplace_back(request.bins, found->size());
+  }
+}
+
+void EnsembleState::add(const ReplicaRow& row, std::vector<double> values) {
+  check_length(values.size());
+  {
+    const std::scoped_lock lock(mutex_);
+    table_.add(row);
+    for (std::size_t k = 0; k < spreads_.size(); ++k) {
+      const Quantity& quantity = layout_.quantities[spread_of_[k].quantity];
+      spreads_[k].add(std::span(values).subspan(quantity.offset, quantity.size()));
+    }
+  }
+  tree_.add(row.index, std::move(values));
+}
+
+void EnsembleState::fail(ReplicaIndex replica, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');  // a line each in result files
+  {
+    const std::scoped_lock lock(mutex_);
+    table_.add({replica, ReplicaOutcome::failed, 0, 0, {}});
+    failures_.emplace(replica, std::move(message));
+  }
+  tree_.add(replica, std::nullopt);
+}
+
+EnsembleState::Outcomes EnsembleState::outcomes() const {
+  const std::scoped_lock lock(mutex_);
+  Outcomes counts{};
+  for (std::size_t k = 0; k < table_.size(); ++k) ++counts.at(static_cast<std::size_t>(table_[k].outcome));
+  return counts;
+}
+
+bool EnsembleState::holds_all_of(const EnsembleState& other) const {
+  for (const ReplicaRange& range : other.tree_.present())
+    if (!tree_.missing(range).empty()) return false;
+  return true;
+}
+
+bool EnsembleState::holds_any_of(const EnsembleState& other) const {
+  for (const ReplicaRange& range : other.tree_.present())
+    if (tree_.overlaps(range)) return true;
+  return false;
+}
+
+void EnsembleState::take(EnsembleState& other) {
+  for (std::size_t k = 0; k < other.table_.size(); ++k) table_.add(other.table_[k]);
+  failures_.merge(other.failures_);
+  for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].add(other.spreads_[k]);
+  for (TreeNode& node : other.tree_.nodes()) tree_.add(std::move(node));
+}
+
+void EnsembleState::check_length(std::size_t entries) const {
+  if (entries != layout_.entries)
+    throw Error({}, "an ensemble of other quantities", fmt::format("{} numbers a replica", entries),
+                fmt::format("this version records {}: use the program that wrote it", layout_.entries), Exit::io);
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,113 @@
+// One ensemble in memory: statistics of all quantities over replicas (core/ensemble/tree.hpp), the table of replicas,
+// messages of those that failed, and counts in fixed bins where asked for. It goes to journals and between ranks as
+// records, and to result files as groups; both keep every bit, so that ensembles can be continued and merged.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cradle/core/ensemble.hpp"
+#include "cradle/tools/ensemble/bytes.hpp"
+#include "cradle/tools/ensemble/journal.hpp"
+#include "cradle/tools/ensemble/layout.hpp"
+
+namespace cradle::tools {
+
+/// Bins for the values of a quantity: "series/energy", "profiles/0000/velocity".
+struct SpreadRequest {
+  std::string name;
+  FixedBins bins;
+  bool operator==(const SpreadRequest&) const = default;
+};
+
+/// Rows as they come, numbers side by side: some 50 bytes a replica.
+class ReplicaTable {
+ public:
+  explicit ReplicaTable(std::size_t numbers) : width_(numbers) {}
+
+  void add(const ReplicaRow& row);
+  std::size_t size() const { return integers_.size() / integers; }
+  ReplicaRow operator[](std::size_t k) const;
+  /// Numbers of the rows by increasing index.
+  std::vector<std::size_t> order() const;
+
+ private:
+  static constexpr std::size_t integers = 4;
+  std::size_t width_;
+  std::vector<std::uint64_t> integers_;  // index, outcome, contacts, merges
+  std::vector<double> numbers_;
+};
+
+class EnsembleState {
+ public:
+  using Outcomes = std::array<std::uint64_t, outcome_count>;
+
+  /// `group` is where it stands in a result file: "" for the whole file, or "points/0003". Throws Error for a scene
+  /// that no ensemble can be made of.
+  EnsembleState(std::string group, Scene scene, const std::vector<SpreadRequest>& spreads);
+
+  const std::string& group() const { return group_; }
+  const Scene& scene() const { return scene_; }
+  const ReplicaLayout& layout() const { return layout_; }
+
+  /// Both may be called from several threads, for replicas that are not there yet.
+  void add(const ReplicaRow& row, std::vector<double> values);
+  void fail(ReplicaIndex replica, std::string message);
+
+  const MomentTree& replicas() const { return tree_; }
+  Outcomes outcomes() const;
+  const ReplicaTable& table() const { return table_; }
+  const std::map<ReplicaIndex, std::string>& failures() const { return failures_; }
+  const std::vector<Histograms>& spreads() const { return spreads_; }
+
+  bool holds_all_of(const EnsembleState& other) const;
+  bool holds_any_of(const EnsembleState& other) const;
+  /// The other's replicas join these; there must be none in common.
+  void take(EnsembleState& other);
+
+  // ---- as records; `point` is the number of this ensemble among those of a sweep
+  static std::string record(std::uint64_t point, const ReplicaRow& row, const std::vector<double>& values);
+  static std::string record(std::uint64_t point, ReplicaIndex failed, const std::string& message);
+  /// All there is, for a set that is read from nothing else.
+  void put_records(std::uint64_t point, const JournalWriter::Put& put) const;
+  /// The point that a record belongs to comes first in it.
+  static std::uint64_t point(std::string_view record) { return ByteReader(record).integer(); }
+  /// How many replicas a record tells of.
+  static std::uint64_t replicas_in(std::string_view record);
+  /// A replica that is there already is passed over. Throws Error (Exit::io) for what is no record.
+  void apply(std::string_view record);
+
+  // ---- as groups of a result file
+  std::vector<Group> groups() const;
+  /// Throws Error (Exit::io) where the file does not hold what groups() wrote for this scene.
+  void read(const Result& result, const std::string& file);
+
+ private:
+  struct SpreadOf {
+    SpreadRequest request;
+    std::size_t quantity = 0;  // of the layout
+  };
+
+  std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
+  void check_length(std::size_t entries) const;
+  Group quantity_group(const Quantity& quantity, const Moments& total) const;
+  Group spread_group(std::size_t k) const;
+  Group replica_group() const;
+
+  std::string group_;
+  Scene scene_;
+  ReplicaLayout layout_;
+  MomentTree tree_;
+  mutable std::mutex mutex_;  // of all that follows
+  ReplicaTable table_;
+  std::map<ReplicaIndex, std::string> failures_;
+  std::vector<SpreadOf> spread_of_;
+  std::vector<Histograms> spreads_;
+};
+
+}  // namespace cradle::tools

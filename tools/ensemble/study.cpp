@@ -1,0 +1,77 @@
+#include "cradle/tools/ensemble/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "cradle/tools/ensemble/checksum.hpp"
+#include "cradle/tools/support/version.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+// Bodies listed in a file are part of the scene.
+std::uint64_t list_checksum(const Scene& scene) {
+  if (scene.initial.type != InitialType::list || !scene.initial.file) return 0;
+  std::ifstream file(std::filesystem::path(scene.folder) / *scene.initial.file, std::ios::binary);
+  return crc64(std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
+}  // namespace
+
+std::string scene_difference(const Scene& found, const Scene& wanted) {
+  const auto of_found = values(found, true), of_wanted = values(wanted, true);
+  const std::map<std::string, std::string> old(of_found.begin(), of_found.end());
+  for (const auto& [key, value] : of_wanted) {
+    const auto at = old.find(key);
+    if (at == old.end()) return fmt::format("no {}, here {}", key, value);
+    if (at->second != value) return fmt::format("{} = {}, here {}", key, at->second, value);
+  }
+  return of_found.size() == of_wanted.size() ? "" : "keys that this one has not";
+}
+
+std::uint64_t Study::identity() const {
+  ByteWriter all;
+  all.put(version).put(kind);
+  for (const Point& point : points)
+    all.put(point.group).put(effective_toml(point.scene)).put(list_checksum(point.scene));
+  for (const auto& [name, bins] : spreads) all.put(name).put(bins.from).put(bins.to).put(std::uint64_t{bins.bins});
+  return crc64(all.bytes());
+}
+
+Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads) {
+  for (SpreadRequest& spread : spreads)
+    if (!spread.name.starts_with("series/") && !spread.name.starts_with("profiles/") &&
+        !spread.name.starts_with("zone/"))
+      spread.name = "series/" + spread.name;
+  std::sort(spreads.begin(), spreads.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return {.scene = scene, .points = {{"", scene}}, .spreads = std::move(spreads)};
+}
+
+std::string study_kind(const Result& result, const std::string& file) {
+  for (const auto& [name, value] : result.attributes)
+    if (name == "kind") return std::get<std::string>(value);
+  throw Error({file, 0, ""}, "holds no ensemble", "a single run, or another command's result",
+              "give a file that `cradle ensemble` or `cradle sweep` wrote");
+}
+
+Study ensemble_in(const Result& result, const std::string& file) {
+  std::vector<SpreadRequest> spreads;
+  const std::string under = "ensemble/spread/";
+  for (const Group& group : result.groups)
+    if (group.name.starts_with(under) && !group.columns.empty())
+      spreads.push_back(
+          {group.name.substr(under.size()),
+           {attribute<double>(group.attributes, "from", file), attribute<double>(group.attributes, "to", file),
+            attribute<std::uint64_t>(group.attributes, "bins", file)}});
+  Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", file), file);
+  scene.name = attribute<std::string>(result.attributes, "name", file);
+  return ensemble_of(scene, std::move(spreads));
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,33 @@
+// A parameter sweep: the points that a scene is varied over, each an ensemble of its own in one file, and a table of
+// what the points have come to.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/tools/ensemble/store.hpp"
+
+namespace cradle::tools {
+
+/// What is set at a point: keys and values as `--set` takes them.
+using SweepPoint = std::vector<std::pair<std::string, std::string>>;
+
+/// The points of a sweep, in order: those given one by one, then all combinations of the varied keys, the last one
+/// varying fastest, or (cuts) one key after the other. A key is varied by KEY=FROM:TO:COUNT, evenly, both ends
+/// included, KEY=FROM:TO:COUNT:log, evenly in the logarithm, or KEY=VALUE,VALUE,... Throws Error naming what cannot be
+/// read.
+std::vector<SweepPoint> sweep_points(const Sweep& sweep);
+
+/// The study of a scene at these points, which are set on top of what `overrides` sets. Throws Error for a point that
+/// makes no scene, naming it.
+///
+/// In the file: `/sweep` with a column for every key that takes numbers (named as the key; NaN at points that do not
+/// set it), `label`s as attributes, and for every number of the replicas (contacts, energy, ...) its mean over them and
+/// the standard error of that (`_error`); `/points/0000` and so on, the ensembles.
+Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep);
+
+/// The sweep that a file holds, its points as they stand there. Throws Error (Exit::io) for a damaged one.
+Study sweep_in(const Result& result, const std::string& file);
+
+}  // namespace cradle::tools

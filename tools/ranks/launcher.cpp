@@ -1,0 +1,45 @@
+// Whether this process is one of several. MPI_Init without a launcher costs 0.3 s, so it is called only under one.
+#include <cstdlib>
+#include <initializer_list>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "cradle/tools/ranks/crew.hpp"
+#ifdef CRADLE_WITH_MPI
+#include "cradle/tools/ranks/mpi_crew.hpp"
+#endif
+
+namespace cradle::tools {
+
+namespace {
+
+// Open MPI; MPICH, Intel MPI and Slurm by PMI; Slurm by PMIx.
+bool launched() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_SIZE", "PMI_FD", "PMIX_RANK"})
+    if (std::getenv(name) != nullptr) return true;
+  return false;
+}
+
+// As far as the launcher says.
+int processes() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
+    if (const char* size = std::getenv(name)) return std::atoi(size);
+  return 1;
+}
+
+}  // namespace
+
+std::unique_ptr<Crew> make_crew() {
+  if (!launched()) return std::make_unique<Alone>();
+#ifdef CRADLE_WITH_MPI
+  return make_mpi_crew(processes());
+#else
+  if (processes() > 1)
+    throw Error("this program cannot share work between processes (" + std::to_string(processes()) +
+                " were launched): build it where MPI is found, or run it without a launcher");
+  return std::make_unique<Alone>();
+#endif
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,179 @@
+#include "cradle/tools/run/clusters.hpp"
+
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+
+#include <csignal>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/theory/wet_clusters.hpp"
+#include "cradle/tools/run/schedule.hpp"
+#include "cradle/tools/support/interrupt.hpp"
+#include "cradle/tools/support/version.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+namespace odeint = boost::numeric::odeint;
+
+// Of a step of the integrator, in units of L and u0; x is right to about 1000 of them at t = 1e4 (closed form of (17)).
+constexpr double tolerance = 1e-12;
+
+using Stepper = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<theory::ClusterState>>::type;
+using Motion = theory::ClusterMotion<theory::ZoneForce, Stepper>;
+
+theory::WetZone<double> zone_of(const Scene& scene) {
+  return theory::WetZone<double>({scene.law.loss.value, scene.initial.speed.value, scene.initial.spacing.value});
+}
+
+Motion motion_of(const Scene& scene, const theory::WetZone<double>& zone) {
+  const Initial& initial = scene.initial;
+  const auto meeting = static_cast<theory::Meeting>(initial.meeting);
+  const theory::ClusterRules rules{1, scene.law.loss.value, meeting, zone.half_width(), initial.speed.value};
+  const double incoming = 2 * initial.speed.value / initial.spacing.value;  // mass per time, from both sides
+  const auto start = [&](std::size_t i) {
+    return theory::ClusterStart{initial.x[i].value, initial.v[i].value, initial.growth[i].value * incoming};
+  };
+  const auto stepper =
+      odeint::make_dense_output(tolerance, tolerance, odeint::runge_kutta_dopri5<theory::ClusterState>());
+  return {theory::ZoneForce(zone), rules, {start(0), start(1)}, scene.run.start.value, stepper};
+}
+
+class Recorder {
+ public:
+  void add(double time, const Motion& motion, double loss) {
+    const auto first = motion.first();
+    const auto second = motion.second();
+    time_.push_back(time);
+    energy_.push_back(kinetic(first) + (second ? kinetic(*second) : 0));
+    const auto& meetings = motion.meetings();
+    for (; seen_ < meetings.size(); ++seen_) {
+      total_lost_ += meetings[seen_].stuck ? meetings[seen_].relative_energy : loss;
+      total_merges_ += meetings[seen_].stuck;
+    }
+    lost_.push_back(total_lost_);
+    contacts_.push_back(seen_);
+    merges_.push_back(total_merges_);
+    const bool swapped = second && !motion.first_is_left();
+    if (!swapped) add(0, first);
+    if (second)
+      add(1, *second);
+    else
+      add(std::numeric_limits<std::uint64_t>::max(), {none, none, none});
+    if (swapped) add(0, first);
+  }
+
+  double energy() const { return energy_.back(); }
+  std::uint64_t merges() const { return total_merges_; }
+
+  void tables(std::vector<Group>& groups) && {
+    groups.push_back({"series",
+                      {},
+                      {{"time", "t", "a sample is the state after all meetings at times <= t", std::move(time_)},
+                       {"energy", "m l^2/t^2", "kinetic energy of the two clusters", std::move(energy_)},
+                       {"energy_lost", "m l^2/t^2", "energy lost where they met", std::move(lost_)},
+                       {"contacts", "1", "how often they have met", std::move(contacts_)},
+                       {"merges", "1", "how often they have stuck", std::move(merges_)}}});
+    groups.push_back({"series/heaviest",
+                      {},
+                      {{"mass", "m", "of the two clusters, the left and the right one", std::move(mass_), 2},
+                       {"x", "l", "their positions", std::move(x_), 2},
+                       {"v", "l/t", "their velocities", std::move(v_), 2},
+                       {"index", "1", "0 or 1, which of the two at the start", std::move(index_), 2, true}}});
+  }
+
+ private:
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  static double kinetic(const theory::Cluster& c) { return c.mass * c.v * c.v / 2; }
+  void add(std::uint64_t index, const theory::Cluster& c) {
+    mass_.push_back(c.mass);
+    x_.push_back(c.x);
+    v_.push_back(c.v);
+    index_.push_back(index);
+  }
+
+  std::vector<double> time_, energy_, lost_, mass_, x_, v_;
+  std::vector<std::uint64_t> contacts_, merges_, index_;
+  std::size_t seen_ = 0;  // meetings until now, and what they came to
+  double total_lost_ = 0;
+  std::uint64_t total_merges_ = 0;
+};
+
+Group force_table(const theory::WetZone<double>& zone) {
+  constexpr int steps = 400;
+  std::vector<double> x, force, printed;
+  for (int k = 0; k <= steps; ++k) {
+    x.push_back(zone.width() * (2. * k / steps - 1));
+    force.push_back(zone.force(x.back()));
+    printed.push_back(zone.force_printed(x.back()));
+  }
+  return {"force",
+          {{"half_width", zone.half_width()},
+           {"outer_force", zone.row_force()},
+           {"outer_force_printed", zone.row_force_printed()}},
+          {{"x", "l", "position of a heavy cluster", std::move(x)},
+           {"force", "m l/t^2", "force on it, equations (14) and (15)", std::move(force)},
+           {"force_printed", "m l/t^2", "the same with the outer force as printed, n0 E_loss", std::move(printed)}}};
+}
+
+Group meetings_table(const std::vector<theory::ClusterMeeting>& meetings) {
+  std::vector<double> time, x, speed, energy;
+  std::vector<std::uint64_t> stuck;
+  for (const auto& meeting : meetings) {
+    time.push_back(meeting.time);
+    x.push_back(meeting.x);
+    speed.push_back(meeting.closing_speed);
+    energy.push_back(meeting.relative_energy);
+    stuck.push_back(meeting.stuck);
+  }
+  return {"meetings",
+          {},
+          {{"time", "t", "when the clusters met", std::move(time)},
+           {"x", "l", "where", std::move(x)},
+           {"closing_speed", "l/t", "closing speed before", std::move(speed)},
+           {"relative_energy", "m l^2/t^2", "mu w^2/2 before, to be compared with E_loss", std::move(energy)},
+           {"stuck", "1", "1 where they stuck, 0 where they passed", std::move(stuck)}}};
+}
+
+}  // namespace
+
+RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
+  if (options.trace)
+    throw Error({"", 0, "initial.type"}, "no contacts to compare", "clusters, a model", "give a scene of bodies");
+  const auto zone = zone_of(scene);
+  Motion motion = motion_of(scene, zone);
+  const double loss = scene.initial.meeting == Meeting::energy ? scene.law.loss.value : 0;
+  Recorder recorder;
+  RunOutcome end;
+  std::string outcome = "reached the end";
+  for (const double time : series_times<double>(scene.output.series, scene.run.start.value, scene.run.until.value)) {
+    motion.advance(time);
+    recorder.add(time, motion, loss);
+    if (noted_signal() == 0) continue;
+    outcome = "interrupted";
+    end.status = noted_signal() == SIGINT ? Exit::interrupted : Exit::terminated;
+    break;
+  }
+  if (end.status == Exit::done) motion.advance(scene.run.until.value);
+  end.contacts = motion.meetings().size();
+  end.merges = recorder.merges();
+  end.energy = recorder.energy();
+  end.result.attributes = {{"format_version", std::uint64_t{1}},
+                           {"cradle_version", std::string(version)},
+                           {"scene", effective_toml(scene)},
+                           {"name", scene.name},
+                           {"precision", precision_name(scene.run)},
+                           {"outcome", outcome},
+                           {"integrator", std::string("Dormand-Prince 5(4), steps end where the force jumps")},
+                           {"relative_tolerance", tolerance},
+                           {"absolute_tolerance", tolerance}};  // of x in L, of v in u0
+  std::move(recorder).tables(end.result.groups);
+  end.result.groups.push_back(meetings_table(motion.meetings()));
+  end.result.groups.push_back(force_table(zone));
+  return end;
+}
+
+}  // namespace cradle::tools

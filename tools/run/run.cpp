@@ -1,0 +1,63 @@
+#include "cradle/tools/run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <type_traits>
+
+#include "cradle/tools/run/clusters.hpp"
+#include "cradle/tools/run/in_precision.hpp"
+
+namespace cradle::tools {
+
+// Compiled once per scalar type, in a source of its own: instances/ of the build tree.
+template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options);
+
+namespace {
+
+[[noreturn]] void not_built(const std::string& key, const std::string& found, const std::string& built) {
+  throw Error({"", 0, key}, "not in this build", found, "choose " + built);
+}
+
+}  // namespace
+
+ScalarChoice scalar_choice(const Run& run) {
+  switch (run.precision) {
+  case Precision::double_:
+    return {"double", 0};
+  case Precision::long_double:
+    return {"long double", 0};
+  case Precision::double_double:
+    return {"double-double", 0};
+  case Precision::float128:
+    return {"float128", 0};
+  case Precision::cpp_bin_float:
+    return {"cpp_bin_float", 0};
+  case Precision::mpfr:
+    return {"mpfr", static_cast<unsigned>(run.digits)};
+  }
+  return {};
+}
+
+std::string precision_name(const Run& run) {
+  const ScalarChoice choice = scalar_choice(run);
+  return choice.digits > 0 ? fmt::format("{}, {} digits", choice.name, choice.digits) : choice.name;
+}
+
+void check_built(const Scene& scene) {
+  if (scene.initial.type == InitialType::clusters && scene.run.precision != Precision::double_)
+    not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
+  const bool merging = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
+  if (scene.run.coordinates == Coordinates::absolute) {
+    if (merging) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
+    if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
+  }
+  in_precision<void>(scene, [](auto) {});
+}
+
+RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
+  check_built(scene);
+  if (scene.initial.type == InitialType::clusters) return run_clusters(scene, options);
+  return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, options); });
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,50 @@
+// One run of a scene: initial state, engine, observers, result.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/support/errors.hpp"
+#include "cradle/tools/support/progress.hpp"
+
+namespace cradle::tools {
+
+/// One sample of a run that is compared with others: what they must agree in, numbers with all their digits.
+struct TraceSample {
+  double time = 0;
+  std::uint64_t digest = 0;  // of the contacts so far, see core/observe/trace.hpp
+  std::uint64_t contacts = 0, merges = 0;
+  std::string energy, front;  // front: the right one, empty before the first contact
+};
+
+struct RunOptions {
+  Progress::Show progress = Progress::Show::on_terminal;
+  bool trace = false;  // take trace samples at the times of the series
+};
+
+struct RunOutcome {
+  Result result;
+  Exit status = Exit::done;
+  std::string report;   // of a collapse, for standard output; else empty
+  std::string warning;  // what was not resolved, for standard error; else empty
+  std::vector<TraceSample> trace;
+  std::string collapse_time;               // where the run stopped at a collapse
+  std::uint64_t contacts = 0, merges = 0;  // at the end, as is the energy
+  double energy = 0;
+  std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
+};
+
+/// "double", "mpfr, 50 digits", ...
+std::string precision_name(const Run& run);
+
+/// Throws Error for a scene that this build cannot run, naming the key.
+void check_built(const Scene& scene);
+
+/// Runs the scene in its precision, coordinates and law. Throws Error for what this build cannot do.
+RunOutcome run_scene(const Scene& scene, const RunOptions& options);
+
+}  // namespace cradle::tools

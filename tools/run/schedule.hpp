@@ -1,0 +1,71 @@
+// When a run is looked at: the times of series, snapshots and whatever else a scene wants in the working precision, and
+// their union.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cradle/tools/run/initial_state.hpp"
+
+namespace cradle::tools {
+
+template <Real T> struct Schedule {
+  std::vector<T> series, snapshots, profiles, masses, zone;  // each increasing
+  std::vector<T> stops;                                      // their union
+};
+
+/// Logarithmic spacing starts at this share of the run: six points per decade would need 36 for it.
+inline constexpr double first_log_share = 1e-6;
+
+template <Real T> std::vector<T> series_times(const Series& series, const T& start, const T& until) {
+  std::vector<T> times;
+  const T span = until - start;
+  if (!series.times.empty()) {
+    for (const auto& time : series.times) times.push_back(number<T>(time));
+  } else if (series.every) {
+    const T step = number<T>(*series.every);
+    for (std::int64_t k = 0;; ++k) {
+      const T time = start + T(k) * step;
+      if (time > until) break;
+      times.push_back(time);
+    }
+  } else {
+    const auto points = static_cast<std::int64_t>(*series.points);
+    if (series.spacing == Spacing::linear) {
+      for (std::int64_t k = 0; k + 1 < points; ++k) times.push_back(start + span * T(k) / T(points - 1));
+    } else {  // any numbers will do as times: shares of the span in double, the same in every precision
+      times.push_back(start);
+      for (std::int64_t k = 0; k + 2 < points; ++k) {
+        const double part = static_cast<double>(k) / static_cast<double>(std::max<std::int64_t>(points - 2, 1));
+        times.push_back(start + span * from_text<T>(fmt::format("{}", std::pow(first_log_share, 1 - part))));
+      }
+    }
+    if (times.empty() || times.back() < until) times.push_back(until);
+  }
+  return times;
+}
+
+template <Real T> Schedule<T> schedule(const Scene& scene) {
+  const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
+  Schedule<T> plan{series_times(scene.output.series, start, until), {}, {}, {}, {}, {}};
+  for (const auto& time : scene.output.snapshots) plan.snapshots.push_back(number<T>(time));
+  for (const auto& time : scene.output.profiles.times) plan.profiles.push_back(number<T>(time));
+  for (const auto& time : scene.output.masses) plan.masses.push_back(number<T>(time));
+  const Zone& zone = scene.output.zone;
+  if (zone.from) {
+    const T from = number<T>(*zone.from);
+    const auto samples = static_cast<std::int64_t>(zone.samples);
+    for (std::int64_t k = 0; k < samples; ++k) plan.zone.push_back(from + (until - from) * T(k) / T(samples));
+  }
+  for (const auto* times : {&plan.series, &plan.snapshots, &plan.profiles, &plan.masses, &plan.zone})
+    plan.stops.insert(plan.stops.end(), times->begin(), times->end());
+  plan.stops.push_back(until);
+  std::sort(plan.stops.begin(), plan.stops.end());
+  plan.stops.erase(std::unique(plan.stops.begin(), plan.stops.end()), plan.stops.end());
+  return plan;
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,162 @@
+#include "cradle/tools/run/trust.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "cradle/core/real.hpp"
+#include "cradle/precision/bin_float.hpp"
+#include "cradle/tools/support/version.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr double most_digits = 100;  // to which numbers are compared
+
+struct Traced {
+  Scene scene;
+  RunOutcome outcome;
+  double seconds;
+};
+
+Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
+  scene.run.precision = digits == 16 ? Precision::double_ : digits == 31 ? Precision::double_double : Precision::mpfr;
+  scene.run.digits = scene.run.precision == Precision::mpfr ? digits : 0;
+  scene.run.coordinates = coordinates;
+  scene.output.events = false;
+  scene.output.snapshots.clear();
+  scene.output.profiles.times.clear();
+  return scene;
+}
+
+Traced traced(const Scene& scene, Progress::Show progress) {
+  const auto started = std::chrono::steady_clock::now();
+  RunOutcome outcome = run_scene(scene, {progress, true});
+  if (outcome.status == Exit::interrupted || outcome.status == Exit::terminated)
+    throw Error({}, "interrupted", "", "run it again; nothing is kept of comparisons that did not finish",
+                outcome.status);
+  return {scene, std::move(outcome), std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
+}
+
+// Decimal digits that two numbers share: -log10 of their difference against their size or, where that is given,
+// `scale`.
+double shared_digits(const std::string& a, const std::string& b, const std::string& scale = "0") {
+  if (a == b) return most_digits;
+  if (a.empty() || b.empty()) return 0;
+  const auto x = from_text<bin_float>(a), y = from_text<bin_float>(b);
+  const bin_float size = std::max({magnitude(x), magnitude(y), magnitude(from_text<bin_float>(scale))});
+  const bin_float apart = magnitude(bin_float(x - y));
+  if (apart == 0) return most_digits;
+  const auto digits = -static_cast<double>(log10(bin_float(apart / size)));
+  return digits > 0 ? std::min(digits, most_digits) : 0.0;
+}
+
+// Number of leading samples that agree for good: a contact just at a sample's time may fall on either side of it.
+template <class Same> std::size_t agreeing(std::size_t samples, Same same) {
+  std::size_t end = samples;
+  while (end > 0 && !same(end - 1)) --end;
+  return end;
+}
+
+Trusted compare(const Traced& run, const Traced& reference) {
+  const auto &a = run.outcome.trace, &b = reference.outcome.trace;
+  Trusted trusted;
+  trusted.precision = precision_name(run.scene.run);
+  trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
+  trusted.seconds = run.seconds;
+  trusted.outcome = attribute<std::string>(run.outcome.result.attributes, "outcome", "");
+  const std::size_t samples = std::min(a.size(), b.size());
+  const std::size_t same = agreeing(samples, [&](std::size_t k) { return a[k].digest == b[k].digest; });
+  const std::size_t counted =
+      agreeing(samples, [&](std::size_t k) { return a[k].contacts == b[k].contacts && a[k].merges == b[k].merges; });
+  if (same > 0) trusted.time = a[same - 1].time, trusted.contacts = a[same - 1].contacts;
+  if (counted > 0) trusted.counts_time = a[counted - 1].time;
+  trusted.to_end = same == a.size() && a.size() == b.size();
+  for (std::size_t k = 0; k < samples; ++k) {
+    trusted.times.push_back(a[k].time);
+    trusted.energy_digits.push_back(shared_digits(a[k].energy, b[k].energy, b[0].energy));
+    trusted.front_digits.push_back(shared_digits(a[k].front, b[k].front));
+  }
+  if (!run.outcome.collapse_time.empty() && !reference.outcome.collapse_time.empty())
+    trusted.collapse_digits = shared_digits(run.outcome.collapse_time, reference.outcome.collapse_time);
+  return trusted;
+}
+
+bool agree(const Traced& a, const Traced& b) {
+  const Trusted t = compare(a, b);
+  return t.to_end && *std::min_element(t.energy_digits.begin(), t.energy_digits.end()) >= 15;
+}
+
+}  // namespace
+
+std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
+  std::vector<Traced> runs;
+  const auto add = [&](unsigned digits) {
+    if (options.both && scene.law.type == LawType::inelastic && scene.run.collapse != CollapsePolicy::merge)
+      runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options.progress));
+    runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options.progress));
+  };
+  if (!options.digits.empty()) {
+    for (const unsigned digits : options.digits) add(digits);
+  } else {
+    for (const unsigned digits : {16U, 31U, 50U, 100U, 200U, 400U}) {
+      add(digits);
+      const std::size_t step = options.both ? 2 : 1;
+      if (runs.size() > 2 * step && agree(runs[runs.size() - 1 - step], runs.back())) break;
+    }
+  }
+  std::vector<Trusted> table;
+  for (const auto& run : runs) table.push_back(compare(run, runs.back()));
+  return table;
+}
+
+std::string trust_table(const std::vector<Trusted>& runs) {
+  const auto digits = [](double d) { return d >= most_digits ? std::string("all") : fmt::format("{:.1f}", d); };
+  std::string text =
+      fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13}{:>10}{:>10}{:>9}{:>9}\n", "precision", "in", "contacts right until t",
+                  "contact", "counts until", "energy", "front", "t_c", "seconds");
+  for (const auto& run : runs) {
+    const bool reference = &run == &runs.back();
+    const auto last = [&](const std::vector<double>& d) { return d.empty() ? std::string("-") : digits(d.back()); };
+    const auto upto = reference    ? std::string("(reference)")
+                      : run.to_end ? fmt::format("{:.8g} (end)", run.time)
+                                   : fmt::format("{:.8g}", run.time);
+    text += fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13.8g}{:>10}{:>10}{:>9}{:>9.2f}\n", run.precision, run.coordinates,
+                        upto, run.contacts, run.counts_time, last(run.energy_digits), last(run.front_digits),
+                        run.collapse_digits < 0 ? "-" : digits(run.collapse_digits), run.seconds);
+  }
+  text += "\nTimes are those of samples (output.series). Right: the same sequence of contacts at every body as the "
+          "reference.\n"
+          "energy (against that at the start), front: digits shared with the reference at the last sample; t_c: of the "
+          "collapse time.\n";
+  return text;
+}
+
+Result trust_result(const Scene& scene, const std::vector<Trusted>& runs) {
+  Result result;
+  result.attributes = {{"format_version", std::uint64_t{1}}, {"cradle_version", std::string(version)},
+                       {"scene", effective_toml(scene)},     {"name", scene.name},
+                       {"precision", runs.back().precision}, {"outcome", std::string("comparison of precisions")}};
+  for (const auto& run : runs) {
+    Group group{fmt::format("trust/{:04}", result.groups.size()), {}, {}};
+    group.attributes = {{"precision", run.precision},
+                        {"coordinates", run.coordinates},
+                        {"outcome", run.outcome},
+                        {"contacts_right_until", run.time},
+                        {"contacts_right", run.contacts},
+                        {"counts_right_until", run.counts_time},
+                        {"right_to_end", std::uint64_t{run.to_end}}};
+    group.columns = {{"time", "t", "of the sample", run.times},
+                     {"energy_digits", "1",
+                      "decimal digits shared with the reference, the last run here, against the energy at the start",
+                      run.energy_digits},
+                     {"front_digits", "1", "the same of the right front", run.front_digits}};
+    result.groups.push_back(std::move(group));
+  }
+  return result;
+}
+
+}  // namespace cradle::tools

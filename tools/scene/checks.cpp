@@ -1,0 +1,172 @@
+// Each check is one function; all comparisons are exact, on the decimals.
+#include "cradle/tools/scene/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "cradle/core/theory/wet_zone.hpp"
+#include "cradle/tools/scene/fields.hpp"
+
+namespace cradle::tools {
+namespace {
+
+class Checks {
+ public:
+  Checks(const Scene& scene, const Entries& entries, const std::string& scene_file)
+      : scene_(scene), entries_(entries), scene_file_(scene_file) {}
+
+  void rows_meet() const {
+    if (!scene_.initial.general_rows()) return;
+    const Row& left = scene_.initial.left;
+    const Row& right = scene_.initial.right;
+    const Centre& centre = scene_.initial.centre;
+    if (left.speed <= right.speed)
+      throw Error(place("initial.right.speed"), "the rows do not meet",
+                  fmt::format("left row at {}, right row at {}", left.speed.text, right.speed.text),
+                  "give the right row a lower velocity than the left row");
+    if (centre.mass == Decimal("0")) {
+      if (entries_.contains("initial.centre.speed") && !entries_.contains("initial.centre.mass"))
+        throw Error(place("initial.centre.speed"), "speed of a body that is not there", "initial.centre.mass = 0",
+                    "give initial.centre.mass too, or remove this key");
+      return;
+    }
+    if (centre.speed > left.speed || centre.speed < right.speed)
+      throw Error(place("initial.centre.speed"), "a row does not reach the body between the rows",
+                  fmt::format("left row at {}, centre at {}, right row at {}", left.speed.text, centre.speed.text,
+                              right.speed.text),
+                  "give a velocity between those of the rows");
+  }
+
+  void one_list_of_bodies() const {
+    const Initial& initial = scene_.initial;
+    if (initial.type != InitialType::list) return;
+    const bool inline_bodies = !initial.x.empty() || entries_.contains("initial.x");
+    if (initial.file && inline_bodies)
+      throw Error(place("initial.file"), "two lists of bodies", "initial.file and initial.x", "remove one of them");
+    if (initial.file) {
+      if (initial.file->empty())
+        throw Error(place("initial.file"), "no file name", "an empty text", "name a CSV file of bodies");
+      for (const char* key : {"initial.v", "initial.m"})
+        if (entries_.contains(key))
+          throw Error(place(key), "two lists of bodies", "initial.file too",
+                      "put it into the file, or remove the file");
+      return;
+    }
+    if (!inline_bodies)
+      throw Error(place("initial.file"), "missing", "", "name a CSV file of bodies, or give initial.x and initial.v");
+    if (initial.x.empty()) throw Error(place("initial.x"), "no bodies", "an empty list", "give at least one position");
+    same_length("initial.v", initial.v.size());
+    if (entries_.contains("initial.m")) same_length("initial.m", initial.m.size());
+    for (std::size_t i = 1; i < initial.x.size(); ++i)
+      if (initial.x[i] <= initial.x[i - 1])
+        throw Error(item_place("initial.x", i),
+                    initial.x[i] == initial.x[i - 1] ? "coincident bodies" : "not increasing",
+                    fmt::format("{} after {}", initial.x[i].text, initial.x[i - 1].text), "give increasing positions");
+  }
+
+  void two_clusters() const {
+    const Initial& initial = scene_.initial;
+    if (initial.type != InitialType::clusters) return;
+    if (scene_.law.type != LawType::wet)
+      throw Error(place("initial.type"), "clusters need the wet law",
+                  "law.type = " + value_text(*find_field("law.type", scene_), scene_).value(),
+                  "give law.type = \"wet\" or another initial state");
+    for (const auto& [key, numbers] : {std::pair("initial.x", &initial.x), std::pair("initial.v", &initial.v),
+                                       std::pair("initial.growth", &initial.growth)})
+      if (numbers->size() != 2)
+        throw Error(place(key), "not one per cluster", fmt::format("{} for two clusters", numbers->size()),
+                    "give two numbers");
+    if (initial.x[1] <= initial.x[0])
+      throw Error(item_place("initial.x", 1), "not increasing",
+                  fmt::format("{} after {}", initial.x[1].text, initial.x[0].text), "give the left cluster first");
+    if (scene_.run.start < Decimal("0"))
+      throw Error(place("run.start"), "before the clusters begin to grow", scene_.run.start.text, "give 0 or more");
+    try {
+      theory::WetZone<double>({scene_.law.loss.value, initial.speed.value, initial.spacing.value});
+    } catch (const std::domain_error& error) {
+      throw Error(place("law.loss"), error.what(), scene_.law.loss.text, "give another loss or initial.speed");
+    }
+    for (const char* key : {"output.snapshots", "output.profiles.times", "output.masses", "output.events"})
+      if (const auto text = value_text(*find_field(key, scene_), scene_); text && *text != "[]" && *text != "false")
+        throw Error(place(key), "nothing to write", "two clusters in the force of bodies that are not there",
+                    "remove it");
+  }
+
+  void series_has_times() const {
+    if (entries_.contains("output.series.times") && scene_.output.series.times.empty())
+      throw Error(place("output.series.times"), "no times", "an empty list", "give at least one time");
+  }
+
+  void profile_range() const {
+    const auto& range = scene_.output.profiles.range;
+    if (!entries_.contains("output.profiles.range")) return;
+    if (range.size() != 2 || range[0] >= range[1])
+      throw Error(place("output.profiles.range"), "not a range",
+                  range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
+                                    : describe(entries_.find("output.profiles.range")->second),
+                  "give two positions, the lower one first");
+  }
+
+  // A number too large for the working type would be infinite in it. (Too small ones are 0, which the laws take.)
+  void numbers_fit() const {
+    Decimal largest("1.7976931348623157e308");
+    switch (scene_.run.precision) {
+    case Precision::mpfr:
+    case Precision::cpp_bin_float:
+      return;
+    case Precision::long_double:
+    case Precision::float128:
+      largest = Decimal("1.18973149535723176502e4932");
+      break;
+    default:
+      break;
+    }
+    const Decimal lowest('-' + largest.text);
+    for (const Field& field : scene_fields()) {
+      if (!field.when->holds(scene_)) continue;
+      for (const Decimal& number : numbers_of(field, scene_))
+        if (number > largest || number < lowest)
+          throw Error(place(field.key), "too large for the precision",
+                      number.text + " with " + value_text(*find_field("run.precision", scene_), scene_).value(),
+                      "give a smaller number or another run.precision");
+    }
+  }
+
+ private:
+  Place place(std::string_view key) const {
+    const auto entry = entries_.find(key);
+    return entry == entries_.end() ? Place{scene_file_, 0, std::string(key)} : entry->second.place;
+  }
+
+  Place item_place(std::string_view key, std::size_t i) const {
+    const auto entry = entries_.find(key);
+    return entry == entries_.end() ? place(key) : entry->second.items.at(i).place;
+  }
+
+  void same_length(std::string_view key, std::size_t length) const {
+    const std::size_t bodies = scene_.initial.x.size();
+    if (length != bodies)
+      throw Error(place(key), "not one per body", fmt::format("{} for {} positions", length, bodies),
+                  fmt::format("give {} numbers", bodies));
+  }
+
+  const Scene& scene_;
+  const Entries& entries_;
+  const std::string& scene_file_;
+};
+
+}  // namespace
+
+void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file) {
+  const Checks checks(scene, entries, scene_file);
+  checks.rows_meet();
+  checks.one_list_of_bodies();
+  checks.two_clusters();
+  checks.series_has_times();
+  checks.profile_range();
+  checks.numbers_fit();
+}
+
+}  // namespace cradle::tools

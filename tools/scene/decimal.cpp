@@ -1,0 +1,136 @@
+// Decimal literals taken apart: sign, significant digits, and the power of ten of the first of them.
+#include "cradle/tools/scene/decimal.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <stdexcept>
+#include <system_error>
+
+namespace cradle::tools {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::size_t count_digits(std::string_view text) {
+  const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
+  return static_cast<std::size_t>(end - text.begin());
+}
+
+// 0.d1 d2 d3 ... times 10^exponent, d1 and the last digit not 0; no digits for zero.
+struct Parts {
+  bool negative = false;
+  std::string digits;
+  std::int64_t exponent = 0;
+};
+
+Parts parts_of(std::string_view text) {
+  Parts parts;
+  if (text.starts_with('-')) {
+    parts.negative = true;
+    text.remove_prefix(1);
+  }
+  if (const auto e = text.find_first_of("eE"); e != text.npos) {
+    auto power = text.substr(e + 1);
+    if (power.starts_with('+')) power.remove_prefix(1);
+    std::from_chars(power.data(), power.data() + power.size(), parts.exponent);
+    text = text.substr(0, e);
+  }
+  const std::size_t point = std::min(text.find('.'), text.size());
+  parts.digits = text.substr(0, point);
+  if (point < text.size()) parts.digits += text.substr(point + 1);
+  parts.exponent += static_cast<std::int64_t>(point);
+
+  const std::size_t first = parts.digits.find_first_not_of('0');
+  if (first == std::string::npos) return {};
+  parts.exponent -= static_cast<std::int64_t>(first);
+  parts.digits = parts.digits.substr(first, parts.digits.find_last_not_of('0') + 1 - first);
+  return parts;
+}
+
+std::strong_ordering compare_magnitudes(const Parts& a, const Parts& b) {
+  if (a.exponent != b.exponent) return a.exponent <=> b.exponent;
+  return a.digits <=> b.digits;  // both begin with the same power of ten and end without zeros
+}
+
+}  // namespace
+
+std::optional<std::string> canonical_decimal(std::string_view written) {
+  // An underscore stands between two digits, as in TOML.
+  for (std::size_t i = 0; i < written.size(); ++i)
+    if (written[i] == '_' &&
+        (i == 0 || i + 1 == written.size() || !is_digit(written[i - 1]) || !is_digit(written[i + 1])))
+      return {};
+  std::string stripped(written);
+  std::erase(stripped, '_');
+  std::string_view text = stripped;
+
+  std::string result;
+  if (text.starts_with('-')) result = "-";
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+
+  const std::size_t whole = count_digits(text);
+  // TOML refuses leading zeros in a number; a quoted one may have them.
+  const std::size_t zeros = std::min(text.find_first_not_of('0'), whole);
+  result += zeros == whole ? "0" : text.substr(zeros, whole - zeros);
+  text.remove_prefix(whole);
+  std::size_t fraction = 0;
+  if (text.starts_with('.')) {
+    text.remove_prefix(1);
+    fraction = count_digits(text);
+    if (fraction > 0) result.append(".").append(text.substr(0, fraction));
+    text.remove_prefix(fraction);
+  }
+  if (whole + fraction == 0) return {};
+  if (text.empty()) return result;
+
+  if (text.front() != 'e' && text.front() != 'E') return {};
+  text.remove_prefix(1);
+  result += 'e';
+  if (text.starts_with('-')) result += '-';
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  // 18 digits keep every sum of exponents within 64 bits.
+  if (text.empty() || text.size() > 18 || count_digits(text) != text.size()) return {};
+  return result.append(text);
+}
+
+std::strong_ordering compare_decimals(std::string_view a_text, std::string_view b_text) {
+  const Parts a = parts_of(a_text);
+  const Parts b = parts_of(b_text);
+  const auto sign = [](const Parts& p) { return p.digits.empty() ? 0 : p.negative ? -1 : 1; };
+  if (sign(a) != sign(b)) return sign(a) <=> sign(b);
+  if (sign(a) == 0) return std::strong_ordering::equal;
+  return a.negative ? compare_magnitudes(b, a) : compare_magnitudes(a, b);
+}
+
+bool is_whole(std::string_view text) {
+  const Parts parts = parts_of(text);
+  return parts.exponent >= static_cast<std::int64_t>(parts.digits.size());
+}
+
+std::optional<std::uint64_t> decimal_integer(std::string_view text) {
+  Parts parts = parts_of(text);
+  if (parts.digits.empty()) return 0;
+  if (parts.negative || parts.exponent < static_cast<std::int64_t>(parts.digits.size()) || parts.exponent > 20)
+    return {};
+  parts.digits.append(static_cast<std::size_t>(parts.exponent) - parts.digits.size(), '0');
+  std::uint64_t result = 0;
+  const char* end = parts.digits.data() + parts.digits.size();
+  const auto [stop, error] = std::from_chars(parts.digits.data(), end, result);
+  if (error != std::errc() || stop != end) return {};
+  return result;
+}
+
+Decimal::Decimal(std::string_view literal) {
+  auto canonical = canonical_decimal(literal);
+  if (!canonical) throw std::invalid_argument("not a decimal number: " + std::string(literal));
+  text = std::move(*canonical);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) {
+    const Parts parts = parts_of(text);
+    value = parts.exponent < 0 ? 0 : std::numeric_limits<double>::infinity();
+    if (parts.negative) value = -value;
+  }
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,253 @@
+// One value against one row of the table: type, range, storing it, writing it back. What differs between the types of
+// keys is here, one overload per type of member; nothing here knows a particular key.
+#include "cradle/tools/scene/fields.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+namespace cradle::tools {
+namespace {
+
+constexpr std::string_view not_finite[] = {"inf", "+inf", "-inf", "nan", "+nan", "-nan"};
+
+template <class T> constexpr bool is_choice = std::is_enum_v<T>;
+template <class T> constexpr bool is_optional = false;
+template <class T> constexpr bool is_optional<std::optional<T>> = true;
+
+// "[0, 0.5) even" taken apart.
+struct Interval {
+  std::string lower, upper;
+  bool lower_open = false, upper_open = false, even = false;
+};
+
+Interval interval_of(const Field& field) {
+  const std::string_view text = field.range;
+  const auto comma = text.find(", ");
+  const auto close = text.find_first_of(")]");
+  return {std::string(text.substr(1, comma - 1)), std::string(text.substr(comma + 2, close - comma - 2)),
+          text.front() == '(', text[close] == ')', text.ends_with(" even")};
+}
+
+// A bound is a number, "inf" or a key whose value is the bound.
+bool is_key(std::string_view bound) {
+  return bound != "inf" && std::isalpha(static_cast<unsigned char>(bound.front())) != 0;
+}
+
+std::string bound_value(const std::string& bound, const Scene& scene) {
+  return is_key(bound) ? value_text(*find_field(bound, scene), scene).value() : bound;
+}
+
+std::string bound_words(const std::string& bound, const Scene& scene) {
+  return is_key(bound) ? bound + " = " + bound_value(bound, scene) : bound;
+}
+
+std::string range_words(const Interval& range, const Scene& scene) {
+  const auto lower = bound_words(range.lower, scene);
+  const auto upper = bound_words(range.upper, scene);
+  if (range.upper == "inf") {
+    if (range.lower == "-inf") return "";
+    return range.lower_open ? " above " + lower : " of " + lower + " or more";
+  }
+  return fmt::format(" from {}{} to {}{}", range.lower_open ? "above " : "", lower, range.upper_open ? "below " : "",
+                     upper);
+}
+
+bool within(const Interval& range, const std::string& number, const Scene& scene) {
+  if (range.lower != "-inf") {
+    const auto order = compare_decimals(number, bound_value(range.lower, scene));
+    if (range.lower_open ? std::is_lteq(order) : std::is_lt(order)) return false;
+  }
+  if (range.upper == "inf") return true;
+  const auto order = compare_decimals(number, bound_value(range.upper, scene));
+  return range.upper_open ? std::is_lt(order) : std::is_lteq(order);
+}
+
+std::vector<std::string_view> choices_of(const Field& field) {
+  std::vector<std::string_view> names;
+  for (std::string_view rest = field.range; !rest.empty();) {
+    const auto bar = rest.find(" | ");
+    names.push_back(rest.substr(0, bar));
+    rest = bar == rest.npos ? std::string_view() : rest.substr(bar + 3);
+  }
+  return names;
+}
+
+// Numbers are shown without the quotation marks they may have.
+[[noreturn]] void refuse(const Field& field, const Value& value, const Scene& scene, std::string_view wrong) {
+  throw Error(value.place, wrong, canonical_decimal(value.text) ? value.text : describe(value), advice(field, scene));
+}
+
+// The literal of a number in its range, quoted or not.
+std::string number_text(const Field& field, const Value& value, const Scene& scene) {
+  if (std::ranges::find(not_finite, value.text) != std::end(not_finite)) refuse(field, value, scene, "not finite");
+  if (value.kind != Value::Kind::number && value.kind != Value::Kind::text) refuse(field, value, scene, "wrong type");
+  const auto number = canonical_decimal(value.text);
+  if (!number) refuse(field, value, scene, value.kind == Value::Kind::text ? "wrong type" : "not a decimal number");
+  if (!within(interval_of(field), *number, scene)) refuse(field, value, scene, "out of range");
+  return *number;
+}
+
+void read(const Field& field, const Value& value, Scene& scene, std::string& target) {
+  // `--set title=2026`: a bare word, whatever it looks like.
+  const bool bare = value.place.source == "--set" && value.kind != Value::Kind::array;
+  if (value.kind != Value::Kind::text && !(bare && !value.text.empty())) refuse(field, value, scene, "wrong type");
+  target = value.text;
+}
+
+void read(const Field& field, const Value& value, Scene& scene, Decimal& target) {
+  target = Decimal(number_text(field, value, scene));
+}
+
+void read(const Field& field, const Value& value, Scene& scene, std::uint64_t& target) {
+  const auto number = number_text(field, value, scene);
+  if (!is_whole(number)) refuse(field, value, scene, "not an integer");
+  target = decimal_integer(number).value();  // the range ends within 64 bits
+  if (interval_of(field).even && target % 2 != 0) refuse(field, value, scene, "odd");
+}
+
+void read(const Field& field, const Value& value, Scene& scene, bool& target) {
+  if (value.kind != Value::Kind::boolean) refuse(field, value, scene, "wrong type");
+  target = value.text == "true";
+}
+
+void read(const Field& field, const Value& value, Scene& scene, std::vector<Decimal>& target) {
+  if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
+  std::vector<Decimal> numbers;
+  numbers.reserve(value.items.size());
+  for (const Value& item : value.items) numbers.emplace_back(number_text(field, item, scene));
+  target = std::move(numbers);
+}
+
+void read(const Field& field, const Value& value, Scene& scene, std::vector<std::string>& target) {
+  if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
+  target.clear();
+  for (const Value& item : value.items) {
+    if (item.kind != Value::Kind::text) refuse(field, item, scene, "wrong type");
+    target.push_back(item.text);
+  }
+}
+
+template <class E>
+requires is_choice<E>
+void read(const Field& field, const Value& value, Scene& scene, E& target) {
+  if (value.kind != Value::Kind::text) refuse(field, value, scene, "wrong type");
+  const auto names = choices_of(field);
+  const auto found = std::ranges::find(names, value.text);
+  if (found == names.end()) refuse(field, value, scene, "no such choice");
+  target = static_cast<E>(found - names.begin());
+}
+
+template <class T> void read(const Field& field, const Value& value, Scene& scene, std::optional<T>& target) {
+  T inner{};
+  read(field, value, scene, inner);
+  target = std::move(inner);
+}
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      result.append(1, '\\').append(1, c);
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      result += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
+std::optional<std::string> written(const Field&, const std::string& value) { return quoted(value); }
+std::optional<std::string> written(const Field&, const Decimal& value) { return value.text; }
+std::optional<std::string> written(const Field&, const std::uint64_t& value) {
+  // TOML integers end at 2^63 - 1.
+  const auto text = std::to_string(value);
+  return value >> 63U == 0 ? text : quoted(text);
+}
+std::optional<std::string> written(const Field&, const bool& value) { return value ? "true" : "false"; }
+std::optional<std::string> written(const Field& field, const std::vector<Decimal>& value) {
+  if (value.empty() && field.fallback.empty()) return {};
+  std::string text;
+  for (const Decimal& number : value) text += (text.empty() ? "" : ", ") + number.text;
+  return '[' + text + ']';
+}
+std::optional<std::string> written(const Field&, const std::vector<std::string>& value) {
+  std::string text;
+  for (const std::string& item : value) text += (text.empty() ? "" : ", ") + quoted(item);
+  return '[' + text + ']';
+}
+template <class E>
+requires is_choice<E> std::optional<std::string> written(const Field& field, const E& value) {
+  return quoted(choices_of(field).at(static_cast<std::size_t>(value)));
+}
+template <class T> std::optional<std::string> written(const Field& field, const std::optional<T>& value) {
+  return value ? written(field, *value) : std::nullopt;
+}
+
+template <class T> std::string_view name_of_type() {
+  if constexpr (is_optional<T>) return name_of_type<typename T::value_type>();
+  if constexpr (std::is_same_v<T, std::string>) return "text";
+  if constexpr (std::is_same_v<T, Decimal>) return "number";
+  if constexpr (std::is_same_v<T, std::uint64_t>) return "integer";
+  if constexpr (std::is_same_v<T, bool>) return "true or false";
+  if constexpr (std::is_same_v<T, std::vector<Decimal>>) return "list of numbers";
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) return "list of texts";
+  return "one of";
+}
+
+// Accessors only form a reference, so reading a constant scene through them is safe.
+template <class T> const T& member_of(Member<T> access, const Scene& scene) {
+  return access(const_cast<Scene&>(scene));
+}
+
+}  // namespace
+
+std::string_view type_name(const Field& field) {
+  return std::visit([]<class T>(Member<T>) { return name_of_type<T>(); }, field.storage);
+}
+
+std::string advice(const Field& field, const Scene& scene) {
+  const auto type = type_name(field);
+  if (type == "true or false") return "give true or false";
+  if (type == "text") return "give a text";
+  if (type == "list of texts") return "give a list of texts";
+  if (type == "one of") return fmt::format("give one of {}", fmt::join(choices_of(field), ", "));
+  const Interval range = interval_of(field);
+  const auto words = range_words(range, scene);
+  if (type == "list of numbers") return "give a list of numbers" + words;
+  return fmt::format("give {} {}{}", range.even || type == "integer" ? "an" : "a", range.even ? "even integer" : type,
+                     words);
+}
+
+void store(const Field& field, const Value& value, Scene& scene) {
+  std::visit([&](auto access) { read(field, value, scene, access(scene)); }, field.storage);
+}
+
+void store_default(const Field& field, Scene& scene) {
+  if (field.computed != nullptr) {
+    store(field, parse_value(field.computed(scene)), scene);
+  } else if (!field.fallback.empty() && field.fallback != "required") {
+    store(field, parse_value(field.fallback), scene);
+  }
+}
+
+std::optional<std::string> value_text(const Field& field, const Scene& scene) {
+  return std::visit([&]<class T>(Member<T> access) { return written(field, member_of(access, scene)); }, field.storage);
+}
+
+std::vector<Decimal> numbers_of(const Field& field, const Scene& scene) {
+  const auto numbers = [&]<class T>(Member<T> access) -> std::vector<Decimal> {
+    const T& value = member_of(access, scene);
+    if constexpr (std::is_same_v<T, Decimal>) return {value};
+    if constexpr (std::is_same_v<T, std::vector<Decimal>>) return value;
+    if constexpr (std::is_same_v<T, std::optional<Decimal>>)
+      if (value) return {*value};
+    return {};
+  };
+  return std::visit(numbers, field.storage);
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,217 @@
+// The table itself. Adding a key is adding a member in scene.hpp and a row here.
+#include "cradle/tools/scene/fields.hpp"
+
+#include <algorithm>
+
+namespace cradle::tools {
+namespace {
+
+// The member reached through these pointers to members, one after the other.
+template <auto... Path> constexpr auto member = +[](Scene& scene) -> auto& { return (scene.*....*Path); };
+
+constexpr When always{"", "", "", [](const Scene&) { return true; }};
+
+constexpr std::string_view other_law = "key of another law";
+constexpr When inelastic{other_law, "law.type", "law.type = \"inelastic\"",
+                         [](const Scene& s) { return s.law.type == LawType::inelastic; }};
+constexpr When wet{other_law, "law.type", "law.type = \"wet\"",
+                   [](const Scene& s) { return s.law.type == LawType::wet; }};
+
+constexpr When merging{other_law, "law.type", "law.type = \"wet\" or \"sticky\"",
+                       [](const Scene& s) { return s.law.type != LawType::inelastic; }};
+constexpr When wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
+                           return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
+                                  !s.initial.general_rows();
+                         }};
+
+constexpr std::string_view other_state = "key of another initial state";
+constexpr When plain_rows{
+    other_state, "initial.left.particles", "initial.type = \"rows\" without [initial.left] and [initial.right]",
+    [](const Scene& s) { return s.initial.type == InitialType::rows && !s.initial.general_rows(); }};
+constexpr When general_rows{
+    other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
+    [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
+constexpr When rows_or_ring{other_state, "initial.type", "initial.type = \"rows\" or \"ring\"", [](const Scene& s) {
+                              return s.initial.type == InitialType::rows || s.initial.type == InitialType::ring;
+                            }};
+constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"",
+                    [](const Scene& s) { return s.initial.type == InitialType::ring; }};
+constexpr When list{other_state, "initial.type", "initial.type = \"list\"",
+                    [](const Scene& s) { return s.initial.type == InitialType::list; }};
+
+constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"",
+                        [](const Scene& s) { return s.initial.type == InitialType::clusters; }};
+
+constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
+                    [](const Scene& s) { return s.run.precision == Precision::mpfr; }};
+
+constexpr std::string_view other_policy = "key of another collapse policy";
+constexpr When contact_time{other_policy, "run.collapse", "run.collapse = \"contact-time\"",
+                            [](const Scene& s) { return s.run.collapse == CollapsePolicy::contact_time; }};
+constexpr When merge{other_policy, "run.collapse", "run.collapse = \"merge\"",
+                     [](const Scene& s) { return s.run.collapse == CollapsePolicy::merge; }};
+constexpr When stop{other_policy, "run.collapse", "run.collapse = \"stop\"",
+                    [](const Scene& s) { return s.run.collapse == CollapsePolicy::stop; }};
+
+constexpr std::string_view other_series = "second way to say when the series is sampled";
+constexpr When not_every{other_series, "output.series.every", "a series without every",
+                         [](const Scene& s) { return !s.output.series.every; }};
+constexpr When by_points{other_series, "output.series.every", "a series without every and times",
+                         [](const Scene& s) { return !s.output.series.every && s.output.series.times.empty(); }};
+
+std::string particles_as_length(const Scene& s) { return std::to_string(s.initial.particles); }
+
+std::string collapse_by_cutoff(const Scene& s) { return s.law.cutoff > Decimal("0") ? "\"cutoff\"" : "\"stop\""; }
+
+constexpr auto law_type = member<&Scene::law, &Law::type>;
+constexpr auto initial_type = member<&Scene::initial, &Initial::type>;
+constexpr auto collapse = member<&Scene::run, &Run::collapse>;
+
+template <auto M> constexpr auto law_of = member<&Scene::law, M>;
+template <auto... M> constexpr auto initial_of = member<&Scene::initial, M...>;
+template <auto M> constexpr auto run_of = member<&Scene::run, M>;
+template <auto M> constexpr auto sweep_of = member<&Scene::sweep, M>;
+template <auto... M> constexpr auto output_of = member<&Scene::output, M...>;
+
+constexpr std::string_view any = "(-inf, inf)";
+constexpr std::string_view within_run = "[run.start, run.until]";
+
+// key, member, unit, default, range, applies when, documentation
+const Field table[] = {
+    {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
+
+    {"law.type", law_type, "", "required", "inelastic | wet | sticky", &always, "what happens at a contact"},
+    {"law.restitution", law_of<&Law::restitution>, "", "required", "[0, 1]", &inelastic,
+     "factor by which a contact reduces the closing speed; 1 is elastic"},
+    {"law.cutoff", law_of<&Law::cutoff>, "l/t", "0", "[0, inf)", &inelastic,
+     "closing speed below which contacts are elastic; 0: none, the plain law"},
+    {"law.loss", law_of<&Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
+     "energy E_loss that rupturing a liquid bridge takes; slower pairs merge"},
+
+    {"initial.type", initial_type, "", "required", "rows | ring | list | clusters", &always,
+     "which bodies there are at the start"},
+    {"initial.left.particles", initial_of<&Initial::left, &Row::particles>, "", "required", "[1, 1e15]", &general_rows,
+     "bodies of the left row, each of mass 1"},
+    {"initial.left.speed", initial_of<&Initial::left, &Row::speed>, "l/t", "required", any, &general_rows,
+     "velocity of the left row, positive to the right"},
+    {"initial.left.density", initial_of<&Initial::left, &Row::density>, "1/l", "1", "(0, inf)", &general_rows,
+     "bodies per length of the left row"},
+    {"initial.right.particles", initial_of<&Initial::right, &Row::particles>, "", "required", "[1, 1e15]",
+     &general_rows, "bodies of the right row, each of mass 1"},
+    {"initial.right.speed", initial_of<&Initial::right, &Row::speed>, "l/t", "required", any, &general_rows,
+     "velocity of the right row, positive to the right"},
+    {"initial.right.density", initial_of<&Initial::right, &Row::density>, "1/l", "1", "(0, inf)", &general_rows,
+     "bodies per length of the right row"},
+    {"initial.centre.mass", initial_of<&Initial::centre, &Centre::mass>, "m", "0", "[0, inf)", &general_rows,
+     "mass of a body at x = 0 between the rows; 0: none"},
+    {"initial.centre.speed", initial_of<&Initial::centre, &Centre::speed>, "l/t", "0", any, &general_rows,
+     "velocity of the body between the rows"},
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15] even", &plain_rows,
+     "bodies of both rows together; the first ones start at plus and minus half the spacing"},
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 1e15]", &ring, "bodies on the ring"},
+    {"initial.speed", initial_of<&Initial::speed>, "l/t", "0.5", "(0, inf)", &plain_rows,
+     "u0: the left row moves at +u0, the right one at -u0"},
+    {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &plain_rows,
+     "distance between neighbours in a row"},
+    {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &rows_or_ring,
+     "each body is shifted uniformly by up to plus or minus this times the spacing"},
+    {"initial.length", initial_of<&Initial::length>, "l", "initial.particles", "(0, inf)", &ring,
+     "circumference of the ring", particles_as_length},
+    {"initial.velocities", initial_of<&Initial::velocities>, "", "\"gaussian\"", "gaussian | uniform", &ring,
+     "distribution of the velocities"},
+    {"initial.variance", initial_of<&Initial::variance>, "l^2/t^2", "1", "(0, inf)", &ring,
+     "variance of the velocities"},
+    {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
+     "CSV file of the bodies, relative to the scene: a line x,v or x,v,m, then decimals, x increasing"},
+    {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
+    {"initial.v", initial_of<&Initial::v>, "l/t", "", any, &list, "velocities; instead of a file"},
+    {"initial.m", initial_of<&Initial::m>, "m", "", "(0, inf)", &list, "masses, 1 where not given; instead of a file"},
+    {"initial.speed", initial_of<&Initial::speed>, "l/t", "0.5", "(0, inf)", &clusters,
+     "u0: speed of the rows that come in from both sides"},
+    {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &clusters,
+     "distance between neighbours in the rows that come in"},
+    {"initial.x", initial_of<&Initial::x>, "l", "required", any, &clusters,
+     "positions of the two clusters, the left one first"},
+    {"initial.v", initial_of<&Initial::v>, "l/t", "[0, 0]", any, &clusters, "velocities of the two clusters"},
+    {"initial.growth", initial_of<&Initial::growth>, "", "[0.5, 0.5]", "[0, 1]", &clusters,
+     "share of the incoming mass that each cluster takes up: its mass is 1 + 2 share u0 t / l"},
+    {"initial.meeting", initial_of<&Initial::meeting>, "", "\"energy\"", "energy | pass | stick", &clusters,
+     "what clusters do that meet: as their energy and the wet law have it, pass freely, or stick"},
+    {"initial.seed", initial_of<&Initial::seed>, "", "1", "[0, 18446744073709551615]", &always,
+     "seed of all random numbers"},
+    {"initial.replica", initial_of<&Initial::replica>, "", "0", "[0, 18446744073709551615]", &always,
+     "which replica of an ensemble this is; each has random numbers of its own"},
+
+    {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
+    {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},
+    {"run.precision", run_of<&Run::precision>, "", "\"double\"",
+     "double | long double | double-double | float128 | cpp_bin_float | mpfr", &always, "the working precision"},
+    {"run.digits", run_of<&Run::digits>, "", "50", "[10, 1000]", &mpfr, "decimal digits of mpfr numbers"},
+    {"run.coordinates", run_of<&Run::coordinates>, "", "\"gaps\"", "gaps | absolute", &always,
+     "gaps and closing speeds, or plain positions"},
+    {"run.collapse", collapse, "", "cutoff with a law.cutoff, else stop", "cutoff | contact-time | merge | stop",
+     &always, "what to do at inelastic collapse", collapse_by_cutoff},
+    {"run.contact_time", run_of<&Run::contact_time>, "t", "required", "(0, inf)", &contact_time,
+     "a contact dissipates only if the last one was longer ago"},
+    {"run.merge_speed", run_of<&Run::merge_speed>, "l/t", "required", "(0, inf)", &merge,
+     "bodies that close slower than this stick"},
+    {"run.stop_gap", run_of<&Run::stop_gap>, "l", "", "(0, inf)", &stop,
+     "go on until a gap is below this; without it, until the extrapolated collapse time is settled"},
+
+    {"output.series.every", output_of<&Output::series, &Series::every>, "t", "", "(0, inf)", &always,
+     "time between samples of the series"},
+    {"output.series.times", output_of<&Output::series, &Series::times>, "t", "", within_run, &not_every,
+     "times of the samples of the series"},
+    {"output.series.points", output_of<&Output::series, &Series::points>, "", "1000", "[2, 1e9]", &by_points,
+     "number of samples of the series, from run.start to run.until, both included"},
+    {"output.series.spacing", output_of<&Output::series, &Series::spacing>, "", "\"linear\"", "linear | log",
+     &by_points, "how the points of the series are spread"},
+    {"output.snapshots", output_of<&Output::snapshots>, "t", "[]", within_run, &always,
+     "times at which all active bodies are written"},
+    {"output.profiles.times", output_of<&Output::profiles, &Profiles::times>, "t", "[]", within_run, &always,
+     "times at which averages over bins are written"},
+    {"output.profiles.bins", output_of<&Output::profiles, &Profiles::bins>, "", "50", "[1, 1e6]", &always,
+     "number of bins of the profiles"},
+    {"output.profiles.range", output_of<&Output::profiles, &Profiles::range>, "l", "", any, &always,
+     "two positions that the bins span; without it, the interaction zone (ensembles need it)"},
+    {"output.masses", output_of<&Output::masses>, "t", "[]", within_run, &merging,
+     "times at which it is written how many clusters there are of which mass"},
+    {"output.zone.from", output_of<&Output::zone, &Zone::from>, "t", "", within_run, &wet_shock,
+     "average over the interaction zone, its width among it, from this time on; without it, none"},
+    {"output.zone.samples", output_of<&Output::zone, &Zone::samples>, "", "400", "[16, 1e9]", &wet_shock,
+     "number of samples that the average over the zone takes, evenly until run.until"},
+    {"output.zone.bins", output_of<&Output::zone, &Zone::bins>, "", "60", "[4, 1e6]", &wet_shock,
+     "number of bins of the average over the zone"},
+    {"output.zone.reach", output_of<&Output::zone, &Zone::reach>, "l", "", "(0, inf)", &wet_shock,
+     "how far the bins go to either side; without it, three times the L of equation (13)"},
+    {"output.scenario", output_of<&Output::scenario>, "", "false", "", &wet_shock,
+     "watch whether the two heaviest clusters pass or stick; wants a series with spacing = \"log\", 100 points a "
+     "decade"},
+    {"output.checkpoint.every_seconds", output_of<&Output::checkpoint_every>, "s", "60", "[0, inf)", &always,
+     "wall-clock time between checkpoints, 0: none; never changes the result"},
+    {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every contact"},
+
+    {"sweep.vary", sweep_of<&Sweep::vary>, "", "[]", "", &always,
+     "what cradle sweep varies: texts KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=VALUE,VALUE,..."},
+    {"sweep.cuts", sweep_of<&Sweep::cuts>, "", "false", "", &always,
+     "vary one key at a time, the others as the scene has them, instead of all combinations"},
+    {"sweep.points", sweep_of<&Sweep::points>, "", "[]", "", &always,
+     "points of a sweep one by one: texts KEY=VALUE KEY=VALUE ..."},
+    {"sweep.replicas", sweep_of<&Sweep::replicas>, "", "1", "[1, 1e15]", &always, "replicas of every point of a sweep"},
+};
+
+}  // namespace
+
+std::span<const Field> scene_fields() { return table; }
+
+const Field* find_field(std::string_view key, const Scene& scene) {
+  const Field* found = nullptr;
+  for (const Field& field : table) {
+    if (field.key != key) continue;
+    if (field.when->holds(scene)) return &field;
+    if (found == nullptr) found = &field;
+  }
+  return found;
+}
+
+}  // namespace cradle::tools

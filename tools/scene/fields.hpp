@@ -1,0 +1,72 @@
+// The one table of scene keys. From it come the reader, the effective scene, the manual listing and "only what differs
+// from the defaults". A row says where the value is stored; the type of that member is the type of the key.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/scene/source.hpp"
+
+namespace cradle::tools {
+
+template <class T> using Member = T& (*)(Scene&);
+
+using Storage = std::variant<Member<std::string>, Member<std::optional<std::string>>, Member<std::vector<std::string>>,
+                             Member<Decimal>, Member<std::optional<Decimal>>, Member<std::vector<Decimal>>,
+                             Member<std::uint64_t>, Member<std::optional<std::uint64_t>>, Member<bool>, Member<LawType>,
+                             Member<InitialType>, Member<Velocities>, Member<Precision>, Member<Coordinates>,
+                             Member<CollapsePolicy>, Member<Spacing>, Member<Meeting>>;
+
+/// To which scenes a key applies.
+struct When {
+  std::string_view otherwise;   // what is wrong with the key in any other scene
+  std::string_view decided_by;  // the key that decides
+  std::string_view text;        // `law.type = "wet"`; empty: every scene
+  bool (*holds)(const Scene&);
+};
+
+struct Field {
+  std::string_view key;  // "law.restitution"
+  Storage storage;
+  std::string_view unit;      // in m, l (lengths), t (times); "" for pure numbers and texts
+  std::string_view fallback;  // TOML; "required"; "" for none; or words, where `computed` gives it
+  std::string_view range;     // "[0, 1]", "(0, inf)", "[2, 1e15] even", bounds may be keys; or "a | b | c"
+  const When* when;
+  std::string_view doc;
+  std::string (*computed)(const Scene&) = nullptr;
+};
+
+/// In an order in which every key stands after those that decide on its use, default or range.
+std::span<const Field> scene_fields();
+
+/// The row of this key that applies to the scene, else any row of this key, else nullptr.
+const Field* find_field(std::string_view key, const Scene& scene);
+
+/// "number", "integer", "text", "one of", "list of numbers", "list of texts", "true or false".
+std::string_view type_name(const Field& field);
+
+/// What may stand here, in words: `give a number from 0 to 1`. Bounds that are keys get their values in this scene.
+std::string advice(const Field& field, const Scene& scene);
+
+/// Checks type and range and stores; throws Error at the value's place. Bounds that are keys must have been stored.
+void store(const Field& field, const Value& value, Scene& scene);
+
+/// Stores the default, or leaves the member as it is where there is none.
+void store_default(const Field& field, Scene& scene);
+
+/// The value in TOML syntax; nothing where there is none.
+std::optional<std::string> value_text(const Field& field, const Scene& scene);
+
+/// All numbers stored at this field (none for texts, integers and choices).
+std::vector<Decimal> numbers_of(const Field& field, const Scene& scene);
+
+/// The manual: every key with type, unit, default, range, use and one line of documentation.
+std::string describe_fields();
+
+}  // namespace cradle::tools

@@ -1,0 +1,175 @@
+// A scene: which bodies, which contact law, until when, and what to write. Plain values, read from TOML.
+// Units: mass m = 1, lengths in the scene's own unit, times in lengths per speed. All keys, units, defaults and ranges
+// are in the one table of scene_fields.cpp; this struct only holds what was read. Numbers are exact decimals
+// (decimal.hpp), to be converted in the working precision from Decimal::text.
+// A member whose key does not apply to the scene's law, initial state or policy keeps the value written here.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/support/errors.hpp"
+
+namespace cradle::tools {
+
+// The enumerators stand in the order of the names in the table of fields.
+enum class LawType { inelastic, wet, sticky };
+enum class InitialType { rows, ring, list, clusters };
+enum class Velocities { gaussian, uniform };
+enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
+enum class Coordinates { gaps, absolute };
+enum class CollapsePolicy { cutoff, contact_time, merge, stop };
+enum class Spacing { linear, log };
+enum class Meeting { energy, pass, stick };
+
+struct Law {
+  LawType type = LawType::inelastic;
+  Decimal restitution;  // inelastic
+  Decimal cutoff;       // inelastic: closing speed below which contacts are elastic; 0: none
+  Decimal loss;         // wet: E_loss
+  bool operator==(const Law&) const = default;
+};
+
+/// One side of a general Riemann problem: bodies of mass 1 at distance 1/density.
+struct Row {
+  std::uint64_t particles = 0;
+  Decimal speed;  // velocity of the row: positive to the right
+  Decimal density;
+  bool operator==(const Row&) const = default;
+};
+
+/// The body between two general rows, at x = 0; mass 0: there is none.
+struct Centre {
+  Decimal mass;
+  Decimal speed;
+  bool operator==(const Centre&) const = default;
+};
+
+struct Initial {
+  InitialType type = InitialType::rows;
+  std::uint64_t particles = 0;  // rows (both together), ring
+  Decimal speed;                // rows: left row +speed, right row -speed; clusters: of the rows that feed them
+  Decimal spacing;              // rows, clusters
+  Row left, right;              // rows given as tables: see general_rows()
+  Centre centre;
+  Decimal perturbation;  // rows, ring: uniform in plus/minus this times the spacing
+  Decimal length;        // ring
+  Velocities velocities = Velocities::gaussian;
+  Decimal variance;                 // ring
+  std::optional<std::string> file;  // list: relative to Scene::folder
+  std::vector<Decimal> x, v, m;     // list written in the scene itself; m empty: all 1. clusters: two x, two v
+  std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
+  Meeting meeting = Meeting::energy;
+  std::uint64_t seed = 0;
+  std::uint64_t replica = 0;
+
+  /// Rows given by [initial.left] and [initial.right] instead of particles, speed and spacing.
+  bool general_rows() const { return left.particles > 0; }
+  bool operator==(const Initial&) const = default;
+};
+
+struct Run {
+  Decimal start;
+  Decimal until;
+  Precision precision = Precision::double_;
+  std::uint64_t digits = 0;  // mpfr
+  Coordinates coordinates = Coordinates::gaps;
+  CollapsePolicy collapse = CollapsePolicy::stop;
+  Decimal contact_time;             // contact-time
+  Decimal merge_speed;              // merge
+  std::optional<Decimal> stop_gap;  // stop
+  bool operator==(const Run&) const = default;
+};
+
+/// When samples are taken: exactly one of points, every and times is there.
+struct Series {
+  std::optional<std::uint64_t> points;
+  Spacing spacing = Spacing::linear;  // of points
+  std::optional<Decimal> every;
+  std::vector<Decimal> times;
+  bool operator==(const Series&) const = default;
+};
+
+struct Profiles {
+  std::vector<Decimal> times;
+  std::uint64_t bins = 0;
+  std::vector<Decimal> range;  // {from, to}, or empty: the interaction zone at that time
+  bool operator==(const Profiles&) const = default;
+};
+
+/// Average over the interaction zone of a wet shock, from a time on; without one there is none.
+struct Zone {
+  std::optional<Decimal> from;
+  std::uint64_t samples = 0;
+  std::uint64_t bins = 0;
+  std::optional<Decimal> reach;
+  bool operator==(const Zone&) const = default;
+};
+
+/// All lists of times are increasing and without repetition, within [run.start, run.until].
+struct Output {
+  Series series;
+  std::vector<Decimal> snapshots;
+  Profiles profiles;
+  std::vector<Decimal> masses;  // times at which the distribution of masses is written
+  Zone zone;
+  bool scenario = false;     // wet rows: which of the two scenarios of Fig. 9
+  Decimal checkpoint_every;  // seconds of wall clock; 0: no checkpoints
+  bool events = false;
+  bool operator==(const Output&) const = default;
+};
+
+/// What `cradle sweep` makes of the scene where the command line says nothing else.
+struct Sweep {
+  std::vector<std::string> vary;    // KEY=FROM:TO:COUNT[:log] or KEY=VALUE,VALUE,...
+  bool cuts = false;                // one key at a time, the others as in the scene, instead of all combinations
+  std::vector<std::string> points;  // or points one by one: KEY=VALUE KEY=VALUE ...
+  std::uint64_t replicas = 0;       // of each point
+  bool operator==(const Sweep&) const = default;
+};
+
+struct Scene {
+  std::string name;    // stem of the file, or the bundled scene's name
+  std::string folder;  // that relative list files start from; empty: the working folder
+  std::string title;
+  Law law;
+  Initial initial;
+  Run run;
+  Output output;
+  Sweep sweep;
+};
+
+/// The same scene, wherever it was read from (name and folder do not count).
+bool operator==(const Scene& a, const Scene& b);
+
+/// Reads the scene file at this path or, where there is none, the bundled scene of this name. Each override is
+/// `table.key=value`, the value in TOML syntax (bare words are strings), and replaces what the file says; with an empty
+/// value it takes the key out. Throws Error: Exit::io where nothing can be read, Exit::bad_input for what is in it.
+Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides = {});
+
+/// The same from text; `source_name` is what messages call it, its stem the scene's name, its parent the folder.
+Scene parse_scene(std::string_view text, const std::string& source_name,
+                  const std::vector<std::string>& overrides = {});
+
+/// The whole scene with every default filled in; the same text for the same scene, reads back as an equal scene.
+std::string effective_toml(const Scene& scene);
+
+/// Keys and values (TOML syntax) that apply to this scene, in the table's order: those that differ from their defaults,
+/// or all.
+std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool all);
+
+struct BundledScene {
+  std::string_view name;
+  std::string_view text;
+};
+
+/// The files of tools/scenes, sorted by name.
+std::span<const BundledScene> bundled_scenes();
+
+}  // namespace cradle::tools

@@ -1,0 +1,223 @@
+// toml++ does the parsing and says where each value begins; literals are taken from the text at that place.
+#include "cradle/tools/scene/source.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include <toml++/toml.h>
+
+namespace cradle::tools {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n";
+constexpr std::string_view literal_characters = "0123456789abcdefABCDEFinoxINOX_+-.";
+
+bool is_decimal_character(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0 ||
+         std::string_view("+-_.eE").find(c) != std::string_view::npos;
+}
+
+// End of the comment or string that begins at `i`; `i` where none does.
+std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
+  if (text[i] == '#') return std::min(text.find('\n', i), text.size());
+  if (text[i] != '"' && text[i] != '\'') return i;
+  const char quote = text[i];
+  const bool multiline = text.substr(i, 3) == std::string(3, quote);
+  const std::string close(multiline ? 3 : 1, quote);
+  for (std::size_t j = i + close.size(); j < text.size(); ++j) {
+    if (quote == '"' && text[j] == '\\') {
+      ++j;
+    } else if (text.substr(j, close.size()) == close) {
+      return j + close.size();
+    } else if (text[j] == '\n' && !multiline) {
+      return j;  // unterminated: toml++ says so
+    }
+  }
+  return text.size();
+}
+
+// toml++ refuses literals beyond int64, the range of double or its buffer: it gets those in quotation marks, which
+// moves columns but no lines. Only what stands where a value can stand and is not followed by '=' is a literal.
+std::string quote_wide_literals(std::string_view text) {
+  std::string result;
+  char before = '\n';  // last character that is not blank
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = skip_comment_or_string(text, i);
+    if (end > i) {
+      result += text.substr(i, end - i);
+      before = '"';
+      i = end;
+      continue;
+    }
+    const auto not_part = [](char c) { return !is_decimal_character(c); };
+    end = static_cast<std::size_t>(std::find_if(text.begin() + static_cast<std::ptrdiff_t>(i), text.end(), not_part) -
+                                   text.begin());
+    const auto literal = text.substr(i, end - i);
+    if (literal.empty()) {
+      if (blanks.find(text[i]) == blanks.npos) before = text[i];
+      result += text[i++];
+      continue;
+    }
+    const auto after = text.find_first_not_of(" \t", end);
+    const bool is_value = (before == '=' || before == '[' || before == ',') &&
+                          (after == text.npos || std::string_view(",]}#\r\n").find(text[after]) != text.npos);
+    const auto exponent = literal.find_first_of("eE");
+    const bool wide = literal.size() > 15 || (exponent != literal.npos && literal.size() - exponent > 3);
+    const bool number = std::any_of(literal.begin(), literal.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (is_value && wide && number) {
+      result.append("\x22").append(literal).append("\x22");
+    } else {
+      result += literal;
+    }
+    before = literal.back();
+    i = end;
+  }
+  return result;
+}
+
+// Finds literals by toml++'s line and column (both from 1, columns in code points).
+class Literals {
+ public:
+  explicit Literals(std::string_view text) : text_(text) {
+    lines_.push_back(0);
+    for (std::size_t i = 0; i < text.size(); ++i)
+      if (text[i] == '\n') lines_.push_back(i + 1);
+  }
+
+  std::string at(const toml::source_position& begin) const {
+    std::size_t i = lines_.at(begin.line - 1);
+    for (auto column = begin.column; column > 1; --column) {
+      ++i;
+      while (i < text_.size() && (static_cast<unsigned char>(text_[i]) & 0xC0U) == 0x80U) ++i;
+    }
+    i = std::min(i, text_.size());
+    const auto end = std::min(text_.find_first_not_of(literal_characters, i), text_.size());
+    return std::string(text_.substr(i, end - i));
+  }
+
+ private:
+  std::string_view text_;
+  std::vector<std::size_t> lines_;
+};
+
+Value value_of(const toml::node& node, const Literals& literals, const Place& place) {
+  Value value;
+  value.place = place;
+  value.place.line = node.source().begin.line;
+  if (const auto* text = node.as_string()) {
+    value.text = text->get();
+  } else if (const auto* truth = node.as_boolean()) {
+    value.kind = Value::Kind::boolean;
+    value.text = truth->get() ? "true" : "false";
+  } else if (node.is_number()) {
+    value.kind = Value::Kind::number;
+    value.text = literals.at(node.source().begin);
+    // Hexadecimal, octal, binary: small by construction.
+    if (value.text.size() > 1 && std::string_view("xob").find(value.text[1]) != std::string_view::npos)
+      value.text = std::to_string(node.as_integer()->get());
+  } else if (const auto* array = node.as_array()) {
+    value.kind = Value::Kind::array;
+    for (const auto& item : *array) value.items.push_back(value_of(item, literals, place));
+  } else {
+    value.kind = node.is_table() ? Value::Kind::table : Value::Kind::date;
+  }
+  return value;
+}
+
+void flatten(const toml::table& table, const Literals& literals, const Place& place, Entries& entries) {
+  for (const auto& [name, node] : table) {
+    Place inner = place;
+    if (!inner.key.empty()) inner.key += '.';
+    inner.key += name.str();
+    if (const auto* nested = node.as_table(); nested != nullptr && !nested->empty())
+      flatten(*nested, literals, inner, entries);
+    else
+      entries.insert_or_assign(inner.key, value_of(node, literals, inner));
+  }
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(blanks);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+}
+
+// Entries of `value = TEXT` under `key`; nothing where TEXT is not TOML.
+std::optional<Entries> assigned(std::string_view text, const Place& place) {
+  const std::string document = quote_wide_literals("value = " + std::string(text));
+  try {
+    const toml::table table = toml::parse(document);
+    if (table.size() != 1) return {};  // a line end and a second key
+    const Literals literals(document);
+    Entries entries;
+    const toml::node& node = *table.get("value");
+    if (const auto* nested = node.as_table(); nested != nullptr && !nested->empty())
+      flatten(*nested, literals, place, entries);
+    else
+      entries.emplace(place.key, value_of(node, literals, place));
+    for (auto& [key, value] : entries) {
+      value.place.line = 0;
+      for (auto& item : value.items) item.place.line = 0;
+    }
+    return entries;
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::string describe(const Value& value) {
+  switch (value.kind) {
+  case Value::Kind::text:
+    return '"' + value.text + '"';
+  case Value::Kind::array:
+    return value.items.size() == 1 ? "an array of 1 value"
+                                   : "an array of " + std::to_string(value.items.size()) + " values";
+  case Value::Kind::table:
+    return "a table";
+  case Value::Kind::date:
+    return "a date or time";
+  default:
+    return value.text;
+  }
+}
+
+Entries read_entries(std::string_view toml, const std::string& source_name) {
+  if (toml.starts_with("\xEF\xBB\xBF")) toml.remove_prefix(3);  // byte order mark
+  const std::string document = quote_wide_literals(toml);
+  try {
+    const toml::table table = toml::parse(document);
+    Entries entries;
+    flatten(table, Literals(document), Place{source_name, 0, {}}, entries);
+    return entries;
+  } catch (const toml::parse_error& error) {
+    std::string_view what = error.description();
+    if (const std::string_view noise = "Error while parsing "; what.starts_with(noise))
+      what.remove_prefix(noise.size());
+    throw Error({source_name, error.source().begin.line, {}}, "not valid TOML", what,
+                "correct this line or the one before it");
+  }
+}
+
+void apply_override(Entries& entries, std::string_view assignment) {
+  const auto equals = assignment.find('=');
+  const std::string key(trimmed(assignment.substr(0, equals)));
+  if (equals == assignment.npos || key.empty())
+    throw Error({"--set", 0, {}}, "not an assignment", assignment, "write table.key=value");
+  const Place place{"--set", 0, key};
+  const auto text = trimmed(assignment.substr(equals + 1));
+
+  std::erase_if(entries, [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
+  if (text.empty()) return;
+  if (auto parsed = assigned(text, place)) {
+    entries.merge(*parsed);
+  } else {
+    entries.emplace(key, Value{Value::Kind::text, std::string(text), {}, place});
+  }
+}
+
+Value parse_value(std::string_view toml) { return assigned(toml, {}).value().begin()->second; }
+
+}  // namespace cradle::tools

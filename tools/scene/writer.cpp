@@ -1,0 +1,64 @@
+// A scene as text, from the table of fields: the effective scene, the keys that differ from their defaults, the manual.
+#include <fmt/format.h>
+
+#include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+namespace {
+
+// Compared by value: 1.0 does not differ from a default of 1.
+bool is_default(const Field& field, const Scene& scene) {
+  if (field.fallback == "required") return false;
+  if (field.fallback.empty()) return !value_text(field, scene);
+  Scene other = scene;
+  store_default(field, other);
+  return other == scene;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool all) {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const Field& field : scene_fields()) {
+    if (!field.when->holds(scene)) continue;
+    const auto text = value_text(field, scene);
+    if (text && (all || !is_default(field, scene))) result.emplace_back(field.key, *text);
+  }
+  return result;
+}
+
+std::string effective_toml(const Scene& scene) {
+  std::string text;
+  std::string_view open_table;
+  const auto all = values(scene, true);
+  for (const auto& [key, value] : all) {
+    const auto dot = key.find('.');
+    const std::string_view table = dot == key.npos ? std::string_view() : std::string_view(key).substr(0, dot);
+    if (table != open_table) {
+      text += fmt::format("\n[{}]\n", table);
+      open_table = table;
+    }
+    text += fmt::format("{} = {}\n", dot == key.npos ? key : key.substr(dot + 1), value);
+  }
+  return text;
+}
+
+std::string describe_fields() {
+  std::string text;
+  for (const Field& field : scene_fields()) {
+    std::string facts(type_name(field));
+    if (!field.range.empty() && field.range != "(-inf, inf)") facts += fmt::format(" {}", field.range);
+    if (!field.unit.empty()) facts += fmt::format(", in {}", field.unit);
+    if (field.fallback == "required") {
+      facts += ", required";
+    } else if (!field.fallback.empty()) {
+      facts += fmt::format(", default {}", field.fallback);
+    }
+    text += fmt::format("{}  ({})\n    {}", field.key, facts, field.doc);
+    text += field.when->text.empty() ? std::string("\n") : fmt::format("; with {}\n", field.when->text);
+  }
+  return text;
+}
+
+}  // namespace cradle::tools

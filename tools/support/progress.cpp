@@ -1,0 +1,82 @@
+#include "cradle/tools/support/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+namespace cradle::tools {
+
+namespace {
+
+std::string duration(double seconds) {
+  if (!(seconds < 360000)) return "more than 100 h";
+  const auto s = static_cast<long>(seconds + 0.5);
+  return s >= 3600 ? fmt::format("{} h {:02} min", s / 3600, s / 60 % 60) : fmt::format("{}:{:02} min", s / 60, s % 60);
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(Show show)
+    : terminal_(::isatty(STDERR_FILENO) != 0),
+      active_(show == Show::always || (show == Show::on_terminal && terminal_)) {}
+
+ProgressLine::~ProgressLine() {
+  if (drawn_ && terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+std::optional<double> ProgressLine::due() const {
+  if (!active_) return std::nullopt;
+  const double passed = std::chrono::duration<double>(Clock::now() - last_).count();
+  return passed < (terminal_ ? 0.2 : 10.0) ? std::nullopt : std::optional(passed);
+}
+
+void ProgressLine::draw(double share, const std::string& state) {
+  if (terminal_) {
+    constexpr int width = 30;
+    const auto full = static_cast<int>(share * width);
+    fmt::print(stderr, "\r\033[K[{:#<{}}{: <{}}] {}", "", full, "", width - full, state);
+    std::fflush(stderr);
+  } else {
+    fmt::print(stderr, "{}\n", state);
+  }
+  drawn_ = true;
+  last_ = Clock::now();
+}
+
+Progress::Progress(Show show, double start, double until)
+    : line_(show), start_(start), until_(until), last_time_(start) {}
+
+void Progress::tell(double time, std::uint64_t contacts) {
+  const auto due = line_.due();
+  if (!due) return;
+  const double passed = *due;
+  const double speed = (time - last_time_) / passed;
+  speed_ = speed_ > 0 ? 0.7 * speed_ + 0.3 * speed : speed;
+  const double share = until_ > start_ ? std::clamp((time - start_) / (until_ - start_), 0.0, 1.0) : 1.0;
+  const std::string state =
+      fmt::format("t = {:.6g} of {:.6g}, {:.4g} contacts, {:.3g} million/s, {} left", time, until_,
+                  static_cast<double>(contacts), static_cast<double>(contacts - last_contacts_) / passed * 1e-6,
+                  speed_ > 0 ? duration((until_ - time) / speed_) : "?");
+  line_.draw(share, state);
+  last_time_ = time;
+  last_contacts_ = contacts;
+}
+
+ReplicaProgress::ReplicaProgress(ProgressLine::Show show, std::uint64_t before, std::uint64_t total)
+    : line_(show), before_(before), done_(before), total_(total) {}
+
+void ReplicaProgress::done(std::uint64_t replicas) {
+  const std::scoped_lock lock(mutex_);
+  done_ += replicas;
+  if (!line_.due()) return;
+  const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  const double speed = static_cast<double>(done_ - before_) / passed;
+  line_.draw(static_cast<double>(done_) / static_cast<double>(total_),
+             fmt::format("{} of {} replicas, {:.3g}/s, {} left", done_, total_, speed,
+                         speed > 0 ? duration(static_cast<double>(total_ - done_) / speed) : "?"));
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,28 @@
+#include "cradle/tools/support/version.hpp"
+
+#include <fmt/format.h>
+
+#include "cradle/precision/scalars.hpp"
+
+namespace cradle::tools {
+
+std::string build_description() {
+  std::string types;
+  const auto name = [&]<class T>(std::type_identity<T>) {
+    if (types.ends_with(scalar_name<T>)) return;  // one name for all sizes of mpfr
+    types.append(types.empty() ? "" : ", ").append(scalar_name<T>);
+  };
+  [&]<std::size_t... K>(std::index_sequence<K...>) {
+    (name(std::type_identity<std::tuple_element_t<K, Scalars>>{}), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<Scalars>>{});
+#ifdef CRADLE_WITH_MPI
+  const char* mpi = "ensembles are spread over ranks";
+#else
+  const char* mpi = "not in this build";
+#endif
+  return fmt::format("cradle {}\ncompiler: {}\noptions: {}\nscalar types: {}\nMPI: {}", version, __VERSION__,
+                     CRADLE_BUILD_OPTIONS, types, mpi);
+}
+
+}  // namespace cradle::tools

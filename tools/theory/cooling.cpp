@@ -1,0 +1,29 @@
+// Free cooling on a ring: the law that the paper says all three gases share in the end, and Haff's for the early stage
+// of the inelastic one. Times are spread evenly in the logarithm.
+#include <cmath>
+
+#include "cradle/core/theory/free_cooling.hpp"
+#include "cradle/tools/theory/laws.hpp"
+
+namespace cradle::tools {
+
+void predict_cooling(const Scene& scene, Predictions& table) {
+  const auto bodies = static_cast<double>(scene.initial.particles);
+  const theory::FreeCooling gas{scene.initial.variance.value, bodies / scene.initial.length.value};
+  const double until = scene.run.until.value - scene.run.start.value;
+  const double flight = 1 / (gas.density * std::sqrt(gas.variance));  // a mean spacing at the thermal speed
+  if (!(until > flight)) return;
+  const bool dry = scene.law.type == LawType::inelastic && scene.law.restitution < Decimal("1");
+  if (dry) table.number("haff_time", "Haff 1983", "continuous", theory::haff_time(gas, scene.law.restitution.value));
+  for (int k = 0; k <= curve_points; ++k) {
+    const double t = flight * std::pow(until / flight, static_cast<double>(k) / curve_points);
+    table.point("energy_sticky", "t^(-2/3)", "continuous", t, bodies * theory::sticky_energy_per_body(gas, t));
+    if (scene.law.type == LawType::sticky)
+      table.point("clusters", "t^(-2/3)", "continuous", t, bodies * theory::sticky_clusters_per_body(gas, t));
+    if (dry)
+      table.point("energy_haff", "Haff 1983", "continuous", t,
+                  bodies * theory::haff_energy_per_body(gas, scene.law.restitution.value, t));
+  }
+}
+
+}  // namespace cradle::tools

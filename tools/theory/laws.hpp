@@ -1,0 +1,43 @@
+// The predictions law by law: what theory_table.cpp puts together. Times are those since run.start.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cradle/tools/theory/table.hpp"
+
+namespace cradle::tools {
+
+/// A table of predictions as it grows.
+class Predictions {
+ public:
+  /// A single number; nothing where there is no value.
+  void number(const char* quantity, const char* equation, const char* form, std::optional<double> value) {
+    if (value) rows_.push_back({quantity, equation, form, std::nullopt, *value});
+  }
+  /// One point of a curve.
+  void point(const char* quantity, const char* equation, const char* form, double t, double value) {
+    rows_.push_back({quantity, equation, form, t, value});
+  }
+  std::vector<Prediction> take() && { return std::move(rows_); }
+
+ private:
+  std::vector<Prediction> rows_;
+};
+
+/// Points of a curve, from 0 to its end.
+inline constexpr int curve_points = 400;
+inline double curve_time(double end, int k) { return end * k / curve_points; }
+
+/// Two equal rows, to which the paper's formulas apply.
+inline bool equal_rows(const Scene& scene) {
+  return scene.initial.type == InitialType::rows && !scene.initial.general_rows();
+}
+
+void predict_inelastic(const Scene& scene, Predictions& table);
+void predict_wet(const Scene& scene, Predictions& table);
+void predict_sticky(const Scene& scene, Predictions& table);
+void predict_cooling(const Scene& scene, Predictions& table);  // on a ring, whatever the law
+
+}  // namespace cradle::tools

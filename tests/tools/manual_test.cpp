@@ -1,0 +1,111 @@
+// The manual, tools/README.md, is of this program: what it quotes is what the program prints, every command and every
+// option has its place, and every group, dataset and attribute of result files is named.
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/result.hpp"
+
+namespace cradle::tests {
+namespace {
+
+using Names = std::set<std::string>;
+
+Names matches(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  Names found;
+  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match)
+    found.insert((*match)[1]);
+  return found;
+}
+
+class Manual : public ProgramTest {
+ protected:
+  // From a headline to the next one.
+  std::string section(const std::string& headline) const {
+    const auto begin = page.find("\n### " + headline + "\n");
+    if (begin == page.npos) return {};
+    return page.substr(begin + 1, page.find("\n#", begin + 1) - begin);
+  }
+
+  const std::string page = contents(CRADLE_SOURCE_DIR "/tools/README.md");
+};
+
+TEST_F(Manual, QuotesWhatTheProgramPrints) {
+  const Printed check = shell("bash " CRADLE_SOURCE_DIR "/tools/manual.sh --check \"$(command -v cradle)\"");
+  EXPECT_EQ(check.status, 0) << check.out << check.err;
+}
+
+TEST_F(Manual, HasEveryCommandAndItsOptions) {
+  Names commands;
+  for (const auto& entry : std::filesystem::directory_iterator(CRADLE_SOURCE_DIR "/tools/commands"))
+    commands.merge(matches(contents(entry.path()), R"re(program\.add(?:_subcommand)?\(\s*"([a-z]+)")re"));
+  EXPECT_GE(commands.size(), 11U);
+  const std::string option_lines = R"(\n +(-[^\n]*))", option = R"((--[a-z]+))";
+  const Names common = matches(section("Options of every command that reads a SCENE"), option);
+  for (const std::string& command : commands) {
+    const std::string written = section("cradle " + command);
+    EXPECT_NE(written, "") << "tools/README.md has no section on cradle " << command << ": write it";
+    const Printed help = shell("cradle " + command + " --help");
+    ASSERT_EQ(help.status, 0) << help.err;
+    Names has, told = matches(written, option);
+    for (const std::string& line : matches(help.out, option_lines)) has.merge(matches(line, option));
+    has.erase("--help");
+    if (has.contains("--set")) told.insert(common.begin(), common.end());
+    EXPECT_EQ(has, told) << "options of cradle " << command << ", and those that tools/README.md tells of";
+  }
+}
+
+TEST_F(Manual, NamesEverythingInResultFiles) {
+  const std::string small = " --quiet --set initial.particles=60 --set run.until=40 ";
+  for (const std::string& command :
+       {"cradle run fig2 -o dry.h5 --set output.snapshots=[20] --set output.events=true" + small,
+        "cradle run fig6 -o wet.h5 --set output.snapshots=[] --set output.profiles.times=[] --set output.masses=[40] "
+        "--set output.zone.from=20 --set output.scenario=true" +
+            small,
+        std::string("cradle run fig9 -o model.h5 --quiet --set run.until=10"),
+        std::string("cradle trust collapse3 -o trust.h5 --quiet --digits 16,31"),
+        "cradle ensemble fig2 -o ensemble.h5 --replicas 3 --spread energy=0:10:5 --set output.profiles.times=[30]" +
+            small,
+        "cradle sweep fig8 -o sweep.h5 --vary law.loss=0.01,0.02 --replicas 2 --set output.zone.from=20" + small}) {
+    const Printed run = shell(command);
+    ASSERT_EQ(run.status, 0) << command << "\n" << run.err;
+  }
+  ASSERT_EQ(shell("cradle run collapse3 -o collapse.h5 --quiet").status, 3);
+
+  const Names told = matches(page, "`/?([A-Za-z_0-9/.]+)`");
+  const auto expect = [&](const std::string& name, const std::string& file) {
+    EXPECT_TRUE(told.contains(name)) << file << " holds " << name << ", tools/README.md does not name it: add it there";
+  };
+  std::size_t groups = 0;
+  for (const char* file : {"dry", "wet", "model", "trust", "collapse", "ensemble", "sweep"}) {
+    const tools::Result result = tools::read_result((folder / (std::string(file) + ".h5")).string());
+    for (const auto& [name, value] : result.attributes) expect(name, file);
+    for (const tools::Group& group : result.groups) {
+      ++groups;
+      std::string name = std::regex_replace(group.name, std::regex("^points/[0-9]{4}/"), "");
+      name = std::regex_replace(name, std::regex("[0-9]{4}"), "NNNN");
+      const bool quantity = std::any_of(group.columns.begin(), group.columns.end(),
+                                        [](const auto& column) { return column.name == "mean"; }) &&
+                            !name.starts_with("ensemble/nodes");
+      if (name.starts_with("ensemble/spread/"))
+        name = "ensemble/spread/series/QUANTITY";
+      else if (quantity)
+        name = "ensemble/.../QUANTITY";
+      if (name != "ensemble/nodes") expect(name, file);
+      const bool of_points = name == "sweep";  // one column for every number of a replica
+      for (const auto& [attribute, value] : group.attributes)
+        expect(of_points ? "label_0000" : attribute, file + ("/" + group.name));
+      for (const tools::Column& column : group.columns)
+        if (!of_points) expect(column.name, file + ("/" + group.name));
+    }
+  }
+  EXPECT_GT(groups, 40U);
+}
+
+}  // namespace
+}  // namespace cradle::tests

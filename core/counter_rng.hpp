@@ -29,7 +29,7 @@ constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t replica, s
   return words[0] | std::uint64_t{words[1]} << 32;
 }
 
-// Uniform integer in [-bound, bound], 0 <= bound < 2^31; unequal by at most 2^-32 of its probability.
+// Uniform integer in [-bound, bound], 0 <= bound < 2^31. Probabilities differ by 2^-32 of themselves at most.
 constexpr std::int64_t uniform_integer(std::uint64_t bits, std::int64_t bound) {
   const auto range = static_cast<std::uint64_t>(2 * bound + 1);
   return static_cast<std::int64_t>(((bits >> 32) * range + (((bits & 0xFFFFFFFF) * range) >> 32)) >> 32) - bound;

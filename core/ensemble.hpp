@@ -1,7 +1,7 @@
 #pragma once
-// An ensemble: the same run again and again, each replica with initial data of its own, and statistics of what they
-// give. Replicas are independent tasks, taken in order of their index; what one of them throws is its own affair.
-// The statistics have the same bits whatever the number of threads, see ensemble/tree.hpp.
+// An ensemble: replicas of a run, each with initial data of its own, and statistics of the numbers that they give.
+// Replicas are independent tasks, taken in order of their index. One that throws is entered as failed, and the others
+// go on. The statistics have the same bits on any number of threads, see ensemble/tree.hpp.
 //
 //   Ensemble energies;
 //   run_replicas(TbbExecutor(), {0, 1000}, energies, [](ReplicaIndex k) { return energy_of_replica(k); });
@@ -30,10 +30,10 @@ struct ReplicaAbandoned : std::exception {
   const char* what() const noexcept override { return "replica abandoned"; }
 };
 
-/// Calls replica(job) for each job that next() gives (a std::optional; none: there are no more) and hands what it
-/// returns to done(job, result), or the message of what it throws to failed(job, message). All of them are called from
-/// several threads at once. cancelled() is asked before every job; true ends the ensemble when the replicas that are
-/// running have returned. What next, done or failed throw ends it too, and is thrown again here: the first if several.
+/// Works off jobs: next() gives one (a std::optional, empty at the end), replica(job) does it, and done(job, result)
+/// takes what it returns, or failed(job, message) what it throws. All of them are called from several threads at once.
+/// cancelled() is asked before every job; if true, the ensemble ends when the replicas that are running have returned.
+/// An exception from next, done or failed ends it too, and is thrown again here (the first if there are several).
 template <Executor E, class Next, class Replica, class Done, class Failed>
 void run_jobs(const E& executor, Next next, Replica replica, Done done, Failed failed,
               const std::function<bool()>& cancelled = {}) {

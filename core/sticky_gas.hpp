@@ -36,7 +36,7 @@ template <Real T> class StickyGas {
     for (BodyIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }
 
-  // Goes on to the state at a time, not before the last one asked for: everything that meets by then has merged.
+  // Goes on to the state at a time not before the last one: all that meet up to then have merged.
   Status advance(const T& time) {
     time_ = time;
     elapsed_ = time - start_;
@@ -50,12 +50,12 @@ template <Real T> class StickyGas {
 
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
-  T last_contact_time() const { return time_; }  // of the state that there is: contacts have no times here
+  T last_contact_time() const { return time_; }  // contacts have no times here: that of the state
   const Account<T>& account() const { return account_; }
   bool on_ring() const { return ring_; }
 
   // ---- at the time advanced to
-  // Clusters from the outermost body that has collided to the other.
+  // Clusters between the outermost two that have collided, both included.
   BodyIndex collided_bodies() const {
     if (ring_) return static_cast<BodyIndex>(held_.size());
     const auto [from, to] = collided();
@@ -189,7 +189,7 @@ template <Real T> class StickyGas {
   std::deque<Lump> held_;  // from left to right
   Counts counts_;
   Ledger<T> lost_;
-  Account<T> account_;  // of nothing: all is resolved
+  Account<T> account_;  // stays empty: without events none can come too late
 };
 
 }  // namespace cradle

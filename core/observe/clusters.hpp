@@ -14,13 +14,14 @@ namespace cradle {
 
 template <Real T> struct Cluster {
   T mass{0}, x{0}, v{0};
-  BodyIndex index = -1;  // of the body it goes by: the same one through contacts that it passes, and in a merge that of
-                         // the heavier part
+  // Number at the start of the body that the cluster goes by. It stays when clusters pass each other; when they merge
+  // it is that of the heavier one.
+  BodyIndex index = -1;
 };
 
 template <Real T> struct Cloud {
-  // The two heaviest clusters, as they lie on the line; of equal masses the ones further left. Which of the two is the
-  // heavier, their masses tell; which is which after they have passed each other, the index tells.
+  // The two heaviest clusters in the order of the line; of equal masses the ones further left. After they have passed
+  // each other the index says which is which.
   std::optional<Cluster<T>> left, right;
   T mass{0};   // of all that have collided
   T width{0};  // standard deviation of position, weighted by mass, of all but the heaviest two; 0 where there are none
@@ -56,11 +57,11 @@ template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
   return found;
 }
 
-// How many clusters have a mass from 2^(k/4) to below 2^((k+1)/4) of the lightest body's: entry k.
+// Entry k: how many clusters have a mass from 2^(k/4) to below 2^((k+1)/4) times that of the lightest body.
 template <Real T> std::vector<std::uint64_t> mass_distribution(const Configuration<T>& c, const T& least_mass) {
   std::vector<std::uint64_t> clusters;
   for (std::size_t j = c.collided_from; j < c.collided_to; ++j) {
-    // Powers of two are met exactly; a quarter of a power never is by whole masses.
+    // Whole masses lie on an edge of a bin only where it is a power of two, whose logarithm is exact.
     const double quarters = 4 * std::log2(to_double(T(c.m[j] / least_mass)));
     const auto k = static_cast<std::size_t>(std::max(0.0, std::floor(quarters)));
     if (clusters.size() <= k) clusters.resize(k + 1);

@@ -14,8 +14,8 @@ template <Real T> struct Sample {
   T energy{0};       // kinetic, of all bodies of the scene: initial energy minus the ledger of losses
   T energy_lost{0};  // since the start
   Counts counts;
-  BodyIndex bodies = 0;                      // in the active zone: from the outermost that has collided to the other
-  std::optional<T> front_left, front_right;  // where those are; none before the first contact, nor on a ring
+  BodyIndex bodies = 0;                      // in the active zone, between the outermost two that have collided
+  std::optional<T> front_left, front_right;  // positions of these two; none before the first contact, nor on a ring
 };
 
 // Of a Simulation or a StickyGas. `time` must not be before the last contact made nor after the time advanced to.

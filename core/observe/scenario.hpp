@@ -1,16 +1,15 @@
 #pragma once
-// Which of the paper's two scenarios a wet shock takes (section VI, Fig. 9): whether the two heaviest clusters, when
-// they meet, pass through each other and go on oscillating, or stick, upon which another cluster becomes the second
-// one. Told of every contact and of the cloud now and then.
+// Which of the paper's two scenarios a wet shock takes (section VI, Fig. 9). Its two heaviest clusters either pass
+// through each other when they meet, and go on oscillating, or stick, and then another cluster becomes the second one.
+// The watch is told of every contact, and looks at the clusters now and then.
 //
-//   pair          the two heaviest clusters; established at the first look at which they hold more than half of the
-//                 mass that has collided, at least ten bodies each
-//   meeting       a contact of the pair, as it was at the last look, once established: a pass or a stick
-//   role change   at a look, the pair is not made of the same two clusters as at the look before
-//   regime        apart: not met yet since the pair is what it is; through: the last meeting was a pass; stuck: the
-//                 last meeting was a stick
-//   exponents     of time, fitted to the largest separation and the largest speed of the pair in each third of a
-//                 decade, from where the pair is established, least squares in the logarithms; at least four of them
+//   pair          the two heaviest clusters, from the first look at which they hold more than half of the mass that has
+//                 collided, and ten bodies each or more
+//   meeting       a contact of the two clusters that were the pair at the last look: a pass or a stick
+//   role change   a look at which the pair is not made of the same two clusters as at the look before
+//   regime        apart: these two have not met yet; through: their last meeting was a pass; stuck: it was a stick
+//   exponents     powers of time by which the largest separation and the largest speed of the pair grow: one point for
+//                 each third of a decade since there is a pair, at least four, least squares in the logarithms
 //                 (theory: (17), 1/3 and -1/3)
 // Looks should be spread evenly in the logarithm of time, a hundred per decade or more.
 
@@ -40,7 +39,7 @@ struct Scenario {
 
 class ScenarioWatch {
  public:
-  // Before a contact of the bodies that go by these numbers, of which `merges` were before.
+  // To be called before each contact, of the bodies with these numbers; there were `merges` so far.
   void contact(BodyIndex left, BodyIndex right, double time, std::uint64_t merges) {
     settle(merges);
     if (!pair_ ||
@@ -49,7 +48,7 @@ class ScenarioWatch {
     meeting_ = {time, merges};
   }
 
-  // A look at a time after the start, all contacts up to it being made.
+  // A look, when all contacts up to `time` (since the start) are made.
   template <Real T> void look(const Cloud<T>& cloud, double time, std::uint64_t merges) {
     settle(merges);
     if (!cloud.left || !cloud.right) return;
@@ -69,7 +68,7 @@ class ScenarioWatch {
     speed = std::max({speed, std::abs(to_double(cloud.left->v)), std::abs(to_double(cloud.right->v))});
   }
 
-  // With all contacts made, of which so many were merges.
+  // At the end of the run, after so many merges.
   Scenario result(std::uint64_t merges) {
     settle(merges);
     found_.separation_exponent = exponent([](const auto& largest) { return largest.first; });
@@ -83,7 +82,7 @@ class ScenarioWatch {
     std::uint64_t merges_before;
   };
 
-  // What became of the last meeting shows in the number of merges when the next contact comes.
+  // A contact is told of before it is made: whether it was a merge shows in the count that comes with the next one.
   void settle(std::uint64_t merges) {
     if (!meeting_) return;
     const bool passed = merges == meeting_->merges_before;
@@ -96,7 +95,7 @@ class ScenarioWatch {
     meeting_.reset();
   }
 
-  // Of the bins between the first and the last one, which are not filled.
+  // Leaves out the first and the last bin, which are cut short by the beginning and the end.
   template <class Of> double exponent(Of of) const {
     if (largest_.size() < 6) return std::numeric_limits<double>::quiet_NaN();
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;

@@ -1,9 +1,8 @@
 #pragma once
-// The trace of a run: a number that two runs share exactly when they have made the same contacts in the same sequence
-// at every body. Contacts of different bodies commute and may come in either order, so a plain list of contacts would
-// tell runs apart that do not differ. Every body carries a hash of its past; a contact mixes those of its two bodies
-// and gives both the result (the canonical form of a Mazurkiewicz trace). The digest sums over all bodies and is kept
-// up to date.
+// The trace of a run: a hash that two runs share exactly if, at every body, they have made the same contacts in the
+// same sequence. A plain list of contacts would not do: contacts of different bodies commute and may be made in either
+// order. So every body carries a hash of its past. A contact mixes the two pasts and gives the result to both bodies
+// (the canonical form of a Mazurkiewicz trace). The digest is the sum over all bodies.
 
 #include <cstdint>
 #include <unordered_map>
@@ -16,7 +15,7 @@ class Trace {
  public:
   void contact(BodyIndex left, BodyIndex right) {
     const std::uint64_t of_left = past_[left], of_right = past_[right];
-    digest_ -= mix(of_left, left) + mix(of_right, right);  // of what is 0 before a first contact, for every run alike
+    digest_ -= mix(of_left, left) + mix(of_right, right);  // a first contact subtracts what was never added: no matter
     const std::uint64_t shared = mix(mix(of_left, left) ^ (mix(of_right, right) * 3), left);
     past_[left] = past_[right] = shared;
     digest_ += mix(shared, left) + mix(shared, right);

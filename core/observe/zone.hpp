@@ -1,15 +1,15 @@
 #pragma once
-// The interaction zone of a late wet shock, averaged over time: number density n± and mean speed u± of the single
-// bodies (of the rows' mass, not merged yet) that still move the way their row came, right-movers + and left-movers -,
-// in bins; and the width 2L of the zone from the slope of u+. The paper's linear model (section VI, Fig. 7) lets u+
-// fall linearly from u0 to u_crit over the length 2L (9). So, by definition here,
+// The interaction zone of a late wet shock, averaged over time, in bins: number density n± and mean speed u± of single
+// bodies (those that have not merged), right-movers + and left-movers -. And the width 2L of the zone, from the slope
+// of u+. In the paper's linear model (section VI, Fig. 7) u+ falls linearly from u0 to u_crit over the length 2L (9).
+// So, by definition here,
 //
 //   2L = (u0 - u_crit)/|slope|,   |slope| = (u0/2)/(x_{1/4} - x_{3/4}),   u+(x_q) = q u0,
 //
-// from both sorts of movers, left-movers mirrored. The zone wanders with the heavy clusters, which smears a long
-// average: 2L is the median over parts of the time, its error 1.253 standard errors of their scatter (1.483 median
-// deviations), as for the median of Gaussian numbers. Counting the fall from u0 to 0, as (13) does, gives u0/(u0 -
-// u_crit) times as much: what the width is depends on the definition by that factor.
+// from right-movers and mirrored left-movers together. The zone wanders with the heavy clusters, which would smear a
+// long average: time is divided into parts, and 2L is the median of their widths. Its error is that of a median of n
+// Gaussian numbers, 1.253 sigma/sqrt(n), with sigma = 1.483 times the median deviation. Where (13) counts the fall from
+// u0 to 0, it is u0/(u0 - u_crit) times as wide.
 // Sampling and units: those of the scene; float64.
 
 #include <algorithm>

@@ -54,7 +54,7 @@ inline double scale(double mantissa, long exponent) {
 }
 
 // Not for doubles, which would convert: they are queue times as they are.
-template <std::same_as<long double> T> double split(T x, long& exponent) {
+template <std::same_as<long double> T> [[gnu::always_inline]] inline double split(T x, long& exponent) {
   if constexpr (std::numeric_limits<long double>::digits == 64) {  // x87: read off the bits, frexp is a slow call
     std::uint64_t mantissa = 0;
     std::uint16_t sign_and_exponent = 0;

@@ -1,0 +1,54 @@
+#pragma once
+// What a chain in gaps and body velocities looks like in positions: told from a body that has not collided, the one at
+// the left end if there is one, else from the centre of mass.
+
+#include "cradle/core/cluster_chain.hpp"
+
+namespace cradle {
+
+template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time) const {
+  const bool collided = window_.has_fronts();
+  const Slot from = collided && window_.front_left() > first() ? left(window_.front_left()) : first();
+  const Slot to = collided && window_.front_right() < last() ? right(window_.front_right()) : last();
+  Configuration<T> c;
+  c.time = clock().time(time);
+  // A body that has not collided is still itself; where all at an end have, they are those from the end of the line.
+  const bool free_left = !on_ring() && (!collided || from != window_.front_left());
+  const bool free_right = !on_ring() && (!collided || to != window_.front_right());
+  c.from = free_left ? body(from) : 0;
+  c.to = free_right ? body(to) : bodies_->count() - 1;
+  CompensatedSum<T> way, moment, mass;
+  std::vector<T> ways;
+  for (Slot s = from;; s = right(s)) {
+    const Cell<T>& cell = gaps_[s];
+    c.index.push_back(cell.body);
+    c.m.push_back(cell.mass);
+    c.v.push_back(cell.velocity + frame_);
+    ways.push_back(way.value());
+    moment.add(cell.mass * ways.back());
+    mass.add(cell.mass);
+    if (s == to && !on_ring()) break;
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(closing(s));
+    way.add(c.gap.back());
+    if (s == to) break;
+  }
+  Pair<T> leftmost;
+  if (free_left) {
+    leftmost = undisturbed_place(from, time);
+  } else if (free_right) {
+    leftmost = undisturbed_place(to, time) - way.value();
+  } else {
+    leftmost = two_sum(centre_ ? *centre_ : bodies_->centre_of_mass(), T(frame_ * clock().elapsed(time)));
+    leftmost = leftmost - T((moment.value() - carried_.value() * bodies_->circumference()) / mass.value());
+  }
+  for (const T& w : ways) c.x.push_back((leftmost + w).value());
+  if (collided || on_ring()) c.collided_from = free_left ? 1 : 0, c.collided_to = c.x.size() - (free_right ? 1 : 0);
+  if (on_ring()) {
+    c.closure_gap = bodies_->circumference() - way.value();
+    fold(c, bodies_->circumference());
+  }
+  return c;
+}
+
+}  // namespace cradle

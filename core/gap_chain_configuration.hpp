@@ -1,0 +1,85 @@
+#pragma once
+// What a chain in gaps and closing speeds looks like in positions and velocities. On a line both are summed up from the
+// left anchor and must lead to the right one: what is missing, the closure error, is spread over the bodies between. On
+// a ring positions are told from the centre of mass, velocities from the total momentum; there it is the circumference
+// that the gaps miss.
+
+#include "cradle/core/gap_chain.hpp"
+
+namespace cradle {
+
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configuration(const T& time) const {
+  return on_ring() ? ring_configuration(time) : line_configuration(time);
+}
+
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_configuration(const T& time) const {
+  Configuration<T> c;
+  c.time = clock().time(time);
+  c.to = bodies_->count() - 1;
+  c.collided_to = static_cast<std::size_t>(bodies_->count());
+  CompensatedSum<T> way, slowing, moment, momentum;
+  std::vector<T> ways, slowings;  // from body 0 to each one
+  for (Slot s = first(); s <= last(); ++s) {
+    c.index.push_back(body(s));
+    c.m.push_back(masses_[s]);
+    ways.push_back(way.value());
+    slowings.push_back(slowing.value());
+    moment.add(c.m.back() * ways.back());
+    momentum.add(c.m.back() * slowings.back());
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(closing(s));
+    way.add(c.gap.back());
+    slowing.add(c.closing_speed.back());
+  }
+  c.closure_gap = bodies_->circumference() - way.value();
+  c.closure_speed = -slowing.value();
+  const T mass = bodies_->total_mass(), drift = bodies_->momentum() / mass;
+  const Pair<T> start = two_sum(centre_, T(drift * clock().elapsed(time))) - T(moment.value() / mass);
+  const T stretch = c.closure_gap / way.value();
+  const T speed = drift + momentum.value() / mass;
+  for (std::size_t j = 0; j < ways.size(); ++j) {
+    c.x.push_back((start + T(ways[j] + stretch * ways[j])).value());
+    c.v.push_back(speed - slowings[j]);
+  }
+  fold(c, bodies_->circumference());
+  return c;
+}
+
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_configuration(const T& time) const {
+  const bool collided = window_.has_fronts();
+  const Slot from = collided && window_.front_left() > first() ? window_.front_left() - 1 : first();
+  const Slot to = collided && window_.front_right() < last() ? window_.front_right() + 1 : last();
+  const auto n = static_cast<std::size_t>(to + 2 - from);
+
+  Configuration<T> c;
+  c.time = clock().time(time);
+  for (Slot s = from; s <= to + 1; ++s) {
+    c.index.push_back(body(s));
+    c.m.push_back(masses_[s]);
+  }
+  c.from = body(from);
+  c.to = body(to) + 1;
+  if (collided) c.collided_from = window_.front_left() - from, c.collided_to = window_.front_right() - from + 2;
+  CompensatedSum<T> way, slowing;
+  std::vector<T> ways{T(0)}, slowings{T(0)};  // from the left anchor to each body
+  for (Slot s = from; s <= to; ++s) {
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(closing(s));
+    way.add(c.gap.back());
+    slowing.add(c.closing_speed.back());
+    ways.push_back(way.value());
+    slowings.push_back(slowing.value());
+  }
+  const Flight<T> left = flight(left_, time), right = flight(right_, time);
+  c.closure_gap = difference(right.x, left.x) - way.value();
+  c.closure_speed = difference(left.v, right.v) - slowing.value();
+  const T stretch = way.value() > T(0) ? T(c.closure_gap / way.value()) : T(0);
+  for (std::size_t j = 0; j < n; ++j) {
+    c.x.push_back((left.x + T(ways[j] + stretch * ways[j])).value());
+    const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(static_cast<std::int64_t>(n - 1))) : T(0);
+    c.v.push_back((left.v - T(slowings[j] + share * c.closure_speed)).value());
+  }
+  return c;
+}
+
+}  // namespace cradle

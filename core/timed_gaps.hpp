@@ -1,0 +1,237 @@
+#pragma once
+// The gaps of a chain, each with its local time: the time at which it was last brought up to date, an offset from a
+// moving origin. What both chains in gaps do with a gap g that closes at the speed w is done here, whatever they keep
+// beside it (gap_chain.hpp: closing speeds; cluster_chain.hpp: velocities, from which w follows):
+//
+//   next contact    local time + g/w, if w > 0
+//   brought to t    g -= w (t - local time), local time = t
+//   in contact      g = 0 exactly
+//
+// Contacts may come late: of two that the queue cannot tell apart, or that commute, one beside a gap may be made that
+// is earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong. The
+// gap becomes what it would be had the contact come in time: the gain in closing speed has acted since then, g += gain
+// (t - local time) with t before the local time; and a contact at the gap itself leaves it open by what it opens in
+// between. Where the order was truly lost the gap falls below zero, and is accounted for.
+//
+// When the origin moves, a local time is rounded. What it loses is kept (`lag`; the true local time is the sum of both)
+// so that a move touches no gap. A lag is other than zero only where the local time is negative, and is looked up only
+// there.
+
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/account.hpp"
+#include "cradle/core/clock.hpp"
+#include "cradle/core/collision.hpp"
+#include "cradle/core/event_queue.hpp"
+
+namespace cradle {
+
+// What a chain's cell begins with.
+template <Real T> struct TimedGap { T gap{1}, time{0}; };
+// In double the time of the next contact is its own key: it is kept, which saves a division when it comes.
+template <> struct TimedGap<double> { double gap = 1, time = 0, due = EventQueue::never; };
+
+// `may_collapse`: gaps and times shrink without end, beyond the range of double where the type goes further.
+template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class TimedGaps {
+ public:
+  static constexpr bool keys_are_exact = std::same_as<T, double>;
+  static constexpr bool beyond_double = may_collapse && WiderRange<T>;
+
+  explicit TimedGaps(const T& start) : clock_(start) {}
+
+  // ---- slots
+  std::size_t slots() const { return cells_.size(); }
+  Cell& operator[](Slot s) { return cells_[s]; }
+  const Cell& operator[](Slot s) const { return cells_[s]; }
+  // Goes on with so many slots, of which those from `first` on hold what was at `kept`, in that order.
+  void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept) {
+    std::vector<Cell> cells(slots);
+    std::vector<T> lag(slots, T(0));
+    for (const Slot s : kept) {
+      cells[first] = std::move(cells_[s]);
+      lag[first++] = std::move(lag_[s]);
+    }
+    cells_ = std::move(cells);
+    lag_ = std::move(lag);
+  }
+  void put(Slot s, Cell cell) {
+    cells_[s] = std::move(cell);
+    lag_[s] = T(0);
+  }
+  // A gap that is of interest only from now on.
+  void start(Slot s, const T& gap, const T& now) {
+    cells_[s].gap = gap;
+    cells_[s].time = now;
+    lag_[s] = T(0);
+  }
+  // A gap comes to another slot.
+  void carry(Slot from, Slot to) {
+    cells_[to].gap = cells_[from].gap;
+    cells_[to].time = cells_[from].time;
+    lag_[to] = lag_[from];
+  }
+
+  // ---- times
+  const Clock<T>& clock() const { return clock_; }
+  [[gnu::always_inline]] double queue_time(const T& local) const {
+    if constexpr (beyond_double) {
+      long exponent = 0;
+      const double mantissa = split(local, exponent);
+      return scale(mantissa, exponent + shift_);
+    } else {
+      return to_double(local);
+    }
+  }
+  // Since the gap's local time.
+  [[gnu::always_inline]] T flown(Slot s, const T& now) const {
+    const T& then = cells_[s].time;
+    T way = now - then;
+    if (is_negative(then)) [[unlikely]]
+      way -= lag_[s];
+    return way;
+  }
+  // Local time of the next contact of a gap that is closing.
+  T due(Slot s, const T& closing) const {
+    if constexpr (keys_are_exact)
+      return cells_[s].due;
+    else
+      return contact_time(s, closing);
+  }
+  double queue_due(Slot s, const T& closing) const {
+    if constexpr (keys_are_exact)
+      return cells_[s].due;
+    else
+      return is_positive(closing) ? queue_time(contact_time(s, closing)) : EventQueue::never;
+  }
+  // What times of contacts are told apart by, as times since the start.
+  T time_resolution(const T& time) const {
+    return T(std::numeric_limits<T>::epsilon()) * magnitude(clock_.elapsed(time));
+  }
+  // The gap at a time not before its local time.
+  T gap_at(Slot s, const T& closing, const T& time) const { return cells_[s].gap - closing * flown(s, time); }
+
+  // ---- events. A contact at `time` beside the gap adds gain() to the closing speed that it has had so far. Returns
+  // the time since its local time, negative where the contact is late.
+  template <class Gain> [[gnu::always_inline]] T kick(Slot s, const T& closing, const Gain& gain, const T& time) {
+    Cell& cell = cells_[s];
+    const T since = flown(s, time);
+    if (is_negative(since)) [[unlikely]]
+      cell.gap += gain() * since;
+    else {
+      cell.gap -= closing * since;
+      renew(s, time);
+    }
+    return since;
+  }
+  // A contact at the gap itself, after which it closes at a speed <= 0; `since` as above.
+  [[gnu::always_inline]] void close(Slot s, const T& closing, const T& since, const T& time) {
+    Cell& cell = cells_[s];
+    if (is_negative(since)) [[unlikely]]
+      cell.gap = closing * since;
+    else {
+      cell.gap = T(0);
+      renew(s, time);
+    }
+  }
+  // Predicts the next contact of a gap touched just now, as a queue time. Wide types: a rounded time will do, the queue
+  // knows.
+  [[gnu::always_inline]] double predict(Slot s, const T& closing) {
+    Cell& cell = cells_[s];
+    if constexpr (keys_are_exact) {
+      // Whether a gap closes cannot be predicted: choose by bits, where a positive number is a positive integer.
+      const auto bits = std::bit_cast<std::uint64_t>(cell.time + cell.gap / closing);
+      const auto opening = std::uint64_t{0} - (std::bit_cast<std::int64_t>(closing) <= 0);
+      return cell.due =
+                 std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
+    } else {
+      if (!is_positive(closing)) return EventQueue::never;
+      if (is_negative(cell.time)) [[unlikely]]
+        return queue_due(s, closing);
+      if constexpr (beyond_double) {
+        long of_gap = 0, of_closing = 0;
+        const double gap = split(cell.gap, of_gap), speed = split(closing, of_closing);
+        return queue_time(cell.time) + scale(gap / speed, of_gap - of_closing + shift_);
+      } else {
+        const double rounded = to_double(cell.time) + to_double(cell.gap) / to_double(closing);
+        return std::isfinite(rounded) ? rounded : queue_due(s, closing);
+      }
+    }
+  }
+  // The same off the hot path, for a gap as old as it may be.
+  void foresee(Slot s, const T& closing) {
+    if constexpr (keys_are_exact) cells_[s].due = closing > 0 ? contact_time(s, closing) : EventQueue::never;
+  }
+  void forget(Slot s) {
+    if constexpr (keys_are_exact) cells_[s].due = EventQueue::never;
+  }
+
+  // The origin of time moves by so much. `each_held` calls what it is given with every gap held and its closing speed.
+  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held) {
+    clock_.move_origin(by);
+    each_held([&](Slot s, const T& closing) {
+      const Pair<T> moved = two_sum(cells_[s].time, T(-by));
+      cells_[s].time = moved.high;
+      lag_[s] += moved.low;
+      foresee(s, closing);
+    });
+    if constexpr (beyond_double) choose_shift(each_held);
+  }
+
+  // ---- what to look at more closely: gaps that a contact beside them leaves below the floor
+  void set_floor(const T& floor) { floor_ = floor; }
+  bool below_floor(Slot s) const { return cells_[s].gap < floor_; }
+  // Of a gap below the floor, kicked just now; `since` is what kick said, body the one on its left.
+  Notice note(Slot s, const T& closing, BodyIndex body, const T& since, const T& time) {
+    const T& gap = cells_[s].gap;
+    if (!is_positive(gap)) {
+      // Times are rounded in units of the offset, the way flown in units of the way.
+      const T rounding =
+          T(16) * T(std::numeric_limits<T>::epsilon()) * magnitude(closing) * (magnitude(time) + magnitude(since));
+      account_.enter({clock_.time(time), body, gap}, rounding);
+    }
+    return Notice::gap_below_floor;
+  }
+  const Account<T>& account() const { return account_; }
+
+ private:
+  T contact_time(Slot s, const T& closing) const {
+    const Cell& cell = cells_[s];
+    T time = cell.time + cell.gap / closing;
+    if (is_negative(cell.time)) [[unlikely]]
+      time += lag_[s];
+    return time;
+  }
+  [[gnu::always_inline]] void renew(Slot s, const T& now) {
+    T& then = cells_[s].time;
+    if (is_negative(then)) [[unlikely]]
+      lag_[s] = T(0);
+    then = now;
+  }
+
+  // Queue times are local times in units of 2^-shift, such that the next contact is within the range of double.
+  template <class EachHeld> void choose_shift(const EachHeld& each_held) {
+    long least = std::numeric_limits<long>::max();
+    each_held([&](Slot s, const T& closing) {
+      if (!is_positive(closing)) return;
+      const T next = contact_time(s, closing);
+      long exponent = 0;
+      if (split(next, exponent) > 0) least = std::min(least, exponent);
+    });
+    shift_ = least < -500 || (least > 500 && least < std::numeric_limits<long>::max()) ? -least : 0;
+  }
+
+  std::vector<Cell> cells_;
+  std::vector<T> lag_;
+  Clock<T> clock_;
+  T floor_{0};
+  long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
+  Account<T> account_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,99 @@
+#pragma once
+// How much of a line a chain holds, and how far contacts have come in it. Rows are streamed: bodies of a row never meet
+// each other, so of each row only the body next to the front is held, and the one after it is taken in by the contact
+// that hits it. From left to right:
+//
+//   unheld bodies | first ... left front ~~~ contacts ~~~ right front ... last | unheld bodies
+//
+// Slots are the chain's own: gaps, where the fronts are the outermost ones that have had a contact, or bodies, where
+// they are the outermost ones that have. Empty slots are left for the window to grow on either side; `cramped` says
+// when they are used up and the chain must be laid out anew. On a ring all bodies are held, and there are no fronts.
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "cradle/core/bodies.hpp"
+#include "cradle/core/event_queue.hpp"
+
+namespace cradle {
+
+class Window {
+ public:
+  // Where contacts have been made so far.
+  enum class Extent { nowhere, between_fronts, ring };
+  // What there is next to a front, away from the contacts.
+  enum class Beyond { held, row, nothing };
+
+  // `spare`: slots that stay empty at either end.
+  Window(bool on_ring, BodyIndex unheld_left, BodyIndex unheld_right, Slot spare)
+      : extent_(on_ring ? Extent::ring : Extent::nowhere), unheld_left_(unheld_left), unheld_right_(unheld_right),
+        spare_(spare) {}
+
+  Slot first() const { return first_; }
+  Slot last() const { return last_; }
+  BodyIndex unheld_left() const { return unheld_left_; }
+  BodyIndex unheld_right() const { return unheld_right_; }
+
+  // Puts so many held slots in the middle of enough for the window to grow by `growth` on either side, and returns how
+  // many those are. `kept`: which slots have been these so far, from the first one held on.
+  std::size_t lay_out(std::size_t held, BodyIndex growth, const std::vector<Slot>& kept = {}) {
+    first_ = static_cast<Slot>(std::min(unheld_left_, growth)) + spare_;
+    last_ = first_ + held - 1;
+    if (has_fronts())
+      for (Slot* front : {&front_left_, &front_right_})
+        *front = first_ + static_cast<Slot>(std::lower_bound(kept.begin(), kept.end(), *front) - kept.begin());
+    return last_ + 1 + static_cast<Slot>(std::min(unheld_right_, growth)) + spare_;
+  }
+  // Whether the next contact at a front could find no slot for the body that it takes in.
+  bool cramped(std::size_t slots) const {
+    return (unheld_left_ > 0 && first_ <= spare_) || (unheld_right_ > 0 && last_ + spare_ + 1 >= slots);
+  }
+
+  // ---- fronts
+  bool on_ring() const { return extent_ == Extent::ring; }
+  bool has_fronts() const { return extent_ == Extent::between_fronts; }
+  Slot front_left() const { return front_left_; }
+  Slot front_right() const { return front_right_; }
+  // Whether a contact from one slot to the other is between the fronts and concerns neither.
+  bool inside(Slot left, Slot right) const { return (left > front_left_) & (right < front_right_); }
+  // There has been a contact from one slot to the other.
+  void reach(Slot left, Slot right) {
+    if (!has_fronts()) front_left_ = left, front_right_ = right;
+    extent_ = Extent::between_fronts;
+    front_left_ = std::min(front_left_, left);
+    front_right_ = std::max(front_right_, right);
+  }
+  // On a ring whose slots are gaps: those at either end are not `inside`, they are next to the seam.
+  void place_seam() { front_left_ = first_, front_right_ = last_; }
+
+  // ---- of a front
+  Beyond beyond_left(Slot s) const { return s != first_ ? Beyond::held : row_or_nothing(unheld_left_); }
+  Beyond beyond_right(Slot s) const { return s != last_ ? Beyond::held : row_or_nothing(unheld_right_); }
+  // Takes in the next body of a row, in the slot next to the last one held; returns its number, `count` bodies in all.
+  BodyIndex take_in_left() {
+    --first_;
+    return --unheld_left_;
+  }
+  BodyIndex take_in_right(BodyIndex count) {
+    ++last_;
+    return count - unheld_right_--;
+  }
+  // The body at `gone` goes on as part of the one at `s` on its left; `next` is on its right.
+  void merge(Slot s, Slot gone, Slot next) {
+    if (last_ == gone) last_ = s;
+    if (first_ == gone) first_ = next;
+    if (front_right_ == gone) front_right_ = s;
+  }
+
+ private:
+  static Beyond row_or_nothing(BodyIndex unheld) { return unheld > 0 ? Beyond::row : Beyond::nothing; }
+
+  Extent extent_;
+  Slot first_ = 0, last_ = 0;
+  Slot front_left_ = 0, front_right_ = 0;  // as long as there are none both 0, between which nothing is inside
+  BodyIndex unheld_left_, unheld_right_;
+  Slot spare_;
+};
+
+}  // namespace cradle

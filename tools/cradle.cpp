@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
 
@@ -21,23 +20,17 @@ int fail(std::string_view message, Exit status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("One-dimensional granular gases, event by event: dry, wet and sticky, in any precision.", "cradle");
-  program.set_version_flag("--version", build_description());
-  program.require_subcommand(1);
-  program.footer(
-      "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
-      "5 resolution or order lost, 130/143 interrupted.");
-  Action action;
-  for (const auto add : {add_run, add_check, add_info, add_export, add_theory, add_scenes, add_plot, add_trust,
-                         add_ensemble, add_sweep, add_merge})
-    add(program, action);
-
   try {
-    program.parse(argc, argv);
-    return static_cast<int>(action());
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
-    return fail(fmt::format("{}: see `cradle --help`", error.what()), Exit::bad_input);
+    CommandLine program(
+        "cradle", "One-dimensional granular gases, event by event: dry, wet and sticky, in any precision.",
+        build_description(),
+        "cradle run fig2 -o fig2.h5, then cradle plot fig2.h5; cradle run --help tells what else `run` takes",
+        "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
+        "5 resolution or order lost, 130/143 interrupted.");
+    for (const auto add : {add_run, add_check, add_info, add_export, add_theory, add_scenes, add_plot, add_trust,
+                           add_ensemble, add_sweep, add_merge})
+      add(program);
+    return static_cast<int>(program.read(argc, argv)());
   } catch (const Error& error) {
     return fail(error.what(), error.status);
   } catch (const std::bad_alloc&) {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -85,12 +84,12 @@ Exit check(const CommonOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Action& action) {
-  auto* command =
-      program.add_subcommand("check", "validate a scene without running it: effective values, expected cost");
+void add_check(CommandLine& program) {
+  Command command =
+      program.add("check", "validate a scene without running it: effective values, expected cost", "cradle check fig2");
   const auto options = std::make_shared<CommonOptions>();
-  add_common_options(*command, *options);
-  command->callback([&action, options] { action = [options] { return check(*options); }; });
+  add_common_options(command, *options);
+  command.does([options] { return check(*options); });
 }
 
 }  // namespace cradle::tools

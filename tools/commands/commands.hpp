@@ -2,22 +2,14 @@
 // and returns an exit status; it throws Error for everything a user can put right.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cradle/tools/commands/options.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/support/errors.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace cradle::tools {
-
-/// What the main program runs once the command line is read.
-using Action = std::function<Exit()>;
 
 /// Options that every command that computes accepts.
 struct CommonOptions {
@@ -31,18 +23,18 @@ struct CommonOptions {
   std::vector<std::string> all_overrides() const;
   Scene read() const;
 };
-void add_common_options(CLI::App& command, CommonOptions& options);
+void add_common_options(Command& command, CommonOptions& options);
 
-void add_run(CLI::App& program, Action& action);
-void add_check(CLI::App& program, Action& action);
-void add_info(CLI::App& program, Action& action);
-void add_export(CLI::App& program, Action& action);
-void add_theory(CLI::App& program, Action& action);
-void add_scenes(CLI::App& program, Action& action);
-void add_plot(CLI::App& program, Action& action);
-void add_trust(CLI::App& program, Action& action);
-void add_ensemble(CLI::App& program, Action& action);
-void add_sweep(CLI::App& program, Action& action);
-void add_merge(CLI::App& program, Action& action);
+void add_run(CommandLine& program);
+void add_check(CommandLine& program);
+void add_info(CommandLine& program);
+void add_export(CommandLine& program);
+void add_theory(CommandLine& program);
+void add_scenes(CommandLine& program);
+void add_plot(CommandLine& program);
+void add_trust(CommandLine& program);
+void add_ensemble(CommandLine& program);
+void add_sweep(CommandLine& program);
+void add_merge(CommandLine& program);
 
 }  // namespace cradle::tools

@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include "cradle/tools/commands/commands.hpp"
 
 namespace cradle::tools {
@@ -12,15 +10,14 @@ std::vector<std::string> CommonOptions::all_overrides() const {
 
 Scene CommonOptions::read() const { return read_scene(scene, all_overrides()); }
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
-  command.add_option("SCENE", options.scene, "scene file, or the name of a bundled scene")->required();
-  command.add_option("--set", options.overrides, "table.key=value instead of what the scene says; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command.add_option("--seed", options.seed, "instead of initial.seed");
-  command.add_option("--threads", options.threads, "threads to use at most; 0: as many as there are processors");
-  command.add_flag("--quiet", options.quiet, "no messages but errors and the collapse report");
-  command.add_flag("--progress", options.progress, "tell progress also where standard error is not a terminal");
+void add_common_options(Command& command, CommonOptions& options) {
+  command.argument("SCENE", options.scene, "scene file, or the name of a bundled scene");
+  command.repeated("--set", options.overrides, "table.key=value instead of what the scene says; may be repeated",
+                   "KEY=VALUE");
+  command.option("--seed", options.seed, "instead of initial.seed");
+  command.option("--threads", options.threads, "threads to use at most; 0: as many as there are processors");
+  command.flag("--quiet", options.quiet, "no messages but errors and the collapse report");
+  command.flag("--progress", options.progress, "tell progress also where standard error is not a terminal");
 }
 
 }  // namespace cradle::tools

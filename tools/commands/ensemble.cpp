@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <memory>
 
@@ -46,31 +45,25 @@ StudyPlan plan(const Options& options) {
 
 }  // namespace
 
-void add_ensemble(CLI::App& program, Action& action) {
-  auto* command =
-      program.add_subcommand("ensemble", "replicas of a scene with different perturbations, and statistics");
+void add_ensemble(CommandLine& program) {
+  Command command = program.add("ensemble", "replicas of a scene with different perturbations, and statistics",
+                                "cradle ensemble fig4 --replicas 100");
   const auto options = std::make_shared<Options>();
-  add_common_options(*command, *options);
-  constexpr std::uint64_t most = std::uint64_t{1} << 53;
-  command->add_option("--replicas", options->replicas, "how many; those that FILE has already are not run again")
-      ->required()
-      ->check(CLI::Range(std::uint64_t{1}, most));
-  command->add_option("--first", options->first, "number of the first one (default 0): initial.replica of its run")
-      ->check(CLI::Range(std::uint64_t{0}, most));
-  command
-      ->add_option("--spread", options->spreads,
-                   "count the values of a quantity in bins, and give quantiles: NAME=FROM:TO:BINS, NAME as in series/; "
-                   "may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("-o,--output", options->output,
-                      "result file (default: the scene's name with -ensemble.h5); an ensemble of this scene that is "
-                      "there is continued");
-  command->footer(
+  add_common_options(command, *options);
+  command.option("--replicas", options->replicas, {1, most_replicas},
+                 "how many; those that FILE has already are not run again", Needed::yes);
+  command.option("--first", options->first, {0, most_replicas},
+                 "number of the first one (default 0): initial.replica of its run");
+  command.repeated("--spread", options->spreads,
+                   "count the values of a quantity in bins, and give quantiles; NAME as in series/; may be repeated",
+                   "NAME=FROM:TO:BINS");
+  command.option("-o,--output", options->output,
+                 "result file (default: the scene's name with -ensemble.h5); an ensemble of this scene that is "
+                 "there is continued");
+  command.note(
       "Snapshots, masses and events of the scene are left out. Finished replicas are kept in FILE.part: the same "
       "command goes on from there.");
-  command->callback([&action, options] {
-    action = [options] { return run_study_command(*options, [&] { return plan(*options); }); };
-  });
+  command.does([options] { return run_study_command(*options, [&] { return plan(*options); }); });
 }
 
 }  // namespace cradle::tools

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -66,12 +65,12 @@ Exit export_result(const Options& options) {
 
 }  // namespace
 
-void add_export(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("export", "a result as CSV, one file per group");
+void add_export(CommandLine& program) {
+  Command command = program.add("export", "a result as CSV, one file per group", "cradle export fig2.h5 --to fig2");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "result file")->required();
-  command->add_option("--to", options->folder, "folder to write to; made where it is missing")->required();
-  command->callback([&action, options] { action = [options] { return export_result(*options); }; });
+  command.argument("FILE", options->file, "result file");
+  command.option("--to", options->folder, "folder to write to; made where it is missing", Needed::yes);
+  command.does([options] { return export_result(*options); });
 }
 
 }  // namespace cradle::tools

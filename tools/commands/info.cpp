@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
@@ -82,13 +81,13 @@ Exit info(const Options& options) {
 
 }  // namespace
 
-void add_info(CLI::App& program, Action& action) {
-  auto* command =
-      program.add_subcommand("info", "what a result file or journal holds: scene, precision, times, counts");
+void add_info(CommandLine& program) {
+  Command command = program.add("info", "what a result file or journal holds: scene, precision, times, counts",
+                                "cradle info fig2.h5");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "result file, or FILE.part")->required();
-  command->add_flag("--all", options->all, "also what does not differ from the defaults");
-  command->callback([&action, options] { action = [options] { return info(*options); }; });
+  command.argument("FILE", options->file, "result file, or FILE.part");
+  command.flag("--all", options->all, "also what does not differ from the defaults");
+  command.does([options] { return info(*options); });
 }
 
 }  // namespace cradle::tools

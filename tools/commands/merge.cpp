@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -39,13 +38,13 @@ Exit merge(const Options& options) {
 
 }  // namespace
 
-void add_merge(CLI::App& program, Action& action) {
-  auto* command =
-      program.add_subcommand("merge", "ensembles (or sweeps) of the same scene with different replicas, as one");
+void add_merge(CommandLine& program) {
+  Command command = program.add("merge", "ensembles (or sweeps) of the same scene with different replicas, as one",
+                                "cradle merge first.h5 second.h5 -o all.h5");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->files, "result files of `cradle ensemble` or `cradle sweep`")->required();
-  command->add_option("-o,--output", options->output, "result file")->required();
-  command->callback([&action, options] { action = [options] { return merge(*options); }; });
+  command.arguments("FILE", options->files, "result files of `cradle ensemble` or `cradle sweep`");
+  command.option("-o,--output", options->output, "result file", Needed::yes);
+  command.does([options] { return merge(*options); });
 }
 
 }  // namespace cradle::tools

@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -105,12 +104,13 @@ Exit plot(const Options& options) {
 
 }  // namespace
 
-void add_plot(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("plot", "the pictures of a result file; PNG, PDF or SVG by extension");
+void add_plot(CommandLine& program) {
+  Command command = program.add("plot", "the pictures of a result file; PNG, PDF or SVG by extension",
+                                "cradle plot fig2.h5 -o fig2.pdf");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "result file")->required();
-  command->add_option("-o,--output", options->output, "picture (default: FILE with .png)");
-  command->callback([&action, options] { action = [options] { return plot(*options); }; });
+  command.argument("FILE", options->file, "result file");
+  command.option("-o,--output", options->output, "picture (default: FILE with .png)");
+  command.does([options] { return plot(*options); });
 }
 
 }  // namespace cradle::tools

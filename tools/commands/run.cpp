@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
 
@@ -52,13 +51,12 @@ Exit run(const Options& options) {
 
 }  // namespace
 
-void add_run(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("run", "run a scene");
+void add_run(CommandLine& program) {
+  Command command = program.add("run", "run a scene", "cradle run fig2 --set run.until=2000 -o fig2.h5");
   const auto options = std::make_shared<Options>();
-  add_common_options(*command, *options);
-  command->add_option("-o,--output", options->output,
-                      "result file (default: the scene's name with .h5, in this folder)");
-  command->callback([&action, options] { action = [options] { return run(*options); }; });
+  add_common_options(command, *options);
+  command.option("-o,--output", options->output, "result file (default: the scene's name with .h5, in this folder)");
+  command.does([options] { return run(*options); });
 }
 
 }  // namespace cradle::tools

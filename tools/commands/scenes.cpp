@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -33,12 +32,12 @@ Exit scenes(const Options& options) {
 
 }  // namespace
 
-void add_scenes(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("scenes", "list the bundled scenes; print one");
+void add_scenes(CommandLine& program) {
+  Command command = program.add("scenes", "list the bundled scenes; print one", "cradle scenes fig2 > my.toml");
   const auto options = std::make_shared<Options>();
-  command->add_option("NAME", options->name, "the scene to print");
-  command->add_flag("--keys", options->keys, "every key of a scene file: type, unit, default, range, meaning");
-  command->callback([&action, options] { action = [options] { return scenes(*options); }; });
+  command.argument("NAME", options->name, "the scene to print", Needed::no);
+  command.flag("--keys", options->keys, "every key of a scene file: type, unit, default, range, meaning");
+  command.does([options] { return scenes(*options); });
 }
 
 }  // namespace cradle::tools

@@ -1,6 +1,7 @@
 // What `ensemble` and `sweep` have in common: runs a study, tells how it went, gives the exit status.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -8,6 +9,9 @@
 #include "cradle/tools/ensemble/ensemble.hpp"
 
 namespace cradle::tools {
+
+/// How many there may be, and the highest number of one: what float64 counts exactly.
+inline constexpr std::uint64_t most_replicas = std::uint64_t{1} << 53;
 
 struct StudyPlan {
   Study study;

@@ -1,6 +1,5 @@
 #include "cradle/tools/ensemble/sweep.hpp"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -33,29 +32,24 @@ StudyPlan plan(const Options& options) {
 
 }  // namespace
 
-void add_sweep(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("sweep", "a scene at many points: one ensemble each, one file");
+void add_sweep(CommandLine& program) {
+  Command command = program.add("sweep", "a scene at many points: one ensemble each, one file",
+                                "cradle sweep fig4 --vary law.restitution=0.9:0.999:10 --replicas 10");
   const auto options = std::make_shared<Options>();
-  add_common_options(*command, *options);
-  command
-      ->add_option("--vary", options->sweep.vary,
-                   "KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=VALUE,VALUE,...; of several, all combinations")
-      ->allow_extra_args(false);
-  command->add_flag("--cuts", options->sweep.cuts, "vary one key at a time, the others as in the scene");
-  command->add_option("--point", options->sweep.points, "\"KEY=VALUE KEY=VALUE\": one point; may be repeated")
-      ->allow_extra_args(false);
-  constexpr std::uint64_t most = std::uint64_t{1} << 53;
-  command->add_option("--replicas", options->sweep.replicas, "replicas of every point (default: the scene's, or 1)")
-      ->check(CLI::Range(std::uint64_t{1}, most));
-  command->add_option("--first", options->first, "number of the first replica (default 0)")
-      ->check(CLI::Range(std::uint64_t{0}, most));
-  command->add_option("-o,--output", options->output,
-                      "result file (default: the scene's name with -sweep.h5); one of this sweep that is there is "
-                      "continued");
-  command->footer("Without --vary and --point the sweep is the one that the scene names in its table [sweep].");
-  command->callback([&action, options] {
-    action = [options] { return run_study_command(*options, [&] { return plan(*options); }); };
-  });
+  add_common_options(command, *options);
+  command.repeated("--vary", options->sweep.vary,
+                   "or KEY=FROM:TO:COUNT:log, or KEY=VALUE,VALUE,...; of several, all combinations",
+                   "KEY=FROM:TO:COUNT");
+  command.flag("--cuts", options->sweep.cuts, "vary one key at a time, the others as in the scene");
+  command.repeated("--point", options->sweep.points, "one point; may be repeated", "\"KEY=VALUE KEY=VALUE\"");
+  command.option("--replicas", options->sweep.replicas, {1, most_replicas},
+                 "replicas of every point (default: the scene's, or 1)");
+  command.option("--first", options->first, {0, most_replicas}, "number of the first replica (default 0)");
+  command.option("-o,--output", options->output,
+                 "result file (default: the scene's name with -sweep.h5); one of this sweep that is there is "
+                 "continued");
+  command.note("Without --vary and --point the sweep is the one that the scene names in its table [sweep].");
+  command.does([options] { return run_study_command(*options, [&] { return plan(*options); }); });
 }
 
 }  // namespace cradle::tools

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -38,12 +37,13 @@ Exit theory(const Options& options) {
 
 }  // namespace
 
-void add_theory(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("theory", "the paper's predictions for a scene, with equation numbers");
+void add_theory(CommandLine& program) {
+  Command command =
+      program.add("theory", "the paper's predictions for a scene, with equation numbers", "cradle theory fig2");
   const auto options = std::make_shared<Options>();
-  add_common_options(*command, *options);
-  command->add_flag("--csv", options->csv, "all curves, as CSV: quantity,equation,form,t,value");
-  command->callback([&action, options] { action = [options] { return theory(*options); }; });
+  add_common_options(command, *options);
+  command.flag("--csv", options->csv, "all curves, as CSV: quantity,equation,form,t,value");
+  command.does([options] { return theory(*options); });
 }
 
 }  // namespace cradle::tools

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -35,20 +34,17 @@ Exit run_trust(const Options& options) {
 
 }  // namespace
 
-void add_trust(CLI::App& program, Action& action) {
-  auto* command = program.add_subcommand("trust", "the same run at rising precision: until when which number is right");
+void add_trust(CommandLine& program) {
+  Command command = program.add("trust", "the same run at rising precision: until when which number is right",
+                                "cradle trust fig2 --set run.until=1000 --digits 16,50");
   const auto options = std::make_shared<Options>();
-  add_common_options(*command, *options);
-  command
-      ->add_option("--digits", options->digits,
-                   "digits to compare, the reference last; 16 is double, 31 double-double, others mpfr (default: "
-                   "rising until two runs agree)")
-      ->delimiter(',')
-      ->check(CLI::Range(10U, 1000U))
-      ->allow_extra_args(false);
-  command->add_flag("--both", options->both, "in absolute coordinates too");
-  command->add_option("-o,--output", options->output, "result file (default: the scene's name with -trust.h5)");
-  command->callback([&action, options] { action = [options] { return run_trust(*options); }; });
+  add_common_options(command, *options);
+  command.list("--digits", options->digits, {10, 1000},
+               "digits to compare, 10 to 1000, the reference last; 16 is double, 31 double-double, others mpfr "
+               "(default: rising until two runs agree)");
+  command.flag("--both", options->both, "in absolute coordinates too");
+  command.option("-o,--output", options->output, "result file (default: the scene's name with -trust.h5)");
+  command.does([options] { return run_trust(*options); });
 }
 
 }  // namespace cradle::tools

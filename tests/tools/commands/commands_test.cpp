@@ -180,5 +180,27 @@ TEST_F(Commands, BadCommandLinesAreStatus2) {
   }
 }
 
+TEST_F(Commands, BadCommandLinesSayWhatIsWrongAndWhoseHelpToRead) {
+  const std::vector<std::pair<const char*, const char*>> commands{
+      {"walk fig2", "no such command (found walk): see `cradle --help`"},
+      {"run fig2 --sett a=1", "more than this command takes (found --sett a=1): see `cradle run --help`"},
+      {"ensemble fig2", "--replicas is required: see `cradle ensemble --help`"},
+      {"ensemble fig2 --replicas 0",
+       "--replicas: Value 0 not in range 1 to 9007199254740992: see `cradle ensemble --help`"},
+      {"trust fig2 --digits 16,5", "--digits: Value 5 not in range 10 to 1000: see `cradle trust --help`"}};
+  for (const auto& [command, message] : commands)
+    EXPECT_EQ(shell(std::string("cradle ") + command).err, std::string("cradle: ") + message + "\n");
+}
+
+TEST_F(Commands, EveryHelpEndsWithAnExampleAndTheExitStatuses) {
+  for (const std::string command :
+       {"", "run", "check", "info", "export", "theory", "scenes", "plot", "trust", "ensemble", "sweep", "merge"}) {
+    const Printed help = shell("cradle " + command + " --help");
+    EXPECT_EQ(help.status, 0) << help.err;
+    EXPECT_NE(help.out.find("\nExample: cradle " + command), std::string::npos) << help.out;
+    EXPECT_NE(help.out.find("\nExit status: 0 done"), std::string::npos) << help.out;
+  }
+}
+
 }  // namespace
 }  // namespace cradle::tests

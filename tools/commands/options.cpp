@@ -1,0 +1,124 @@
+#include "cradle/tools/commands/options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+namespace cradle::tools {
+
+namespace {
+
+const char* const whole_number = "N";
+
+CLI::Validator within(WholeNumbers range) { return CLI::Range(range.least, range.most).description(""); }
+
+std::string with_example(const std::string& example, const std::string& ending) {
+  return fmt::format("Example: {}\n{}", example, ending);
+}
+
+// The command that was being read, as one would type it.
+std::string words_of(const CLI::App& program) {
+  const auto chosen = program.get_subcommands();
+  return program.get_name() + (chosen.empty() ? "" : " " + chosen.front()->get_name());
+}
+
+Error misread(const CLI::App& program, const std::string& wrong, const std::string& found) {
+  return Error({}, wrong, found, fmt::format("see `{} --help`", words_of(program)));
+}
+
+}  // namespace
+
+Command::Command(CLI::App& command, Action& chosen, const std::string& ending)
+    : command_(command), chosen_(chosen), ending_(ending) {
+  command_.footer(ending_);
+}
+
+void Command::argument(const std::string& name, std::string& value, const std::string& help, Needed needed) {
+  command_.add_option(name, value, help)->required(needed == Needed::yes)->type_name("");
+}
+
+void Command::arguments(const std::string& name, std::vector<std::string>& values, const std::string& help) {
+  command_.add_option(name, values, help)->required()->type_name("");
+}
+
+void Command::option(const std::string& names, std::string& value, const std::string& help, Needed needed) {
+  command_.add_option(names, value, help)->required(needed == Needed::yes);
+}
+
+void Command::option(const std::string& names, std::optional<std::string>& value, const std::string& help) {
+  command_.add_option(names, value, help);
+}
+
+void Command::option(const std::string& names, unsigned& value, const std::string& help) {
+  command_.add_option(names, value, help)->type_name(whole_number);
+}
+
+void Command::option(const std::string& names, std::uint64_t& value, WholeNumbers range, const std::string& help,
+                     Needed needed) {
+  command_.add_option(names, value, help)
+      ->required(needed == Needed::yes)
+      ->type_name(whole_number)
+      ->check(within(range));
+}
+
+void Command::repeated(const std::string& names, std::vector<std::string>& values, const std::string& help,
+                       const std::string& kind) {
+  command_.add_option(names, values, help)->type_name(kind)->allow_extra_args(false);
+}
+
+void Command::list(const std::string& names, std::vector<unsigned>& values, WholeNumbers range,
+                   const std::string& help) {
+  command_.add_option(names, values, help)
+      ->type_name(fmt::format("{0},{0},", whole_number))
+      ->delimiter(',')
+      ->check(within(range))
+      ->allow_extra_args(false);
+}
+
+void Command::flag(const std::string& names, bool& value, const std::string& help) {
+  command_.add_flag(names, value, help);
+}
+
+void Command::note(const std::string& text) { command_.footer(text + "\n\n" + ending_); }
+
+void Command::does(Action action) {
+  command_.callback([&chosen = chosen_, action = std::move(action)] { chosen = action; });
+}
+
+CommandLine::CommandLine(const std::string& program, const std::string& description, const std::string& version,
+                         const std::string& example, const std::string& ending)
+    : program_(std::make_unique<CLI::App>(description, program)), ending_(ending) {
+  program_->set_version_flag("--version", version);
+  program_->require_subcommand(1);
+  program_->footer(with_example(example, ending_));
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::add(const std::string& name, const std::string& description, const std::string& example) {
+  return {*program_->add_subcommand(name, description), chosen_, with_example(example, ending_)};
+}
+
+Action CommandLine::read(int argc, const char* const* argv) {
+  const char* const first = argc > 1 ? argv[1] : "-";
+  const auto is_first = [first](const CLI::App* command) { return command->get_name() == first; };
+  if (*first != '-' && program_->get_subcommands(is_first).empty()) throw misread(*program_, "no such command", first);
+  try {
+    program_->parse(argc, argv);
+    return chosen_;
+  } catch (const CLI::ExtrasError&) {
+    throw misread(*program_, "more than this command takes",
+                  fmt::format("{}", fmt::join(program_->remaining(true), " ")));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) throw misread(*program_, error.what(), "");
+    std::ostringstream text;  // --help, --version
+    program_->exit(error, text, text);
+    return [text = text.str()] {
+      fmt::print("{}", text);
+      return Exit::done;
+    };
+  }
+}
+
+}  // namespace cradle::tools

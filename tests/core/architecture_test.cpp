@@ -11,13 +11,12 @@
 #include <string>
 #include <vector>
 
-#ifndef CRADLE_SOURCE_DIR
-#define CRADLE_SOURCE_DIR "."
-#endif
+#include "cradle/tests/places.hpp"
 
-namespace {
+namespace architecture_test {
 
 namespace fs = std::filesystem;
+using cradle::test::source_folder;
 
 struct Line {
   std::string file;
@@ -32,7 +31,7 @@ bool is_comment(const std::string& text) {
 
 std::vector<fs::path> headers(const std::string& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(CRADLE_SOURCE_DIR) / folder))
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_folder) / folder))
     if (entry.path().extension() == ".hpp" || entry.path().extension() == ".cpp") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
@@ -44,7 +43,7 @@ std::vector<Line> code(const std::string& folder) {
     std::ifstream in(file);
     std::string text;
     for (int number = 1; std::getline(in, text); ++number)
-      if (!is_comment(text)) lines.push_back({file.lexically_relative(CRADLE_SOURCE_DIR).string(), number, text});
+      if (!is_comment(text)) lines.push_back({file.lexically_relative(source_folder).string(), number, text});
   }
   return lines;
 }
@@ -71,7 +70,7 @@ TEST(Architecture, CoreIncludesTheStandardLibraryAndItselfOnly) {
         << place(line);
     EXPECT_TRUE(ensemble || std::find(forbidden.begin(), forbidden.end(), name) == forbidden.end()) << place(line);
   }
-  EXPECT_GT(found, 50) << "sources are looked for in " << CRADLE_SOURCE_DIR;
+  EXPECT_GT(found, 50) << "sources are looked for in " << source_folder;
 }
 
 TEST(Architecture, PrecisionDoesNotKnowTheTools) {
@@ -119,4 +118,4 @@ TEST(Architecture, EveryHeaderIsGuardedAndOpensWithItsIdea) {
   }
 }
 
-}  // namespace
+}  // namespace architecture_test

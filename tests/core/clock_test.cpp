@@ -12,7 +12,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
-namespace {
+namespace clock_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -111,4 +111,4 @@ TEST(Clock, OffsetsAndTimesAreInverse) {
   EXPECT_NEAR(clock.elapsed(1e-15), 1e-9 + 1e-12 + 1e-15, 1e-24);
 }
 
-}  // namespace
+}  // namespace clock_test

@@ -11,7 +11,7 @@
 #include "cradle/core/simulation.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace clusters_test {
 
 using namespace cradle;
 
@@ -110,4 +110,4 @@ TEST(Zone, NoWidthWithoutAFall) {
   EXPECT_THROW(ZoneAverage(0, 20, 16, 1), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace clusters_test

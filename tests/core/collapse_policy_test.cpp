@@ -7,7 +7,7 @@
 
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace collapse_policy_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -187,4 +187,4 @@ TEST(CollapsePolicies, SqueezedBodiesAreNotTakenForACollapse) {
   EXPECT_EQ(run.advance(63.5), Status::reached);
 }
 
-}  // namespace
+}  // namespace collapse_policy_test

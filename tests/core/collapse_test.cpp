@@ -16,7 +16,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
-namespace {
+namespace collapse_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -175,4 +175,4 @@ TEST(Collapse, FourBodiesInTheCheckerboardPattern) {
   }
 }
 
-}  // namespace
+}  // namespace collapse_test

@@ -10,7 +10,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace {
+namespace counter_rng_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -140,4 +140,4 @@ TEST(CounterRng, DisplacementsStayWithinThePerturbation) {
   EXPECT_THROW(uniform_displacement(-.1, 1, 0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace counter_rng_test

@@ -10,7 +10,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace {
+namespace elastic_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -140,4 +140,4 @@ TEST(Elastic, ExactInRationalArithmetic) {
   expect_exact(position_run(bodies, law));
 }
 
-}  // namespace
+}  // namespace elastic_test

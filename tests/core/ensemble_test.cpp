@@ -15,7 +15,7 @@
 #include "cradle/tests/core/replicas.hpp"
 
 namespace cradle::test {
-namespace {
+namespace ensemble_test {
 
 template <class E> class Executors : public testing::Test {};
 #ifdef __SANITIZE_THREAD__  // Debian's oneTBB is not instrumented
@@ -150,5 +150,5 @@ TYPED_TEST(Executors, MemoryGrowsWithThreadsNotWithReplicas) {
   }
 }
 
-}  // namespace
+}  // namespace ensemble_test
 }  // namespace cradle::test

@@ -12,7 +12,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace fixtures_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -67,4 +67,4 @@ TEST(Fixtures, ShockOfThePapersFigure2) {
                          {6000, 16156905, 0, 262.948286528987387}});
 }
 
-}  // namespace
+}  // namespace fixtures_test

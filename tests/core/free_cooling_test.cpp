@@ -12,7 +12,7 @@
 #include "cradle/core/sticky_gas.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
 
-namespace {
+namespace free_cooling_test {
 
 using namespace cradle;
 
@@ -73,4 +73,4 @@ TEST(FreeCooling, WetGasHasTheStickyExponent) {
   EXPECT_THROW(theory::haff_time({}, 1.0), std::domain_error);
 }
 
-}  // namespace
+}  // namespace free_cooling_test

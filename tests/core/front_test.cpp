@@ -17,7 +17,7 @@
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace front_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -119,4 +119,4 @@ TEST_P(Fronts, OfPerturbedRowsStayWithinASpacing) {
   }
 }
 
-}  // namespace
+}  // namespace front_test

@@ -12,7 +12,7 @@
 #include "cradle/core/counter_rng.hpp"
 
 namespace cradle::test {
-namespace {
+namespace histogram_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -63,5 +63,5 @@ TEST(FixedBins, QuantilesAreRightToABin) {
   EXPECT_TRUE(std::isnan(Histograms(bins, 1).quantile(0, 0.5)));
 }
 
-}  // namespace
+}  // namespace histogram_test
 }  // namespace cradle::test

@@ -7,7 +7,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace {
+namespace order_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -78,4 +78,4 @@ TEST(Order, InDoubleTheSameViolationIsCounted) {
   EXPECT_NEAR(chain.account().first_order_lost.gap, -.135, 8 * std::numeric_limits<double>::epsilon());
 }
 
-}  // namespace
+}  // namespace order_test

@@ -13,7 +13,7 @@
 #include "cradle/core/simulation.hpp"
 
 namespace cradle {
-namespace {
+namespace policies_test {
 
 std::shared_ptr<const Bodies<double>> shock(BodyIndex bodies) {
   return std::make_shared<Rows<double>>(symmetric_rows(bodies, 0.5, 1.0, uniform_displacement(0.05, 3, 0)));
@@ -109,5 +109,5 @@ TEST(Merging, StreamingChangesNoBitAndTheLedgerHolds) {
   EXPECT_EQ(streamed.chain().account().order_lost, 0U);
 }
 
-}  // namespace
+}  // namespace policies_test
 }  // namespace cradle

@@ -11,7 +11,7 @@
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace profile_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -131,4 +131,4 @@ TEST(GapStatistics, LeastAndMedian) {
   EXPECT_EQ(gap_statistics(c).median, 3);
 }
 
-}  // namespace
+}  // namespace profile_test

@@ -11,7 +11,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace properties_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -146,4 +146,4 @@ TEST(Properties, FewBodiesOrNoneInMotion) {
   EXPECT_EQ(contacts(list<double>({0, 1, 10}, {1, 0, 0})), 3U) << "(1 + eps)/2 reaches the third body, then again";
 }
 
-}  // namespace
+}  // namespace properties_test

@@ -11,7 +11,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/sorted_list_queue.hpp"
 
-namespace {
+namespace queue_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -192,4 +192,4 @@ TEST(Queue, WidthOfTheIndexDoesNotChangeABitInThePapersShock) {
   close_calls_of_the_same_run({8000, Inelastic(.999, 1e-5), 4000, rshock_displacement}, 20);
 }
 
-}  // namespace
+}  // namespace queue_test

@@ -13,7 +13,7 @@
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
-namespace {
+namespace rational_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -163,4 +163,4 @@ TEST(Rational, ObserversTakeRationals) {
   EXPECT_EQ(p.density[0] * 200, 12);
 }
 
-}  // namespace
+}  // namespace rational_test

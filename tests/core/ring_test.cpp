@@ -14,7 +14,7 @@
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/slow_ring.hpp"
 
-namespace {
+namespace ring_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -141,4 +141,4 @@ TEST(Ring, RefusesWhatIsNoRing) {
   EXPECT_THROW(List<double>({0, 1}, {0, 0}, {}, 1.0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace ring_test

@@ -10,7 +10,7 @@
 #include "cradle/core/simulation.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace scenario_test {
 
 using namespace cradle;
 using Regime = Scenario::Regime;
@@ -112,4 +112,4 @@ TEST(Scenario, OfARunAsCountedByHand) {
   EXPECT_EQ((found.passes - passes) % 2, 0U);  // an even number goes unseen
 }
 
-}  // namespace
+}  // namespace scenario_test

@@ -16,7 +16,7 @@
 #include "cradle/tests/core/replicas.hpp"
 
 namespace cradle::test {
-namespace {
+namespace statistics_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -185,5 +185,5 @@ TEST(Statistics, MissingReplicasAreFoundWhereverTheyAre) {
   }
 }
 
-}  // namespace
+}  // namespace statistics_test
 }  // namespace cradle::test

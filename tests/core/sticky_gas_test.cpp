@@ -17,7 +17,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace {
+namespace sticky_gas_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -186,4 +186,4 @@ TEST(StickyGas, CoolsByTheTwoThirdsLaw) {
   }
 }
 
-}  // namespace
+}  // namespace sticky_gas_test

@@ -14,7 +14,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
-namespace {
+namespace sticky_shock_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -202,4 +202,4 @@ TEST(StickyStrictScalar, BitsOfDouble) {
   EXPECT_EQ(evaluate(StrictReal(0)), evaluate(0.));
 }
 
-}  // namespace
+}  // namespace sticky_shock_test

@@ -13,7 +13,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
-namespace {
+namespace strict_scalar_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -150,4 +150,4 @@ TEST(StrictScalar, Theory) {
   EXPECT_EQ(evaluate(StrictReal(0)), evaluate(0.));
 }
 
-}  // namespace
+}  // namespace strict_scalar_test

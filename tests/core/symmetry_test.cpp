@@ -9,7 +9,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace symmetry_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -138,4 +138,4 @@ TEST(Symmetry, Units) {
   }
 }
 
-}  // namespace
+}  // namespace symmetry_test

@@ -14,7 +14,7 @@
 #include <limits>
 #include <string>
 
-namespace {
+namespace theory_test {
 
 using namespace cradle::theory;
 using Wide = boost::multiprecision::cpp_bin_float_50;  // 168 bits, expression templates on
@@ -468,4 +468,4 @@ TYPED_TEST(BuiltIn, AgreesWithWideToItsOwnPrecision) {
   expect_close(three_body_collapse_limit<T>(), three_body_collapse_limit<Wide>(), few, "7 - 4 sqrt 3");
 }
 
-}  // namespace
+}  // namespace theory_test

@@ -10,7 +10,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
-namespace {
+namespace twins_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -215,4 +215,4 @@ TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {
   }
 }
 
-}  // namespace
+}  // namespace twins_test

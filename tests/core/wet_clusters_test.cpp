@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace {
+namespace wet_clusters_test {
 
 using namespace cradle::theory;
 
@@ -349,4 +349,4 @@ TEST(WetClusters, MirrorImageIsTheSame) {
   EXPECT_FALSE(run.meetings().empty());
 }
 
-}  // namespace
+}  // namespace wet_clusters_test

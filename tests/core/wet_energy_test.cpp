@@ -14,7 +14,7 @@
 
 #include "cradle/tests/core/wet_reference.hpp"
 
-namespace {
+namespace wet_energy_test {
 
 using namespace cradle::theory;
 using namespace cradle::test;
@@ -178,4 +178,4 @@ TEST(WetEnergy, SeriesFollowsFromTheEquations) {
   }
 }
 
-}  // namespace
+}  // namespace wet_energy_test

@@ -14,7 +14,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle {
-namespace {
+namespace wet_test {
 
 TEST(WetLaw, ThresholdFromBothSides) {
   // u0 = 1/2, E = 1/4: closing at 1, mu = 1/2, sqrt(2 E/mu) = 1 exactly; equality merges.
@@ -174,5 +174,5 @@ TEST(WetShock, SlowFig11ToTheEnd) {
   EXPECT_LE(run.chain().slots(), 300U);  // of 2e7 bodies
 }
 
-}  // namespace
+}  // namespace wet_test
 }  // namespace cradle

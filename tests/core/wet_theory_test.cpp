@@ -15,7 +15,7 @@
 #include "cradle/tests/core/strict_real.hpp"
 #include "cradle/tests/core/wet_reference.hpp"
 
-namespace {
+namespace wet_theory_test {
 
 using namespace cradle::theory;
 using namespace cradle::test;
@@ -263,4 +263,4 @@ TEST(WetTheoryScalars, StrictTypeGivesTheBitsOfDouble) {
   EXPECT_EQ(evaluate(StrictReal(0)), evaluate(0.));
 }
 
-}  // namespace
+}  // namespace wet_theory_test

@@ -11,7 +11,7 @@
 
 #include "cradle/tests/core/wet_reference.hpp"
 
-namespace {
+namespace wet_zone_test {
 
 using namespace cradle::theory;
 using namespace cradle::test;
@@ -142,4 +142,4 @@ TEST(WetZone, ForceKeepsItsDigitsAtTheCentreAndForSmallLosses) {
   }
 }
 
-}  // namespace
+}  // namespace wet_zone_test

@@ -3,42 +3,14 @@
 // in any scalar type. All gaps are held from the start, since the growth of a streamed chain may allocate.
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <cstdint>
 #include <cstdlib>
-#include <new>
 
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/precision/counted_heap.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace {
-
-std::atomic<std::uint64_t> allocations{0};
-
-void* counted(std::size_t size, std::size_t alignment = alignof(std::max_align_t)) {
-  ++allocations;
-  const std::size_t whole = (size + alignment - 1) / alignment * alignment;
-  void* memory =
-      alignment > alignof(std::max_align_t) ? std::aligned_alloc(alignment, whole) : std::malloc(size + !size);
-  if (!memory) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
-void* operator new[](std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-
-namespace {
+namespace allocation_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -93,4 +65,4 @@ TYPED_TEST(Allocations, NoneInAHundredThousandContacts) {
   EXPECT_EQ(after - before, 0U);
 }
 
-}  // namespace
+}  // namespace allocation_test

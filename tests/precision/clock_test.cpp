@@ -13,7 +13,7 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
-namespace {
+namespace clock_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -92,6 +92,6 @@ TYPED_TEST(LateStart, GapsHaveTheSameBits) {
   EXPECT_TRUE(early_gaps == late_gaps);
 }
 
-}  // namespace
+}  // namespace clock_test
 
 #endif

@@ -8,7 +8,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace {
+namespace collapse_sizes_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -87,4 +87,4 @@ TYPED_TEST(CollapseSizes, FourBodiesKeepTheirSymmetry) {
   EXPECT_GE(cycles_kept(bodies, from_text<T>(".15"), 1000), predicted - 4);  // 64 roundings of head start: 4 cycles
 }
 
-}  // namespace
+}  // namespace collapse_sizes_test

@@ -13,7 +13,7 @@
 
 #include "cradle/precision/double_double.hpp"
 
-namespace {
+namespace double_double_test {
 
 using cradle::double_double;
 using Limits = std::numeric_limits<double_double>;
@@ -234,6 +234,6 @@ TEST(DoubleDouble, LimitsAreWhatOperationsKeep) {
   EXPECT_TRUE(std::isnan(Limits::quiet_NaN().high()));
 }
 
-}  // namespace
+}  // namespace double_double_test
 
 #endif

@@ -13,7 +13,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace drift_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -38,4 +38,4 @@ void expect_no_drift(double end, std::uint64_t least_contacts) {
 TEST(Drift, StaysARandomWalkForTenMillionContacts) { expect_no_drift(6000, 10000000); }
 TEST(SlowDrift, StaysARandomWalkForAHundredMillionContacts) { expect_no_drift(6550, 100000000); }
 
-}  // namespace
+}  // namespace drift_test

@@ -12,7 +12,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace {
+namespace extremes_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -200,4 +200,4 @@ TYPED_TEST(EveryExtreme, CutoffFromBothSides) {
   }
 }
 
-}  // namespace
+}  // namespace extremes_test

@@ -16,7 +16,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace {
+namespace filtered_queue_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -218,4 +218,4 @@ TYPED_TEST(FilteredQueue, IndexBitsChangeNoBitWhereTimesAreEqual) {
   EXPECT_GT(expect_index_bits_change_no_bit(integers<T>(), Inelastic<T>(T(1), T(0)), T(2), 20), 0U);
 }
 
-}  // namespace
+}  // namespace filtered_queue_test

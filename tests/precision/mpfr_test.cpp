@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-namespace {
+namespace mpfr_test {
 
 using namespace cradle;
 
@@ -191,6 +191,6 @@ TYPED_TEST(MpfrInPlace, ZerosAndIntegers) {
   EXPECT_TRUE(std::numeric_limits<T>::min() > T(0) && std::numeric_limits<T>::max() + T(1) > T(0));
 }
 
-}  // namespace
+}  // namespace mpfr_test
 
 #endif

@@ -21,7 +21,7 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
-namespace {
+namespace precision_runs_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -174,6 +174,6 @@ TYPED_TEST(EveryScalarCollapse, GapsAreFollowedToTheEndOfTheRange) {
   if (TypeParam::digits > 0) expect_invariant_down_to<T>("1e-20000");
 }
 
-}  // namespace
+}  // namespace precision_runs_test
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "cradle/precision/scalars.hpp"
 
-namespace {
+namespace scalars_test {
 
 using namespace cradle;
 
@@ -91,4 +91,4 @@ TEST(ScalarNames, MpfrIsNotInThisBuild) {
 }
 #endif
 
-}  // namespace
+}  // namespace scalars_test

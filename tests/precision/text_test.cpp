@@ -10,7 +10,7 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
-namespace {
+namespace text_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -163,6 +163,6 @@ TEST(DoubleDoubleText, PartsFarApartComeBack) {
   expect_round_trip(double_double::sum(0x1.fffffffffffffp1023, 0x1p-1074));
 }
 
-}  // namespace
+}  // namespace text_test
 
 #endif

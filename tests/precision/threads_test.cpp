@@ -8,7 +8,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace {
+namespace threads_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -49,4 +49,4 @@ TYPED_TEST(Threads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
   }
 }
 
-}  // namespace
+}  // namespace threads_test

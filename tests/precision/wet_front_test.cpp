@@ -13,7 +13,7 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle {
-namespace {
+namespace wet_front_test {
 
 template <class P> using WetFront = test::InPrecision<P>;
 TYPED_TEST_SUITE(WetFront, test::EveryPrecision, test::PrecisionName);
@@ -49,5 +49,5 @@ TYPED_TEST(WetFront, FollowsTheRecursion) {
 
 TEST(WetFrontInDouble, FollowsTheRecursionForThousandsOfContacts) { expect_front(1e-4, 3750, 50); }
 
-}  // namespace
+}  // namespace wet_front_test
 }  // namespace cradle

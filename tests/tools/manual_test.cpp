@@ -11,7 +11,7 @@
 #include "cradle/tools/result/result.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace manual_test {
 
 using Names = std::set<std::string>;
 
@@ -32,17 +32,17 @@ class Manual : public ProgramTest {
     return page.substr(begin + 1, page.find("\n#", begin + 1) - begin);
   }
 
-  const std::string page = contents(CRADLE_SOURCE_DIR "/tools/README.md");
+  const std::string page = contents(test::source_folder + "/tools/README.md");
 };
 
 TEST_F(Manual, QuotesWhatTheProgramPrints) {
-  const Printed check = shell("bash " CRADLE_SOURCE_DIR "/tools/manual.sh --check \"$(command -v cradle)\"");
+  const Printed check = shell("bash " + test::source_folder + "/tools/manual.sh --check \"$(command -v cradle)\"");
   EXPECT_EQ(check.status, 0) << check.out << check.err;
 }
 
 TEST_F(Manual, HasEveryCommandAndItsOptions) {
   Names commands;
-  for (const auto& entry : std::filesystem::directory_iterator(CRADLE_SOURCE_DIR "/tools/commands"))
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_folder + "/tools/commands"))
     commands.merge(matches(contents(entry.path()), R"re(program\.add(?:_subcommand)?\(\s*"([a-z]+)")re"));
   EXPECT_GE(commands.size(), 11U);
   const std::string option_lines = R"(\n +(-[^\n]*))", option = R"((--[a-z]+))";
@@ -107,5 +107,5 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
   EXPECT_GT(groups, 40U);
 }
 
-}  // namespace
+}  // namespace manual_test
 }  // namespace cradle::tests

@@ -12,6 +12,8 @@
 #include <iterator>
 #include <string>
 
+#include "cradle/tests/places.hpp"
+
 namespace cradle::tests {
 
 struct Printed {
@@ -37,7 +39,7 @@ class ProgramTest : public testing::Test {
 
   // `command` as typed in the test's folder; `cradle` is the program that was built.
   Printed shell(const std::string& command) const {
-    const std::string line = "cd '" + folder.string() + "' && PATH=\"" CRADLE_BINARY_DIR "/tools:$PATH\" && { " +
+    const std::string line = "cd '" + folder.string() + "' && PATH=\"" + test::build_folder + "/tools:$PATH\" && { " +
                              command + "\n} >.out 2>.err </dev/null";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder / ".out"), contents(folder / ".err")};

@@ -5,12 +5,12 @@
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace readme_test {
 
 class Readme : public ProgramTest {};
 
 TEST_F(Readme, CommandsSucceedAsPrinted) {
-  std::istringstream readme(contents(CRADLE_SOURCE_DIR "/README.md"));
+  std::istringstream readme(contents(test::source_folder + "/README.md"));
   std::string line;
   bool console = false;
   int commands = 0;
@@ -28,5 +28,5 @@ TEST_F(Readme, CommandsSucceedAsPrinted) {
     EXPECT_TRUE(std::filesystem::exists(folder / made)) << made;
 }
 
-}  // namespace
+}  // namespace readme_test
 }  // namespace cradle::tests

@@ -6,7 +6,7 @@
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace commands_test {
 
 class Commands : public ProgramTest {
  protected:
@@ -202,5 +202,5 @@ TEST_F(Commands, EveryHelpEndsWithAnExampleAndTheExitStatuses) {
   }
 }
 
-}  // namespace
+}  // namespace commands_test
 }  // namespace cradle::tests

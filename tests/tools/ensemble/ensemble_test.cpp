@@ -13,7 +13,7 @@
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace ensemble_test {
 
 using tools::RunOutcome;
 
@@ -236,5 +236,5 @@ TEST_F(Ensembles, InfoTellsWhatFilesAndJournalsHold) {
     EXPECT_NE(journal.out.find(text), std::string::npos) << text << "\n" << journal.out;
 }
 
-}  // namespace
+}  // namespace ensemble_test
 }  // namespace cradle::tests

@@ -12,7 +12,7 @@
 #include "cradle/tools/ensemble/checksum.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace journal_test {
 
 using tools::JournalReader;
 using tools::JournalWriter;
@@ -144,5 +144,5 @@ TEST_F(Journal, HasOneWriterAtATime) {
   EXPECT_THROW(JournalWriter{path()}, tools::Error);
 }
 
-}  // namespace
+}  // namespace journal_test
 }  // namespace cradle::tests

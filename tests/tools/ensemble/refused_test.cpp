@@ -3,7 +3,7 @@
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace refused_test {
 
 TEST_F(Ensembles, OtherScenesAndOtherFilesAreRefused) {
   run("ensemble shock.toml --replicas 3 -o a.h5");
@@ -55,5 +55,5 @@ TEST_F(Ensembles, ListedBodiesArePartOfTheScene) {
   run("ensemble list.toml --replicas 4 -o list.h5", 2);
 }
 
-}  // namespace
+}  // namespace refused_test
 }  // namespace cradle::tests

@@ -5,7 +5,7 @@
 #include "cradle/tools/ensemble/ensemble.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace same_bytes_test {
 
 TEST_F(Ensembles, SameBytesOnAnyNumberOfThreads) {
   run("ensemble shock.toml --replicas 60 --threads 1 -o one.h5");
@@ -157,5 +157,5 @@ TEST_F(Ensembles, WideTypesOnSeveralThreads) {
   }
 }
 
-}  // namespace
+}  // namespace same_bytes_test
 }  // namespace cradle::tests

@@ -7,7 +7,7 @@
 #include "cradle/tools/result/result.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace sweep_test {
 
 using namespace cradle::tools;
 
@@ -117,5 +117,5 @@ TEST_F(SweepCommand, SplitAndMergedIsTheSameFile) {
   EXPECT_EQ(shell("cradle merge whole.h5 e.h5 -o c.h5").status, 2) << "an ensemble is no sweep";
 }
 
-}  // namespace
+}  // namespace sweep_test
 }  // namespace cradle::tests

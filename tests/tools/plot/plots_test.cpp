@@ -8,7 +8,7 @@
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace plots_test {
 
 struct Kind {
   const char* name;
@@ -132,5 +132,5 @@ TEST_F(Plots, LeaveNoFilesBehind) {
   EXPECT_EQ(shell("TMPDIR=$PWD/nowhere cradle plot it.h5").status, 4);
 }
 
-}  // namespace
+}  // namespace plots_test
 }  // namespace cradle::tests

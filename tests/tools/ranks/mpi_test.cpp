@@ -8,7 +8,7 @@
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace mpi_test {
 
 constexpr const char* scene = R"(
 [law]
@@ -119,7 +119,7 @@ TEST_F(Mpi, SignalToOneRankStopsAllAndLosesNothing) {
 }
 
 TEST_F(Mpi, FailedReplicasAreListedWhicheverRankRanThem) {
-  const std::string program = std::string(CRADLE_BINARY_DIR) + "/tests/failing_ensemble wet.toml 60 ";
+  const std::string program = test::build_folder + "/tests/failing_ensemble wet.toml 60 ";
   for (const int ranks : {1, 2, 3}) {
     const Printed failed = shell(launch(ranks, program + fmt::format("failed-{}.h5", ranks)));
     EXPECT_EQ(failed.status, 5) << failed.err;
@@ -151,5 +151,5 @@ TEST_F(Mpi, RankThatCannotWriteItsJournalEndsTheJob) {
   EXPECT_NE(bad.err.find("cradle: "), std::string::npos) << bad.err;
 }
 
-}  // namespace
+}  // namespace mpi_test
 }  // namespace cradle::tests

@@ -10,7 +10,7 @@
 #include "cradle/tools/result/result.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace clusters_test {
 
 class RunClusters : public ProgramTest {
  protected:
@@ -235,5 +235,5 @@ TEST_F(RunClusters, WrongScenesAreRefusedByName) {
   EXPECT_NE(shell("cradle trust fig10").err.find("no contacts to compare"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace clusters_test
 }  // namespace cradle::tests

@@ -10,7 +10,7 @@
 #include "cradle/tools/result/result.hpp"
 
 namespace cradle::tests {
-namespace {
+namespace run_test {
 
 using tools::read_result;
 
@@ -251,5 +251,5 @@ TEST_F(Run, InterruptedRunLeavesWhatItHas) {
             "interrupted");
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace cradle::tests

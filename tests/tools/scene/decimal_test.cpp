@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace cradle::tools {
-namespace {
+namespace decimal_test {
 
 TEST(Decimal, CanonicalForm) {
   EXPECT_EQ(canonical_decimal("+1_000"), "1000");
@@ -70,5 +70,5 @@ TEST(Decimal, NearestDouble) {
   EXPECT_EQ(Decimal("4.9406564584124654e-324").value, std::numeric_limits<double>::denorm_min());
 }
 
-}  // namespace
+}  // namespace decimal_test
 }  // namespace cradle::tools

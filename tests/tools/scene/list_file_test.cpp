@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace cradle::tools {
-namespace {
+namespace list_file_test {
 
 Bodies parse(const std::string& text) {
   std::istringstream csv(text);
@@ -76,5 +76,5 @@ TEST(ListFile, BodiesOfAScene) {
   }
 }
 
-}  // namespace
+}  // namespace list_file_test
 }  // namespace cradle::tools

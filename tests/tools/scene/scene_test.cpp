@@ -14,7 +14,7 @@
 #include "cradle/tools/scene/fields.hpp"
 
 namespace cradle::tools {
-namespace {
+namespace scene_test {
 
 const std::string good = R"([law]
 type = "inelastic"
@@ -433,5 +433,5 @@ TEST(ReadScene, FilesComeBeforeBundledNames) {
   }
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace cradle::tools

@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace cradle::tools {
-namespace {
+namespace table_test {
 
 std::vector<Prediction> table_of(const std::string& scene, const std::vector<std::string>& overrides = {}) {
   return predictions(read_scene(scene, overrides));
@@ -168,5 +168,5 @@ TEST(Misprints, FitTheLaw) {
   EXPECT_EQ(misprints(read_scene("fig6")).find("(7)"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace table_test
 }  // namespace cradle::tools

@@ -11,6 +11,7 @@
 // running. Bodies squeezed between dense clusters shrink their intervals for a while too, but by a ratio that drifts. A
 // collapse of many bodies without a steady ratio is followed to the end of the type's range.
 
+#include <cstdint>
 #include <unordered_map>
 
 #include "cradle/core/bodies.hpp"
@@ -31,17 +32,29 @@ template <Real T> struct CollapseReport {
   bool extrapolated = false;
 };
 
-template <Real T> class CollapseWatch {
- public:
+// The contacts noticed at one gap, by what extrapolation needs of them.
+template <Real T> struct CollapseHistory {
+  std::uint64_t contacts = 0;
+  std::uint64_t steady = 0;  // so many times running the collapse time was settled
+  bool extrapolated = false;
+  Pair<T> estimate;                            // of the collapse time
+  T last{0};                                   // local time of the last contact
+  T interval{0}, first_interval{0}, ratio{1};  // since the one before; the first of those shrinking; last two of them
+};
+
+template <Real T> struct CollapseWatch {
+  std::unordered_map<BodyIndex, CollapseHistory<T>> histories;  // by the body on the left of the gap
+  CollapseReport<T> report;
+
   // Takes note of a contact next to a small gap; true when the collapse time is settled. `local` is the time as an
   // offset, which resolves intervals that the full time no longer does;
   // `resolution` is what the chain can tell times apart by at that place.
   bool settled(BodyIndex body, const Pair<T>& time, const T& local, const T& gap, const T& resolution) {
-    History& h = histories_[body];
+    CollapseHistory<T>& h = histories[body];
     const T interval = h.contacts > 0 ? T(local - h.last) : T(0);
-    report_.last_contact = time.value();
-    report_.gap = gap;
-    report_.body = body;
+    report.last_contact = time.value();
+    report.gap = gap;
+    report.body = body;
     if (h.contacts > 1 && interval > T(0) && interval < h.interval) {
       const T ratio = interval / h.interval;
       const Pair<T> estimate = time + T(interval * ratio / (T(1) - ratio));
@@ -54,7 +67,7 @@ template <Real T> class CollapseWatch {
       h.estimate = estimate;
       h.ratio = ratio;
       h.extrapolated = true;
-      report_ = {estimate, moved > resolution ? moved : resolution, time.value(), interval, ratio, gap, body, true};
+      report = {estimate, moved > resolution ? moved : resolution, time.value(), interval, ratio, gap, body, true};
     } else {
       h.extrapolated = false;
       h.steady = 0;
@@ -67,20 +80,8 @@ template <Real T> class CollapseWatch {
   }
 
   void origin_moved(const T& by) {
-    for (auto& [body, history] : histories_) history.last -= by;
+    for (auto& [body, history] : histories) history.last -= by;
   }
-
-  const CollapseReport<T>& report() const { return report_; }
-
- private:
-  struct History {
-    int contacts = 0, steady = 0;
-    bool extrapolated = false;
-    Pair<T> estimate;
-    T last{0}, interval{0}, first_interval{0}, ratio{1};
-  };
-  std::unordered_map<BodyIndex, History> histories_;
-  CollapseReport<T> report_;
 };
 
 }  // namespace cradle

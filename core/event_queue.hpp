@@ -113,10 +113,11 @@ class EventQueue {
     }
   }
 
-  // Sets one time without telling the tree; `rebuild` once all are set.
+  // Sets one time without telling the tree; `rebuild` once all from the first to the last slot set are.
   void set(Slot s, double due) { tree_[leaves_ + s] = key(due, s); }
-  void rebuild() {
-    for (std::size_t node = leaves_ - 1; node > 0; --node) refresh(node);
+  void rebuild(Slot first, Slot last) {
+    for (std::size_t from = (leaves_ + first) / 2, to = (leaves_ + last) / 2; from > 0; from /= 2, to /= 2)
+      for (std::size_t node = from; node <= to; ++node) refresh(node);
   }
 
   // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; looks at

@@ -38,6 +38,9 @@ template <Real T> bool is_positive(const T& x) { return x > T(0); }
 
 template <Real T> T magnitude(const T& x) { return is_negative(x) ? T(-x) : x; }
 
+// Neither infinite nor not a number: of those, the difference from themselves is not 0.
+template <Real T> bool is_finite(const T& x) { return x - x == T(0); }
+
 // Larger than any length of a scene. Exact types have no largest number and call it 0.
 template <Real T> T far_away() {
   const T largest = std::numeric_limits<T>::max();

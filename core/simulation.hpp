@@ -2,15 +2,19 @@
 // The event loop: take the next contact, let the chain apply the law, tell the queue about the three gaps concerned,
 // enter the loss in the ledger. Scalar, law and chain are types; everything else happens in `review`, off the hot path.
 //
-// The order of contacts is (exact time, position in the line). Contacts at gaps that are neither the same nor
-// neighbours nor share a gap between them commute exactly, so only those up to two gaps away are compared beyond what
-// the queue's keys tell.
+// The order of contacts is (exact time, position in the line), whatever the queue's keys can tell: where they cannot,
+// exact times are compared among all contacts that might be first (ties.hpp).
 //
 // Nothing depends on how often or until when `advance` is called: same initial state, same contacts, same bits.
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -21,6 +25,10 @@
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
 #include "cradle/core/law.hpp"
+#include "cradle/core/ledger.hpp"
+#include "cradle/core/pacing.hpp"
+#include "cradle/core/standstill.hpp"
+#include "cradle/core/ties.hpp"
 
 namespace cradle {
 
@@ -35,7 +43,7 @@ struct Counts {
   std::uint64_t contacts = 0;  // all of them: those below the cut-off and merges included
   std::uint64_t below_cutoff = 0;
   std::uint64_t merges = 0;
-  std::uint64_t close_calls = 0;  // contacts whose order the queue's keys could not tell from a neighbour's
+  std::uint64_t close_calls = 0;  // contacts that the queue's keys could not tell from another one
   std::uint64_t origin_moves = 0;
 };
 
@@ -43,31 +51,17 @@ struct Counts {
 template <Real T> struct Contact {
   BodyIndex left, right;  // by their numbers at the start
   Pair<T> time;
-  T interval;  // since the contact before it, if that was observed: resolves what differences of times cannot
+  T interval;  // since the contact before it, or the start: resolves what differences of times cannot
   T closing_speed;
 };
 
 template <Real T> struct Policy {
   CollapsePolicy collapse = CollapsePolicy::cutoff;
   T stop_gap{0};  // policy stop: go on until a gap is below this; 0: until the collapse time is settled
-  std::function<bool()> interrupt = {};  // asked now and then; true ends the run after the current contact
-  std::function<void(const T& time, const Counts&)> progress = {};  // told now and then
-};
-
-// Sum of the energies lost: compensated where the type has no digits to spare for 1e12 terms.
-template <Real T> class Ledger {
- public:
-  void add(const T& loss) {
-    if constexpr (compensated)
-      sum_.add(loss);
-    else
-      sum_.sum += loss;
-  }
-  T value() const { return sum_.value(); }
-
- private:
-  static constexpr bool compensated = std::same_as<T, float> || std::same_as<T, double> || std::same_as<T, long double>;
-  CompensatedSum<T> sum_;
+  // Called after a contact now and then. What they throw leaves `advance`; the run is as it would be without, and can
+  // go on.
+  std::function<bool()> interrupt = {};  // true ends the run there
+  std::function<void(const T& time, const Counts&)> progress = {};
 };
 
 template <Real T, class Law, class Chain>
@@ -76,66 +70,73 @@ class Simulation {
  public:
   using Scalar = T;
 
+  // Throws std::invalid_argument where the chain holds a number that is not finite.
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
-        queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits) {
-    fill_queue();
-    underflow_ = std::numeric_limits<T>::min();  // 0 in exact arithmetic, which knows no underflow
-    watch_below_ = policy_.collapse == CollapsePolicy::stop && chain_.last() >= chain_.first()
-                       ? T(smallest_gap() / T(64))
-                       : underflow_;
+        queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
+        last_contact_(chain_.local_time(chain_.start())), pacing_(last_contact_),
+        standstill_(last_contact_), target_{chain_.start(), last_contact_} {
+    const T least = smallest_gap();
+    watch_below_ = underflow_;
+    if (policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last()) watch_below_ = least / T(64);
     if (watch_below_ < policy_.stop_gap) watch_below_ = policy_.stop_gap;
     chain_.set_floor(watch_below_);
+    fill_queue();
+    aim();
   }
 
   // Makes every contact at times <= until. Except for `reached`, the run ends with the contact that was made last.
-  // An observer is told of every contact, observer(const Contact<T>&); without one there is nothing to pay.
+  // An observer is told of every contact, observer(const Contact<T>&), and may throw: the contact is then still to be
+  // made. Without an observer there is nothing to pay.
+  // Throws std::invalid_argument for a time that is not finite, or before the last contact made.
   template <class Observer = std::nullptr_t> Status advance(const T& until, Observer&& observer = nullptr) {
-    Course course = course_to(until);
-    while (step(course, observer)) {
+    head_for(until);
+    while (step(observer)) {
     }
-    return course.status;
+    return status_;
   }
 
-  // The same contact by contact: `while (step(course)) ...`. For several simulations side by side in one thread.
-  struct Course {
-    T until, horizon;  // the time to go to, and what it is called since the origin moved last
-    EventQueue::Key certainly_before;
-    Status status = Status::reached;
-  };
-  Course course_to(const T& until) const {
-    const T horizon = chain_.local_time(until);
-    return {until, horizon, queue_.certainly_before(chain_.queue_time(horizon))};
+  // The same contact by contact, for several simulations side by side in one thread:
+  // `run.head_for(until); while (run.step()) ...; run.status()`.
+  void head_for(const T& until) {
+    if (!is_finite(until))
+      throw std::invalid_argument("the time to advance to is not finite (found " + std::to_string(to_double(until)) +
+                                  "): give a number");
+    if (until < last_contact_time())
+      throw std::invalid_argument("the time to advance to is in the past (found " + std::to_string(to_double(until)) +
+                                  ", the last contact was at " + std::to_string(to_double(last_contact_time())) +
+                                  "): a run goes forward only");
+    target_.until = until;
+    status_ = Status::reached;
+    aim();
   }
-  // Makes the next contact; false where there is none to make, or it is the last one: course.status says why.
-  template <class Observer = std::nullptr_t>
-  [[gnu::always_inline]] bool step(Course& course, Observer&& observer = nullptr) {
+  // Makes the next contact; false where there is none to make, or it is the last one.
+  template <class Observer = std::nullptr_t> [[gnu::always_inline]] bool step(Observer&& observer = nullptr) {
     constexpr bool observed = !std::same_as<std::remove_cvref_t<Observer>, std::nullptr_t>;
     const auto next = queue_.next();
     Slot s = queue_.slot(next);
-    if (next >= course.certainly_before) [[unlikely]] {
-      if (!earliest_until(course.horizon, s)) return false;
+    if (next >= target_.certainly_before) [[unlikely]] {
+      if (!first_within_target(s)) return false;
     } else if (queue_.contested()) [[unlikely]] {
-      s = earliest_near(next);
+      s = first_of_tied();
     }
     const T time = chain_.due(s);
-    if constexpr (observed) {
-      observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.stamp(time), time - previous_,
+    if constexpr (observed)
+      observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.stamp(time), time - last_contact_,
                           chain_.closing(s)});
-      previous_ = time;
-    }
     const Collision<T> collision = chain_.collide(law_, s, time);
     queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
+    last_contact_ = time;
     lost_.add(collision.outcome.energy_lost);
     counts_.below_cutoff += collision.outcome.below_cutoff;
     counts_.merges += collision.outcome.event == Event::merge;
-    if (++counts_.contacts == next_review_ || collision.notice != Notice::none) [[unlikely]] {
-      course.status = review(s, time, collision.notice);
-      if (course.status != Status::reached) return false;
-      course = course_to(course.until);
+    if (++counts_.contacts >= pacing_.next_review || collision.notice != Notice::none) [[unlikely]] {
+      status_ = review(s, collision.notice);
+      return status_ == Status::reached;
     }
     return true;
   }
+  Status status() const { return status_; }
 
   const Law& law() const { return law_; }
   const Chain& chain() const { return chain_; }
@@ -150,15 +151,20 @@ class Simulation {
 
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
+  // The start if there was no contact yet.
   T last_contact_time() const { return chain_.stamp(last_contact_).value(); }
-  const CollapseReport<T>& collapse() const { return watch_.report(); }
+  const CollapseReport<T>& collapse() const { return watch_.report; }
 
  private:
+  // Of those held; throws where one is not a number.
   T smallest_gap() const {
     const T start = chain_.local_time(chain_.start());
-    T least = chain_.gap_at(chain_.first(), start);
+    T least = far_away<T>();
     for (Slot s = chain_.first(); s <= chain_.last(); ++s) {
       const T gap = chain_.gap_at(s, start);
+      if (!is_finite(gap) || !is_finite(T(chain_.closing(s))))
+        throw std::invalid_argument("the distance or closing speed of bodies " + std::to_string(chain_.body(s)) +
+                                    " and the next is not finite: check their positions and velocities");
       if (gap < least) least = gap;
     }
     return least;
@@ -166,103 +172,78 @@ class Simulation {
 
   void fill_queue() {
     queue_ = EventQueue(chain_.slots(), Chain::keys_are_exact, least_queue_bits_);
+    refill_queue();
+  }
+  void refill_queue() {
     for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
-    queue_.rebuild();
+    queue_.rebuild(chain_.first(), chain_.last());
+    ties_.forget();
   }
 
-  // Of contacts too close for the keys: the first by exact time, then from the left. Where very many are (a lattice),
-  // the first among those that do not commute with it.
-  Slot earliest_near(EventQueue::Key root) {
-    constexpr int many = 64;
-    int candidates = 0;
-    Slot s = queue_.slot(root), first = s;
+  // Where to go, in the terms of the chain and the queue as they are now.
+  void aim() {
+    target_.horizon = chain_.local_time(target_.until);
+    target_.certainly_before = queue_.certainly_before(chain_.queue_time(target_.horizon));
+  }
+
+  // The next contact where keys do not tell whether it comes in time; false if it does not.
+  bool first_within_target(Slot& first) {
+    if (queue_.next() > queue_.possibly_before(chain_.queue_time(target_.horizon))) return false;
+    const bool contested = queue_.contested();
+    if (contested) first = ties_.first(queue_, chain_, counts_.contacts);
+    if (!(chain_.due(first) <= target_.horizon)) return false;
+    if (contested) count_close_call();
+    return true;
+  }
+  Slot first_of_tied() {
+    count_close_call();
+    return ties_.first(queue_, chain_, counts_.contacts);
+  }
+  // Once for every contact, however often it is asked for before it is made.
+  void count_close_call() {
+    if (counts_.contacts < close_calls_until_) return;
     ++counts_.close_calls;
-    if (queue_.for_each_before(queue_.no_later_than(root), [&](Slot other) {
-          if (other != first && earlier(other, first)) first = other;
-          return ++candidates < many;
-        }))
-      return first;
-    for (;;) {
-      first = s;
-      for (const Slot other :
-           {chain_.left(chain_.left(s)), chain_.left(s), chain_.right(s), chain_.right(chain_.right(s))})
-        if (other != s && queue_.close(root, other) && earlier(other, first)) first = other;
-      if (first == s) return s;
-      s = first;
-    }
-  }
-  bool earlier(Slot a, Slot b) const {
-    const T time_a = chain_.due(a), time_b = chain_.due(b);
-    return time_a < time_b || (time_a == time_b && a < b);
+    close_calls_until_ = counts_.contacts + 1;
   }
 
-  // The first contact at a time <= horizon, where keys alone cannot tell; false if there is none.
-  bool earliest_until(const T& horizon, Slot& first) const {
-    bool found = false;
-    queue_.for_each_before(queue_.possibly_before(chain_.queue_time(horizon)), [&](Slot s) {
-      if (chain_.due(s) <= horizon && (!found || earlier(s, first))) first = s, found = true;
-      return true;
-    });
-    return found;
-  }
-
-  // Looks after everything that is not a contact. What it does depends on the history of contacts only.
-  Status review(Slot s, const T& time, Notice notice) {
-    last_contact_ = time;
-    Status status = Status::reached;
-    if (asks(notice, Notice::gap_below_floor)) status = judge(s, time);
+  // Looks after everything that is not a contact, after the contact at slot s. What it does depends on the history of
+  // contacts only. What the caller has asked to be called comes last, since it may throw.
+  Status review(Slot s, Notice notice) {
+    const Status judged = asks(notice, Notice::gap_below_floor) ? judge(s) : Status::reached;
     if constexpr (StreamingChain<Chain>)
       if (asks(notice, Notice::needs_slots)) {
         chain_.make_room();
         fill_queue();
       }
-    if (time > reviewed_) progress_ = counts_.contacts;
     const auto active = static_cast<std::uint64_t>(chain_.collided_bodies());
-    // Many bodies may meet at one time, n(n - 1)/2 contacts if elastic; more than that, and time stands still.
-    if (counts_.contacts - progress_ > 64 + 4 * active * active) return Status::exhausted;
-    const bool moved = time_to_move(time, notice, active);
-    if (moved) {
-      move_origin(time);
-      if (policy_.progress) policy_.progress(chain_.stamp(reviewed_).value(), counts_);
-      if (status == Status::reached && policy_.interrupt && policy_.interrupt()) status = Status::interrupted;
-    } else {
-      reviewed_ = time;
-    }
-    if (moved || counts_.contacts >= next_review_) {
-      paced_ = moved ? reviewed_ : time;
-      last_pace_ = counts_.contacts;
-      next_review_ = counts_.contacts + std::min(32 * active + 16, active * active / 8 + 1);
-    }
-    return status;
+    const bool stands_still = standstill_.at(last_contact_, counts_.contacts, active);
+    const bool moves =
+        !stands_still && pacing_.origin_moves(notice, counts_.contacts, last_contact_, active, Chain::may_collapse);
+    if (moves) move_origin();
+    standstill_.time = last_contact_;
+    pacing_.reviewed(counts_.contacts, last_contact_, active, moves);
+    aim();
+    if (stands_still) return Status::exhausted;
+    if (judged != Status::reached || !moves) return judged;
+    if (policy_.progress) policy_.progress(last_contact_time(), counts_);
+    return policy_.interrupt && policy_.interrupt() ? Status::interrupted : Status::reached;
   }
 
-  // A move of the origin costs as much as a few contacts per gap: rare in a large zone, with every second contact in a
-  // few-body collapse. Bodies that merge do not collapse: there the origin moves only where contacts come ever faster.
-  // (Looked at when due, never when the chain asks for room: that depends on what is streamed.)
-  bool time_to_move(const T& time, Notice notice, std::uint64_t active) const {
-    const std::uint64_t since_move = counts_.contacts - last_move_;
-    if (asks(notice, Notice::origin_must_move)) return true;
-    if (asks(notice, Notice::origin_should_move) && 16 * since_move >= active) return true;
-    if (counts_.contacts < next_review_) return false;
-    if (Chain::may_collapse || since_move >= 32 * active + 16) return true;
-    return T(static_cast<std::int64_t>(2 * since_move)) * (time - paced_) <
-           T(static_cast<std::int64_t>(counts_.contacts - last_pace_)) * time;
-  }
-
-  void move_origin(const T& time) {
-    last_contact_ = previous_ = reviewed_ = chain_.move_origin(time);
-    watch_.origin_moved(time - reviewed_);
-    last_move_ = counts_.contacts;
+  // To the last contact.
+  void move_origin() {
+    const T before = last_contact_;
+    last_contact_ = chain_.move_origin(before);
+    watch_.origin_moved(T(before - last_contact_));
     ++counts_.origin_moves;
-    for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
-    queue_.rebuild();
+    refill_queue();
   }
 
-  Status judge(Slot s, const T& time) {
+  // Whether the gap that the last contact, at slot s, has left beside it ends the run.
+  Status judge(Slot s) {
     const T gap = chain_.nearest_gap(s);
     if (policy_.collapse == CollapsePolicy::stop) {
-      const bool settled =
-          watch_.settled(chain_.body(s), chain_.stamp(time), time, gap, chain_.time_resolution(s, time));
+      const bool settled = watch_.settled(chain_.body(s), chain_.stamp(last_contact_), last_contact_, gap,
+                                          chain_.time_resolution(s, last_contact_));
       // Without a time that settles (irregular collapse of many bodies) the end of the type's range is the end too.
       const T stop_gap = policy_.stop_gap > T(0) ? policy_.stop_gap : underflow_;
       if ((settled && !(policy_.stop_gap > T(0))) || (is_positive(gap) && gap < stop_gap)) return Status::collapsed;
@@ -270,22 +251,28 @@ class Simulation {
     return gap > T(0) && gap < underflow_ ? Status::exhausted : Status::reached;
   }
 
+  struct Target {
+    T until, horizon;                      // the time to go to, of the scene and as the chain calls it
+    EventQueue::Key certainly_before = 0;  // contacts with lesser keys come before it
+  };
+
   Law law_;
   Chain chain_;
   Policy<T> policy_;
   int least_queue_bits_;
   EventQueue queue_;
-  Counts counts_;
+  T last_contact_;  // local time; the start if there was none
   Ledger<T> lost_;
-  std::uint64_t next_review_ = 1, last_move_ = 0;
-  T paced_{0};  // local time and contacts when it was last looked how fast they come
-  std::uint64_t last_pace_ = 0;
-  std::uint64_t progress_ = 0;  // contacts made when time was last seen to advance
-  T reviewed_{0};               // local time at the last review
-  T last_contact_{0};           // local times of the last contact: at the last review, and as observed
-  T previous_{0};
-  T watch_below_{0}, underflow_{0};
+  Counts counts_;
+  std::uint64_t close_calls_until_ = 0;  // contacts up to this number have been looked at for close calls
+  Pacing<T> pacing_;
+  Standstill<T> standstill_;
   CollapseWatch<T> watch_;
+  Ties<Chain> ties_;
+  Target target_;
+  Status status_ = Status::reached;
+  T underflow_{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows no underflow
+  T watch_below_{0};
 };
 
 template <class Law, class Chain> Simulation(Law, Chain) -> Simulation<typename Chain::Scalar, Law, Chain>;

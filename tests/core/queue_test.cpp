@@ -53,7 +53,7 @@ TEST_P(Queues, RebuildAfterSettingOneByOne) {
     queue.set(s, time);
     list.set(s, time);
   }
-  queue.rebuild();
+  queue.rebuild(2, slots() - 3);
   ASSERT_NE(list.time(list.next()), never);
   EXPECT_EQ(queue.slot(queue.next()), list.next());
 }
@@ -66,7 +66,7 @@ TEST_P(Queues, EmptyOneInOrder) {
     queue.set(s, time);
     list.set(s, time);
   }
-  queue.rebuild();
+  queue.rebuild(2, slots() - 3);
   while (list.time(list.next()) != never) {
     const Slot s = queue.slot(queue.next());
     ASSERT_EQ(s, list.next());
@@ -85,7 +85,7 @@ TEST_P(Queues, VisitWhatIsDueFromLeftToRight) {
       queue.set(s, time);
       list.set(s, time);
     }
-    queue.rebuild();
+    queue.rebuild(2, slots() - 3);
     for (const double t : {0., .5, 3.75, 15.}) {
       std::vector<Slot> visited;
       queue.for_each_before(queue.possibly_before(t), [&](Slot s) {

@@ -203,13 +203,11 @@ TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {
     side_by_side.push_back(gap_run(rshock<double>(particles), softer));
     ASSERT_EQ(in_turn.back().advance(end), Status::reached);
   }
-  auto first = side_by_side[0].course_to(end), second = side_by_side[1].course_to(end);
-  for (bool going[2] = {true, true}; going[0] || going[1];) {
-    going[0] = going[0] && side_by_side[0].step(first);
-    going[1] = going[1] && side_by_side[1].step(second);
-  }
-  EXPECT_EQ(first.status, Status::reached);
+  for (auto& run : side_by_side) run.head_for(end);
+  for (bool going[2] = {true, true}; going[0] || going[1];)
+    for (std::size_t k : {0U, 1U}) going[k] = going[k] && side_by_side[k].step();
   for (std::size_t k : {0U, 1U}) {
+    EXPECT_EQ(side_by_side[k].status(), Status::reached);
     EXPECT_TRUE(identical(configuration_at(in_turn[k], end), configuration_at(side_by_side[k], end)));
     EXPECT_TRUE(identical(in_turn[k].counts(), side_by_side[k].counts()));
   }

@@ -1,0 +1,24 @@
+#pragma once
+// Whether time goes on. Many bodies may meet at one time and place, n(n - 1)/2 contacts if they are elastic. Where more
+// follow each other without any time passing, the scalar type cannot tell their times apart, or they have no end.
+
+#include <cstdint>
+
+#include "cradle/core/real.hpp"
+
+namespace cradle {
+
+template <Real T> struct Standstill {
+  explicit Standstill(const T& start) : time(start) {}
+
+  T time;                           // local, at the last review
+  std::uint64_t contacts_then = 0;  // made when time was last seen to go on
+
+  // At a review: local time now, contacts made, bodies active.
+  bool at(const T& now, std::uint64_t contacts, std::uint64_t active) {
+    if (now > time) contacts_then = contacts;
+    return contacts - contacts_then > 64 + 4 * active * active;
+  }
+};
+
+}  // namespace cradle

@@ -1,6 +1,6 @@
 // Contacts per second where bodies merge or pass through each other, wet and sticky, against a conventional engine in
 // absolute coordinates (twins/merging.hpp), in one run: read the ratios. And the sticky gas without events: the O(N)
-// solution of core/sticky_exact.hpp.
+// solution of core/sticky_gas.hpp.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_merging
 //   build/release/bench/bench_merging --benchmark_repetitions=3 --benchmark_report_aggregates_only=true

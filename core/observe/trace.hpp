@@ -15,7 +15,7 @@ class Trace {
  public:
   void contact(BodyIndex left, BodyIndex right) {
     const std::uint64_t of_left = past_[left], of_right = past_[right];
-    digest_ -= mix(of_left, left) + mix(of_right, right);  // a first contact subtracts what was never added: no matter
+    digest_ -= mix(of_left, left) + mix(of_right, right);  // at a first contact mix(0, body), the same in every run
     const std::uint64_t shared = mix(mix(of_left, left) ^ (mix(of_right, right) * 3), left);
     past_[left] = past_[right] = shared;
     digest_ += mix(shared, left) + mix(shared, right);

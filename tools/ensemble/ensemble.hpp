@@ -1,5 +1,5 @@
 // Ensembles of a scene: replicas run on all threads (and ranks), statistics of what they record in one file. Finished
-// replicas are never lost nor run again: see ensemble_store.hpp. The file has the same bytes for the same replicas.
+// replicas are never lost nor run again: see store.hpp. The file has the same bytes for the same replicas.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Reading a scene: text to entries (scene_source), entries through the table of fields into the struct (scene_fields),
-// then the checks that need more than one key (scene_checks).
+// Reading a scene: text to entries (source.cpp), entries through the table of fields into the struct (fields.cpp),
+// then the checks that need more than one key (checks.cpp).
 #include "cradle/tools/scene/scene.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // A scene: which bodies, which contact law, until when, and what to write. Plain values, read from TOML.
 // Units: mass m = 1, lengths in the scene's own unit, times in lengths per speed. All keys, units, defaults and ranges
-// are in the one table of scene_fields.cpp; this struct only holds what was read. Numbers are exact decimals
+// are in the one table of fields.cpp; this struct only holds what was read. Numbers are exact decimals
 // (decimal.hpp), to be converted in the working precision from Decimal::text.
 // A member whose key does not apply to the scene's law, initial state or policy keeps the value written here.
 #pragma once

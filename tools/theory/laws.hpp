@@ -1,4 +1,4 @@
-// The predictions law by law: what theory_table.cpp puts together. Times are those since run.start.
+// The predictions law by law: what table.cpp puts together. Times are those since run.start.
 #pragma once
 
 #include <optional>

@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
-namespace {
+#include "cradle/tests/places.hpp"
+
+namespace manual_test {
 
 namespace fs = std::filesystem;
 
-const fs::path root = CRADLE_SOURCE_DIR;
+fs::path root() { return cradle::test::source_folder; }
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file);
@@ -33,7 +35,7 @@ std::vector<std::string> all(const std::string& text, const std::string& pattern
 TEST(Manual, LinksLeadSomewhere) {
   int links = 0;
   for (const char* page : {"README.md", "core/README.md", "tools/README.md", "tests/README.md", "bench/RESULTS.md"}) {
-    const fs::path file = root / page;
+    const fs::path file = root() / page;
     if (!fs::exists(file)) continue;
     for (const std::string& link : all(text_of(file), R"(\]\(([^):#]+)\))")) {
       EXPECT_TRUE(fs::exists(file.parent_path() / link)) << page << ": there is no " << link;
@@ -44,9 +46,9 @@ TEST(Manual, LinksLeadSomewhere) {
 }
 
 TEST(Manual, OfTheCoreNamesEveryHeaderAndNoOther) {
-  const std::string manual = text_of(root / "core/README.md");
-  for (const auto& entry : fs::recursive_directory_iterator(root / "core")) {
-    const fs::path file = entry.path().lexically_relative(root / "core");
+  const std::string manual = text_of(root() / "core/README.md");
+  for (const auto& entry : fs::recursive_directory_iterator(root() / "core")) {
+    const fs::path file = entry.path().lexically_relative(root() / "core");
     if (file.extension() != ".hpp") continue;
     const std::string folder = file.parent_path().string() + '/';
     EXPECT_TRUE(manual.find(file.filename().string()) != std::string::npos ||
@@ -56,7 +58,7 @@ TEST(Manual, OfTheCoreNamesEveryHeaderAndNoOther) {
   for (const std::string& named : all(manual, R"(([A-Za-z_0-9/.]+\.[ch]pp)\b)")) {
     bool there = false;
     for (const char* folder : {".", "core", "core/observe", "core/ensemble", "tests/core"})
-      there = there || fs::exists(root / folder / named);
+      there = there || fs::exists(root() / folder / named);
     EXPECT_TRUE(there) << "core/README.md names " << named << ", which is not there: correct it";
   }
 }
@@ -65,7 +67,7 @@ TEST(Manual, CommentsNameFilesThatAreThere) {
   std::vector<fs::path> sources;
   std::set<std::string> names;
   for (const char* folder : {"core", "precision", "tools", "tests", "bench"})
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(root() / folder)) {
       const fs::path& file = entry.path();
       if (file.extension() != ".hpp" && file.extension() != ".cpp") continue;
       sources.push_back(file);
@@ -82,9 +84,9 @@ TEST(Manual, CommentsNameFilesThatAreThere) {
       const auto begin = line.cbegin() + static_cast<std::ptrdiff_t>(comment);
       for (std::sregex_iterator match(begin, line.cend(), name), end; match != end; ++match)
         EXPECT_TRUE(names.contains(match->str()))
-            << file.lexically_relative(root) << ":" << number << ": there is no " << match->str() << ": correct it";
+            << file.lexically_relative(root()) << ":" << number << ": there is no " << match->str() << ": correct it";
     }
   }
 }
 
-}  // namespace
+}  // namespace manual_test

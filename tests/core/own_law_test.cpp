@@ -8,7 +8,7 @@
 #include "cradle/core/observe/trace.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace {
+namespace own_law_test {
 
 using namespace cradle;
 using namespace cradle::test;
@@ -68,4 +68,4 @@ TEST(OwnLaw, GapsAndPositionsAgreeAndTheLedgerIsTheDirectSum) {
   EXPECT_NEAR(momentum_gained(now, *bodies), 0, rounding);
 }
 
-}  // namespace
+}  // namespace own_law_test

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh Debian or Ubuntu machine to the paper's Fig. 2: installs what is missing, builds the program, runs the
+# From a fresh Debian machine to the paper's Fig. 2: installs what is missing, builds the program, runs the
 # scene fig2 and plots it. Safe to run again, from any folder.
 #   tools/quickstart.sh
 set -euo pipefail

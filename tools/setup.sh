@@ -1,34 +1,35 @@
 # shellcheck shell=bash
 # What quickstart.sh and test.sh share; both source it. `set_up program|tests` sees to it that everything needed to
 # build the program (and its tests) is there: it looks for what is missing and installs that with apt, as root or
-# through sudo. Where that cannot be done it lists what is missing with the names other sources know it by and stops.
-# If nothing is missing nothing is installed and no network, root or apt is needed. What is optional is installed for the
-# tests where that needs no password, and else left out. `step` runs a command and, if it fails, stops with what to do.
+# through sudo. Where that cannot be done it lists what is missing with Debian's names and stops. If nothing is missing
+# nothing is installed and no network, root or apt is needed. MPI is optional: it is installed where that needs no
+# password, and else left out. `step` runs a command and, if it fails, stops with what to do.
+# Tried on bare Debian 12 and Debian 13.
 
 preset=release
 build=build/$preset
 
-# for | what | looked for as | Debian, Ubuntu | conda-forge | Spack
+# for | what | looked for as | Debian's package
 needs() {
   cat <<'TABLE'
-program | C++20 compiler        | compiler                     | g++                 | cxx-compiler    | gcc
-program | CMake 3.25 or newer   | cmake 3.25                   | cmake               | cmake           | cmake
-program | Ninja (or make)       | generator                    | ninja-build         | ninja           | ninja
-program | Boost headers         | header boost/multiprecision/cpp_bin_float.hpp | libboost-dev| libboost-headers | boost
-program | oneTBB                | header oneapi/tbb/version.h  | libtbb-dev          | tbb-devel       | intel-oneapi-tbb
-program | toml++                | header toml++/toml.h         | libtomlplusplus-dev | tomlplusplus    | tomlplusplus
-program | CLI11                 | header CLI/CLI.hpp           | libcli11-dev        | cli11           | cli11
-program | fmt                   | header fmt/format.h          | libfmt-dev          | fmt             | fmt
-program | HDF5                  | header hdf5.h                | libhdf5-dev         | hdf5            | hdf5
-program | MPFR                  | header mpfr.h                | libmpfr-dev         | mpfr            | mpfr
-program | GMP                   | header gmp.h                 | libgmp-dev          | gmp             | gmp
-program | Python 3              | command python3              | python3             | python          | python
-program | Matplotlib            | python matplotlib            | python3-matplotlib  | matplotlib-base | py-matplotlib
-program | h5py                  | python h5py                  | python3-h5py        | h5py            | py-h5py
-tests   | GoogleTest            | header gtest/gtest.h         | libgtest-dev        | gtest           | googletest
-tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev    | benchmark       | benchmark
-option  | MPI compiler          | command mpicc                | libopenmpi-dev      | openmpi         | openmpi
-option  | MPI launcher          | command mpirun               | openmpi-bin         | openmpi         | openmpi
+program | C++20 compiler        | compiler                     | g++
+program | CMake 3.25 or newer   | cmake 3.25                   | cmake
+program | Ninja (or make)       | generator                    | ninja-build
+program | Boost headers         | header boost/multiprecision/cpp_bin_float.hpp | libboost-dev
+program | oneTBB                | header oneapi/tbb/version.h  | libtbb-dev
+program | toml++                | header toml++/toml.h         | libtomlplusplus-dev
+program | CLI11                 | header CLI/CLI.hpp           | libcli11-dev
+program | fmt                   | header fmt/format.h          | libfmt-dev
+program | HDF5                  | header hdf5.h                | libhdf5-dev
+program | MPFR                  | header mpfr.h                | libmpfr-dev
+program | GMP                   | header gmp.h                 | libgmp-dev
+program | Python 3              | command python3              | python3
+program | Matplotlib            | python matplotlib            | python3-matplotlib
+program | h5py                  | python h5py                  | python3-h5py
+tests   | GoogleTest            | header gtest/gtest.h         | libgtest-dev
+tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev
+option  | MPI compiler          | command mpicc                | libopenmpi-dev
+option  | MPI launcher          | command mpirun               | openmpi-bin
 TABLE
 }
 
@@ -57,11 +58,11 @@ has_cmake() {
     [[ $(printf '%s\n' "$1" "$found" | sort -V | head -n 1) == "$1" ]]
 }
 
-# A header in the compiler's, the environment's (modules, conda, Spack) or Debian's folders.
+# A header in the compiler's, the environment's or Debian's folders.
 has_header() {
   local folder folders prefix prefixes
   IFS=: read -ra folders <<<"${CPATH:-}:${CPLUS_INCLUDE_PATH:-}"
-  IFS=':;' read -ra prefixes <<<"${CMAKE_PREFIX_PATH:-}:${CONDA_PREFIX:-}:${HDF5_ROOT:-}:${BOOST_ROOT:-}:${TBBROOT:-}"
+  IFS=':;' read -ra prefixes <<<"${CMAKE_PREFIX_PATH:-}:${HDF5_ROOT:-}:${BOOST_ROOT:-}:${TBBROOT:-}"
   for prefix in "${prefixes[@]}" /usr/local /usr; do folders+=("${prefix:+$prefix/include}"); done
   for folder in "${folders[@]}" /usr/include/*-linux-gnu /usr/include/hdf5/serial; do
     if [[ -n $folder && -f $folder/$1 ]]; then return 0; fi
@@ -89,22 +90,21 @@ has() {
   esac
 }
 
-# Fills the arrays missing, debian, conda, spack with what program (or, as well, tests) lacks; optional with Debian's
-# names of what tests would use besides.
+# Fills the arrays missing and debian with what program (or, as well, tests) lacks, optional with what it could use.
 look_for() {
-  local group what probe deb forge spk
-  missing=() debian=() conda=() spack=() optional=()
-  while IFS='|' read -r group what probe deb forge spk; do
-    if [[ $1 == program && ${group// /} != program ]]; then continue; fi
+  local group what probe package
+  missing=() debian=() optional=()
+  while IFS='|' read -r group what probe package; do
+    if [[ $1 == program && ${group// /} == tests ]]; then continue; fi
     # shellcheck disable=SC2086  # a probe is a word and its argument
     if has $probe; then continue; fi
     if [[ ${group// /} == option ]]; then
-      optional+=("${deb// /}")
+      optional+=("${package// /}")
       continue
     fi
     read -r what <<<"$what"
     missing+=("$what")
-    debian+=("${deb// /}") conda+=("${forge// /}") spack+=("${spk// /}")
+    debian+=("${package// /}")
   done < <(needs)
 }
 
@@ -114,12 +114,9 @@ list_missing_and_stop() {
     echo "${0##*/}: $1."
     echo "Missing:"
     for i in "${!missing[@]}"; do printf '  %-22s (Debian: %s)\n' "${missing[i]}" "${debian[i]}"; done
-    echo "Get it from one of these, then run this again:"
-    echo "  Debian 12, Ubuntu 24.04 or newer, as root:  apt-get install ${debian[*]}"
-    echo "  conda, no root needed:  conda install -c conda-forge ${conda[*]}"
-    echo "  Spack:                  spack install ${spack[*]}, then spack load the same"
-    echo "  environment modules:    module spider NAME for each of ${spack[*]}; names differ from site to site"
-    echo "If it is there, in a place not looked at: export CMAKE_PREFIX_PATH=/that/place (CXX for the compiler)."
+    echo "On Debian 12 or 13, as root:  apt-get install ${debian[*]}"
+    echo "Elsewhere install the same under the names it has there. Then run this again. If it is there, in a place not"
+    echo "looked at: export CMAKE_PREFIX_PATH=/that/place (CXX for the compiler)."
   } >&2
   exit 1
 }
@@ -151,7 +148,7 @@ install_optional() {
 
 # set_up program|tests
 set_up() {
-  local missing debian conda spack optional
+  local missing debian optional
   look_for "$1"
   install_optional
   ((${#missing[@]})) || return 0
@@ -179,8 +176,10 @@ last time, remove $build and run this again" \
     cmake --preset "$preset" "$@"
 }
 
+processors() { nproc 2>/dev/null || getconf _NPROCESSORS_ONLN; }
+
 compile() {
-  step "building $build on $(nproc) processors" "see the first error above; if memory ran out, build with fewer \
+  step "building $build on $(processors) processors" "see the first error above; if memory ran out, build with fewer \
 processes: cmake --build --preset $preset -j1" \
-    cmake --build --preset "$preset" -j "$(nproc)" "$@"
+    cmake --build --preset "$preset" -j "$(processors)" "$@"
 }

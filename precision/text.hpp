@@ -13,6 +13,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "cradle/precision/read_number.hpp"
+
 namespace cradle {
 
 template <class T> struct Text;
@@ -56,7 +58,7 @@ template <class T> struct StandardText {
     T value{};
     const std::string text = checked_literal(literal);
     const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
-    const auto error = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
+    const auto error = read_number(digits.data(), digits.data() + digits.size(), value).ec;
     if (error == std::errc::result_out_of_range) {
       // Too large, too small, or (long double, libstdc++) merely subnormal: streams tell which.
       std::istringstream stream(text);

@@ -120,7 +120,12 @@ void JournalWriter::write(std::array<std::string_view, 3> parts) {
 }
 
 void JournalWriter::sync() const {
-  if (::fdatasync(file_) != 0 && errno != EINVAL) fail(path_, "the journal could not be written");
+#if defined(_POSIX_SYNCHRONIZED_IO) && _POSIX_SYNCHRONIZED_IO > 0
+  const int status = ::fdatasync(file_);
+#else
+  const int status = ::fsync(file_);
+#endif
+  if (status != 0 && errno != EINVAL) fail(path_, "the journal could not be written");
 }
 
 }  // namespace cradle::tools

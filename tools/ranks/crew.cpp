@@ -11,9 +11,11 @@
 namespace cradle::tools {
 
 unsigned processors() {
+#ifdef __linux__
   cpu_set_t set;
-  if (::sched_getaffinity(0, sizeof set, &set) != 0) return thread_count(0);  // a machine of more than 1024
-  return static_cast<unsigned>(CPU_COUNT(&set));
+  if (::sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(CPU_COUNT(&set));
+#endif
+  return thread_count(0);  // systems that bind no processes, and machines of more than 1024 processors
 }
 
 std::optional<JobRange> JobQueue::take(std::uint64_t most) {

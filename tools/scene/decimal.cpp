@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "cradle/precision/read_number.hpp"
+
 namespace cradle::tools {
 namespace {
 
@@ -125,7 +127,7 @@ Decimal::Decimal(std::string_view literal) {
   auto canonical = canonical_decimal(literal);
   if (!canonical) throw std::invalid_argument("not a decimal number: " + std::string(literal));
   text = std::move(*canonical);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = read_number(text.data(), text.data() + text.size(), value);
   if (error == std::errc::result_out_of_range) {
     const Parts parts = parts_of(text);
     value = parts.exponent < 0 ? 0 : std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
 #pragma once
 // The list of scalar types, and the way from a name to a type. A new type takes a header of its own and a place in the
-// list (and one more in the count of precision/CMakeLists.txt, from which the engine is compiled once per type).
+// list, here and in precision/CMakeLists.txt, by which the engine is compiled once per type.
 
 #include <cstddef>
 #include <stdexcept>

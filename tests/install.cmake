@@ -1,6 +1,8 @@
 # The test `install`: cmake --install into a scratch prefix of the build tree, then the program in tests/install/ finds
-# Cradle there, is built and run; and it is compiled without contraction of multiply-adds, which the result depends on.
-# Included from tests/CMakeLists.txt; the same file is the script that the test runs. Everything must have been built.
+# Cradle there, is built and run; it is compiled without contraction of multiply-adds, which the result depends on, and
+# sees the library alone. The same with Cradle in a subfolder of its own tree; and where a library is missing,
+# find_package(cradle) says so instead of ending the user's configuration. Included from tests/CMakeLists.txt; the same
+# file is the script that the test runs. Everything must have been built.
 
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   add_test(NAME install
@@ -21,14 +23,44 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${TREE} --prefix ${SCRATCH}/p
                 COMMAND_ERROR_IS_FATAL ANY)
 list(PREPEND PREFIXES ${SCRATCH}/prefix)
 list(JOIN PREFIXES "\\;" PREFIXES)
-run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${SCRATCH}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
-    -DCMAKE_BUILD_TYPE=${TYPE} -DCMAKE_CXX_FLAGS=${FLAGS} "-DCMAKE_PREFIX_PATH=${PREFIXES}")
-file(READ ${SCRATCH}/build/compile_commands.json commands)
-if(NOT commands MATCHES "-ffp-contract=off")
-  message(FATAL_ERROR "the consumer is compiled without -ffp-contract=off: cradle::cradle must hand it on")
-endif()
-if(commands MATCHES "-march=")
-  message(FATAL_ERROR "the consumer is compiled with -march (found ${CMAKE_MATCH_0}): that is for Cradle's own sources")
-endif()
+function(configure folder)
+  run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${SCRATCH}/${folder} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+      -DCMAKE_BUILD_TYPE=${TYPE} -DCMAKE_CXX_FLAGS=${FLAGS} "-DCMAKE_PREFIX_PATH=${PREFIXES}" ${ARGN})
+endfunction()
+
+function(check_commands folder)
+  file(READ ${SCRATCH}/${folder}/compile_commands.json commands)
+  if(NOT commands MATCHES "-ffp-contract=off")
+    message(FATAL_ERROR "the consumer is compiled without -ffp-contract=off: cradle::cradle must hand it on")
+  endif()
+  if(commands MATCHES "-march=")
+    message(FATAL_ERROR "the consumer is compiled with -march (found ${CMAKE_MATCH_0}): that is for Cradle's own sources")
+  endif()
+  string(REGEX MATCHALL "-I *[^ ]+" roots "${commands}")
+  foreach(root IN LISTS roots)
+    string(REGEX REPLACE "-I *" "" root "${root}")
+    file(GLOB parts RELATIVE ${root}/cradle ${root}/cradle/*)
+    list(REMOVE_ITEM parts core precision)
+    if(parts)
+      message(FATAL_ERROR "the consumer sees more than the library (found ${parts} in ${root}/cradle)")
+    endif()
+  endforeach()
+endfunction()
+
+configure(build)
+check_commands(build)
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/consumer)
+
+configure(within -DCRADLE_SOURCE=${CONSUMER}/../..)
+check_commands(within)
+
+foreach(missing TBB Boost)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${CONSUMER} -B ${SCRATCH}/without_${missing} -G ${GENERATOR}
+                          -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_PREFIX_PATH=${PREFIXES}" -DCRADLE_MAY_BE_MISSING=ON
+                          -DCMAKE_DISABLE_FIND_PACKAGE_${missing}=ON
+                  OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT output MATCHES "cradle_FOUND=(0|FALSE)")
+    message(FATAL_ERROR "find_package(cradle QUIET) without ${missing}: expected cradle_FOUND=0 (found ${output})")
+  endif()
+endforeach()

@@ -11,4 +11,4 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/tools/cmake/cradle-config.cm
                               ${PROJECT_BINARY_DIR}/cradle-config.cmake INSTALL_DESTINATION ${_package})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cradle-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/cradle-config.cmake ${PROJECT_BINARY_DIR}/cradle-config-version.cmake
-              tools/cmake/libraries.cmake DESTINATION ${_package})
+              tools/cmake/mpfr.cmake DESTINATION ${_package})

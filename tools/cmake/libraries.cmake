@@ -1,21 +1,13 @@
-# Libraries that Cradle's headers need, as targets: Boost::headers, TBB::tbb and, where it is there, cradle::mpfr (with
-# GMP). Read by the build and, installed, by the package config: so they are found anew wherever Cradle is used, in the
-# system's folders or in those of environment modules, conda or Spack.
+# Libraries that Cradle's headers need, as targets: Boost::headers, TBB::tbb and, where it is there, cradle::mpfr. What
+# is required here cradle-config.cmake.in requires of those who use an installation.
 if(POLICY CMP0167)
   cmake_policy(SET CMP0167 NEW)  # Boost's own package config
 endif()
 find_package(Boost 1.74 REQUIRED)
 find_package(TBB 2021 REQUIRED)
 find_package(Threads REQUIRED)
-
-find_library(CRADLE_MPFR_LIBRARY mpfr HINTS ENV LIBRARY_PATH)
-find_library(CRADLE_GMP_LIBRARY gmp HINTS ENV LIBRARY_PATH)
-find_path(CRADLE_MPFR_INCLUDE mpfr.h HINTS ENV CPATH)
-find_path(CRADLE_GMP_INCLUDE gmp.h HINTS ENV CPATH)
-mark_as_advanced(CRADLE_MPFR_LIBRARY CRADLE_GMP_LIBRARY CRADLE_MPFR_INCLUDE CRADLE_GMP_INCLUDE)
-if(CRADLE_MPFR_LIBRARY AND CRADLE_GMP_LIBRARY AND CRADLE_MPFR_INCLUDE AND CRADLE_GMP_INCLUDE
-   AND NOT TARGET cradle::mpfr)
-  add_library(cradle::mpfr INTERFACE IMPORTED)
-  target_include_directories(cradle::mpfr INTERFACE ${CRADLE_MPFR_INCLUDE} ${CRADLE_GMP_INCLUDE})
-  target_link_libraries(cradle::mpfr INTERFACE ${CRADLE_MPFR_LIBRARY} ${CRADLE_GMP_LIBRARY})
+include(${CMAKE_CURRENT_LIST_DIR}/mpfr.cmake)
+set(CRADLE_NEEDS_MPFR FALSE)
+if(TARGET cradle::mpfr)
+  set(CRADLE_NEEDS_MPFR TRUE)
 endif()

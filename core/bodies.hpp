@@ -3,6 +3,8 @@
 // here what they hold; bodies of a row that the front has not reached are in no chain, only here.
 
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 #include "cradle/core/real.hpp"
 
@@ -52,5 +54,23 @@ template <Real T> class Bodies {
   // Bounds the square of any speed to come, by a factor 2: energy is never gained.
   T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }
 };
+
+// A number as messages give it.
+template <Real T> std::string in_message(const T& x) { return std::to_string(to_double(x)); }
+
+// Throws std::invalid_argument unless the number is finite; `what` it is, as in "position of body 3".
+template <Real T> void require_finite(const T& x, const std::string& what) {
+  if (!is_finite(x))
+    throw std::invalid_argument(what + " is not finite (" + in_message(x) +
+                                "): give a number within the range of the scalar type");
+}
+
+// What every chain asks of its bodies. Throws std::invalid_argument.
+template <Real T> void require_bodies(const Bodies<T>& bodies, const T& start) {
+  if (bodies.count() < 1)
+    throw std::invalid_argument("a chain without bodies (" + std::to_string(bodies.count()) +
+                                "): give it at least one");
+  require_finite(start, "time of the start");
+}
 
 }  // namespace cradle

@@ -118,6 +118,7 @@ template <Real T> class ClusterChain {
   // Drops vacant cells.
   void make_room() {
     std::vector<Slot> kept;
+    kept.reserve(last() + 1 - first());
     for (Slot s = first();; s = right(s)) {
       kept.push_back(s);
       if (s == last()) break;
@@ -161,6 +162,7 @@ template <Real T> class ClusterChain {
       : bodies_(std::move(bodies)), gaps_(start),
         window_(bodies_->on_ring(), held.first, bodies_->count() - 2 - held.last, 3),
         frame_(bodies_->momentum() / bodies_->total_mass()), runaway_(T(2) + T(4) * bodies_->energy_over_least_mass()) {
+    require_bodies(*bodies_, start);
     lay_out({}, static_cast<std::size_t>(held.last - held.first + 2));
     for (Slot s = first(); s <= last(); ++s)
       gaps_.put(s, load(held.first + static_cast<BodyIndex>(s - first()), T(0), s < last() || on_ring()));

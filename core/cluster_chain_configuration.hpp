@@ -1,6 +1,7 @@
 #pragma once
 // What a chain in gaps and body velocities looks like in positions: told from a body that has not collided, the one at
-// the left end if there is one, else from the centre of mass.
+// the left end if there is one, else from the centre of mass. Where there is one at either end, or on a ring, gaps can
+// be checked against what their sum must be; closing speeds are differences of velocities and add up in any case.
 
 #include "cradle/core/cluster_chain.hpp"
 
@@ -36,6 +37,7 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
   Pair<T> leftmost;
   if (free_left) {
     leftmost = undisturbed_place(from, time);
+    if (free_right) c.closure_gap = difference(undisturbed_place(to, time), leftmost + way.sum + way.errors);
   } else if (free_right) {
     leftmost = undisturbed_place(to, time) - way.value();
   } else {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "cradle/core/bodies.hpp"
@@ -22,10 +23,11 @@ template <Real T> struct Configuration {
   std::vector<T> closing_speed;  // as many, u_left - u_right
 
   // What the sum of all gaps (closing speeds) misses of the distance (velocity difference) of the two outermost bodies,
-  // whose flight is known on its own: the accumulated rounding of the run. It is spread over the positions and
-  // velocities given here. Zero by construction where positions are the coordinates.
-  T closure_gap{0};
-  T closure_speed{0};
+  // whose flight is known on its own; on a ring, of the circumference (of 0): the accumulated rounding of the run. None
+  // where nothing measures it: where gaps are differences of positions, closing speeds of velocities, or where the
+  // flight of one of the two is not known. Chains that have closing speeds spread both errors over the positions and
+  // velocities given here; the others tell positions from the left.
+  std::optional<T> closure_gap, closure_speed;
 };
 
 // Folds positions on a ring, increasing and spanning less than its circumference, to 0 <= x < circumference, the

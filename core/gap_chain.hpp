@@ -38,7 +38,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   static constexpr bool keys_are_exact = TimedGaps<T, Gap<T>, may_collapse>::keys_are_exact;
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
-  // start.
+  // start. Throws std::invalid_argument for masses that are not identical where the chain is for such.
   GapChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
       : GapChain(bodies, start,
                  hold_all && !bodies->on_ring() ? GapRange{0, bodies->count() - 2} : bodies->gaps_in_motion()) {}
@@ -129,6 +129,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   GapChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, GapRange held)
       : bodies_(std::move(bodies)), gaps_(start), masses_(*bodies_),
         window_(bodies_->on_ring(), held.first, bodies_->on_ring() ? 0 : bodies_->count() - 2 - held.last, 2) {
+    require_bodies(*bodies_, start);
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) load(s, T(0));
     left_.take(body(first()));

@@ -35,7 +35,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
   c.closure_speed = -slowing.value();
   const T mass = bodies_->total_mass(), drift = bodies_->momentum() / mass;
   const Pair<T> start = two_sum(centre_, T(drift * clock().elapsed(time))) - T(moment.value() / mass);
-  const T stretch = c.closure_gap / way.value();
+  const T stretch = *c.closure_gap / way.value();
   const T speed = drift + momentum.value() / mass;
   for (std::size_t j = 0; j < ways.size(); ++j) {
     c.x.push_back((start + T(ways[j] + stretch * ways[j])).value());
@@ -73,11 +73,11 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
   const Flight<T> left = flight(left_, time), right = flight(right_, time);
   c.closure_gap = difference(right.x, left.x) - way.value();
   c.closure_speed = difference(left.v, right.v) - slowing.value();
-  const T stretch = way.value() > T(0) ? T(c.closure_gap / way.value()) : T(0);
+  const T stretch = way.value() > T(0) ? T(*c.closure_gap / way.value()) : T(0);
   for (std::size_t j = 0; j < n; ++j) {
     c.x.push_back((left.x + T(ways[j] + stretch * ways[j])).value());
     const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(static_cast<std::int64_t>(n - 1))) : T(0);
-    c.v.push_back((left.v - T(slowings[j] + share * c.closure_speed)).value());
+    c.v.push_back((left.v - T(slowings[j] + share * *c.closure_speed)).value());
   }
   return c;
 }

@@ -14,26 +14,38 @@ namespace cradle {
 template <Real T> class List final : public Bodies<T> {
  public:
   // One velocity per position; masses likewise, or none where all are 1. With a circumference the bodies are on a ring.
-  // Throws std::invalid_argument when lengths differ, when positions do not increase in the working precision or span
-  // the ring, or when a mass is not positive.
+  // Throws std::invalid_argument when lengths differ, when a number is not finite, when positions do not increase in
+  // the working precision or span the ring, or when a mass is not positive.
   List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {}, T circumference = T(0))
       : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)),
         circumference_(std::move(circumference)) {
     if (x_.empty()) throw std::invalid_argument("no bodies: list at least one");
     if (v_.size() != x_.size() || (!m_.empty() && m_.size() != x_.size()))
-      throw std::invalid_argument("lists of different lengths: give one velocity and one mass per position");
+      throw std::invalid_argument("lists of different lengths (" + std::to_string(x_.size()) + " positions, " +
+                                  std::to_string(v_.size()) + " velocities, " + std::to_string(m_.size()) +
+                                  " masses): give one velocity and one mass per position");
+    for (const auto& [values, name] : {std::pair{&x_, "position"}, {&v_, "velocity"}, {&m_, "mass"}})
+      for (std::size_t i = 0; i < values->size(); ++i)
+        require_finite((*values)[i], std::string(name) + " of body " + std::to_string(i));
+    require_finite(circumference_, "circumference");
+    if (is_negative(circumference_))
+      throw std::invalid_argument("circumference is negative (" + in_message(circumference_) +
+                                  "): give a positive one for a ring, 0 for a line");
     for (std::size_t i = 0; i + 1 < x_.size(); ++i)
       if (!(x_[i] < x_[i + 1]))
-        throw std::invalid_argument(
-            "bodies " + std::to_string(i) + " and " + std::to_string(i + 1) +
-            " are not in order in the working precision: sort them by position, or use more digits");
+        throw std::invalid_argument("bodies " + std::to_string(i) + " and " + std::to_string(i + 1) +
+                                    " are not in order in the working precision (at " + in_message(x_[i]) + " and " +
+                                    in_message(x_[i + 1]) + "): sort them by position, or use more digits");
     for (std::size_t i = 0; i < m_.size(); ++i) {
       if (!(m_[i] > T(0)))
-        throw std::invalid_argument("body " + std::to_string(i) + " has no positive mass: give it one");
+        throw std::invalid_argument("body " + std::to_string(i) + " has no positive mass (" + in_message(m_[i]) +
+                                    "): give it one");
       identical_ = identical_ && m_[i] == m_[0];
     }
     if (this->on_ring() && !(x_.back() - x_.front() < circumference_))
-      throw std::invalid_argument("the bodies do not fit on the ring: give it a larger circumference");
+      throw std::invalid_argument("the bodies do not fit on the ring (from " + in_message(x_.front()) + " to " +
+                                  in_message(x_.back()) + ", circumference " + in_message(circumference_) +
+                                  "): give it a larger circumference");
   }
 
   BodyIndex count() const override { return static_cast<BodyIndex>(x_.size()); }

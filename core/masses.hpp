@@ -2,6 +2,8 @@
 // The masses of a chain's bodies: one for all, or one for each. Identical masses cost nothing, neither memory nor the
 // divisions of the reduced mass.
 
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "cradle/core/bodies.hpp"
@@ -11,7 +13,15 @@
 namespace cradle {
 
 template <Real T> struct IdenticalMasses {
-  explicit IdenticalMasses(const Bodies<T>& bodies) : mass(bodies.mass(0)), reduced_mass(mass / T(2)) {}
+  // Throws std::invalid_argument where they are not identical.
+  explicit IdenticalMasses(const Bodies<T>& bodies) : mass(bodies.mass(0)), reduced_mass(mass / T(2)) {
+    if (bodies.identical_masses()) return;
+    BodyIndex other = 1;
+    while (other + 1 < bodies.count() && bodies.mass(other) == mass) ++other;
+    throw std::invalid_argument("unequal masses in a chain for identical ones (body 0 has " + in_message(mass) +
+                                ", body " + std::to_string(other) + " has " + in_message(bodies.mass(other)) +
+                                "): use GapChain<T, IndividualMasses<T>>");
+  }
   T mass, reduced_mass;
   void resize(std::size_t) {}
   void set(Slot, const T&) {}

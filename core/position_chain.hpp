@@ -22,7 +22,12 @@ template <Real T> class PositionChain {
   static constexpr bool keys_are_exact = false;
   static constexpr bool may_collapse = true;
 
+  // Throws std::invalid_argument for bodies on a ring.
   PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start) : start_(start), origin_(start) {
+    require_bodies(*bodies, start);
+    if (bodies->on_ring())
+      throw std::invalid_argument("a ring in absolute positions (circumference " + in_message(bodies->circumference()) +
+                                  "): use a chain in gaps");
     for (BodyIndex b = 0; b < bodies->count(); ++b)
       bodies_.push_back({bodies->position(b), bodies->velocity(b), start, bodies->mass(b)});
     due_.assign(slots(), T(0));

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "cradle/core/bodies.hpp"
@@ -61,15 +62,18 @@ inline VelocityDraw uniform_velocity(std::uint64_t seed, std::uint64_t replica) 
 template <Real T> class Ring final : public Bodies<T> {
  public:
   // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no bodies, 2^31 or more of
-  // them, or a length or deviation that is not positive. Draws every velocity once.
+  // them, or a length or deviation that is not positive and finite. Draws every velocity once.
   Ring(BodyIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement)
       : count_(count), length_(std::move(length)), velocity_(std::move(velocity)),
         displacement_(std::move(displacement)), unit_(length_ / (T(count) * T(displacement_unit))),
         velocity_unit_(deviation / T(displacement_unit)) {
     if (count < 1 || count >= std::int64_t{1} << 31)
       throw std::invalid_argument("a ring of " + std::to_string(count) + " bodies: give it from 1 to 2147483647");
+    require_finite(length_, "length of the ring");
+    require_finite(deviation, "standard deviation of the velocities");
     if (!(length_ > T(0) && deviation > T(0)))
-      throw std::invalid_argument("length or variance of the ring is not positive: give positive numbers");
+      throw std::invalid_argument("length or variance of the ring is not positive (length " + in_message(length_) +
+                                  ", standard deviation " + in_message(deviation) + "): give positive numbers");
     // Subtracts the mean; what is left of the division, less than a unit per body, from the first ones.
     std::int64_t sum = 0;
     for (BodyIndex body = 0; body < count; ++body) sum += velocity_(body);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "cradle/core/bodies.hpp"
@@ -34,7 +35,8 @@ inline constexpr std::int64_t displacement_unit = std::int64_t{1} << 28;
 // Uniform in plus/minus `perturbation` spacings, 0 <= perturbation < 1/2.
 inline Displacement uniform_displacement(double perturbation, std::uint64_t seed, std::uint64_t replica) {
   if (!(perturbation >= 0 && perturbation < 0.5))
-    throw std::invalid_argument("perturbation out of range: give a number from 0 to below 0.5 (in spacings)");
+    throw std::invalid_argument("perturbation out of range (" + std::to_string(perturbation) +
+                                "): give a number from 0 to below 0.5 (in spacings)");
   const auto bound = static_cast<std::int64_t>(std::floor(perturbation * static_cast<double>(displacement_unit)));
   return [=](BodyIndex body) {
     return uniform_integer(random_bits(seed, replica, static_cast<std::uint64_t>(body)), bound);
@@ -43,20 +45,34 @@ inline Displacement uniform_displacement(double perturbation, std::uint64_t seed
 
 template <Real T> class Rows final : public Bodies<T> {
  public:
+  // Throws std::invalid_argument for rows that are empty or do not approach each other, spacings or masses that are not
+  // positive, a central body that no row reaches, numbers that are not finite.
   Rows(Row<T> left, Row<T> right, std::optional<CentralBody<T>> centre, Displacement displacement)
       : left_(std::move(left)), right_(std::move(right)), centre_(std::move(centre)),
         displacement_(std::move(displacement)), left_unit_(left_.spacing / T(displacement_unit)),
         right_unit_(right_.spacing / T(displacement_unit)) {
-    if (left_.count < 1 || right_.count < 1)
-      throw std::invalid_argument("a row without bodies: give each at least one");
-    if (!(left_.spacing > T(0) && right_.spacing > T(0)))
-      throw std::invalid_argument("a row's spacing is not positive: give a positive number");
+    for (const auto& [row, name] : {std::pair{&left_, "left row"}, {&right_, "right row"}}) {
+      require_finite(row->velocity, std::string("velocity of the ") + name);
+      require_finite(row->spacing, std::string("spacing of the ") + name);
+      if (row->count < 1)
+        throw std::invalid_argument(std::string("a row without bodies (the ") + name + " has " +
+                                    std::to_string(row->count) + "): give each at least one");
+      if (!(row->spacing > T(0)))
+        throw std::invalid_argument("a row's spacing is not positive (" + in_message(row->spacing) + ", the " + name +
+                                    "): give a positive number");
+    }
     if (!(left_.velocity > right_.velocity))
-      throw std::invalid_argument("the rows do not approach each other: make the left one faster");
-    if (centre_ && (centre_->velocity > left_.velocity || centre_->velocity < right_.velocity))
-      throw std::invalid_argument("the central body runs away from a row: give it a speed between those of the rows");
-    if (centre_ && !(centre_->mass > T(0)))
-      throw std::invalid_argument("central mass is not positive: give a positive one");
+      throw std::invalid_argument("the rows do not approach each other (left " + in_message(left_.velocity) +
+                                  ", right " + in_message(right_.velocity) + "): make the left one faster");
+    if (!centre_) return;
+    require_finite(centre_->mass, "mass of the central body");
+    require_finite(centre_->velocity, "velocity of the central body");
+    if (centre_->velocity > left_.velocity || centre_->velocity < right_.velocity)
+      throw std::invalid_argument("the central body runs away from a row (" + in_message(centre_->velocity) +
+                                  "): give it a speed between those of the rows");
+    if (!(centre_->mass > T(0)))
+      throw std::invalid_argument("central mass is not positive (" + in_message(centre_->mass) +
+                                  "): give a positive one");
   }
 
   BodyIndex count() const override { return left_.count + right_.count + (centre_ ? 1 : 0); }
@@ -119,8 +135,12 @@ template <Real T> class Rows final : public Bodies<T> {
 };
 
 // The paper's symmetric shock: `particles` bodies, half of them in each row, closing in at plus and minus `speed`.
+// Throws std::invalid_argument for an odd number of them, too.
 template <Real T>
 Rows<T> symmetric_rows(BodyIndex particles, const T& speed, const T& spacing, Displacement displacement) {
+  if (particles % 2 != 0)
+    throw std::invalid_argument("an odd number of bodies for two equal rows (" + std::to_string(particles) +
+                                "): give an even one, or two rows of their own");
   return {{particles / 2, speed, spacing}, {particles / 2, T(-speed), spacing}, std::nullopt, std::move(displacement)};
 }
 

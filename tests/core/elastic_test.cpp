@@ -130,8 +130,8 @@ TEST(Elastic, ExactInRationalArithmetic) {
         ASSERT_EQ(c.x[j], free.x[body]) << "t = " << t << ", body " << body;
         ASSERT_EQ(c.v[j], free.v[body]) << "t = " << t << ", body " << body;
       }
-      EXPECT_EQ(c.closure_gap, 0);
-      EXPECT_EQ(c.closure_speed, 0);
+      EXPECT_EQ(c.closure_gap.value_or(0), 0);
+      EXPECT_EQ(c.closure_speed.value_or(0), 0);
     }
     EXPECT_EQ(run.energy_lost(), 0);
   };

@@ -119,7 +119,7 @@ TEST(Sample, IsConsistentWithTheConfiguration) {
   EXPECT_EQ(s.energy, bodies->kinetic_energy() - s.energy_lost);
   // The configuration holds one uncollided body on either side.
   EXPECT_EQ(s.bodies + 2, static_cast<BodyIndex>(c.x.size()));
-  const double rounding = std::abs(c.closure_gap) + 8 * 100 * std::numeric_limits<double>::epsilon();
+  const double rounding = std::abs(c.closure_gap.value()) + 8 * 100 * std::numeric_limits<double>::epsilon();
   EXPECT_NEAR(*s.front_left, c.x[1], rounding);
   EXPECT_NEAR(*s.front_right, c.x[c.x.size() - 2], rounding);
 }

@@ -41,6 +41,8 @@ template <Real T> class SlowRing {
     fly(until);
   }
 
+  // As they are told, from the first one on the left; on a ring so large that nothing comes round: a line.
+  const std::vector<Body>& unfolded() const { return ring_; }
   // From the first body right of 0.
   std::vector<Body> folded() const {
     std::vector<Body> bodies = ring_;

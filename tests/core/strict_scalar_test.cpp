@@ -34,6 +34,9 @@ std::vector<double> doubles(const std::vector<StrictReal>& strict) {
   for (const StrictReal& x : strict) values.push_back(to_double(x));
   return values;
 }
+std::optional<double> double_of(const std::optional<StrictReal>& x) {
+  return x ? std::optional(to_double(*x)) : std::nullopt;
+}
 Configuration<double> doubles(const Configuration<StrictReal>& c) {
   return {to_double(c.time),
           c.from,
@@ -46,8 +49,8 @@ Configuration<double> doubles(const Configuration<StrictReal>& c) {
           doubles(c.m),
           doubles(c.gap),
           doubles(c.closing_speed),
-          to_double(c.closure_gap),
-          to_double(c.closure_speed)};
+          double_of(c.closure_gap),
+          double_of(c.closure_speed)};
 }
 
 template <class T> Scene<T> unequal_rows() {

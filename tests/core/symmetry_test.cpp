@@ -99,9 +99,9 @@ TEST(Symmetry, MirroredPositionsDifferByTheClosureErrorAtMost) {
                             (std::abs(original.c.x.front()) + std::abs(original.c.x.back()) + scene.end);
     const std::size_t n = original.c.x.size();
     for (std::size_t j = 0; j < n; ++j) {
-      ASSERT_NEAR(-mirror.c.x[n - 1 - j], original.c.x[j], std::abs(original.c.closure_gap) + rounding) << j;
+      ASSERT_NEAR(-mirror.c.x[n - 1 - j], original.c.x[j], std::abs(original.c.closure_gap.value()) + rounding) << j;
       ASSERT_NEAR(-mirror.c.v[n - 1 - j], original.c.v[j],
-                  std::abs(original.c.closure_speed) + 8 * std::numeric_limits<double>::epsilon())
+                  std::abs(original.c.closure_speed.value()) + 8 * std::numeric_limits<double>::epsilon())
           << j;
     }
   }

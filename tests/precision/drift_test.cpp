@@ -28,7 +28,7 @@ void expect_no_drift(double end, std::uint64_t least_contacts) {
   const auto n = static_cast<double>(c.x.size());
   const double sum_of_squares = 4 * run.energy_lost() / ((1 - restitution) * (1 + restitution));
   const double speed_error = 6 * u * std::sqrt(2 * 3 * sum_of_squares);
-  EXPECT_LE(std::abs(c.closure_speed), speed_error);
+  EXPECT_LE(std::abs(c.closure_speed.value()), speed_error);
   EXPECT_LE(std::abs(momentum_gained(c, *bodies)), n * speed_error);
   const double direct = kinetic_energy(c, *bodies), ledger = bodies->kinetic_energy() - run.energy_lost();
   EXPECT_LE(std::abs(direct - ledger), std::sqrt(2 * direct * n) * speed_error);

@@ -151,8 +151,8 @@ template <Real T> Group snapshot_table(const Configuration<T>& c, const std::str
     const GapStatistics<T> gaps = gap_statistics(c);
     group.attributes.emplace_back("gap_min", to_double(gaps.least));
     group.attributes.emplace_back("gap_median", to_double(gaps.median));
-    group.attributes.emplace_back("closure_gap", to_double(c.closure_gap));
-    group.attributes.emplace_back("closure_speed", to_double(c.closure_speed));
+    if (c.closure_gap) group.attributes.emplace_back("closure_gap", to_double(*c.closure_gap));
+    if (c.closure_speed) group.attributes.emplace_back("closure_speed", to_double(*c.closure_speed));
   }
   std::vector<std::uint64_t> index(c.index.begin(), c.index.end());
   group.columns = {{"x", "l", "position", as_doubles(c.x)},

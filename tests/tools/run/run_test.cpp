@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/result.hpp"
@@ -240,6 +241,29 @@ TEST_F(Run, EventsAreEveryContactInOrder) {
     EXPECT_LT(intervals.back(), 1e-160);
   }
   EXPECT_EQ(count, 322U);
+}
+
+// What nothing measures is not written: not as 0 either.
+TEST_F(Run, ClosureErrorsAreWrittenWhereTheyAreMeasured) {
+  const auto written = [&](const std::string& law, const std::string& more, const char* name) {
+    write("s.toml", "[law]\n" + law + "\n[initial]\ntype = \"rows\"\nparticles = 2000\nperturbation = 0.05\n[run]\n" +
+                        more + "until = 500\n[output]\nsnapshots = [300]\n");
+    EXPECT_EQ(shell("cradle run s.toml --quiet -o s.h5").status, 0) << law;
+    std::optional<double> found;
+    for (const auto& [key, value] : read_result((folder / "s.h5").string()).find("snapshots/0000")->attributes)
+      if (key == name) found = std::get<double>(value);
+    return found;
+  };
+  const std::string dry = "type = \"inelastic\"\nrestitution = 0.999\ncutoff = 1e-5",
+                    wet = "type = \"wet\"\nloss = 0.05";
+  EXPECT_NE(written(dry, "", "closure_gap").value_or(0), 0);
+  EXPECT_TRUE(written(dry, "", "closure_speed"));
+  EXPECT_NE(written(wet, "", "closure_gap").value_or(0), 0);
+  EXPECT_FALSE(written(wet, "", "closure_speed"));
+  for (const char* name : {"closure_gap", "closure_speed"}) {
+    EXPECT_FALSE(written("type = \"sticky\"", "", name)) << name;
+    EXPECT_FALSE(written(dry, "coordinates = \"absolute\"\n", name)) << name;
+  }
 }
 
 TEST_F(Run, InterruptedRunLeavesWhatItHas) {

@@ -88,7 +88,7 @@ template <Real T> class ClusterChain {
     const T closing_left = closing(p), closing_right = closing(n);
     const T before_left = l.velocity, before_right = r.velocity;
     const T slowed = before_left - outcome.to_left, sped = before_right + outcome.to_right;
-    Slot beyond = n;  // the cell that has the gap right of the contact
+    Slot beyond = n;
     if (outcome.event == Event::merge) {
       notice |= absorb_right(s, l.mass < r.mass ? sped : slowed);  // the heavier one's velocity hardly changes
       beyond = s;
@@ -104,6 +104,7 @@ template <Real T> class ClusterChain {
     }
     notice |= kick(p, closing_left, before_left, l.velocity, time);
     notice |= kick(beyond, closing_right, gaps_[beyond].velocity, before_right, time);
+    beyond_ = beyond;
     return {outcome, predict(p), predict(s), beyond == n ? predict(n) : EventQueue::never, notice, p, n};
   }
 
@@ -128,10 +129,10 @@ template <Real T> class ClusterChain {
   }
 
   void set_floor(const T& floor) { gaps_.set_floor(floor); }
-  // The smaller gap next to a contact, as of its local time; an end of the line counts as far away.
+  // The smaller gap next to the last contact, as of its local time; an end of the line counts as far away.
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
-    const Slot p = left(s), n = right(s);
+    const Slot p = left(s), n = beyond_;
     const T on_left = !on_ring() && p < first() ? far : gaps_[p].gap,
             on_right = !on_ring() && n >= last() ? far : gaps_[n].gap;
     return on_left < on_right ? on_left : on_right;
@@ -291,10 +292,11 @@ template <Real T> class ClusterChain {
   std::shared_ptr<const Bodies<T>> bodies_;
   TimedGaps<T, Cell<T>, may_collapse> gaps_;
   Window window_;
-  std::size_t vacated_ = 0;    // since the last layout
-  BodyIndex active_ = 0;       // bodies from one front to the other, both included
-  T frame_;                    // velocity of the centre of mass
-  T runaway_;                  // twice 1 + 2E/m >= sqrt(2E/m), which no speed exceeds
+  std::size_t vacated_ = 0;  // since the last layout
+  BodyIndex active_ = 0;     // bodies from one front to the other, both included
+  Slot beyond_ = 0;  // the cell that has the gap right of the last contact: of both bodies where they have merged
+  T frame_;          // velocity of the centre of mass
+  T runaway_;        // twice 1 + 2E/m >= sqrt(2E/m), which no speed exceeds
   std::optional<T> centre_;    // of mass at the start, on a line where positions can be told from nothing else
   CompensatedSum<T> carried_;  // mass across the seam of a ring, see cross_seam
 };

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "cradle/core/chain.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
 
@@ -41,7 +42,8 @@ template <class Law, class Chain> class SlowLoop {
     Step<T> step{chain_.body(s), chain_.stamp(time), time, chain_.closing(s), T(0)};
     const Collision<T> collision = chain_.collide(law_, s, time);
     step.nearest_gap = chain_.nearest_gap(s);
-    if (asks(collision.notice, Notice::needs_slots)) chain_.make_room();
+    if constexpr (StreamingChain<Chain>)
+      if (asks(collision.notice, Notice::needs_slots)) chain_.make_room();
     if (++since_move_ == contacts_per_move_) {
       chain_.move_origin(time);
       since_move_ = 0;

@@ -4,7 +4,7 @@
 // Why velocities, where gap_chain.hpp keeps closing speeds: a contact changes the velocity of a cluster of mass M by
 // J/M, 1e-8 and less. The closing speed between it and a light body is of order one and would round such a kick away,
 // and what the closing speeds lose drifts into the gaps. The cluster's own velocity, in the frame in which the total
-// momentum vanishes, is small itself and keeps the kick. So that is what is held, in that frame.
+// momentum vanishes, is small itself and keeps the kick.
 //
 // A cell holds a body and the gap between it and the next one (timed_gaps.hpp). Cells are linked from left to right.
 // When two bodies merge they go on in the left one's cell, and the right one's is vacated: links pass over it until the
@@ -22,7 +22,6 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/account.hpp"
 #include "cradle/core/anchor.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
@@ -120,10 +119,8 @@ template <Real T> class ClusterChain {
   void make_room() {
     std::vector<Slot> kept;
     kept.reserve(last() + 1 - first());
-    for (Slot s = first();; s = right(s)) {
-      kept.push_back(s);
-      if (s == last()) break;
-    }
+    kept.push_back(first());
+    while (kept.back() != last()) kept.push_back(right(kept.back()));
     lay_out(kept, kept.size());
     link();
   }
@@ -138,7 +135,6 @@ template <Real T> class ClusterChain {
     return on_left < on_right ? on_left : on_right;
   }
   const Account<T>& account() const { return gaps_.account(); }
-  // What times of contacts are told apart by, as times since the start.
   T time_resolution(Slot, const T& time) const { return gaps_.time_resolution(time); }
 
   // ---- reading, at a local time not before the last contact
@@ -154,8 +150,8 @@ template <Real T> class ClusterChain {
     if (last() == front) return configuration(time).x.back();
     return (undisturbed_place(right(front), time) - gap_at(front, time)).value();
   }
-  // The bodies that have collided and the next one on each side; all that are held before the first contact. On a ring
-  // all bodies, from the first one right of x = 0. (cluster_chain_configuration.hpp)
+  // What there is of it: the bodies that have collided and the next one on each side, see
+  // cluster_chain_configuration.hpp.
   Configuration<T> configuration(const T& time) const;
 
  private:
@@ -225,10 +221,7 @@ template <Real T> class ClusterChain {
       for (; from < to; from = right(from)) ++cells;
       return cells;
     };
-    if (window_.has_fronts())
-      active_ += count(s, window_.front_left()) + count(window_.front_right(), n);
-    else
-      active_ = 2;
+    active_ = window_.has_fronts() ? active_ + count(s, window_.front_left()) + count(window_.front_right(), n) : 2;
     window_.reach(s, n);
     if (window_.beyond_left(s) == Window::Beyond::row) {
       const BodyIndex b = window_.take_in_left();

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
+#include <system_error>
 
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/support/tell.hpp"
 #include "cradle/tools/support/version.hpp"
 
 using namespace cradle::tools;
@@ -13,8 +17,15 @@ using namespace cradle::tools;
 namespace {
 
 int fail(std::string_view message, Exit status) {
-  fmt::print(stderr, "cradle: {}\n", message);
+  tell(fmt::format("cradle: {}\n", message));
   return static_cast<int>(status);
+}
+
+// What was printed must have arrived, or a script that reads it takes half of it for all.
+int finish(Exit status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(status);
+  return fail("standard output cannot be written: look at where it goes, a full disk or a program that has ended",
+              status == Exit::done ? Exit::io : status);
 }
 
 }  // namespace
@@ -30,9 +41,13 @@ int main(int argc, char** argv) {
     for (const auto add : {add_run, add_check, add_info, add_export, add_theory, add_scenes, add_plot, add_trust,
                            add_ensemble, add_sweep, add_merge})
       add(program);
-    return static_cast<int>(program.read(argc, argv)());
+    return finish(program.read(argc, argv)());
   } catch (const Error& error) {
     return fail(error.what(), error.status);
+  } catch (const std::system_error& error) {  // of output, first of all
+    return fail(fmt::format("{}: look at where the output goes", error.what()), Exit::io);
+  } catch (const std::length_error&) {
+    return fail("out of memory: see what `cradle check SCENE` expects", Exit::bad_input);
   } catch (const std::bad_alloc&) {
     return fail("out of memory: see what `cradle check SCENE` expects", Exit::bad_input);
   } catch (const std::exception& error) {

@@ -75,6 +75,13 @@ void for_each_body(const Configuration<T>& c, const Bodies<T>& bodies, const T& 
   }
 }
 
+inline std::vector<double> bin_centres(BinRange range, std::size_t bins) {
+  const double width = (range.to - range.from) / static_cast<double>(bins);
+  std::vector<double> x;
+  for (std::size_t b = 0; b < bins; ++b) x.push_back(range.from + (static_cast<double>(b) + 0.5) * width);
+  return x;
+}
+
 // Throws std::invalid_argument for an empty range or no bins.
 template <Real T>
 Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range,
@@ -90,10 +97,10 @@ Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& ela
 
   Profile p;
   p.time = to_double(c.time);
+  p.x = bin_centres(range, bins);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t b = 0; b < bins; ++b) {
     const detail::Bin& s = sums[b];
-    p.x.push_back(range.from + (static_cast<double>(b) + 0.5) * width);
     p.velocity.push_back(s.count > 0 ? s.velocity : nan);
     p.density.push_back(s.count / width);
     p.mass_density.push_back(s.mass / width);

@@ -15,7 +15,9 @@ void add_common_options(Command& command, CommonOptions& options) {
   command.repeated("--set", options.overrides, "table.key=value instead of what the scene says; may be repeated",
                    "KEY=VALUE");
   command.option("--seed", options.seed, "instead of initial.seed");
-  command.option("--threads", options.threads, "threads to use at most; 0: as many as there are processors");
+  command.option(
+      "--threads", options.threads,
+      "threads to use at most, where there are replicas to share; 0: all processors; never changes a result");
   command.flag("--quiet", options.quiet, "no messages but errors and the collapse report");
   command.flag("--progress", options.progress, "tell progress also where standard error is not a terminal");
 }

@@ -5,6 +5,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/store.hpp"
+#include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
 
@@ -21,7 +22,7 @@ std::string text(const std::variant<std::string, double, std::uint64_t>& value) 
 
 void print_scene(const Scene& scene, bool all) {
   fmt::print("\nscene{}\n", all ? "" : ", where it differs from the defaults");
-  for (const auto& [key, value] : values(scene, all)) fmt::print("  {} = {}\n", key, value);
+  for (const auto& [key, value] : values(scene, all)) fmt::print("  {} = {}\n", key, shortened(value));
   fmt::print("\n");
 }
 
@@ -56,7 +57,7 @@ std::string quantities(const Result& result, const std::string& group) {
 Exit info(const Options& options) {
   if (JournalReader::is_journal(options.file)) return info_of_journal(options);
   const Result result = read_result(options.file);
-  const Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", options.file), options.file);
+  const Scene scene = scene_in(result.attributes, options.file);
   for (const auto& [name, value] : result.attributes)
     if (name != "scene" && (options.all || value != decltype(value){std::uint64_t{0}}))
       fmt::print("{:<24}{}\n", name, text(value));

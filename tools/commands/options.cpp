@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
+#include "cradle/tools/support/spelling.hpp"
+
 namespace cradle::tools {
 
 namespace {
@@ -103,7 +105,14 @@ Command CommandLine::add(const std::string& name, const std::string& description
 Action CommandLine::read(int argc, const char* const* argv) {
   const char* const first = argc > 1 ? argv[1] : "-";
   const auto is_first = [first](const CLI::App* command) { return command->get_name() == first; };
-  if (*first != '-' && program_->get_subcommands(is_first).empty()) throw misread(*program_, "no such command", first);
+  if (*first != '-' && program_->get_subcommands(is_first).empty()) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : program_->get_subcommands([](const CLI::App*) { return true; }))
+      names.push_back(command->get_name());
+    const auto nearest = nearest_word(first, names);
+    if (nearest.empty()) throw misread(*program_, "no such command", first);
+    throw Error({}, "no such command", first, fmt::format("did you mean `{} {}`?", program_->get_name(), nearest));
+  }
   try {
     program_->parse(argc, argv);
     return chosen_;

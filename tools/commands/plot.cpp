@@ -11,6 +11,7 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/plot/plot_files.hpp"
 #include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/theory/table.hpp"
 
 namespace cradle::tools {
@@ -87,7 +88,7 @@ std::string find_python() {
 
 Exit plot(const Options& options) {
   const Result result = read_result(options.file);
-  const Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", options.file), options.file);
+  const Scene scene = scene_in(result.attributes, options.file);
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.output;
   const TemporaryFolder program;  // Python runs a folder by its __main__.py

@@ -7,6 +7,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/support/interrupt.hpp"
+#include "cradle/tools/support/tell.hpp"
 
 namespace cradle::tools {
 
@@ -16,15 +17,10 @@ struct Options : CommonOptions {
   std::string output;
 };
 
-std::string summary(const Result& result, double seconds) {
-  const auto& series = result.find("series")->columns;
-  const auto last = [&](std::size_t column) {
-    return std::visit([](const auto& values) { return static_cast<double>(values.back()); }, series[column].values);
-  };
-  const double contacts = last(3);
-  return fmt::format("{}: t = {}, {:.0f} contacts, energy {:.10g}, {:.2f} s, {:.1f} million contacts/s\n",
-                     attribute<std::string>(result.attributes, "outcome", ""), last(0), contacts, last(1), seconds,
-                     contacts / seconds * 1e-6);
+std::string summary(const RunOutcome& run, double seconds) {
+  return fmt::format("{}: t = {}, {} contacts, energy {:.10g}, {:.2f} s, {:.1f} million contacts/s\n",
+                     end_text(run.end), run.time, run.contacts, run.energy, seconds,
+                     static_cast<double>(run.contacts) / seconds * 1e-6);
 }
 
 Exit run(const Options& options) {
@@ -32,21 +28,23 @@ Exit run(const Options& options) {
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   check_built(scene);
   check_writable(output);
-  note_signals();
+  Interrupt interrupt;
+  note_signals(interrupt);
   const auto started = std::chrono::steady_clock::now();
-  const RunOutcome end = run_scene(scene, {options.progress ? Progress::Show::always
-                                           : options.quiet  ? Progress::Show::never
-                                                            : Progress::Show::on_terminal});
+  const auto show = options.progress ? Progress::Show::always
+                    : options.quiet  ? Progress::Show::never
+                                     : Progress::Show::on_terminal;
+  const RunOutcome end = run_scene(scene, {show, false, &interrupt});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   // An existing file is replaced only by a run that went its way; one cut short leaves what it has beside it.
-  const bool cut = end.status == Exit::interrupted || end.status == Exit::terminated;
+  const bool cut = end.end == RunEnd::interrupted;
   const std::string written = cut ? output + ".part" : output;
   write_result(end.result, written);
   fmt::print("{}", end.report);
-  if (!end.warning.empty()) fmt::print(stderr, "{}", end.warning);
-  if (cut) fmt::print(stderr, "interrupted: what was computed is in {}\n", written);
-  if (!options.quiet) fmt::print("{}wrote {}\n", summary(end.result, seconds), written);
-  return end.status;
+  tell(end.warning);
+  if (cut) tell(fmt::format("interrupted: what was computed is in {}\n", written));
+  if (!options.quiet) fmt::print("{}wrote {}\n", summary(end, seconds), written);
+  return cut ? status_of_signal(interrupt.signal()) : status_of_end(end.end);
 }
 
 }  // namespace

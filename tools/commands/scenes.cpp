@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -19,14 +20,18 @@ Exit scenes(const Options& options) {
     fmt::print("{}", describe_fields());
     return Exit::done;
   }
+  std::size_t longest = 0;
   for (const auto& scene : bundled_scenes()) {
-    if (options.name.empty())
-      fmt::print("{:<12}{}\n", scene.name, parse_scene(scene.text, std::string(scene.name)).title);
+    longest = std::max(longest, scene.name.size());
     if (options.name != scene.name) continue;
     fmt::print("{}", scene.text);
     return Exit::done;
   }
-  if (options.name.empty()) return Exit::done;
+  if (options.name.empty()) {
+    for (const auto& scene : bundled_scenes())
+      fmt::print("{:<{}}  {}\n", scene.name, longest, parse_scene(scene.text, std::string(scene.name)).title);
+    return Exit::done;
+  }
   throw Error({}, "no bundled scene of this name", options.name, "see `cradle scenes` for those there are");
 }
 

@@ -6,12 +6,14 @@
 #include <memory>
 
 #include "cradle/tools/support/interrupt.hpp"
+#include "cradle/tools/support/tell.hpp"
 
 namespace cradle::tools {
 
 Exit run_study_command(const CommonOptions& options, const std::function<StudyPlan()>& make_plan) {
-  note_signals();
-  const std::unique_ptr<Crew> crew = make_crew();
+  Interrupt interrupt;
+  note_signals(interrupt);
+  const std::unique_ptr<Crew> crew = make_crew(interrupt);
   StudyPlan plan;
   const Exit failed = crew->together([&] {
     plan = make_plan();
@@ -29,10 +31,10 @@ Exit run_study_command(const CommonOptions& options, const std::function<StudyPl
   const EnsembleOutcome end = run_study(plan.study, how, output, *crew);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (crew->rank() != 0) return end.status;
-  if (!options.quiet) fmt::print(stderr, "{}", end.account);
-  fmt::print(stderr, "{}", end.warning);
+  if (!options.quiet) tell(end.account);
+  tell(end.warning);
   if (end.status == Exit::interrupted || end.status == Exit::terminated) {
-    fmt::print(stderr, "interrupted: finished replicas are in {}.part; the same command goes on from there\n", output);
+    tell(fmt::format("interrupted: finished replicas are in {}.part; the same command goes on from there\n", output));
   } else if (!options.quiet) {
     fmt::print("{} replicas: {}\n", end.replicas, end.outcome);
     if (end.fresh > 0)

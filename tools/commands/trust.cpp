@@ -21,11 +21,13 @@ Exit run_trust(const Options& options) {
   const Scene scene = options.read();
   const std::string output = options.output.empty() ? scene.name + "-trust.h5" : options.output;
   check_writable(output);
-  note_signals();
+  Interrupt interrupt;
+  note_signals(interrupt);
   const auto runs = trust(scene, {options.digits, options.both,
                                   options.progress ? Progress::Show::always
                                   : options.quiet  ? Progress::Show::never
-                                                   : Progress::Show::on_terminal});
+                                                   : Progress::Show::on_terminal,
+                                  &interrupt});
   write_result(trust_result(scene, runs), output);
   fmt::print("{}", trust_table(runs));
   if (!options.quiet) fmt::print("wrote {}\n", output);

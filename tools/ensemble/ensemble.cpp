@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <optional>
 #include <utility>
-
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 
@@ -25,9 +22,11 @@ struct Finished {
   std::vector<double> values;
 };
 
-Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options) {
-  const RunOutcome run = options.runner(replica_scene(ensemble.scene(), replica));
-  if (run.status == Exit::interrupted || run.status == Exit::terminated) throw ReplicaAbandoned();
+Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options,
+                     Interrupt& interrupt) {
+  const RunOutcome run =
+      options.runner(replica_scene(ensemble.scene(), replica), {ProgressLine::Show::never, false, &interrupt});
+  if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
   return {ensemble.layout().row(replica, run), ensemble.layout().values(run)};
 }
 
@@ -79,7 +78,7 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew
           const std::function<void()>& finished) {
   run_jobs(
       Workers(options.threads > 0 ? options.threads : crew.threads()), next,
-      [&](const Job& job) { return run_replica(*store.states()[job.point], job.replica, options); },
+      [&](const Job& job) { return run_replica(*store.states()[job.point], job.replica, options, crew.interrupt()); },
       [&](const Job& job, Finished&& done) {
         store.add(job.point, done.row, std::move(done.values));
         finished();
@@ -88,7 +87,7 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew
         store.fail(job.point, job.replica, message);
         finished();
       },
-      [] { return noted_signal() != 0; });
+      [&] { return crew.interrupt().signal() != 0; });
 }
 
 EnsembleOutcome told(const EnsembleStore& store) {
@@ -111,12 +110,12 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, Crew&
       [&](std::uint64_t replicas) { progress.done(replicas); });
   EnsembleOutcome end;
   if (signal == 0) {
-    crew.gather([](const JournalWriter::Put&) {}, [&](std::string_view record) { store.apply(record); });
+    crew.gather([](const PutRecord&) {}, [&](std::string_view record) { store.apply(record); });
     if (fresh > 0 || !store.result_there()) store.finish();
     end = told(store);
   } else {
     store.sync();
-    end.status = signal == SIGINT ? Exit::interrupted : Exit::terminated;
+    end.status = status_of_signal(signal);
   }
   end.fresh = fresh;
   return end;
@@ -126,7 +125,7 @@ EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Cre
   store.start_journal(crew.rank(), options.journal_bytes);
   const int signal = crew.share({}, [&](const NextJob& next) { work(store, options, crew, next, [] {}); }, {});
   if (signal == 0)
-    crew.gather([&](const JournalWriter::Put& put) { store.put_records(put); }, [](std::string_view) {});
+    crew.gather([&](const PutRecord& put) { store.put_records(put); }, [](std::string_view) {});
   else
     store.sync();
   return {};
@@ -147,6 +146,7 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
     none.status = failed;
     return none;
   }
+  crew.interrupt().heed();
   if (crew.rank() != 0) return follow(*store, options, crew);
   EnsembleOutcome end = lead(*store, options, crew);
   end.account = account;
@@ -154,7 +154,8 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
 }
 
 EnsembleOutcome run_ensemble(const Scene& scene, const EnsembleOptions& options, const std::string& file) {
-  Alone alone;
+  Interrupt interrupt;
+  Alone alone(interrupt);
   return run_study(ensemble_of(scene), options, file, alone);
 }
 

@@ -19,9 +19,7 @@ struct EnsembleOptions {
   ProgressLine::Show progress = ProgressLine::Show::on_terminal;
   std::uint64_t journal_bytes = std::uint64_t{1} << 26;  // beyond which a journal is written anew, as statistics
   /// Runs the scene of one replica; what it throws is that replica's failure.
-  std::function<RunOutcome(const Scene&)> runner = [](const Scene& scene) {
-    return run_scene(scene, {ProgressLine::Show::never});
-  };
+  std::function<RunOutcome(const Scene&, const RunOptions&)> runner = run_scene;
 };
 
 struct EnsembleOutcome {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
 
 #include "cradle/tools/run/in_precision.hpp"
 #include "cradle/tools/run/schedule.hpp"
+#include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
 
@@ -57,24 +57,20 @@ std::size_t samples_taken(const Column& time, const std::vector<double>& planned
   return taken;
 }
 
-Scene at_start(Scene scene) {
-  scene.run.until = scene.run.start;
-  scene.output.series = {};
-  scene.output.series.times = {scene.run.start};
-  if (!scene.output.profiles.times.empty()) scene.output.profiles.times = {scene.run.start};
-  if (scene.output.zone.from) scene.output.zone.from = scene.run.start;
-  return scene;
-}
-
-// What runs say of themselves: see run_in.hpp.
-const std::array<std::string, outcome_count> outcomes{"reached the end", "inelastic collapse", "order of contacts lost",
-                                                      "resolution exhausted", "failed"};
-
 ReplicaOutcome outcome_of(const RunOutcome& run) {
-  const auto& text = attribute<std::string>(run.result.attributes, "outcome", "a replica");
-  const auto found = std::find(outcomes.begin(), outcomes.end(), text);
-  if (found == outcomes.end()) throw std::logic_error("a run ended in a way that ensembles do not know: " + text);
-  return static_cast<ReplicaOutcome>(found - outcomes.begin());
+  switch (run.end) {
+  case RunEnd::reached:
+    return ReplicaOutcome::reached;
+  case RunEnd::collapsed:
+    return ReplicaOutcome::collapsed;
+  case RunEnd::order_lost:
+    return ReplicaOutcome::order_lost;
+  case RunEnd::exhausted:
+    return ReplicaOutcome::exhausted;
+  case RunEnd::interrupted:
+    break;
+  }
+  throw std::logic_error("a replica that was interrupted has no outcome");
 }
 
 bool ended_early(ReplicaOutcome outcome) {
@@ -90,7 +86,21 @@ constexpr const char* collapse_time = "collapse_time";
 
 }  // namespace
 
-const std::string& outcome_text(ReplicaOutcome outcome) { return outcomes.at(static_cast<std::size_t>(outcome)); }
+std::string outcome_text(ReplicaOutcome outcome) {
+  switch (outcome) {
+  case ReplicaOutcome::reached:
+    return end_text(RunEnd::reached);
+  case ReplicaOutcome::collapsed:
+    return end_text(RunEnd::collapsed);
+  case ReplicaOutcome::order_lost:
+    return end_text(RunEnd::order_lost);
+  case ReplicaOutcome::exhausted:
+    return end_text(RunEnd::exhausted);
+  case ReplicaOutcome::failed:
+    break;
+  }
+  return "failed";
+}
 
 Scene replica_scene(const Scene& scene, std::uint64_t index) {
   Scene replica = scene;
@@ -98,7 +108,6 @@ Scene replica_scene(const Scene& scene, std::uint64_t index) {
   replica.output.snapshots.clear();
   replica.output.masses.clear();
   replica.output.events = false;
-  replica.output.checkpoint_every = Decimal("0");
   return replica;
 }
 
@@ -115,33 +124,34 @@ void check_ensemble(const Scene& scene) {
 ReplicaLayout replica_layout(const Scene& scene) {
   check_ensemble(scene);
   const Times times = planned_times(scene);
-  const RunOutcome run = run_scene(at_start(replica_scene(scene, 0)), {Progress::Show::never});
-  const Result& probe = run.result;
+  const RunTables tables = run_tables(scene);
   ReplicaLayout layout;
   const auto add = [&](const Column& column, const std::string& group, std::size_t rows) {
     layout.quantities.push_back(
         {group, column.name, column.unit, column.description, layout.entries, rows, column.width});
     layout.entries += layout.quantities.back().size();
   };
-  layout.time = get(probe, "series", "time");
-  layout.time.values = times.series;
-  for (const Group& group : probe.groups)
+  for (const Group& group : tables.series)
     for (const Column& column : group.columns)
-      if (of_series(group.name) && column.name != "time" && !column.names) add(column, group.name, times.series.size());
-  const auto add_binned = [&](const std::string& of_probe, const std::string& group,
-                              std::vector<Attribute> attributes) {
-    layout.binned.push_back({group, std::move(attributes), get(probe, of_probe, "x")});
-    for (const Column& column : probe.find(of_probe)->columns)
-      if (column.name != "x") add(column, group, column.rows());
+      if (column.name == "time")
+        layout.time = column;
+      else if (!column.names)
+        add(column, group.name, times.series.size());
+  layout.time.values = times.series;
+  const auto add_binned = [&](const Group& table, const std::string& group, std::vector<Attribute> attributes) {
+    const Column& x = table.columns.front();
+    layout.binned.push_back({group, std::move(attributes), x});
+    for (const Column& column : table.columns)
+      if (column.name != x.name) add(column, group, x.rows());
   };
   for (std::size_t k = 0; k < times.profiles.size(); ++k)
-    add_binned("profiles/0000", fmt::format("profiles/{:04}", k), {{"time", times.profiles[k]}});
-  if (scene.output.zone.from)
-    add_binned("zone", "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
+    add_binned(tables.profile.value(), fmt::format("profiles/{:04}", k), {{"time", times.profiles[k]}});
+  if (tables.zone)
+    add_binned(*tables.zone, "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
   layout.numbers.push_back({"energy", "m l^2/t^2", "kinetic energy at the end", {}});
   if (may_collapse(scene))
     layout.numbers.push_back({collapse_time, "t", "time of inelastic collapse; NaN: there was none", {}});
-  for (const auto& [name, value] : run.summary) layout.numbers.push_back({name, "", "of the whole run", {}});
+  for (const std::string& name : tables.summary) layout.numbers.push_back({name, "", "of the whole run", {}});
   return layout;
 }
 

@@ -1,7 +1,7 @@
 // What the numbers of a replica mean: every column that a run of the scene records in its series, profiles and zone,
 // one after the other in one vector of doubles, which is what ensembles keep statistics of. Times and bins are common
-// to all replicas, so they are here and not among the numbers. Nothing is known of columns but what a run says about
-// them.
+// to all replicas, so they are here and not among the numbers. Which columns there are is said by the tables of a run
+// (run/tables.hpp).
 #pragma once
 
 #include <cstddef>
@@ -22,10 +22,10 @@ struct Quantity {
   std::size_t size() const { return rows * width; }
 };
 
-/// How a replica ended; what a run says about it, in this order.
+/// How a replica ended; as numbers, these are in files.
 enum class ReplicaOutcome : std::uint64_t { reached, collapsed, order_lost, exhausted, failed };
 inline constexpr std::size_t outcome_count = 5;
-const std::string& outcome_text(ReplicaOutcome outcome);
+std::string outcome_text(ReplicaOutcome outcome);
 
 /// One line of the table of replicas.
 struct ReplicaRow {
@@ -56,7 +56,7 @@ struct ReplicaLayout {
 /// Throws Error for a scene that no ensemble can be made of, naming the key.
 void check_ensemble(const Scene& scene);
 
-/// Of the scene's replicas, found out by a run that ends where it begins. Throws Error as check_ensemble does.
+/// Of the scene's replicas; nothing is run. Throws Error as check_ensemble does.
 ReplicaLayout replica_layout(const Scene& scene);
 
 /// The scene of one replica, without what ensembles do not keep: snapshots, masses and events.

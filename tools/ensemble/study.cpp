@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "cradle/tools/ensemble/checksum.hpp"
@@ -13,24 +10,13 @@
 
 namespace cradle::tools {
 
-namespace {
-
-// Bodies listed in a file are part of the scene.
-std::uint64_t list_checksum(const Scene& scene) {
-  if (scene.initial.type != InitialType::list || !scene.initial.file) return 0;
-  std::ifstream file(std::filesystem::path(scene.folder) / *scene.initial.file, std::ios::binary);
-  return crc64(std::string(std::istreambuf_iterator<char>(file), {}));
-}
-
-}  // namespace
-
 std::string scene_difference(const Scene& found, const Scene& wanted) {
   const auto of_found = values(found, true), of_wanted = values(wanted, true);
   const std::map<std::string, std::string> old(of_found.begin(), of_found.end());
   for (const auto& [key, value] : of_wanted) {
     const auto at = old.find(key);
-    if (at == old.end()) return fmt::format("no {}, here {}", key, value);
-    if (at->second != value) return fmt::format("{} = {}, here {}", key, at->second, value);
+    if (at == old.end()) return fmt::format("no {}, here {}", key, shortened(value));
+    if (at->second != value) return fmt::format("{} = {}, here {}", key, shortened(at->second), shortened(value));
   }
   return of_found.size() == of_wanted.size() ? "" : "keys that this one has not";
 }
@@ -38,8 +24,7 @@ std::string scene_difference(const Scene& found, const Scene& wanted) {
 std::uint64_t Study::identity() const {
   ByteWriter all;
   all.put(version).put(kind);
-  for (const Point& point : points)
-    all.put(point.group).put(effective_toml(point.scene)).put(list_checksum(point.scene));
+  for (const Point& point : points) all.put(point.group).put(effective_toml(point.scene));
   for (const auto& [name, bins] : spreads) all.put(name).put(bins.from).put(bins.to).put(std::uint64_t{bins.bins});
   return crc64(all.bytes());
 }
@@ -69,9 +54,7 @@ Study ensemble_in(const Result& result, const std::string& file) {
           {group.name.substr(under.size()),
            {attribute<double>(group.attributes, "from", file), attribute<double>(group.attributes, "to", file),
             attribute<std::uint64_t>(group.attributes, "bins", file)}});
-  Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", file), file);
-  scene.name = attribute<std::string>(result.attributes, "name", file);
-  return ensemble_of(scene, std::move(spreads));
+  return ensemble_of(scene_in(result.attributes, file), std::move(spreads));
 }
 
 }  // namespace cradle::tools

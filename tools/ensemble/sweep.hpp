@@ -3,21 +3,12 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "cradle/tools/ensemble/store.hpp"
+#include "cradle/tools/ensemble/study.hpp"
+#include "cradle/tools/ensemble/sweep_points.hpp"
 
 namespace cradle::tools {
-
-/// What is set at a point: keys and values as `--set` takes them.
-using SweepPoint = std::vector<std::pair<std::string, std::string>>;
-
-/// The points of a sweep, in order: those given one by one, then all combinations of the varied keys, the last one
-/// varying fastest, or (cuts) one key after the other. A key is varied by KEY=FROM:TO:COUNT, evenly, both ends
-/// included, KEY=FROM:TO:COUNT:log, evenly in the logarithm, or KEY=VALUE,VALUE,... Throws Error naming what cannot be
-/// read.
-std::vector<SweepPoint> sweep_points(const Sweep& sweep);
 
 /// The study of a scene at these points, which are set on top of what `overrides` sets. Throws Error for a point that
 /// makes no scene, naming it.

@@ -6,8 +6,6 @@
 #include <bit>
 #include <mutex>
 
-#include "cradle/tools/support/interrupt.hpp"
-
 namespace cradle::tools {
 
 unsigned processors() {
@@ -46,13 +44,13 @@ int Alone::share(const std::vector<JobRange>& jobs, const std::function<void(con
   JobQueue queue(jobs);
   std::mutex mutex;
   work([&]() -> std::optional<Job> {
-    if (noted_signal() != 0) return std::nullopt;
+    if (interrupt().signal() != 0) return std::nullopt;
     const std::scoped_lock lock(mutex);
     const auto piece = queue.take(1);
     if (!piece) return std::nullopt;
     return Job{piece->point, piece->replicas.first};
   });
-  return noted_signal();
+  return interrupt().signal();
 }
 
 }  // namespace cradle::tools

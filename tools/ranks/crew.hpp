@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cradle/core/ensemble.hpp"
-#include "cradle/tools/ensemble/journal.hpp"
 #include "cradle/tools/support/errors.hpp"
+#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 
@@ -23,6 +23,8 @@ struct Job {
   std::size_t point;
   ReplicaIndex replica;
 };
+/// Where records go, one by one.
+using PutRecord = std::function<void(std::string_view record)>;
 /// The next job, in order; none: there are no more, or a signal says to stop. May be called from several threads.
 using NextJob = std::function<std::optional<Job>()>;
 
@@ -31,7 +33,10 @@ unsigned processors();
 
 class Crew {
  public:
+  /// Work ends before its time where the interrupt says so; it must outlive the crew.
+  explicit Crew(Interrupt& interrupt) : interrupt_(interrupt) {}
   virtual ~Crew() = default;
+  Interrupt& interrupt() const { return interrupt_; }
   virtual unsigned rank() const = 0;
   /// Of each rank, where nothing else is asked for.
   virtual unsigned threads() const = 0;
@@ -46,8 +51,10 @@ class Crew {
                     const std::function<void(std::uint64_t replicas)>& others_took) = 0;
 
   /// Every other rank puts its records, rank 0 takes them.
-  virtual void gather(const std::function<void(const JournalWriter::Put&)>& put,
-                      const std::function<void(std::string_view record)>& take) = 0;
+  virtual void gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) = 0;
+
+ private:
+  Interrupt& interrupt_;
 };
 
 /// Jobs one after the other, in pieces as they are asked for.
@@ -68,17 +75,17 @@ class JobQueue {
 
 class Alone : public Crew {
  public:
+  using Crew::Crew;
   unsigned rank() const override { return 0; }
   unsigned threads() const override { return processors(); }
   Exit together(const std::function<void()>& step) override;
   int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
             const std::function<void(std::uint64_t)>& others_took) override;
-  void gather(const std::function<void(const JournalWriter::Put&)>&,
-              const std::function<void(std::string_view)>&) override {}
+  void gather(const std::function<void(const PutRecord&)>&, const PutRecord&) override {}
 };
 
 /// The ranks of an MPI job where a launcher (mpirun, srun) started this process, else this process alone. Throws Error
 /// where a launcher started several processes that do not see each other. One at a time, and once in a program.
-std::unique_ptr<Crew> make_crew();
+std::unique_ptr<Crew> make_crew(Interrupt& interrupt);
 
 }  // namespace cradle::tools

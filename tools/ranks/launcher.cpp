@@ -30,15 +30,15 @@ int processes() {
 
 }  // namespace
 
-std::unique_ptr<Crew> make_crew() {
-  if (!launched()) return std::make_unique<Alone>();
+std::unique_ptr<Crew> make_crew(Interrupt& interrupt) {
+  if (!launched()) return std::make_unique<Alone>(interrupt);
 #ifdef CRADLE_WITH_MPI
-  return make_mpi_crew(processes());
+  return make_mpi_crew(processes(), interrupt);
 #else
   if (processes() > 1)
     throw Error("this program cannot share work between processes (" + std::to_string(processes()) +
                 " were launched): build it where MPI is found, or run it without a launcher");
-  return std::make_unique<Alone>();
+  return std::make_unique<Alone>(interrupt);
 #endif
 }
 

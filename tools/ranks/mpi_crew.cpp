@@ -13,7 +13,6 @@
 #include <thread>
 
 #include "cradle/tools/ranks/workshop.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 
@@ -78,7 +77,7 @@ int status_of(const std::exception_ptr& error, std::string& message) {
 
 class MpiCrew : public Crew {
  public:
-  explicit MpiCrew(int processes_launched);
+  MpiCrew(int processes_launched, Interrupt& interrupt);
   ~MpiCrew() override { MPI_Finalize(); }
 
   unsigned rank() const override { return static_cast<unsigned>(rank_); }
@@ -86,8 +85,7 @@ class MpiCrew : public Crew {
   Exit together(const std::function<void()>& step) override;
   int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
             const std::function<void(std::uint64_t)>& others_took) override;
-  void gather(const std::function<void(const JournalWriter::Put&)>& put,
-              const std::function<void(std::string_view)>& take) override;
+  void gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) override;
 
  private:
   void lead(Workshop& shop, const Workshop::More& piece, const std::function<void(std::uint64_t)>& others_took) const;
@@ -98,7 +96,7 @@ class MpiCrew : public Crew {
   unsigned threads_ = 0;
 };
 
-MpiCrew::MpiCrew(int processes_launched) {
+MpiCrew::MpiCrew(int processes_launched, Interrupt& interrupt) : Crew(interrupt) {
   int given = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -156,14 +154,14 @@ int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(c
       const std::scoped_lock lock(mutex);
       return all.take(std::max<std::uint64_t>(1, all.left() / (3 * static_cast<std::uint64_t>(size_))));
     };
-    Workshop shop(work, piece);
+    Workshop shop(work, piece, interrupt());
     lead(shop, piece, others_took);
   } else {
-    Workshop shop(work, {});
+    Workshop shop(work, {}, interrupt());
     follow(shop);
   }
   // Some were through before a signal came: all go on as rank 0 does, which waits for all.
-  int signal = noted_signal();
+  int signal = interrupt().signal();
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibcast(&signal, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
   wait([&] {
@@ -179,17 +177,17 @@ void MpiCrew::lead(Workshop& shop, const Workshop::More& piece,
   std::vector<bool> here(static_cast<std::size_t>(size_), true);
   int others = size_ - 1;
   bool stopped = false;
-  const auto stop = [] { return Reply{Order::stop, 0, 0, 0, static_cast<std::uint64_t>(noted_signal())}; };
+  const auto stop = [this] { return Reply{Order::stop, 0, 0, 0, static_cast<std::uint64_t>(interrupt().signal())}; };
   for (;;) {
     const bool idle = shop.idle(false);
     if (idle && shop.error()) abandon(shop.error());
-    if (noted_signal() != 0 && !std::exchange(stopped, true))
+    if (interrupt().signal() != 0 && !std::exchange(stopped, true))
       for (int rank = 1; rank < size_; ++rank)
         if (here[static_cast<std::size_t>(rank)]) send(stop(), rank, from_leader);
     for (int rank = sender(MPI_ANY_SOURCE, to_leader); rank >= 0; rank = sender(MPI_ANY_SOURCE, to_leader)) {
       const auto report = receive<Report>(rank, to_leader);
       others_took(report.taken);
-      if (report.signal != 0) note_signal(static_cast<int>(report.signal));
+      if (report.signal != 0) interrupt().note(static_cast<int>(report.signal));
       if (report.wish == Wish::leave) {
         send(Reply{Order::farewell}, rank, from_leader);
         here[static_cast<std::size_t>(rank)] = false;
@@ -216,7 +214,8 @@ void MpiCrew::follow(Workshop& shop) const {
       report.wish = Wish::leave;
     else if (!asked && !closed && shop.empty())
       report.wish = Wish::piece, asked = true;
-    if (noted_signal() != 0 && !std::exchange(told, true)) report.signal = static_cast<std::uint64_t>(noted_signal());
+    if (interrupt().signal() != 0 && !std::exchange(told, true))
+      report.signal = static_cast<std::uint64_t>(interrupt().signal());
     const auto now = std::chrono::steady_clock::now();
     if (report.wish != Wish::nothing || report.signal != 0 || (report.taken > 0 && now - last > 500ms)) {
       send(report, 0, to_leader);
@@ -230,7 +229,7 @@ void MpiCrew::follow(Workshop& shop) const {
         asked = false;
         continue;
       }
-      if (reply.order == Order::stop) note_signal(static_cast<int>(reply.signal));
+      if (reply.order == Order::stop) interrupt().note(static_cast<int>(reply.signal));
       shop.close();
       closed = true;
     }
@@ -239,8 +238,7 @@ void MpiCrew::follow(Workshop& shop) const {
     wait([] { return sender(0, from_leader) == 0; });
 }
 
-void MpiCrew::gather(const std::function<void(const JournalWriter::Put&)>& put,
-                     const std::function<void(std::string_view)>& take) {
+void MpiCrew::gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) {
   constexpr std::uint64_t end = ~std::uint64_t{0}, piece = std::uint64_t{1} << 30;  // MPI counts in int
   if (rank_ != 0) {
     put([&](std::string_view record) {
@@ -268,6 +266,8 @@ void MpiCrew::gather(const std::function<void(const JournalWriter::Put&)>& put,
 
 }  // namespace
 
-std::unique_ptr<Crew> make_mpi_crew(int processes_launched) { return std::make_unique<MpiCrew>(processes_launched); }
+std::unique_ptr<Crew> make_mpi_crew(int processes_launched, Interrupt& interrupt) {
+  return std::make_unique<MpiCrew>(processes_launched, interrupt);
+}
 
 }  // namespace cradle::tools

@@ -11,6 +11,6 @@
 namespace cradle::tools {
 
 /// Starts MPI; to be called under a launcher only. Throws Error where the ranks do not see each other.
-std::unique_ptr<Crew> make_mpi_crew(int processes_launched);
+std::unique_ptr<Crew> make_mpi_crew(int processes_launched, Interrupt& interrupt);
 
 }  // namespace cradle::tools

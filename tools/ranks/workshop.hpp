@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "cradle/tools/ranks/crew.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 
@@ -21,9 +20,9 @@ class Workshop {
   using More = std::function<std::optional<JobRange>()>;
 
   /// Begins work(next) at once. `more` gives the jobs that are to be done next; without it they are put, until the
-  /// workshop is closed.
-  Workshop(const std::function<void(const NextJob&)>& work, More more)
-      : more_(std::move(more)), thread_([this, work] { run(work); }) {}
+  /// workshop is closed. An interrupt ends it before.
+  Workshop(const std::function<void(const NextJob&)>& work, More more, const Interrupt& interrupt)
+      : more_(std::move(more)), interrupt_(interrupt), thread_([this, work] { run(work); }) {}
   ~Workshop() { thread_.join(); }
   Workshop(const Workshop&) = delete;
   Workshop& operator=(const Workshop&) = delete;
@@ -73,7 +72,7 @@ class Workshop {
   std::optional<Job> next() {
     std::unique_lock lock(mutex_);
     for (;;) {
-      if (noted_signal() != 0) return std::nullopt;
+      if (interrupt_.signal() != 0) return std::nullopt;
       if (const auto piece = jobs_.take(1)) {
         ++taken_;
         changed_.notify_all();
@@ -91,6 +90,7 @@ class Workshop {
   }
 
   More more_;
+  const Interrupt& interrupt_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   JobQueue jobs_{{}};

@@ -3,15 +3,13 @@
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
-#include <csignal>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/theory/wet_clusters.hpp"
 #include "cradle/tools/run/schedule.hpp"
-#include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/version.hpp"
+#include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
 
@@ -35,7 +33,8 @@ Motion motion_of(const Scene& scene, const theory::WetZone<double>& zone) {
   const theory::ClusterRules rules{1, scene.law.loss.value, meeting, zone.half_width(), initial.speed.value};
   const double incoming = 2 * initial.speed.value / initial.spacing.value;  // mass per time, from both sides
   const auto start = [&](std::size_t i) {
-    return theory::ClusterStart{initial.x[i].value, initial.v[i].value, initial.growth[i].value * incoming};
+    return theory::ClusterStart{Decimal(initial.x[i]).value, Decimal(initial.v[i]).value,
+                                initial.growth[i].value * incoming};
   };
   const auto stepper =
       odeint::make_dense_output(tolerance, tolerance, odeint::runge_kutta_dopri5<theory::ClusterState>());
@@ -70,19 +69,10 @@ class Recorder {
   std::uint64_t merges() const { return total_merges_; }
 
   void tables(std::vector<Group>& groups) && {
-    groups.push_back({"series",
-                      {},
-                      {{"time", "t", "a sample is the state after all meetings at times <= t", std::move(time_)},
-                       {"energy", "m l^2/t^2", "kinetic energy of the two clusters", std::move(energy_)},
-                       {"energy_lost", "m l^2/t^2", "energy lost where they met", std::move(lost_)},
-                       {"contacts", "1", "how often they have met", std::move(contacts_)},
-                       {"merges", "1", "how often they have stuck", std::move(merges_)}}});
-    groups.push_back({"series/heaviest",
-                      {},
-                      {{"mass", "m", "of the two clusters, the left and the right one", std::move(mass_), 2},
-                       {"x", "l", "their positions", std::move(x_), 2},
-                       {"v", "l/t", "their velocities", std::move(v_), 2},
-                       {"index", "1", "0 or 1, which of the two at the start", std::move(index_), 2, true}}});
+    auto tables = cluster_series_tables();
+    groups.push_back(filled(std::move(tables[0]), std::move(time_), std::move(energy_), std::move(lost_),
+                            std::move(contacts_), std::move(merges_)));
+    groups.push_back(filled(std::move(tables[1]), std::move(mass_), std::move(x_), std::move(v_), std::move(index_)));
   }
 
  private:
@@ -148,28 +138,28 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
   const double loss = scene.initial.meeting == Meeting::energy ? scene.law.loss.value : 0;
   Recorder recorder;
   RunOutcome end;
-  std::string outcome = "reached the end";
   for (const double time : series_times<double>(scene.output.series, scene.run.start.value, scene.run.until.value)) {
+    end.time = time;
     motion.advance(time);
     recorder.add(time, motion, loss);
-    if (noted_signal() == 0) continue;
-    outcome = "interrupted";
-    end.status = noted_signal() == SIGINT ? Exit::interrupted : Exit::terminated;
+    if (options.interrupt == nullptr) continue;
+    options.interrupt->heed();
+    if (options.interrupt->signal() == 0) continue;
+    end.end = RunEnd::interrupted;
     break;
   }
-  if (end.status == Exit::done) motion.advance(scene.run.until.value);
+  if (end.end == RunEnd::reached) {
+    end.time = scene.run.until.value;
+    motion.advance(end.time);
+  }
   end.contacts = motion.meetings().size();
   end.merges = recorder.merges();
   end.energy = recorder.energy();
-  end.result.attributes = {{"format_version", std::uint64_t{1}},
-                           {"cradle_version", std::string(version)},
-                           {"scene", effective_toml(scene)},
-                           {"name", scene.name},
-                           {"precision", precision_name(scene.run)},
-                           {"outcome", outcome},
-                           {"integrator", std::string("Dormand-Prince 5(4), steps end where the force jumps")},
-                           {"relative_tolerance", tolerance},
-                           {"absolute_tolerance", tolerance}};  // of x in L, of v in u0
+  end.result.attributes = provenance(scene, precision_name(scene.run), end_text(end.end));
+  for (const Attribute& attribute :
+       {Attribute("integrator", std::string("Dormand-Prince 5(4), steps end where the force jumps")),
+        Attribute("relative_tolerance", tolerance), Attribute("absolute_tolerance", tolerance)})  // x in L, v in u0
+    end.result.attributes.push_back(attribute);
   std::move(recorder).tables(end.result.groups);
   end.result.groups.push_back(meetings_table(motion.meetings()));
   end.result.groups.push_back(force_table(zone));

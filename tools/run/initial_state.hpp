@@ -8,7 +8,6 @@
 #include "cradle/core/ring.hpp"
 #include "cradle/core/rows.hpp"
 #include "cradle/precision/text.hpp"
-#include "cradle/tools/scene/list_file.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
@@ -26,10 +25,8 @@ template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
 template <Real T> std::shared_ptr<const cradle::Bodies<T>> initial_bodies(const Scene& scene) {
   const Initial& initial = scene.initial;
   try {
-    if (initial.type == InitialType::list) {
-      const Bodies listed = read_bodies(scene);
-      return std::make_shared<List<T>>(numbers<T>(listed.x), numbers<T>(listed.v), numbers<T>(listed.m));
-    }
+    if (initial.type == InitialType::list)
+      return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m));
     const Displacement displacement = uniform_displacement(initial.perturbation.value, initial.seed, initial.replica);
     if (initial.type == InitialType::ring) {
       using std::sqrt;

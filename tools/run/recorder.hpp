@@ -1,5 +1,5 @@
-// What a run leaves behind: collects samples, configurations, profiles and contacts while it goes on, and lays them out
-// as the tables of a result file.
+// What a run leaves behind: collects samples, configurations, profiles and contacts while it goes on, and puts them
+// into the tables of a result file (tables.hpp).
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/sample.hpp"
-#include "cradle/core/observe/scenario.hpp"
-#include "cradle/core/observe/zone.hpp"
-#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
 
@@ -32,22 +30,16 @@ template <Real T> class SeriesRecorder {
     left_.push_back(s.front_left ? to_double(*s.front_left) : none);
     right_.push_back(s.front_right ? to_double(*s.front_right) : none);
   }
-  bool empty() const { return time_.empty(); }
-  double last_time() const { return time_.back(); }
 
+  /// With the numbers of the clouds, where a scene has them.
   Group table() && {
-    return {"series",
-            {},
-            {{"time", "t", "a sample is the state after all contacts at times <= t", std::move(time_)},
-             {"energy", "m l^2/t^2", "kinetic energy of all bodies of the scene", std::move(energy_)},
-             {"energy_lost", "m l^2/t^2", "energy lost in contacts since the start", std::move(lost_)},
-             {"contacts", "1", "contacts since the start, those below the cut-off and merges included",
-              std::move(contacts_)},
-             {"contacts_below_cutoff", "1", "contacts closing slower than the cut-off", std::move(below_)},
-             {"merges", "1", "merges since the start", std::move(merges_)},
-             {"bodies", "1", "bodies in the active zone, between the outermost that have collided", std::move(bodies_)},
-             {"front_left", "l", "position of the leftmost body that has collided", std::move(left_)},
-             {"front_right", "l", "position of the rightmost body that has collided", std::move(right_)}}};
+    return filled(series_table(false), std::move(time_), std::move(energy_), std::move(lost_), std::move(contacts_),
+                  std::move(below_), std::move(merges_), std::move(bodies_), std::move(left_), std::move(right_));
+  }
+  Group table(std::vector<double> cloud_mass, std::vector<double> cloud_width) && {
+    return filled(series_table(true), std::move(time_), std::move(energy_), std::move(lost_), std::move(contacts_),
+                  std::move(below_), std::move(merges_), std::move(bodies_), std::move(left_), std::move(right_),
+                  std::move(cloud_mass), std::move(cloud_width));
   }
 
  private:
@@ -69,20 +61,12 @@ template <Real T> class CloudRecorder {
     cloud_width_.push_back(to_double(cloud.width));
   }
 
-  /// Adds what belongs to the series itself and returns the group below it.
-  Group table(Group& series) && {
-    series.columns.push_back({"cloud_mass", "m", "mass of all bodies that have collided", std::move(cloud_mass_)});
-    series.columns.push_back({"cloud_width", "l",
-                              "standard deviation of position, weighted by mass, of all that have collided but the "
-                              "two heaviest clusters",
-                              std::move(cloud_width_)});
-    return {"series/heaviest",
-            {},
-            {{"mass", "m", "of the two heaviest clusters, the left and the right one", std::move(mass_), 2},
-             {"x", "l", "their positions", std::move(x_), 2},
-             {"v", "l/t", "their velocities", std::move(v_), 2},
-             {"index", "1", "number at the start of the body they go by, the same after passing", std::move(index_), 2,
-              true}}};
+  /// The series, with what belongs to it, and the table below it.
+  std::vector<Group> tables(SeriesRecorder<T>&& series) && {
+    std::vector<Group> tables;
+    tables.push_back(std::move(series).table(std::move(cloud_mass_), std::move(cloud_width_)));
+    tables.push_back(filled(heaviest_table(), std::move(mass_), std::move(x_), std::move(v_), std::move(index_)));
+    return tables;
   }
 
  private:
@@ -98,44 +82,9 @@ template <Real T> Group masses_table(const Configuration<T>& c, const T& least_m
   std::vector<double> from;
   for (std::size_t k = 0; k < clusters.size(); ++k)
     from.push_back(to_double(least_mass) * std::exp2(static_cast<double>(k) / 4));
-  return {name,
-          {{"time", to_double(c.time)}},
-          {{"mass", "m", "least mass of the bin, which ends where the next one begins: 2^(1/4) times as high",
-            std::move(from)},
-           {"clusters", "1", "clusters of such a mass", std::move(clusters)}}};
-}
-
-inline Group zone_table(const ZoneAverage& zone, const ZoneWidth& width, std::size_t bins, double from, double until) {
-  Group group{"zone",
-              {{"from", from},
-               {"until", until},
-               {"samples", static_cast<std::uint64_t>(zone.samples())},
-               {"width", width.width},
-               {"width_error", width.error}},
-              {}};
-  std::vector<double> x;
-  for (std::size_t bin = 0; bin < bins; ++bin) x.push_back(zone.centre(bin));
-  group.columns = {{"x", "l", "centre of the bin", std::move(x)},
-                   {"mass_density", "m/l", "mass per length", zone.mass_density()},
-                   {"density_right", "1/l", "right-moving single bodies per length", zone.density_right()},
-                   {"velocity_right", "l/t", "their mean velocity", zone.velocity_right()},
-                   {"density_left", "1/l", "left-moving single bodies per length", zone.density_left()},
-                   {"velocity_left", "l/t", "their mean velocity", zone.velocity_left()}};
-  return group;
-}
-
-inline std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& s) {
-  const bool met = s.passes + s.sticks > 0;
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  return {{"pair_established", s.established},
-          {"first_meeting", s.first_meeting},
-          {"first_passed", met ? double(s.first_passed) : none},
-          {"passes", static_cast<double>(s.passes)},
-          {"sticks", static_cast<double>(s.sticks)},
-          {"role_changes", static_cast<double>(s.role_changes)},
-          {"regime", static_cast<double>(s.regime)},
-          {"separation_exponent", s.separation_exponent},
-          {"speed_exponent", s.speed_exponent}};
+  Group table = filled(masses_table(name), std::move(from), std::move(clusters));
+  table.attributes = {{"time", to_double(c.time)}};
+  return table;
 }
 
 template <Real T> std::vector<double> as_doubles(const std::vector<T>& values) {
@@ -145,37 +94,27 @@ template <Real T> std::vector<double> as_doubles(const std::vector<T>& values) {
   return doubles;
 }
 
+/// All active bodies at a time.
 template <Real T> Group snapshot_table(const Configuration<T>& c, const std::string& name) {
-  Group group{name, {{"time", to_double(c.time)}}, {}};
-  if (c.x.size() > 1) {
-    const GapStatistics<T> gaps = gap_statistics(c);
-    group.attributes.emplace_back("gap_min", to_double(gaps.least));
-    group.attributes.emplace_back("gap_median", to_double(gaps.median));
-    if (c.closure_gap) group.attributes.emplace_back("closure_gap", to_double(*c.closure_gap));
-    if (c.closure_speed) group.attributes.emplace_back("closure_speed", to_double(*c.closure_speed));
-  }
   std::vector<std::uint64_t> index(c.index.begin(), c.index.end());
-  group.columns = {{"x", "l", "position", as_doubles(c.x)},
-                   {"v", "l/t", "velocity", as_doubles(c.v)},
-                   {"m", "m", "mass", as_doubles(c.m)},
-                   {"index", "1", "number of the body at the start, from the left", std::move(index)},
-                   {"gap", "l", "distance to the next body: resolves what x cannot", as_doubles(c.gap)},
-                   {"closing_speed", "l/t", "velocity minus that of the next body", as_doubles(c.closing_speed)}};
-  return group;
+  Group table = filled(snapshot_table(name), as_doubles(c.x), as_doubles(c.v), as_doubles(c.m), std::move(index),
+                       as_doubles(c.gap), as_doubles(c.closing_speed));
+  table.attributes = {{"time", to_double(c.time)}};
+  if (c.x.size() < 2) return table;
+  const GapStatistics<T> gaps = gap_statistics(c);
+  table.attributes.emplace_back("gap_min", to_double(gaps.least));
+  table.attributes.emplace_back("gap_median", to_double(gaps.median));
+  if (c.closure_gap) table.attributes.emplace_back("closure_gap", to_double(*c.closure_gap));
+  if (c.closure_speed) table.attributes.emplace_back("closure_speed", to_double(*c.closure_speed));
+  return table;
 }
 
 inline Group profile_table(Profile&& p, const std::string& name) {
-  return {name,
-          {{"time", p.time}},
-          {{"x", "l", "centre of the bin", std::move(p.x)},
-           {"velocity", "l/t", "mass-weighted mean velocity", std::move(p.velocity)},
-           {"density", "1/l", "bodies per length", std::move(p.density)},
-           {"mass_density", "m/l", "mass per length", std::move(p.mass_density)},
-           {"temperature", "l^2/t^2", "mass-weighted variance of velocity", std::move(p.temperature)},
-           {"density_right", "1/l", "right-moving bodies per length", std::move(p.density_right)},
-           {"velocity_right", "l/t", "mean velocity of right-movers", std::move(p.velocity_right)},
-           {"density_left", "1/l", "left-moving bodies per length", std::move(p.density_left)},
-           {"velocity_left", "l/t", "mean velocity of left-movers", std::move(p.velocity_left)}}};
+  Group table = filled(profile_table(name), std::move(p.x), std::move(p.velocity), std::move(p.density),
+                       std::move(p.mass_density), std::move(p.temperature), std::move(p.density_right),
+                       std::move(p.velocity_right), std::move(p.density_left), std::move(p.velocity_left));
+  table.attributes = {{"time", p.time}};
+  return table;
 }
 
 /// Every contact, where a scene asks for them.
@@ -192,14 +131,8 @@ template <Real T> class EventRecorder {
   }
 
   Group table() && {
-    return {"events",
-            {},
-            {{"left", "1", "number of the left body at the start", std::move(left_)},
-             {"right", "1", "number of the right body at the start", std::move(right_)},
-             {"time", "t", "time of the contact, rounded", std::move(high_)},
-             {"time_low", "t", "what time misses: the contact is at time + time_low", std::move(low_)},
-             {"interval", "t", "time since the contact before", std::move(interval_)},
-             {"closing_speed", "l/t", "closing speed before the contact", std::move(speed_)}}};
+    return filled(events_table(), std::move(left_), std::move(right_), std::move(high_), std::move(low_),
+                  std::move(interval_), std::move(speed_));
   }
 
  private:

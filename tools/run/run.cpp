@@ -6,6 +6,7 @@
 
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/in_precision.hpp"
+#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 
@@ -19,6 +20,37 @@ namespace {
 }
 
 }  // namespace
+
+std::string end_text(RunEnd end) {
+  switch (end) {
+  case RunEnd::reached:
+    return "reached the end";
+  case RunEnd::collapsed:
+    return "inelastic collapse";
+  case RunEnd::order_lost:
+    return "order of contacts lost";
+  case RunEnd::exhausted:
+    return "resolution exhausted";
+  case RunEnd::interrupted:
+    return "interrupted";
+  }
+  return {};
+}
+
+Exit status_of_end(RunEnd end) {
+  switch (end) {
+  case RunEnd::reached:
+    return Exit::done;
+  case RunEnd::collapsed:
+    return Exit::collapse;
+  case RunEnd::order_lost:
+  case RunEnd::exhausted:
+    return Exit::lost;
+  case RunEnd::interrupted:
+    return Exit::interrupted;
+  }
+  return Exit::done;
+}
 
 ScalarChoice scalar_choice(const Run& run) {
   switch (run.precision) {
@@ -41,6 +73,23 @@ ScalarChoice scalar_choice(const Run& run) {
 std::string precision_name(const Run& run) {
   const ScalarChoice choice = scalar_choice(run);
   return choice.digits > 0 ? fmt::format("{}, {} digits", choice.name, choice.digits) : choice.name;
+}
+
+std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, const std::string& outcome) {
+  return {{"format_version", std::uint64_t{1}},
+          {"cradle_version", std::string(version)},
+          {"scene", effective_toml(scene)},
+          {"name", scene.name},
+          {"precision", precision},
+          {"outcome", outcome}};
+}
+
+Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file) {
+  Scene scene = parse_scene(attribute<std::string>(attributes, "scene", file), file);
+  for (const auto& [name, value] : attributes)
+    if (name == "name")
+      if (const auto* text = std::get_if<std::string>(&value)) scene.name = *text;
+  return scene;
 }
 
 void check_built(const Scene& scene) {

@@ -9,9 +9,17 @@
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/errors.hpp"
+#include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
+
+/// How a run ended.
+enum class RunEnd { reached, collapsed, order_lost, exhausted, interrupted };
+/// As results say it: "reached the end".
+std::string end_text(RunEnd end);
+/// With which status a program ends whose run ended so.
+Exit status_of_end(RunEnd end);
 
 /// One sample of a run that is compared with others: what they must agree in, numbers with all their digits.
 struct TraceSample {
@@ -23,23 +31,30 @@ struct TraceSample {
 
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
-  bool trace = false;  // take trace samples at the times of the series
+  bool trace = false;              // take trace samples at the times of the series
+  Interrupt* interrupt = nullptr;  // asked now and then whether to stop; heeded once there is something to keep
 };
 
 struct RunOutcome {
   Result result;
-  Exit status = Exit::done;
+  RunEnd end = RunEnd::reached;
   std::string report;   // of a collapse, for standard output; else empty
   std::string warning;  // what was not resolved, for standard error; else empty
   std::vector<TraceSample> trace;
   std::string collapse_time;               // where the run stopped at a collapse
-  std::uint64_t contacts = 0, merges = 0;  // at the end, as is the energy
-  double energy = 0;
+  std::uint64_t contacts = 0, merges = 0;  // at the end, as are time and energy
+  double time = 0, energy = 0;
   std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
 };
 
 /// "double", "mpfr, 50 digits", ...
 std::string precision_name(const Run& run);
+
+/// What every result says of where it is from: versions, the effective scene, its name and precision, how it ended.
+std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, const std::string& outcome);
+
+/// The scene that a result is from, as it stands there. Throws Error (Exit::io) naming the file.
+Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file);
 
 /// Throws Error for a scene that this build cannot run, naming the key.
 void check_built(const Scene& scene);

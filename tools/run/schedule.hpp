@@ -45,6 +45,8 @@ template <Real T> std::vector<T> series_times(const Series& series, const T& sta
     }
     if (times.empty() || times.back() < until) times.push_back(until);
   }
+  // Times that the type cannot tell apart are one.
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 

@@ -8,7 +8,6 @@
 
 #include "cradle/core/real.hpp"
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 
@@ -32,12 +31,12 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
   return scene;
 }
 
-Traced traced(const Scene& scene, Progress::Show progress) {
+Traced traced(const Scene& scene, const TrustOptions& options) {
   const auto started = std::chrono::steady_clock::now();
-  RunOutcome outcome = run_scene(scene, {progress, true});
-  if (outcome.status == Exit::interrupted || outcome.status == Exit::terminated)
+  RunOutcome outcome = run_scene(scene, {options.progress, true, options.interrupt});
+  if (outcome.end == RunEnd::interrupted)
     throw Error({}, "interrupted", "", "run it again; nothing is kept of comparisons that did not finish",
-                outcome.status);
+                status_of_signal(options.interrupt->signal()));
   return {scene, std::move(outcome), std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
 }
 
@@ -67,7 +66,7 @@ Trusted compare(const Traced& run, const Traced& reference) {
   trusted.precision = precision_name(run.scene.run);
   trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
   trusted.seconds = run.seconds;
-  trusted.outcome = attribute<std::string>(run.outcome.result.attributes, "outcome", "");
+  trusted.outcome = end_text(run.outcome.end);
   const std::size_t samples = std::min(a.size(), b.size());
   const std::size_t same = agreeing(samples, [&](std::size_t k) { return a[k].digest == b[k].digest; });
   const std::size_t counted =
@@ -96,8 +95,8 @@ std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
   std::vector<Traced> runs;
   const auto add = [&](unsigned digits) {
     if (options.both && scene.law.type == LawType::inelastic && scene.run.collapse != CollapsePolicy::merge)
-      runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options.progress));
-    runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options.progress));
+      runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options));
+    runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options));
   };
   if (!options.digits.empty()) {
     for (const unsigned digits : options.digits) add(digits);
@@ -137,9 +136,7 @@ std::string trust_table(const std::vector<Trusted>& runs) {
 
 Result trust_result(const Scene& scene, const std::vector<Trusted>& runs) {
   Result result;
-  result.attributes = {{"format_version", std::uint64_t{1}}, {"cradle_version", std::string(version)},
-                       {"scene", effective_toml(scene)},     {"name", scene.name},
-                       {"precision", runs.back().precision}, {"outcome", std::string("comparison of precisions")}};
+  result.attributes = provenance(scene, runs.back().precision, "comparison of precisions");
   for (const auto& run : runs) {
     Group group{fmt::format("trust/{:04}", result.groups.size()), {}, {}};
     group.attributes = {{"precision", run.precision},

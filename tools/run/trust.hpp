@@ -30,6 +30,7 @@ struct TrustOptions {
   std::vector<unsigned> digits;  // 16: double, 31: double-double, others: mpfr; empty: rising until two runs agree
   bool both = false;             // absolute coordinates too
   Progress::Show progress = Progress::Show::on_terminal;
+  Interrupt* interrupt = nullptr;
 };
 
 /// The last entry is the reference itself. Throws Error for a scene that cannot be run.

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "cradle/core/theory/wet_zone.hpp"
+#include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/number_range.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -60,10 +62,9 @@ class Checks {
     same_length("initial.v", initial.v.size());
     if (entries_.contains("initial.m")) same_length("initial.m", initial.m.size());
     for (std::size_t i = 1; i < initial.x.size(); ++i)
-      if (initial.x[i] <= initial.x[i - 1])
-        throw Error(item_place("initial.x", i),
-                    initial.x[i] == initial.x[i - 1] ? "coincident bodies" : "not increasing",
-                    fmt::format("{} after {}", initial.x[i].text, initial.x[i - 1].text), "give increasing positions");
+      if (const auto order = compare_decimals(initial.x[i], initial.x[i - 1]); std::is_lteq(order))
+        throw Error(item_place("initial.x", i), std::is_eq(order) ? "coincident bodies" : "not increasing",
+                    fmt::format("{} after {}", initial.x[i], initial.x[i - 1]), "give increasing positions");
   }
 
   void two_clusters() const {
@@ -73,14 +74,14 @@ class Checks {
       throw Error(place("initial.type"), "clusters need the wet law",
                   "law.type = " + value_text(*find_field("law.type", scene_), scene_).value(),
                   "give law.type = \"wet\" or another initial state");
-    for (const auto& [key, numbers] : {std::pair("initial.x", &initial.x), std::pair("initial.v", &initial.v),
-                                       std::pair("initial.growth", &initial.growth)})
-      if (numbers->size() != 2)
-        throw Error(place(key), "not one per cluster", fmt::format("{} for two clusters", numbers->size()),
-                    "give two numbers");
-    if (initial.x[1] <= initial.x[0])
-      throw Error(item_place("initial.x", 1), "not increasing",
-                  fmt::format("{} after {}", initial.x[1].text, initial.x[0].text), "give the left cluster first");
+    for (const auto& [key, numbers] :
+         {std::pair("initial.x", initial.x.size()), std::pair("initial.v", initial.v.size()),
+          std::pair("initial.growth", initial.growth.size())})
+      if (numbers != 2)
+        throw Error(place(key), "not one per cluster", fmt::format("{} for two clusters", numbers), "give two numbers");
+    if (std::is_lteq(compare_decimals(initial.x[1], initial.x[0])))
+      throw Error(item_place("initial.x", 1), "not increasing", fmt::format("{} after {}", initial.x[1], initial.x[0]),
+                  "give the left cluster first");
     if (scene_.run.start < Decimal("0"))
       throw Error(place("run.start"), "before the clusters begin to grow", scene_.run.start.text, "give 0 or more");
     try {
@@ -109,29 +110,29 @@ class Checks {
                   "give two positions, the lower one first");
   }
 
-  // A number too large for the working type would be infinite in it. (Too small ones are 0, which the laws take.)
   void numbers_fit() const {
-    Decimal largest("1.7976931348623157e308");
-    switch (scene_.run.precision) {
-    case Precision::mpfr:
-    case Precision::cpp_bin_float:
-      return;
-    case Precision::long_double:
-    case Precision::float128:
-      largest = Decimal("1.18973149535723176502e4932");
-      break;
-    default:
-      break;
-    }
-    const Decimal lowest('-' + largest.text);
+    const NumberRange range(scene_.run);
     for (const Field& field : scene_fields()) {
       if (!field.when->holds(scene_)) continue;
-      for (const Decimal& number : numbers_of(field, scene_))
-        if (number > largest || number < lowest)
-          throw Error(place(field.key), "too large for the precision",
-                      number.text + " with " + value_text(*find_field("run.precision", scene_), scene_).value(),
-                      "give a smaller number or another run.precision");
+      for (const Decimal& number : numbers_of(field, scene_)) {
+        range.check(number.text, place(field.key));
+        if (field.key == "initial.m") range.check_positive(number.text, place(field.key));
+      }
     }
+  }
+
+  // Before memory for them is taken.
+  void samples_can_be_kept() const {
+    constexpr double most = 1e7;  // as the table of keys has it for points
+    const auto& every = scene_.output.series.every;
+    if (!every) return;
+    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };  // beyond double's range too
+    const auto samples =
+        static_cast<double>(bin_float((number(scene_.run.until) - number(scene_.run.start)) / number(*every)));
+    if (!(samples <= most))
+      throw Error(place("output.series.every"), "too many samples",
+                  fmt::format("{}, which makes {:.3g} of them until run.until", every->text, samples),
+                  fmt::format("give a longer time, {:.0g} samples at most", most));
   }
 
  private:
@@ -167,6 +168,7 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.series_has_times();
   checks.profile_range();
   checks.numbers_fit();
+  checks.samples_can_be_kept();
 }
 
 }  // namespace cradle::tools

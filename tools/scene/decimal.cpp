@@ -135,4 +135,21 @@ Decimal::Decimal(std::string_view literal) {
   }
 }
 
+void DecimalColumn::push_back(std::string_view literal) {
+  if (!data_)
+    data_ = std::make_shared<Data>();
+  else if (data_.use_count() > 1)
+    data_ = std::make_shared<Data>(*data_);
+  data_->text += literal;
+  data_->ends.push_back(data_->text.size());
+}
+
+bool operator==(const DecimalColumn& a, const DecimalColumn& b) {
+  if (a.data_ == b.data_) return true;
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::is_neq(compare_decimals(a[i], b[i]))) return false;
+  return true;
+}
+
 }  // namespace cradle::tools

@@ -4,10 +4,14 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cradle::tools {
 
@@ -37,6 +41,35 @@ struct Decimal {
   friend std::strong_ordering operator<=>(const Decimal& a, const Decimal& b) {
     return compare_decimals(a.text, b.text);
   }
+};
+
+/// Canonical decimals of many bodies, end to end in one text, since 2e7 bodies are as welcome as three. Copies share
+/// it until one of them grows.
+class DecimalColumn {
+ public:
+  DecimalColumn() = default;
+  DecimalColumn(std::initializer_list<std::string_view> literals) {
+    for (const std::string_view literal : literals) push_back(literal);
+  }
+
+  void push_back(std::string_view literal);
+  std::size_t size() const { return data_ ? data_->ends.size() : 0; }
+  bool empty() const { return size() == 0; }
+  std::string_view operator[](std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : data_->ends[i - 1];
+    return std::string_view(data_->text).substr(begin, data_->ends[i] - begin);
+  }
+  std::string_view back() const { return (*this)[size() - 1]; }
+
+  // In value, as of single decimals.
+  friend bool operator==(const DecimalColumn& a, const DecimalColumn& b);
+
+ private:
+  struct Data {
+    std::string text;
+    std::vector<std::size_t> ends;
+  };
+  std::shared_ptr<Data> data_;
 };
 
 }  // namespace cradle::tools

@@ -121,6 +121,12 @@ void read(const Field& field, const Value& value, Scene& scene, std::vector<Deci
   target = std::move(numbers);
 }
 
+void read(const Field& field, const Value& value, Scene& scene, DecimalColumn& target) {
+  if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
+  target = {};
+  for (const Value& item : value.items) target.push_back(number_text(field, item, scene));
+}
+
 void read(const Field& field, const Value& value, Scene& scene, std::vector<std::string>& target) {
   if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
   target.clear();
@@ -174,6 +180,12 @@ std::optional<std::string> written(const Field& field, const std::vector<Decimal
   for (const Decimal& number : value) text += (text.empty() ? "" : ", ") + number.text;
   return '[' + text + ']';
 }
+std::optional<std::string> written(const Field&, const DecimalColumn& value) {
+  if (value.empty()) return {};
+  std::string text = "[";
+  for (std::size_t i = 0; i < value.size(); ++i) text.append(i == 0 ? "" : ", ").append(value[i]);
+  return text + ']';
+}
 std::optional<std::string> written(const Field&, const std::vector<std::string>& value) {
   std::string text;
   for (const std::string& item : value) text += (text.empty() ? "" : ", ") + quoted(item);
@@ -193,7 +205,7 @@ template <class T> std::string_view name_of_type() {
   if constexpr (std::is_same_v<T, Decimal>) return "number";
   if constexpr (std::is_same_v<T, std::uint64_t>) return "integer";
   if constexpr (std::is_same_v<T, bool>) return "true or false";
-  if constexpr (std::is_same_v<T, std::vector<Decimal>>) return "list of numbers";
+  if constexpr (std::is_same_v<T, std::vector<Decimal>> || std::is_same_v<T, DecimalColumn>) return "list of numbers";
   if constexpr (std::is_same_v<T, std::vector<std::string>>) return "list of texts";
   return "one of";
 }
@@ -243,9 +255,12 @@ std::vector<Decimal> numbers_of(const Field& field, const Scene& scene) {
     const T& value = member_of(access, scene);
     if constexpr (std::is_same_v<T, Decimal>) return {value};
     if constexpr (std::is_same_v<T, std::vector<Decimal>>) return value;
+    std::vector<Decimal> all;
+    if constexpr (std::is_same_v<T, DecimalColumn>)
+      for (std::size_t i = 0; i < value.size(); ++i) all.emplace_back(value[i]);
     if constexpr (std::is_same_v<T, std::optional<Decimal>>)
-      if (value) return {*value};
-    return {};
+      if (value) all.push_back(*value);
+    return all;
   };
   return std::visit(numbers, field.storage);
 }

@@ -122,7 +122,8 @@ const Field table[] = {
     {"initial.variance", initial_of<&Initial::variance>, "l^2/t^2", "1", "(0, inf)", &ring,
      "variance of the velocities"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
-     "CSV file of the bodies, relative to the scene: a line x,v or x,v,m, then decimals, x increasing"},
+     "CSV file of the bodies, relative to the scene: a line x,v or x,v,m, then decimals, x increasing; results hold "
+     "the bodies themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
     {"initial.v", initial_of<&Initial::v>, "l/t", "", any, &list, "velocities; instead of a file"},
     {"initial.m", initial_of<&Initial::m>, "m", "", "(0, inf)", &list, "masses, 1 where not given; instead of a file"},
@@ -159,10 +160,10 @@ const Field table[] = {
      "the run ends when a gap is below this; without it, when the extrapolated collapse time is settled"},
 
     {"output.series.every", output_of<&Output::series, &Series::every>, "t", "", "(0, inf)", &always,
-     "time between samples of the series"},
+     "time between samples of the series, of which there may be 1e7"},
     {"output.series.times", output_of<&Output::series, &Series::times>, "t", "", within_run, &not_every,
      "times of the samples of the series"},
-    {"output.series.points", output_of<&Output::series, &Series::points>, "", "1000", "[2, 1e9]", &by_points,
+    {"output.series.points", output_of<&Output::series, &Series::points>, "", "1000", "[2, 1e7]", &by_points,
      "number of samples of the series, from run.start to run.until, both included"},
     {"output.series.spacing", output_of<&Output::series, &Series::spacing>, "", "\"linear\"", "linear | log",
      &by_points, "how the samples of the series are spaced"},
@@ -178,7 +179,7 @@ const Field table[] = {
      "times at which the distribution of cluster masses is written"},
     {"output.zone.from", output_of<&Output::zone, &Zone::from>, "t", "", within_run, &wet_shock,
      "start of the average over the interaction zone, which also gives its width; without it, none"},
-    {"output.zone.samples", output_of<&Output::zone, &Zone::samples>, "", "400", "[16, 1e9]", &wet_shock,
+    {"output.zone.samples", output_of<&Output::zone, &Zone::samples>, "", "400", "[16, 1e7]", &wet_shock,
      "number of samples in the average over the zone, evenly spaced up to run.until"},
     {"output.zone.bins", output_of<&Output::zone, &Zone::bins>, "", "60", "[4, 1e6]", &wet_shock,
      "number of bins of the average over the zone"},
@@ -187,8 +188,6 @@ const Field table[] = {
     {"output.scenario", output_of<&Output::scenario>, "", "false", "", &wet_shock,
      "watch whether the two heaviest clusters pass or stick; needs a series with spacing = \"log\" and 100 points a "
      "decade"},
-    {"output.checkpoint.every_seconds", output_of<&Output::checkpoint_every>, "s", "60", "[0, inf)", &always,
-     "wall-clock time between checkpoints, 0: none; never changes the result"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every contact"},
 
     {"sweep.vary", sweep_of<&Sweep::vary>, "", "[]", "", &always,

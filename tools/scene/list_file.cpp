@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <fstream>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "cradle/tools/scene/number_range.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -34,35 +38,53 @@ bool is_not_finite(std::string_view cell) {
   return word == "inf" || word == "infinity" || word == "nan";
 }
 
-std::string decimal_of(std::string_view cell, Place place, const char* column) {
-  auto number = canonical_decimal(cell);
-  if (number) return std::move(*number);
-  place.key = column;
-  throw Error(place, is_not_finite(cell) ? "not finite" : "not a decimal number", fmt::format("\"{}\"", cell),
-              "give a decimal number");
-}
+// The lines of a file, one after the other, into columns.
+class Reader {
+ public:
+  Reader(const std::string& file, const Run& run) : file_(file), range_(run) {}
 
-void add_body(const std::vector<std::string_view>& cells, const Place& place, Bodies& bodies) {
-  const auto x = decimal_of(cells[0], place, "x");
-  if (!bodies.x.empty()) {
-    const auto order = compare_decimals(x, bodies.x.back());
-    if (std::is_lteq(order))
-      throw Error({place.source, place.line, "x"}, std::is_eq(order) ? "coincident bodies" : "not increasing",
-                  fmt::format("{} after {}", x, bodies.x.back()), "give the bodies in order of increasing x");
+  void add(const std::vector<std::string_view>& cells, std::size_t line) {
+    line_ = line;
+    const auto x = number(cells[0], "x");
+    if (!bodies_.x.empty()) {
+      const auto order = compare_decimals(x, bodies_.x.back());
+      if (std::is_lteq(order))
+        throw Error(place("x"), std::is_eq(order) ? "coincident bodies" : "not increasing",
+                    fmt::format("{} after {}", x, bodies_.x.back()), "give the bodies in order of increasing x");
+    }
+    bodies_.x.push_back(x);
+    bodies_.v.push_back(number(cells[1], "v"));
+    if (cells.size() == 2) return;
+    const auto m = number(cells[2], "m");
+    if (std::is_lteq(compare_decimals(m, "0"))) throw Error(place("m"), "out of range", m, "give a mass above 0");
+    range_.check_positive(m, place("m"));
+    bodies_.m.push_back(m);
   }
-  bodies.x.push_back(x);
-  bodies.v.push_back(decimal_of(cells[1], place, "v"));
-  if (cells.size() == 2) return;
-  const auto m = decimal_of(cells[2], place, "m");
-  if (std::is_lteq(compare_decimals(m, "0")))
-    throw Error({place.source, place.line, "m"}, "out of range", m, "give a mass above 0");
-  bodies.m.push_back(m);
-}
+
+  ListedBodies& bodies() { return bodies_; }
+
+ private:
+  Place place(const char* column) const { return {file_, line_, column}; }
+
+  std::string number(std::string_view cell, const char* column) const {
+    auto literal = canonical_decimal(cell);
+    if (!literal)
+      throw Error(place(column), is_not_finite(cell) ? "not finite" : "not a decimal number",
+                  fmt::format("\"{}\"", cell), "give a decimal number");
+    range_.check(*literal, place(column));
+    return std::move(*literal);
+  }
+
+  const std::string& file_;
+  NumberRange range_;
+  std::size_t line_ = 0;
+  ListedBodies bodies_;
+};
 
 }  // namespace
 
-Bodies parse_list(std::istream& csv, const std::string& file_name) {
-  Bodies bodies;
+ListedBodies parse_list(std::istream& csv, const std::string& file_name, const Run& run) {
+  Reader reader(file_name, run);
   Place place{file_name, 0, {}};
   std::size_t columns = 0;  // 0: still to be named
   std::string line;
@@ -85,30 +107,25 @@ Bodies parse_list(std::istream& csv, const std::string& file_name) {
     if (cells.size() != columns)
       throw Error(place, "wrong number of columns", std::to_string(cells.size()),
                   fmt::format("give {} as in the first line", columns));
-    add_body(cells, place, bodies);
+    reader.add(cells, place.line);
   }
   if (csv.bad()) throw Error({file_name, 0, {}}, "cannot be read", "a read error", "check the disk", Exit::io);
-  if (bodies.x.empty())
+  if (reader.bodies().x.empty())
     throw Error({file_name, 0, {}}, "no bodies", columns == 0 ? "an empty file" : "only the names of the columns",
                 "give a line x,v or x,v,m and then one line per body");
-  return bodies;
+  return std::move(reader.bodies());
 }
 
-Bodies read_bodies(const Scene& scene) {
-  const Initial& initial = scene.initial;
-  if (!initial.file) {
-    Bodies bodies;
-    for (const Decimal& x : initial.x) bodies.x.push_back(x.text);
-    for (const Decimal& v : initial.v) bodies.v.push_back(v.text);
-    for (const Decimal& m : initial.m) bodies.m.push_back(m.text);
-    return bodies;
-  }
-  const auto path = (std::filesystem::path(scene.folder) / *initial.file).string();
+void read_list(const std::filesystem::path& path, Scene& scene) {
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path))
-    throw Error({path, 0, {}}, "the list of bodies cannot be read", "no such file, or no permission",
+    throw Error({path.string(), 0, {}}, "the list of bodies cannot be read", "no such file, or no permission",
                 "correct initial.file, which is relative to the scene file", Exit::io);
-  return parse_list(file, path);
+  ListedBodies bodies = parse_list(file, path.string(), scene.run);
+  scene.initial.file.reset();
+  scene.initial.x = std::move(bodies.x);
+  scene.initial.v = std::move(bodies.v);
+  scene.initial.m = std::move(bodies.m);
 }
 
 }  // namespace cradle::tools

@@ -62,8 +62,8 @@ struct Initial {
   Decimal length;        // ring
   Velocities velocities = Velocities::gaussian;
   Decimal variance;                 // ring
-  std::optional<std::string> file;  // list: relative to Scene::folder
-  std::vector<Decimal> x, v, m;     // list written in the scene itself; m empty: all 1. clusters: two x, two v
+  std::optional<std::string> file;  // list: where a scene file has its bodies; a scene that was read has them here:
+  DecimalColumn x, v, m;            // list; m empty: all 1. clusters: two x, two v
   std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
   Meeting meeting = Meeting::energy;
   std::uint64_t seed = 0;
@@ -119,8 +119,7 @@ struct Output {
   Profiles profiles;
   std::vector<Decimal> masses;  // times at which the distribution of masses is written
   Zone zone;
-  bool scenario = false;     // wet rows: which of the two scenarios of Fig. 9
-  Decimal checkpoint_every;  // seconds of wall clock; 0: no checkpoints
+  bool scenario = false;  // wet rows: which of the two scenarios of Fig. 9
   bool events = false;
   bool operator==(const Output&) const = default;
 };
@@ -135,8 +134,7 @@ struct Sweep {
 };
 
 struct Scene {
-  std::string name;    // stem of the file, or the bundled scene's name
-  std::string folder;  // that relative list files start from; empty: the working folder
+  std::string name;  // stem of the file, or the bundled scene's name
   std::string title;
   Law law;
   Initial initial;
@@ -145,7 +143,7 @@ struct Scene {
   Sweep sweep;
 };
 
-/// The same scene, wherever it was read from (name and folder do not count).
+/// The same scene, wherever it was read from (the name does not count).
 bool operator==(const Scene& a, const Scene& b);
 
 /// Reads the scene file at this path or, where there is none, the bundled scene of this name. Each override is
@@ -153,16 +151,21 @@ bool operator==(const Scene& a, const Scene& b);
 /// value it takes the key out. Throws Error: Exit::io where nothing can be read, Exit::bad_input for what is in it.
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
-/// The same from text; `source_name` is what messages call it, its stem the scene's name, its parent the folder.
+/// The same from text; `source_name` is what messages call it, its stem the scene's name, and its folder where a list
+/// of bodies is looked for.
 Scene parse_scene(std::string_view text, const std::string& source_name,
                   const std::vector<std::string>& overrides = {});
 
-/// The whole scene with every default filled in; the same text for the same scene, reads back as an equal scene.
+/// The whole scene with every default filled in, listed bodies included; the same text for the same scene, reads back
+/// as an equal scene wherever that is done.
 std::string effective_toml(const Scene& scene);
 
 /// Keys and values (TOML syntax) that apply to this scene, in the table's order: those that differ from their defaults,
 /// or all.
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool all);
+
+/// A value as people want to see it: lists of very many numbers by their ends.
+std::string shortened(const std::string& value);
 
 struct BundledScene {
   std::string_view name;

@@ -1,6 +1,8 @@
 // A scene as text, from the table of fields: the effective scene, the keys that differ from their defaults, the manual.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
@@ -26,6 +28,14 @@ std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool
     if (text && (all || !is_default(field, scene))) result.emplace_back(field.key, *text);
   }
   return result;
+}
+
+std::string shortened(const std::string& value) {
+  constexpr std::size_t most = 400;
+  if (value.size() <= most || value.front() != '[') return value;
+  const auto numbers = static_cast<std::size_t>(std::count(value.begin(), value.end(), ',')) + 1;
+  const auto first = value.find(',', value.find(',') + 1), last = value.rfind(',');
+  return fmt::format("{}, ...{} ({} values)", value.substr(0, first), value.substr(last), numbers);
 }
 
 std::string effective_toml(const Scene& scene) {

@@ -19,7 +19,7 @@ enum class Exit : int {
   io = 4,             // a file could not be read or written
   lost = 5,           // resolution or order lost, or a replica failed
   interrupted = 130,  // SIGINT
-  terminated = 143,   // SIGTERM, SIGUSR1
+  terminated = 143,   // SIGTERM, SIGUSR1, SIGHUP
 };
 
 /// Where something was found; each part may be missing (empty, or line 0).

@@ -1,27 +1,58 @@
 #include "cradle/tools/support/interrupt.hpp"
 
-#include <atomic>
+#include <time.h>
+#include <unistd.h>
+
 #include <csignal>
-#include <initializer_list>
+#include <string_view>
 
 namespace cradle::tools {
 
 namespace {
 
-// What a handler may write to is global, and lock-free where all threads read it.
-std::atomic<int> noted = 0;
-static_assert(std::atomic<int>::is_always_lock_free);
+// What a handler may touch is global, and lock-free.
+std::atomic<Interrupt*> noting = nullptr;
+std::atomic<long> first_at = 0;  // milliseconds; 0: none yet
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_always_lock_free &&
+              std::atomic<bool>::is_always_lock_free && std::atomic<Interrupt*>::is_always_lock_free);
 
-void note(int signal) { noted = signal; }
+long milliseconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+// Nothing but what a handler may call.
+[[noreturn]] void end_at_once(int signal, std::string_view message) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
+  ::_exit(static_cast<int>(status_of_signal(signal)));
+}
+
+void note(int signal) {
+  Interrupt& interrupt = *noting;
+  if (!interrupt.heeded()) end_at_once(signal, "cradle: interrupted before there was anything to keep\n");
+  const long now = milliseconds();
+  if (first_at == 0) {
+    first_at = now;
+    if (interrupt.signal() == 0) interrupt.note(signal);
+    return;
+  }
+  // Launchers, `timeout` and terminals that close send one signal in two ways.
+  constexpr long same = 200;
+  if (now - first_at > same) end_at_once(signal, "cradle: interrupted again: what was not written yet is lost\n");
+}
 
 }  // namespace
 
-void note_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, note);
+Exit status_of_signal(int signal) { return signal == SIGINT ? Exit::interrupted : Exit::terminated; }
+
+void note_signals(Interrupt& interrupt) {
+  noting = &interrupt;
+  first_at = 0;
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1, SIGHUP}) {
+    const auto before = std::signal(signal, note);
+    if (signal == SIGHUP && before == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  }
 }
-
-int noted_signal() { return noted; }
-
-void note_signal(int signal) { note(signal); }
 
 }  // namespace cradle::tools

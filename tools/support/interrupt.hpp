@@ -1,15 +1,34 @@
-// Signals end a run at the next opportunity, in order, with what it has computed.
+// Signals end a run at the next opportunity, in order, with what it has computed. Whoever computes is handed an
+// Interrupt and asks it; only a command connects one with the signals of the process.
 #pragma once
+
+#include <atomic>
+
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
-/// From now on SIGINT, SIGTERM and SIGUSR1 are noted instead of ending the program.
-void note_signals();
+class Interrupt {
+ public:
+  /// From now on somebody asks, and has something to keep.
+  void heed() { heeded_ = true; }
+  bool heeded() const { return heeded_; }
 
-/// The signal that arrived since, or 0. May be called from any thread.
-int noted_signal();
+  /// A signal has arrived, here or at another process of the same job. May be called from any thread.
+  void note(int signal) { signal_ = signal; }
+  /// The signal that has arrived, or 0. May be called from any thread.
+  int signal() const { return signal_; }
 
-/// As if it had arrived here: it did so at another process of the same job.
-void note_signal(int signal);
+ private:
+  std::atomic<int> signal_ = 0;
+  std::atomic<bool> heeded_ = false;
+};
+
+/// With which status a program ends that this signal has interrupted.
+Exit status_of_signal(int signal);
+
+/// From now on SIGINT, SIGTERM, SIGUSR1 and SIGHUP are noted there, as long as the program runs. While nobody heeds
+/// them, and where a second one comes after the first, the program ends at once. SIGHUP stays ignored under nohup.
+void note_signals(Interrupt& interrupt);
 
 }  // namespace cradle::tools

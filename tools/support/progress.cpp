@@ -4,8 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
+
+#include "cradle/tools/support/tell.hpp"
 
 namespace cradle::tools {
 
@@ -24,7 +25,7 @@ ProgressLine::ProgressLine(Show show)
       active_(show == Show::always || (show == Show::on_terminal && terminal_)) {}
 
 ProgressLine::~ProgressLine() {
-  if (drawn_ && terminal_) fmt::print(stderr, "\r\033[K");
+  if (drawn_ && terminal_) tell("\r\033[K");
 }
 
 std::optional<double> ProgressLine::due() const {
@@ -37,10 +38,9 @@ void ProgressLine::draw(double share, const std::string& state) {
   if (terminal_) {
     constexpr int width = 30;
     const auto full = static_cast<int>(share * width);
-    fmt::print(stderr, "\r\033[K[{:#<{}}{: <{}}] {}", "", full, "", width - full, state);
-    std::fflush(stderr);
+    tell(fmt::format("\r\033[K[{:#<{}}{: <{}}] {}", "", full, "", width - full, state));
   } else {
-    fmt::print(stderr, "{}\n", state);
+    tell(state + "\n");
   }
   drawn_ = true;
   last_ = Clock::now();

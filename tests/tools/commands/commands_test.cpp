@@ -58,6 +58,7 @@ TEST_F(Commands, ScenesAreListedAndPrinted) {
     EXPECT_EQ(text.status, 0) << text.err;
   }
   EXPECT_EQ(shell("cradle scenes nothing").status, 2);
+  EXPECT_NE(list.out.find("collapse_times  collapse times of"), std::string::npos) << list.out;
 }
 
 TEST_F(Commands, CheckTellsEffectiveValuesAndCost) {
@@ -66,12 +67,50 @@ TEST_F(Commands, CheckTellsEffectiveValuesAndCost) {
   for (const auto* text : {"contacts: about 5.7e+07\n", "end: 100 at most", "memory: about 20 MB"})
     EXPECT_NE(fig11.find(text), std::string::npos) << text;
   EXPECT_NE(shell("cradle check fig6").out.find("contacts: about 1.5e+07\n"), std::string::npos);
+  // Counted: 34681883.
+  EXPECT_NE(shell("cradle check fig2").out.find("contacts: about 3.5e+07\ntime: about 1.7 s at 2e+07 contacts/s\n"),
+            std::string::npos);
+  EXPECT_NE(shell("cradle check fig2 --set run.precision=mpfr --set run.digits=50").out.find("time: about 21 s at"),
+            std::string::npos)
+      << "13.9 s at 2.5 million contacts/s, in proportion to the 2e7 assumed for double";
+  EXPECT_NE(shell("cradle check fig2 --set run.until=9000").out.find("until inelastic collapse at about t = 6.5e+03"),
+            std::string::npos);
   EXPECT_NE(shell("cradle check cooling").out.find("bodies in the active zone at the end: 1e+05"), std::string::npos);
   const Printed check = shell("cradle check fig2 --set run.until=100");
   EXPECT_EQ(check.status, 0) << check.err;
   for (const auto* text : {"law.restitution = 0.999", "run.until = 100", "contacts: about", "memory: about"})
     EXPECT_NE(check.out.find(text), std::string::npos) << text;
   EXPECT_FALSE(std::filesystem::exists(folder / "fig2.h5"));
+}
+
+TEST_F(Commands, CheckShowsLongListsByTheirEnds) {
+  std::string csv = "x,v\n";
+  for (int k = 0; k < 1000; ++k) csv += std::to_string(k) + ",1\n";
+  write("b.csv", csv);
+  write("s.toml", "law.type = 'sticky'\nrun.until = 1\ninitial = { type = 'list', file = 'b.csv' }\n");
+  const Printed check = shell("cradle check s.toml");
+  EXPECT_NE(check.out.find("initial.x = [0, 1, ..., 999] (1000 values)\n"), std::string::npos) << check.out;
+}
+
+TEST_F(Commands, WhatIsPrintedArrivesOrTheStatusSaysSo) {
+  make_small_result();
+  for (const auto* command :
+       {"scenes", "scenes fig2", "scenes --keys", "check fig2", "info small.h5", "theory fig2 --csv", "theory fig2",
+        "run collapse3 --set law.restitution=0.9 --set run.stop_gap=", "--version", "--help", "run --help"}) {
+    const Printed full = shell(std::string("cradle ") + command + " > /dev/full");
+    EXPECT_EQ(full.status, 4) << command;
+    EXPECT_NE(full.err.find("output"), std::string::npos) << command << "\n" << full.err;
+  }
+}
+
+TEST_F(Commands, ThreadsAreAcceptedByARunAndChangeNothing) {
+  make_small_result();
+  const std::string once = contents(folder / "small.h5");
+  ASSERT_EQ(shell("cradle run fig2 --threads 2 --quiet --set initial.particles=200 --set run.until=60 --set "
+                  "output.snapshots=[20,60] --set output.profiles.times=[30] --set output.series.points=5 -o small.h5")
+                .status,
+            0);
+  EXPECT_EQ(contents(folder / "small.h5"), once);
 }
 
 TEST_F(Commands, PlotMakesPicturesInEveryFormat) {
@@ -143,6 +182,10 @@ INSTANTIATE_TEST_SUITE_P(
                     BadInput{"NotToml", "[run]", "[run", good_bodies, 2, "scene.toml:7: "},
                     BadInput{"BodiesOutOfOrder", "", "", "x,v\n1,0\n0,1\n", 2, "bodies.csv:3: "},
                     BadInput{"BodiesCoincident", "", "", "x,v\n0,1\n1,0\n1.0,0\n", 2, "bodies.csv:4: "},
+                    BadInput{"BodyBeyondTheType", "", "", "x,v\n0,1\n1,1e400\n", 2,
+                             "bodies.csv:3: v: too large for the precision (found 1e400 with \"double\"): "},
+                    BadInput{"TooManySamples", "until = 10", "until = 10\n[output]\nseries = { every = 1e-9 }",
+                             good_bodies, 2, "scene.toml:10: output.series.every: too many samples (found 1e-9"},
                     BadInput{"BodyNotANumber", "", "", "x,v\n0,1\n1,nan\n", 2, "bodies.csv:3: "},
                     BadInput{"ListMissing", "", "", nullptr, 4, "bodies.csv: "}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
@@ -173,7 +216,8 @@ TEST_F(Commands, BadCommandLinesAreStatus2) {
   for (const auto* command :
        {"cradle", "cradle walk fig2", "cradle run", "cradle run fig2 --sett a=1", "cradle export a.h5",
         "cradle run fig2 --set law.restitution", "cradle run fig2 --set run.precision=float16",
-        "cradle run fig2 --set initial.type=ring"}) {
+        "cradle run fig2 --set initial.type=ring", "printf '\\211HDF' > a.h5; cradle run a.h5",
+        "cradle sweep fig2 --vary law.restitution=0.1:0.9:10000 --vary run.until=1:2:10000"}) {
     const Printed run = shell(command);
     EXPECT_EQ(run.status, 2) << command << "\n" << run.err;
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
@@ -183,6 +227,7 @@ TEST_F(Commands, BadCommandLinesAreStatus2) {
 TEST_F(Commands, BadCommandLinesSayWhatIsWrongAndWhoseHelpToRead) {
   const std::vector<std::pair<const char*, const char*>> commands{
       {"walk fig2", "no such command (found walk): see `cradle --help`"},
+      {"ensamble fig2", "no such command (found ensamble): did you mean `cradle ensemble`?"},
       {"run fig2 --sett a=1", "more than this command takes (found --sett a=1): see `cradle run --help`"},
       {"ensemble fig2", "--replicas is required: see `cradle ensemble --help`"},
       {"ensemble fig2 --replicas 0",

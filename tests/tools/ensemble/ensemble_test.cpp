@@ -158,15 +158,15 @@ TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
   tools::EnsembleOptions options;
   options.replicas = {0, 23};
   options.progress = tools::ProgressLine::Show::never;
-  options.runner = [&](const Scene& replica) -> RunOutcome {
+  options.runner = [&](const Scene& replica, const tools::RunOptions& how) -> RunOutcome {
     Scene changed = replica;
     if (fails(replica)) {  // an initial state that throws: bodies of a list out of order
       changed.initial = {};
       changed.initial.type = tools::InitialType::list;
-      changed.initial.x = {tools::Decimal("1"), tools::Decimal("0")};
-      changed.initial.v = {tools::Decimal("0"), tools::Decimal("0")};
+      changed.initial.x = {"1", "0"};
+      changed.initial.v = {"0", "0"};
     }
-    return tools::run_scene(changed, {tools::ProgressLine::Show::never});
+    return tools::run_scene(changed, how);
   };
   for (const unsigned threads : {1U, 2U}) {
     options.threads = threads;
@@ -206,7 +206,7 @@ TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
 TEST_F(Ensembles, AllReplicasMayFail) {
   tools::EnsembleOptions options;
   options.replicas = {0, 3};
-  options.runner = [](const Scene&) -> RunOutcome { throw std::runtime_error("two\nlines"); };
+  options.runner = [](const Scene&, const tools::RunOptions&) -> RunOutcome { throw std::runtime_error("two\nlines"); };
   EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("none.h5")).status, Exit::lost);
   EXPECT_TRUE(std::isnan(numbers(result("none.h5"), "ensemble/series/energy", "mean")[0]));
   run("ensemble shock.toml --replicas 4 -o none.h5", 5);

@@ -55,5 +55,21 @@ TEST_F(Ensembles, ListedBodiesArePartOfTheScene) {
   run("ensemble list.toml --replicas 4 -o list.h5", 2);
 }
 
+TEST_F(Ensembles, OfListedBodiesAreMergedWhereverTheirFilesAre) {
+  write("list.toml", "[law]\ntype = \"inelastic\"\nrestitution = 0.9\n[initial]\ntype = \"list\"\nfile = "
+                     "\"bodies.csv\"\n[run]\nuntil = 5\n");
+  write("bodies.csv", "x,v\n0,1\n1.0000000000000000000000001,0\n");
+  run("ensemble list.toml --replicas 2 -o a.h5");
+  run("ensemble list.toml --first 2 --replicas 3 -o b.h5");
+  run("ensemble list.toml --replicas 5 -o whole.h5");
+  std::filesystem::remove(folder / "bodies.csv");
+  const Printed merged = shell("mkdir elsewhere && cd elsewhere && cradle merge ../a.h5 ../b.h5 -o ../merged.h5");
+  EXPECT_EQ(merged.status, 0) << merged.err;
+  expect_same("merged.h5", "whole.h5");
+  EXPECT_NE(
+      attribute<std::string>(result("merged.h5").attributes, "scene", "").find("x = [0, 1.0000000000000000000000001]"),
+      std::string::npos);
+}
+
 }  // namespace refused_test
 }  // namespace cradle::tests

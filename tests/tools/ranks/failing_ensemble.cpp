@@ -12,18 +12,19 @@
 int main(int, char** arguments) {
   using namespace cradle::tools;
   try {
-    const auto crew = make_crew();
+    Interrupt interrupt;
+    const auto crew = make_crew(interrupt);
     EnsembleOptions options;
     options.replicas = {0, std::stoull(arguments[2])};
-    options.runner = [](const Scene& replica) {
+    options.runner = [](const Scene& replica, const RunOptions& how) {
       Scene changed = replica;
       if (replica.initial.replica % 5 == 2) {
         changed.initial = {};
         changed.initial.type = InitialType::list;
-        changed.initial.x = {Decimal("1"), Decimal("0")};
-        changed.initial.v = {Decimal("0"), Decimal("0")};
+        changed.initial.x = {"1", "0"};
+        changed.initial.v = {"0", "0"};
       }
-      return run_scene(changed, {ProgressLine::Show::never});
+      return run_scene(changed, how);
     };
     const EnsembleOutcome end = run_study(ensemble_of(read_scene(arguments[1])), options, arguments[3], *crew);
     fmt::print("{}\n", end.outcome);

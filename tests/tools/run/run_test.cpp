@@ -266,14 +266,5 @@ TEST_F(Run, ClosureErrorsAreWrittenWhereTheyAreMeasured) {
   }
 }
 
-TEST_F(Run, InterruptedRunLeavesWhatItHas) {
-  const Printed run =
-      shell("cradle run fig2 --set run.until=6600 -o long.h5 & pid=$!; sleep 0.7; kill -INT $pid; wait $pid");
-  EXPECT_EQ(run.status, 130) << run.err;
-  EXPECT_FALSE(std::filesystem::exists(folder / "long.h5"));
-  EXPECT_EQ(tools::attribute<std::string>(read_result((folder / "long.h5.part").string()).attributes, "outcome", ""),
-            "interrupted");
-}
-
 }  // namespace run_test
 }  // namespace cradle::tests

@@ -8,9 +8,11 @@
 namespace cradle::tools {
 namespace list_file_test {
 
-Bodies parse(const std::string& text) {
+ListedBodies parse(const std::string& text, Precision precision = Precision::double_) {
   std::istringstream csv(text);
-  return parse_list(csv, "b.csv");
+  Run run;
+  run.precision = precision;
+  return parse_list(csv, "b.csv", run);
 }
 
 std::string message(const std::string& text) {
@@ -25,8 +27,8 @@ std::string message(const std::string& text) {
 
 TEST(ListFile, AcceptsWhatEditorsWrite) {
   const std::string digits(60, '3');
-  const Bodies bodies = parse("\xEF\xBB\xBF# bodies\r\n\r\n x , v , m \r\n-1e-400, +1_0 ,2\r\n# middle\r\n0." + digits +
-                              ",-0.5,1e-7\r\n\r\n");
+  const ListedBodies bodies = parse("\xEF\xBB\xBF# bodies\r\n\r\n x , v , m \r\n-1e-400, +1_0 ,2\r\n# middle\r\n0." +
+                                    digits + ",-0.5,1e-7\r\n\r\n");
   ASSERT_EQ(bodies.x.size(), 2U);
   EXPECT_EQ(bodies.x[0], "-1e-400");
   EXPECT_EQ(bodies.v[0], "10");
@@ -61,14 +63,25 @@ TEST(ListFile, OrderIsDecidedExactly) {
             "b.csv:3: x: not increasing (found -1e1 after -1): give the bodies in order of increasing x");
 }
 
+TEST(ListFile, NumbersAreSuchThatThePrecisionHoldsThem) {
+  EXPECT_EQ(message("x,v\n0,1\n1,1e400\n"),
+            "b.csv:3: v: too large for the precision (found 1e400 with \"double\"): give a smaller number or another "
+            "run.precision");
+  EXPECT_TRUE(message("x,v\n-1e309,1\n").starts_with("b.csv:2: x: too large for the precision (found -1e309"));
+  EXPECT_TRUE(message("x,v,m\n0,1,1e-400\n").starts_with("b.csv:2: m: too small for the precision (found 1e-400"));
+  EXPECT_EQ(parse("x,v\n0,1e400\n", Precision::float128).v[0], "1e400");
+  EXPECT_EQ(parse("x,v,m\n0,1e99999,1e-99999\n", Precision::mpfr).m[0], "1e-99999");
+  EXPECT_THROW(parse("x,v\n0,1e99999\n", Precision::long_double), Error);
+}
+
 TEST(ListFile, BodiesOfAScene) {
   const std::string head = "law.type = 'sticky'\nrun.until = 1\ninitial.type = 'list'\n";
-  const Bodies bodies = read_bodies(parse_scene(head + "initial.x = [0, 1e-500]\ninitial.v = [1, -1]", "s.toml"));
+  const Initial bodies = parse_scene(head + "initial.x = [0, 1e-500]\ninitial.v = [1, -1]", "s.toml").initial;
   ASSERT_EQ(bodies.x.size(), 2U);
   EXPECT_EQ(bodies.x[1], "1e-500");
   EXPECT_TRUE(bodies.m.empty());
   try {
-    read_bodies(parse_scene(head + "initial.file = 'absent.csv'", "nowhere/s.toml"));
+    parse_scene(head + "initial.file = 'absent.csv'", "nowhere/s.toml");
     FAIL() << "the file does not exist";
   } catch (const Error& error) {
     EXPECT_EQ(error.status, Exit::io);

@@ -62,6 +62,12 @@ std::vector<std::string> texts(const std::vector<Decimal>& numbers) {
   return result;
 }
 
+std::vector<std::string> texts(const DecimalColumn& numbers) {
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < numbers.size(); ++i) result.emplace_back(numbers[i]);
+  return result;
+}
+
 using Strings = std::vector<std::string>;
 
 TEST(Errors, FormAndStatus) {
@@ -75,7 +81,6 @@ TEST(Errors, FormAndStatus) {
 TEST(Scene, DefaultsAreThoseOfTheTable) {
   const Scene scene = parse(good);
   EXPECT_EQ(scene.name, "s");
-  EXPECT_EQ(scene.folder, "");
   EXPECT_EQ(scene.law.cutoff.text, "0");
   EXPECT_EQ(scene.initial.speed.text, "0.5");
   EXPECT_EQ(scene.initial.spacing, Decimal("1"));
@@ -89,7 +94,6 @@ TEST(Scene, DefaultsAreThoseOfTheTable) {
   EXPECT_EQ(parse(good, {"law.cutoff=1e-5"}).run.collapse, CollapsePolicy::cutoff);
   EXPECT_EQ(scene.output.series.points, 1000U);
   EXPECT_EQ(scene.output.profiles.bins, 50U);
-  EXPECT_EQ(scene.output.checkpoint_every.text, "60");
   EXPECT_FALSE(scene.output.events);
 }
 
@@ -312,7 +316,50 @@ TEST(Scene, BodiesInTheScene) {
   EXPECT_TRUE(
       begins(message(head + "x = [1, 2]\nv = [1, 2]\nm = [1, 0]"), "s.toml:7: initial.m: out of range (found 0"));
   EXPECT_TRUE(begins(message(head + "x = []\nv = []"), "s.toml:5: initial.x: no bodies "));
-  EXPECT_EQ(parse_scene(head + "file = 'b.csv'", "some/where/t.toml").folder, "some/where");
+}
+
+TEST(Scene, MassesAreSuchThatThePrecisionHoldsThem) {
+  const std::string head = "law.type = 'sticky'\nrun.until = 9\n[initial]\ntype = 'list'\nx = [1, 2]\nv = [1, 2]\n";
+  EXPECT_EQ(message(head + "m = [1, 1e-400]"),
+            "s.toml:7: initial.m: too small for the precision (found 1e-400 with \"double\"): give a larger number or "
+            "another run.precision");
+  EXPECT_EQ(parse(head + "m = [1, 1e-400]", {"run.precision=float128"}).initial.m[1], "1e-400");
+}
+
+TEST(Scene, SamplesAreCountedBeforeMemoryForThemIsTaken) {
+  EXPECT_EQ(
+      message(good, {"output.series.every=1e-9"}),
+      "--set output.series.every: too many samples (found 1e-9, which makes 6.5e+12 of them until run.until): give "
+      "a longer time, 1e+07 samples at most");
+  EXPECT_TRUE(
+      begins(message(good + "[output.series]\nevery = 1e-400"), "s.toml:10: output.series.every: too many samples"));
+  EXPECT_EQ(parse(good, {"run.start=6499.9999999", "output.series.every=1e-9"}).output.series.every->text, "1e-9");
+  EXPECT_EQ(message(good, {"output.series.points=1e8"}),
+            "--set output.series.points: out of range (found 1e8): give an integer from 2 to 1e7");
+  EXPECT_TRUE(begins(message(good, {"law.type=wet", "law.restitution=", "law.loss=0.1", "output.zone.from=1",
+                                    "output.zone.samples=1e8"}),
+                     "--set output.zone.samples: out of range (found 1e8): "));
+}
+
+TEST(Scene, KeysThatDoNothingAreNone) {
+  EXPECT_TRUE(begins(message(good + "[output]\ncheckpoint = { every_seconds = 60 }"),
+                     "s.toml:10: output.checkpoint.every_seconds: unknown key (found 60): "));
+  EXPECT_EQ(effective_toml(parse(good)).find("checkpoint"), std::string::npos);
+}
+
+TEST(ReadScene, ResultsAreNoScenes) {
+  const auto path = std::filesystem::temp_directory_path() / ("cradle_result_" + std::to_string(::getpid()) + ".h5");
+  std::ofstream(path) << "\x89HDF\r\n\x1a\nand so on";
+  try {
+    read_scene(path.string());
+    FAIL() << "a result is no scene";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), path.string() +
+                                ": a result, not a scene (found HDF5): give the scene file, or look at it "
+                                "with `cradle info " +
+                                path.string() + "`");
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(Overrides, ReplaceAddAndRemove) {
@@ -351,7 +398,7 @@ TEST(EffectiveScene, ReadsBackAsTheSameScene) {
           "collapse = 'contact-time'\ncontact_time = 1e-6\nprecision = 'mpfr'\ndigits = 77\n[output]\nevents = true\n",
       "title = \"a \\\"quoted\\\" \\\\ name\\twith é\"\nlaw = {type = 'wet', loss = 1e-4}\ninitial = {type = 'ring', "
       "seed = '18446744073709551615'}\n"
-      "run = {until = 1e400, precision = 'float128'}\noutput.series.every = '.5'",
+      "run = {until = 1e400, precision = 'float128'}\noutput.series.every = '.5e399'",
       "law.type = 'sticky'\nrun.until = 5\ninitial = {type = 'rows', left = {particles = 2, speed = 1}, right = "
       "{particles = 1, speed = -1}}"};
   for (const auto& text : scenes) {
@@ -369,6 +416,29 @@ TEST(EffectiveScene, ReadsBackAsTheSameScene) {
   EXPECT_TRUE(parse(good) == parse(good, {"law.restitution=999e-3"}));
 }
 
+TEST(EffectiveScene, HoldsTheBodiesOfAFileWithAllTheirDigits) {
+  const auto folder = std::filesystem::temp_directory_path() / ("cradle_list_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const std::string digits = "0.1234567890123456789012345678901234567890";
+  std::ofstream(folder / "b.csv") << "x,v,m\n-1e-30,1," << digits << "\n" << digits << ",-1,2\n";
+  const Scene scene = parse_scene("law.type = 'sticky'\nrun.until = 9\ninitial = { type = 'list', file = 'b.csv' }",
+                                  (folder / "s.toml").string());
+  std::filesystem::remove_all(folder);
+  const std::string effective = effective_toml(scene);
+  EXPECT_EQ(effective.find("b.csv"), std::string::npos) << effective;
+  const Scene again = parse_scene(effective, "elsewhere/t.toml");
+  EXPECT_TRUE(again == scene) << effective;
+  EXPECT_EQ(texts(again.initial.x), (Strings{"-1e-30", digits}));
+  EXPECT_EQ(texts(again.initial.m), (Strings{digits, "2"}));
+}
+
+TEST(EffectiveScene, LongListsAreShownByTheirEnds) {
+  std::string value = "[0";
+  for (int k = 1; k < 1000; ++k) value += ", " + std::to_string(k);
+  EXPECT_EQ(shortened(value + "]"), "[0, 1, ..., 999] (1000 values)");
+  EXPECT_EQ(shortened("[1, 2, 3]"), "[1, 2, 3]");
+}
+
 TEST(EffectiveScene, ValuesThatDifferFromTheirDefaults) {
   using Pairs = std::vector<std::pair<std::string, std::string>>;
   EXPECT_EQ(values(parse(with_line(6, "particles = 8000.0\nspacing = 2")), false), (Pairs{{"law.type", "\"inelastic\""},
@@ -381,7 +451,7 @@ TEST(EffectiveScene, ValuesThatDifferFromTheirDefaults) {
   for (const auto& [key, value] : all) EXPECT_NE(key, "law.loss");
 }
 
-TEST(Manual, NamesEveryKeyWithItsFacts) {
+TEST(SceneKeys, AreAllDescribedWithTheirFacts) {
   const std::string manual = describe_fields();
   for (const Field& field : scene_fields()) EXPECT_NE(manual.find(std::string(field.key) + "  ("), std::string::npos);
   EXPECT_NE(manual.find("law.restitution  (number [0, 1], required)"), std::string::npos);
@@ -417,7 +487,6 @@ TEST(ReadScene, FilesComeBeforeBundledNames) {
   std::ofstream(path) << good;
   const Scene scene = read_scene(path, {"run.until=7"});
   EXPECT_EQ(scene.name, "mine");
-  EXPECT_EQ(scene.folder, folder.string());
   EXPECT_EQ(scene.run.until.text, "7");
   std::filesystem::remove_all(folder);
   try {

@@ -1,0 +1,102 @@
+// How often a run is looked at changes nothing but the series: every other number in a result file, attributes
+// included, has the same bits. Also where very many contacts are simultaneous (a lattice), which is where the order of
+// events is hardest to keep.
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "cradle/tools/run/run.hpp"
+
+namespace cradle::tools {
+namespace cadence_test {
+
+std::string bits(const Numbers& values, std::size_t first = 0) {
+  return std::visit(
+      [first](const auto& v) {
+        return v.size() <= first
+                   ? std::string()
+                   : std::string(reinterpret_cast<const char*>(v.data() + first), (v.size() - first) * sizeof(v[0]));
+      },
+      values);
+}
+
+std::string bits(const std::vector<Attribute>& attributes) {
+  std::string text;
+  for (const auto& [name, value] : attributes) {
+    if (name == "scene") continue;  // says how often
+    text += name + " = ";
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (std::is_same_v<std::remove_cvref_t<decltype(v)>, std::string>)
+            text += v;
+          else
+            text += bits(Numbers(std::vector{v}));
+        },
+        value);
+    text += '\n';
+  }
+  return text;
+}
+
+struct Lattice {
+  const char* name;
+  const char* law;
+  const char* initial;
+  const char* run;
+};
+
+constexpr const char* rows = "initial = { type = 'rows', particles = 400 }\n";
+const Lattice lattices[] = {
+    {"Elastic", "law = { type = 'inelastic', restitution = 1 }\n", rows, ""},
+    {"NearlyElastic", "law = { type = 'inelastic', restitution = 0.999 }\n", rows, "collapse = 'cutoff'"},
+    {"Dry", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n", rows, ""},
+    {"Positions", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n", rows, "coordinates = 'absolute'"},
+    {"Wet", "law = { type = 'wet', loss = 0.01 }\n", rows, ""},
+    {"Sticky", "law.type = 'sticky'\n", rows, ""},
+    {"StickyContactByContact", "law.type = 'sticky'\noutput.events = true\n", rows, ""},
+    {"DoubleDouble", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n", rows,
+     "precision = 'double-double'"},
+    {"Ring", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n",
+     "initial = { type = 'ring', particles = 200 }\n", ""},
+};
+
+class Cadence : public testing::TestWithParam<Lattice> {
+ protected:
+  static RunOutcome run(const char* points) {
+    const Lattice& lattice = GetParam();
+    const std::string text = std::string(lattice.law) + lattice.initial +
+                             "output.snapshots = [50, 100]\noutput.profiles.times = [60]\n[run]\nuntil = 100\n" +
+                             lattice.run;
+    const Scene scene = parse_scene(text, "lattice.toml", {std::string("output.series.points=") + points});
+    return run_scene(scene, {Progress::Show::never});
+  }
+};
+
+TEST_P(Cadence, ChangesNothingButTheSeries) {
+  const RunOutcome seldom = run("2"), often = run("3001");
+  EXPECT_EQ(bits(seldom.result.attributes), bits(often.result.attributes));
+  EXPECT_EQ(seldom.warning, often.warning);
+  ASSERT_EQ(seldom.result.groups.size(), often.result.groups.size());
+  for (std::size_t g = 0; g < seldom.result.groups.size(); ++g) {
+    const Group &a = seldom.result.groups[g], &b = often.result.groups[g];
+    ASSERT_EQ(a.name, b.name);
+    EXPECT_EQ(bits(a.attributes), bits(b.attributes)) << a.name;
+    for (std::size_t c = 0; c < a.columns.size(); ++c) {
+      const Column &of_a = a.columns[c], &of_b = b.columns[c];
+      ASSERT_EQ(of_a.name, of_b.name);
+      if (!a.name.starts_with("series")) {
+        EXPECT_EQ(bits(of_a.values), bits(of_b.values)) << a.name << "/" << of_a.name;
+        continue;
+      }
+      // The last sample is the same.
+      EXPECT_EQ(bits(of_a.values, (of_a.rows() - 1) * of_a.width), bits(of_b.values, (of_b.rows() - 1) * of_b.width))
+          << a.name << "/" << of_a.name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lattices, Cadence, testing::ValuesIn(lattices),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
+
+}  // namespace cadence_test
+}  // namespace cradle::tools

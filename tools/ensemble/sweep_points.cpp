@@ -1,0 +1,126 @@
+#include "cradle/tools/ensemble/sweep_points.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cradle/precision/read_number.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr double most_points = 1e6;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+struct Varied {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+Varied varied(const std::string& text) {
+  const auto wrong = [&](const std::string& what) {
+    return Error({"", 0, "--vary"}, what, text, "give KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=VALUE,VALUE,...");
+  };
+  const auto equals = text.find('=');
+  if (equals == text.npos || equals == 0 || equals + 1 == text.size()) throw wrong("not a key and values");
+  Varied result{text.substr(0, equals), {}};
+  const std::string values = text.substr(equals + 1);
+  const auto parts = split(values, ':');
+  if (parts.size() == 1) {
+    result.values = split(values, ',');
+    return result;
+  }
+  const bool logarithmic = parts.size() == 4 && parts[3] == "log";
+  if (parts.size() != 3 && !logarithmic) throw wrong("not a range of values");
+  const auto from = to_number(parts[0]), to = to_number(parts[1]), count = to_number(parts[2]);
+  if (!from || !to || !count || *count < 2 || *count > most_points || *count != std::floor(*count))
+    throw wrong("not a range of 2 values or more");
+  if (logarithmic && !(*from > 0 && *to > 0)) throw wrong("no logarithms of these ends");
+  const auto last = static_cast<int>(*count) - 1;
+  for (int k = 0; k <= last; ++k) {
+    const double share = static_cast<double>(k) / last;
+    const double value = logarithmic ? *from * std::pow(*to / *from, share) : *from + (*to - *from) * share;
+    // Twelve digits: 0.1 + 0.2 is to be 0.3.
+    result.values.push_back(k == 0 ? parts[0] : k == last ? parts[1] : fmt::format("{:.12g}", value));
+  }
+  return result;
+}
+
+SweepPoint given_point(const std::string& text) {
+  SweepPoint point;
+  for (const std::string& assignment : split(text, ' ')) {
+    if (assignment.empty()) continue;
+    const auto equals = assignment.find('=');
+    if (equals == assignment.npos || equals == 0)
+      throw Error({"", 0, "--point"}, "not keys and values", text, "give KEY=VALUE KEY=VALUE ...");
+    point.emplace_back(assignment.substr(0, equals), assignment.substr(equals + 1));
+  }
+  return point;
+}
+
+// Before memory for them is taken.
+void check_count(const std::vector<Varied>& keys, bool cuts) {
+  double points = cuts ? 0 : 1;
+  for (const Varied& one : keys) {
+    const auto values = static_cast<double>(one.values.size());
+    points = cuts ? points + values : points * values;
+  }
+  if (points > most_points)
+    throw Error({"", 0, "--vary"}, "too many points", fmt::format("{:.3g}", points),
+                fmt::format("vary fewer keys or give fewer values, {:.0g} points at most", most_points));
+}
+
+}  // namespace
+
+std::optional<double> to_number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = read_number(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string point_label(const SweepPoint& point) {
+  std::string text;
+  for (const auto& [key, value] : point) text += (text.empty() ? "" : " ") + key + "=" + value;
+  return text;
+}
+
+std::vector<SweepPoint> sweep_points(const Sweep& sweep) {
+  std::vector<SweepPoint> points;
+  for (const std::string& text : sweep.points) points.push_back(given_point(text));
+  std::vector<Varied> keys;
+  for (const std::string& text : sweep.vary) keys.push_back(varied(text));
+  check_count(keys, sweep.cuts);
+  if (sweep.cuts) {
+    for (const Varied& one : keys)
+      for (const std::string& value : one.values) points.push_back({{one.key, value}});
+  } else if (!keys.empty()) {
+    std::vector<SweepPoint> grid(1);
+    for (const Varied& one : keys) {
+      std::vector<SweepPoint> finer;
+      for (const SweepPoint& point : grid)
+        for (const std::string& value : one.values) {
+          finer.push_back(point);
+          finer.back().emplace_back(one.key, value);
+        }
+      grid = std::move(finer);
+    }
+    points.insert(points.end(), grid.begin(), grid.end());
+  }
+  if (points.empty())
+    throw Error({"", 0, "--vary"}, "nothing to vary", "",
+                "give --vary KEY=FROM:TO:COUNT, or --point, or a scene with a table [sweep]");
+  return points;
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,81 @@
+#include "cradle/tools/ensemble/sweep_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace cradle::tools {
+
+namespace {
+
+// Columns of numbers, one row per point, appended as they come up; NaN where a point has none.
+class Table {
+ public:
+  explicit Table(std::size_t points) : points_(points) {}
+  void put(std::size_t point, const std::string& name, const std::string& unit, const std::string& description,
+           double value) {
+    const auto [place, fresh] = places_.try_emplace(name, columns_.size());
+    if (fresh) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      columns_.push_back({name, unit, description, std::vector<double>(points_, none)});
+    }
+    std::get<std::vector<double>>(columns_[place->second].values)[point] = value;
+  }
+  std::vector<Column> columns() && { return std::move(columns_); }
+
+ private:
+  std::size_t points_;
+  std::vector<Column> columns_;
+  std::map<std::string, std::size_t> places_;
+};
+
+// In the order of the replicas' indices: the same bits however they came about.
+void put_mean(Table& table, std::size_t point, const Column& about, const std::vector<double>& values) {
+  double n = 0, mean = 0, squares = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    n += 1;
+    const double before = value - mean;
+    mean += before / n;
+    squares += before * (value - mean);
+  }
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  table.put(point, about.name, about.unit, "mean over replicas: " + about.description, n > 0 ? mean : none);
+  table.put(point, about.name + "_error", about.unit, "standard error of that mean",
+            n > 1 ? std::sqrt(squares / (n * (n - 1))) : none);
+  table.put(point, about.name + "_replicas", "1", "replicas that have this number", n);
+}
+
+}  // namespace
+
+Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates& states) {
+  Table table(points.size());
+  Group group{"sweep", {}, {}};
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    group.attributes.emplace_back(fmt::format("label_{:04}", p), point_label(points[p]));
+    for (const auto& [key, value] : points[p])
+      if (const auto number = to_number(value)) table.put(p, key, "", "varied", *number);
+  }
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const EnsembleState& state = *states[p];
+    const auto& replicas = state.table();
+    table.put(p, "replicas", "1", "replicas that ended", static_cast<double>(replicas.size()));
+    const auto order = replicas.order();
+    const auto mean = [&](const Column& about, auto of) {
+      std::vector<double> values;
+      for (const std::size_t k : order) values.push_back(of(replicas[k]));
+      put_mean(table, p, about, values);
+    };
+    mean({"contacts", "1", "contacts", {}}, [](const ReplicaRow& row) { return static_cast<double>(row.contacts); });
+    mean({"merges", "1", "merges", {}}, [](const ReplicaRow& row) { return static_cast<double>(row.merges); });
+    const auto& numbers = state.layout().numbers;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      mean(numbers[i], [i](const ReplicaRow& row) { return row.numbers[i]; });
+  }
+  group.columns = std::move(table).columns();
+  return group;
+}
+
+}  // namespace cradle::tools

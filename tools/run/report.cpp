@@ -1,0 +1,77 @@
+#include "cradle/tools/run/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cradle/tools/run/run.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+std::string place(BodyIndex left) { return fmt::format("between bodies {} and {}", left, left + 1); }
+
+// Seven digits of a number that may be far below the range of double.
+std::string brief(const Figure& x) {
+  if (x.value != 0 || x.zero) return fmt::format("{:.6e}", x.value);
+  const auto exponent = x.digits.find_first_of("eE");
+  return x.digits.substr(0, std::min<std::size_t>(exponent, 8)) + x.digits.substr(exponent);
+}
+
+}  // namespace
+
+std::string collapse_report(const ToldCollapse& r, std::uint64_t contacts) {
+  std::string text = r.extrapolated
+                         ? fmt::format("inelastic collapse at t_c = {} +- {}\n", r.time.digits, brief(r.uncertainty))
+                         : std::string("inelastic collapse: a gap fell below the smallest that is followed; no "
+                                       "collapse time could be extrapolated\n");
+  text += fmt::format("  last contact   t = {}, number {}, {}\n", r.last_contact.digits, contacts, place(r.body));
+  text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));
+  if (r.extrapolated)
+    text += fmt::format("  intervals      {}, shrinking by {:.12g} from one contact there to the next\n",
+                        brief(r.interval), r.ratio);
+  text += "  to go on       give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
+  return text;
+}
+
+Group collapse_table(const ToldCollapse& r) {
+  return {"collapse",
+          {{"time", r.time.value},
+           {"uncertainty", r.uncertainty.value},
+           {"last_contact", r.last_contact.value},
+           {"interval", r.interval.value},
+           {"ratio", r.ratio},
+           {"gap", r.gap.value},
+           {"body", static_cast<std::uint64_t>(r.body)}},
+          {}};
+}
+
+std::string account_warning(const ToldAccount& account, const Run& run) {
+  std::string text;
+  if (account.order_lost > 0)
+    text += fmt::format(
+        "order of contacts lost ({} times, first at t = {} {}, gap {:.3e}): use more digits (run.precision){}\n",
+        account.order_lost, account.first_order_lost.time, place(account.first_order_lost.body),
+        account.first_order_lost.gap, run.coordinates == Coordinates::absolute ? " or run.coordinates = \"gaps\"" : "");
+  if (account.unresolved > 0)
+    text += fmt::format(
+        "gaps below 1e6 units in the last place of x ({} contacts, first at t = {} {}, gap {:.3e}): results that "
+        "depend on such gaps cannot be trusted; use run.coordinates = \"gaps\" or more digits\n",
+        account.unresolved, account.first_unresolved.time, place(account.first_unresolved.body),
+        account.first_unresolved.gap);
+  if (account.simultaneous > 0)
+    text += fmt::format("three bodies met within rounding ({} contacts): the tie rule decided their order; perturb the "
+                        "initial state where that matters\n",
+                        account.simultaneous);
+  return text;
+}
+
+std::string exhausted_warning(const std::string& time, std::uint64_t contacts, const Run& run) {
+  return fmt::format("resolution exhausted (t = {}, {} contacts): time or a gap can get no smaller in {}; use {}a "
+                     "law.cutoff, or collapse = \"stop\"\n",
+                     time, contacts, precision_name(run),
+                     run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "");
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,62 @@
+// What a run tells people when it is over: the collapse that stopped it, and what could not be resolved. Numbers of any
+// precision come here as texts with all their digits, beside the double nearest to them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cradle/core/account.hpp"
+#include "cradle/core/collapse.hpp"
+#include "cradle/precision/text.hpp"
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+struct Figure {
+  double value = 0;
+  std::string digits;
+  bool zero = true;  // exactly; the double may be 0 where the number is not
+};
+template <Real T> Figure figure(const T& x) { return {to_double(x), to_text(x), x == T(0)}; }
+
+struct ToldCollapse {
+  Figure time, uncertainty, last_contact, interval, gap;
+  double ratio = 1;
+  BodyIndex body = -1;
+  bool extrapolated = false;
+};
+template <Real T> ToldCollapse told(const CollapseReport<T>& r) {
+  return {figure(T(r.time.value())),
+          figure(r.uncertainty),
+          figure(r.last_contact),
+          figure(r.interval),
+          figure(r.gap),
+          to_double(r.ratio),
+          r.body,
+          r.extrapolated};
+}
+/// For standard output: times with all digits of the type.
+std::string collapse_report(const ToldCollapse& collapse, std::uint64_t contacts);
+Group collapse_table(const ToldCollapse& collapse);
+
+struct ToldIncident {
+  std::string time;
+  double gap = 0;
+  BodyIndex body = -1;
+};
+struct ToldAccount {
+  std::uint64_t simultaneous = 0, order_lost = 0, unresolved = 0;
+  ToldIncident first_order_lost, first_unresolved;
+};
+template <Real T> ToldAccount told(const Account<T>& account) {
+  const auto incident = [](const Incident<T>& i) { return ToldIncident{to_text(i.time), to_double(i.gap), i.body}; };
+  return {account.simultaneous, account.order_lost, account.unresolved, incident(account.first_order_lost),
+          incident(account.first_unresolved)};
+}
+/// For standard error; empty where all was resolved.
+std::string account_warning(const ToldAccount& account, const Run& run);
+/// Where time or a gap can get no smaller.
+std::string exhausted_warning(const std::string& time, std::uint64_t contacts, const Run& run);
+
+}  // namespace cradle::tools

@@ -1,0 +1,65 @@
+// The tables that a run of a scene writes, without the numbers: names, units, what they mean. They follow from the
+// scene alone, so that ensembles know what their replicas will tell before one of them has run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/observe/profile.hpp"
+#include "cradle/core/observe/scenario.hpp"
+#include "cradle/core/observe/zone.hpp"
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+struct RunTables {
+  std::vector<Group> series;         // "series" and what stands below it
+  std::optional<Group> profile;      // each profile, where there are any; with the bins of a given range
+  std::optional<Group> zone;         // with its bins
+  std::vector<std::string> summary;  // names of RunOutcome::summary
+};
+/// Throws Error where the zone's reach cannot be told.
+RunTables run_tables(const Scene& scene);
+
+/// Puts the numbers into the columns of a table, in their order. Throws std::logic_error where there is another number
+/// of them.
+template <class... Values> Group filled(Group table, Values&&... values);
+
+// ---- each of them
+
+Group series_table(bool clouds);
+Group heaviest_table();
+Group snapshot_table(const std::string& name);
+Group profile_table(const std::string& name);
+Group masses_table(const std::string& name);
+Group zone_table();
+Group events_table();
+/// Of the model of two clusters.
+std::vector<Group> cluster_series_tables();
+
+/// Bodies that merge on a line make two heavy clusters and a cloud; on a ring none are like them.
+bool has_clouds(const Scene& scene);
+
+/// What is averaged over the interaction zone. Throws Error as above.
+ZoneAverage zone_average(const Scene& scene);
+Group zone_result(const ZoneAverage& zone, const ZoneWidth& width, const Scene& scene);
+
+/// As numbers with names, NaN where there is none.
+std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& scenario);
+
+// ---- implementation
+
+void put_values(Group& table, std::size_t column, Numbers values);
+void check_filled(const Group& table, std::size_t columns);
+
+template <class... Values> Group filled(Group table, Values&&... values) {
+  check_filled(table, sizeof...(values));
+  std::size_t column = 0;
+  (put_values(table, column++, Numbers(std::forward<Values>(values))), ...);
+  return table;
+}
+
+}  // namespace cradle::tools

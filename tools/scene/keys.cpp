@@ -1,0 +1,73 @@
+#include "cradle/tools/scene/keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/support/spelling.hpp"
+
+namespace cradle::tools {
+namespace {
+
+std::string_view last_part(std::string_view key) { return key.substr(key.rfind('.') + 1); }
+
+// The known key most like this one, empty where none is alike. The right name in the wrong table counts as near.
+std::string_view nearest_key(std::string_view key) {
+  std::string_view nearest;
+  std::size_t least = alike(key) + 1;
+  for (const Field& field : scene_fields()) {
+    std::size_t distance = edit_distance(key, field.key);
+    if (last_part(key) == last_part(field.key)) distance = std::min<std::size_t>(distance, 2);
+    if (distance < least) {
+      least = distance;
+      nearest = field.key;
+    }
+  }
+  return nearest;
+}
+
+void refuse_unknown_key(std::string_view key, const Value& value, const Scene& scene) {
+  const auto is_inside = [](std::string_view inner, std::string_view outer) {
+    return inner.size() > outer.size() && inner.starts_with(outer) && inner[outer.size()] == '.';
+  };
+  for (const Field& field : scene_fields()) {
+    if (field.key == key) return;
+    if (is_inside(key, field.key))
+      throw Error({value.place.source, value.place.line, std::string(field.key)}, "wrong type", "a table",
+                  advice(field, scene));
+    if (is_inside(field.key, key)) {
+      if (value.kind == Value::Kind::table) return;  // empty: says nothing
+      throw Error(value.place, "wrong type", describe(value), fmt::format("give a table, such as {} = ...", field.key));
+    }
+  }
+  const auto nearest = nearest_key(key);
+  throw Error(value.place, "unknown key", describe(value),
+              nearest.empty() ? "remove it; the manual lists all keys" : fmt::format("did you mean {}?", nearest));
+}
+
+// Why a key does not apply: the deciding key with the value it has.
+std::string decided_by(const When& when, const Scene& scene) {
+  const Field* field = find_field(when.decided_by, scene);
+  while ((!field->when->holds(scene) || !value_text(*field, scene)) && !field->when->decided_by.empty())
+    field = find_field(field->when->decided_by, scene);
+  return fmt::format("{} = {}", field->key, value_text(*field, scene).value_or("none"));
+}
+
+}  // namespace
+
+void refuse_unknown_keys(const Entries& entries, const Scene& scene) {
+  for (const auto& [key, value] : entries) refuse_unknown_key(key, value, scene);
+}
+
+void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::string_view decider) {
+  for (const auto& [key, value] : entries) {
+    const Field* field = find_field(key, scene);
+    if (field == nullptr || (!decider.empty() && field->when->decided_by != decider)) continue;
+    if (!field->when->holds(scene))
+      throw Error(value.place, field->when->otherwise, decided_by(*field->when, scene),
+                  fmt::format("remove it, it belongs to {}", field->when->text));
+  }
+}
+
+}  // namespace cradle::tools

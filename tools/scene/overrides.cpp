@@ -1,0 +1,54 @@
+#include "cradle/tools/scene/overrides.hpp"
+
+#include <optional>
+#include <string_view>
+
+#include "cradle/tools/scene/decimal.hpp"
+
+namespace cradle::tools {
+namespace {
+
+// A way to sample the series replaces another one that the file chose.
+void drop_replaced_series(Entries& entries, std::string_view assignment) {
+  constexpr std::string_view series = "output.series.";
+  const auto key = assignment.substr(0, assignment.find_first_of("= \t"));
+  if (!key.starts_with(series)) return;
+  const auto way = key.substr(series.size());
+  if (way != "points" && way != "every" && way != "times") return;
+  std::erase_if(entries, [&](const auto& entry) {
+    return entry.first.starts_with(series) && !(way == "points" && entry.first == "output.series.spacing");
+  });
+}
+
+// A run cut to another span on the command line keeps those of the file's output times that lie in it: what is asked
+// for on the command line itself is still refused there.
+void drop_times_cut_off(Entries& entries) {
+  const auto bound = [&](const char* key) -> std::optional<Decimal> {
+    const auto entry = entries.find(key);
+    if (entry == entries.end() || entry->second.place.source != "--set") return std::nullopt;
+    const auto literal = canonical_decimal(entry->second.text);
+    return literal ? std::optional(Decimal(*literal)) : std::nullopt;
+  };
+  const auto start = bound("run.start"), until = bound("run.until");
+  for (const char* key : {"output.series.times", "output.snapshots", "output.profiles.times", "output.masses"}) {
+    const auto entry = entries.find(key);
+    if (entry == entries.end() || entry->second.place.source == "--set") continue;
+    const auto dropped = std::erase_if(entry->second.items, [&](const Value& item) {
+      const auto literal = canonical_decimal(item.text);
+      return literal && ((start && Decimal(*literal) < *start) || (until && Decimal(*literal) > *until));
+    });
+    if (dropped > 0 && entry->second.items.empty()) entries.erase(entry);
+  }
+}
+
+}  // namespace
+
+void apply_overrides(Entries& entries, const std::vector<std::string>& overrides) {
+  for (const auto& assignment : overrides) {
+    drop_replaced_series(entries, assignment);
+    apply_override(entries, assignment);
+  }
+  drop_times_cut_off(entries);
+}
+
+}  // namespace cradle::tools

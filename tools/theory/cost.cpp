@@ -1,0 +1,142 @@
+#include "cradle/tools/theory/cost.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "cradle/core/theory/inelastic_collapse.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+double span(const Scene& scene) { return scene.run.until.value - scene.run.start.value; }
+
+// Layers of either row that a body of the other could have met by a time if they did not slow each other: K = 2 u0 t/l.
+double layers(const Scene& scene, double time) {
+  return 2 * scene.initial.speed.value * time / scene.initial.spacing.value;
+}
+
+bool plain_rows(const Scene& scene) { return scene.initial.type == InitialType::rows && !scene.initial.general_rows(); }
+
+// Bodies of two rows that have run into each other.
+double reached(const Scene& scene) {
+  return std::min(static_cast<double>(scene.initial.particles), layers(scene, span(scene)));
+}
+
+double bodies_at_end(const Scene& scene) {
+  const Initial& initial = scene.initial;
+  if (initial.type == InitialType::list) return static_cast<double>(initial.x.size());
+  if (initial.general_rows()) return static_cast<double>(initial.left.particles + initial.right.particles);
+  const bool streamed = initial.type == InitialType::rows && scene.run.coordinates == Coordinates::gaps;
+  if (!streamed) return static_cast<double>(initial.particles);
+  // Wet bodies end up in the clusters; 14 to 17 u0^2/E_loss of them are on their way in the scenes of Figs. 7 and 11.
+  const double speed = initial.speed.value;
+  return scene.law.type == LawType::wet ? std::min(reached(scene), 20 * speed * speed / scene.law.loss.value)
+                                        : reached(scene);
+}
+
+// Contacts of two rows that bounce, as a share of those of elastic rows without end, K(K + 1)/2. It depends on
+// s = K (1-eps)/(1+eps) alone: counted at eps = .999 (N = 8000 and 16000), .992 and .9, which agree to a few percent.
+// At first the share falls as bodies lag behind, about ln(1+s)/s, which is what the first body of a row meets; from
+// s = 1.8 on bodies of the dense core meet again and again, ever more often up to inelastic collapse at s = 3.25.
+struct Share {
+  double s, share;
+};
+constexpr std::array<Share, 17> counted{{{0, 1},
+                                         {.125, .921},
+                                         {.25, .862},
+                                         {.375, .811},
+                                         {.5, .768},
+                                         {.75, .700},
+                                         {1, .650},
+                                         {1.25, .612},
+                                         {1.5, .583},
+                                         {1.75, .562},
+                                         {2, .586},
+                                         {2.25, .644},
+                                         {2.5, .716},
+                                         {2.75, .795},
+                                         {3, .897},
+                                         {3.127, 1.054},
+                                         {3.252, 1.642}}};
+
+double share_of_elastic(double s) {
+  if (s >= counted.back().s) return counted.back().share;
+  const auto* above =
+      std::upper_bound(counted.begin(), counted.end(), s, [](double x, const Share& c) { return x < c.s; });
+  const auto* below = above - 1;
+  return below->share + (above->share - below->share) * (s - below->s) / (above->s - below->s);
+}
+
+void bouncing_rows(const Scene& scene, Cost& cost) {
+  const double eps = scene.law.restitution.value, kappa = (1 - eps) / (1 + eps);
+  const double particles = static_cast<double>(scene.initial.particles), half = particles / 2;
+  double met = layers(scene, span(scene));
+  const auto onset = theory::collapse_onset_bodies(eps);
+  const bool may_collapse = onset && particles >= *onset;
+  if (may_collapse && met * kappa > counted.back().s) {
+    met = counted.back().s / kappa;
+    cost.collapse = scene.run.start.value + span(scene) * met / layers(scene, span(scene));
+  }
+  cost.contacts = met * (met + 1) / 2 * share_of_elastic(met * kappa);
+  // Rows that pass through each other before it comes to that: each body meets every one of the other row once, and
+  // some more often the nearer their number is to that of a collapse.
+  if (!may_collapse) cost.contacts = std::min(*cost.contacts, half * half * (1 + (onset ? particles / *onset : 0)));
+}
+
+// Wet bodies that the front has reached lose their energy m u0^2/2 by E_loss a contact and half of that in the last one
+// (3 contacts a body at E_loss = .05, as counted in Fig. 11). Sticky ones merge once.
+void merging_rows(const Scene& scene, Cost& cost) {
+  const double bodies = reached(scene), met = std::min(bodies, static_cast<double>(scene.initial.particles) / 2);
+  const double energy = scene.initial.speed.value * scene.initial.speed.value / 2;
+  cost.contacts = scene.law.type == LawType::wet
+                      ? std::min(met * (met + 1) / 2, bodies * (energy / scene.law.loss.value + 0.5))
+                      : std::max(0.0, bodies - 1);
+}
+
+// Time of a contact against one in gaps in double, and bytes of a number. Measured on the shock of Fig. 2 to t = 4000:
+// see bench/RESULTS.md. Multiprecision: the time is linear in the digits.
+struct Scalar {
+  double gaps, absolute, bytes;
+};
+Scalar scalar(const Run& run) {
+  const auto digits = static_cast<double>(run.digits);
+  switch (run.precision) {
+  case Precision::double_:
+    return {1, 1.2, 8};
+  case Precision::long_double:
+    return {5.3, 4, 16};
+  case Precision::double_double:
+    return {2.6, 6.6, 16};
+  case Precision::float128:
+    return {10, 30, 16};
+  case Precision::cpp_bin_float:
+    return {41, 104, 64};
+  case Precision::mpfr:
+    return {6.3 + 0.112 * digits, 22 + 0.4 * digits, 48 + digits / 2.4};
+  }
+  return {};
+}
+
+}  // namespace
+
+Cost expected_cost(const Scene& scene) {
+  Cost cost;
+  cost.bodies = bodies_at_end(scene);
+  if (plain_rows(scene)) scene.law.type == LawType::inelastic ? bouncing_rows(scene, cost) : merging_rows(scene, cost);
+  const Scalar type = scalar(scene.run);
+  constexpr double fastest = 2e7;
+  cost.contacts_per_second = fastest / (scene.run.coordinates == Coordinates::gaps ? type.gaps : type.absolute);
+  // Some 15 numbers a body; a sample is nine columns of doubles, and its time in the plan.
+  constexpr double program = 20e6, numbers = 15, bytes_per_event = 48, bytes_per_sample = 80;
+  const Series& series = scene.output.series;
+  const double samples = series.every    ? span(scene) / series.every->value
+                         : series.points ? static_cast<double>(*series.points)
+                                         : static_cast<double>(series.times.size());
+  cost.memory = program + numbers * type.bytes * cost.bodies + (bytes_per_sample + 2 * type.bytes) * samples;
+  if (scene.output.events) cost.memory += bytes_per_event * cost.contacts.value_or(0);
+  return cost;
+}
+
+}  // namespace cradle::tools

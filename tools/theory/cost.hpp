@@ -1,0 +1,21 @@
+// What a run of a scene will cost, before it is run: contacts by the laws of the shock, time by how many contacts a
+// second each scalar type makes, memory by what a body takes in it. Orders of magnitude, to plan with.
+#pragma once
+
+#include <optional>
+
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+struct Cost {
+  double bodies = 0;               // in the active zone at the end, at most
+  std::optional<double> contacts;  // none: not known beforehand for this initial state
+  std::optional<double> collapse;  // time from which on contacts have no limit, where that is before the end
+  double contacts_per_second = 0;
+  double memory = 0;  // bytes
+};
+
+Cost expected_cost(const Scene& scene);
+
+}  // namespace cradle::tools

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -31,6 +32,7 @@ int finish(Exit status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, as on a full disk, instead of ending the program
   try {
     CommandLine program(
         "cradle", "One-dimensional granular gases, event by event: dry, wet and sticky, in any precision.",

@@ -21,6 +21,7 @@ program | toml++                | header toml++/toml.h         | libtomlplusplus
 program | CLI11                 | header CLI/CLI.hpp           | libcli11-dev
 program | fmt                   | header fmt/format.h          | libfmt-dev
 program | HDF5                  | header hdf5.h                | libhdf5-dev
+program | liblzma               | header lzma.h                | liblzma-dev
 program | MPFR                  | header mpfr.h                | libmpfr-dev
 program | GMP                   | header gmp.h                 | libgmp-dev
 program | Python 3              | command python3              | python3

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble/store.hpp"
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/merge.hpp"
+#include "cradle/tools/result/writer.hpp"
 
 namespace cradle::tools {
 
@@ -15,21 +15,9 @@ struct Options {
   std::string output;
 };
 
-Study study_in(const std::string& file) {
-  const Result result = read_result(file);
-  return study_kind(result, file) == "sweep" ? sweep_in(result, file) : ensemble_in(result, file);
-}
-
 Exit merge(const Options& options) {
-  const Study study = study_in(options.files.front());
-  EnsembleStore all(study, options.output);
-  for (const std::string& file : options.files) {
-    EnsembleStore one(study, file);
-    one.load_result();
-    all.merge(one);
-  }
-  check_writable(options.output);
-  const Result result = all.result();
+  const FileClaim claim(options.output);
+  const Result result = merged(options.files)->result();
   write_result(result, options.output);
   fmt::print("{} replicas: {}\nwrote {}\n", attribute<std::uint64_t>(result.attributes, "replicas", options.output),
              attribute<std::string>(result.attributes, "outcome", options.output), options.output);

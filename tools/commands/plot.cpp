@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,7 +11,8 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/plot/plot_files.hpp"
-#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/theory/table.hpp"
 
@@ -91,6 +93,7 @@ Exit plot(const Options& options) {
   const Scene scene = scene_in(result.attributes, options.file);
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.output;
+  file_behind(output);            // neither a folder nor a device
   const TemporaryFolder program;  // Python runs a folder by its __main__.py
   for (const EmbeddedFile& file : plot_files()) program.write(file.name, file.text);
   std::vector<std::string> words{find_python(), "-B", program.path(), options.file, "-o", output};

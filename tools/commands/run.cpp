@@ -6,6 +6,8 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/tell.hpp"
 
@@ -27,7 +29,7 @@ Exit run(const Options& options) {
   const Scene scene = options.read();
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   check_built(scene);
-  check_writable(output);
+  const FileClaim claim(output);
   Interrupt interrupt;
   note_signals(interrupt);
   const auto started = std::chrono::steady_clock::now();
@@ -39,7 +41,7 @@ Exit run(const Options& options) {
   // An existing file is replaced only by a run that went its way; one cut short leaves what it has beside it.
   const bool cut = end.end == RunEnd::interrupted;
   const std::string written = cut ? output + ".part" : output;
-  write_result(end.result, written);
+  write_or_keep(end.result, written);
   fmt::print("{}", end.report);
   tell(end.warning);
   if (cut) tell(fmt::format("interrupted: what was computed is in {}\n", written));

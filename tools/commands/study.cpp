@@ -15,10 +15,7 @@ Exit run_study_command(const CommonOptions& options, const std::function<StudyPl
   note_signals(interrupt);
   const std::unique_ptr<Crew> crew = make_crew(interrupt);
   StudyPlan plan;
-  const Exit failed = crew->together([&] {
-    plan = make_plan();
-    if (crew->rank() == 0) check_writable(plan.output);
-  });
+  const Exit failed = crew->together([&] { plan = make_plan(); });
   if (failed != Exit::done) return failed;
   const std::string& output = plan.output;
   EnsembleOptions how;

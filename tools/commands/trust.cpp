@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
@@ -20,7 +22,7 @@ struct Options : CommonOptions {
 Exit run_trust(const Options& options) {
   const Scene scene = options.read();
   const std::string output = options.output.empty() ? scene.name + "-trust.h5" : options.output;
-  check_writable(output);
+  const FileClaim claim(output);
   Interrupt interrupt;
   note_signals(interrupt);
   const auto runs = trust(scene, {options.digits, options.both,
@@ -28,7 +30,7 @@ Exit run_trust(const Options& options) {
                                   : options.quiet  ? Progress::Show::never
                                                    : Progress::Show::on_terminal,
                                   &interrupt});
-  write_result(trust_result(scene, runs), output);
+  write_or_keep(trust_result(scene, runs), output);
   fmt::print("{}", trust_table(runs));
   if (!options.quiet) fmt::print("wrote {}\n", output);
   return Exit::done;

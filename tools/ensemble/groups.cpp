@@ -48,7 +48,7 @@ Group node_group(const TreeNode& node, std::string name) {
 
 TreeNode read_node(const Group& group, const std::string& file) {
   TreeNode node{attribute<std::uint64_t>(group.attributes, "first", file),
-                static_cast<unsigned>(attribute<std::uint64_t>(group.attributes, "level", file)),
+                level_of(attribute<std::uint64_t>(group.attributes, "level", file)),
                 {}};
   Moments& m = node.moments;
   m.replicas = attribute<std::uint64_t>(group.attributes, "replicas", file);
@@ -172,11 +172,8 @@ std::vector<Group> EnsembleState::groups() const {
 }
 
 void EnsembleState::read(const Result& result, const std::string& file) {
-  for (std::size_t k = 0; const Group* group = result.find(name(node_name(k))); ++k) {
-    TreeNode node = read_node(*group, file);
-    if (node.moments.replicas > 0) check_length(node.moments.entries());
-    tree_.add(std::move(node));
-  }
+  for (std::size_t k = 0; const Group* group = result.find(name(node_name(k))); ++k)
+    take_node(read_node(*group, file), file);
   const Group& table = get(result, name("replicas"), file);
   const auto &index = get<std::uint64_t>(table, "index", file), &outcome = get<std::uint64_t>(table, "outcome", file),
              &contacts = get<std::uint64_t>(table, "contacts", file),
@@ -193,6 +190,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
     for (const auto* column : numbers) row.numbers.push_back((*column)[k]);
     table_.add(row);
   }
+  check_replicas(file);
   if (const Group* failed = result.find(name("replicas/failed"))) {
     std::istringstream lines(attribute<std::string>(failed->attributes, "messages", file));
     for (const std::uint64_t replica : get<std::uint64_t>(*failed, "index", file)) {
@@ -206,7 +204,11 @@ void EnsembleState::read(const Result& result, const std::string& file) {
     const Group expected = spread_group(k);
     const Group& spread = get(result, expected.name, file);
     Histograms counts(spreads_[k].bins(), spreads_[k].entries());
-    counts.set_all_counts(get<std::uint64_t>(spread, "counts", file));
+    const auto& in_file = get<std::uint64_t>(spread, "counts", file);
+    if (in_file.size() != counts.all_counts().size())
+      throw Error({file, 0, expected.name}, "a damaged ensemble", fmt::format("{} counts", in_file.size()),
+                  "take it from a copy, or run it again", Exit::io);
+    counts.set_all_counts(in_file);
     spreads_[k].add(counts);
   }
 }

@@ -3,15 +3,13 @@
 // there and says how much it left out, and whoever goes on writing cuts it off. The first record is the header.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
-#include <utility>
 
-#include "cradle/tools/support/errors.hpp"
+#include "cradle/tools/result/atomic_file.hpp"
 
 namespace cradle::tools {
 
@@ -50,32 +48,16 @@ class JournalWriter {
   void go_on_after(std::uint64_t whole_bytes);
 
   /// The record is the system's when this returns: it survives the end of the program; that of the machine, only after
-  /// a sync.
+  /// a sync. One that could not be written is not there in part either.
   void append(std::string_view record);
   void sync() const;
   std::uint64_t bytes() const { return bytes_; }
 
  private:
-  class File {  // closed with its owner, which gives up the claim
-   public:
-    explicit File(int descriptor) : descriptor_(descriptor) {}
-    File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-    File& operator=(File&& other) noexcept {
-      std::swap(descriptor_, other.descriptor_);
-      return *this;
-    }
-    ~File();
-    operator int() const { return descriptor_; }
-
-   private:
-    int descriptor_;
-  };
-
-  void claim() const;
-  void write(std::array<std::string_view, 3> parts);
+  void claim(int file) const;
 
   std::string path_;
-  File file_;
+  Descriptor file_;
   std::uint64_t bytes_ = 0;
 };
 

@@ -118,7 +118,7 @@ void EnsembleState::apply(std::string_view record) {
     return;
   }
   case Kind::node: {
-    TreeNode node{bytes.integer(), static_cast<unsigned>(bytes.integer()), {}};
+    TreeNode node{bytes.integer(), level_of(bytes.integer()), {}};
     Moments& m = node.moments;
     m.replicas = bytes.integer();
     m.mean = bytes.numbers<double>();
@@ -126,8 +126,7 @@ void EnsembleState::apply(std::string_view record) {
     m.least = bytes.numbers<double>();
     m.greatest = bytes.numbers<double>();
     m.counts = bytes.numbers<std::uint64_t>();
-    if (m.replicas > 0) check_length(m.entries());
-    tree_.add(std::move(node));
+    take_node(std::move(node), "a journal");
     return;
   }
   }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <stdexcept>
 
 namespace cradle::tools {
 
@@ -97,6 +99,45 @@ void EnsembleState::check_length(std::size_t entries) const {
   if (entries != layout_.entries)
     throw Error({}, "an ensemble of other quantities", fmt::format("{} numbers a replica", entries),
                 fmt::format("this version records {}: use the program that wrote it", layout_.entries), Exit::io);
+}
+
+// A node that comes from a file or another process: nothing in it is believed.
+void EnsembleState::take_node(TreeNode node, const std::string& from) {
+  const Moments& m = node.moments;
+  const auto wrong = [&](const std::string& found) {
+    return Error({from, 0, ""}, "a damaged ensemble", found, "take it from a copy, or run it again", Exit::io);
+  };
+  if (node.level > 62 || m.replicas > node.range().count)
+    throw wrong(fmt::format("{} replicas in a node of level {}", m.replicas, node.level));
+  if (m.replicas > 0) check_length(m.entries());
+  for (const std::size_t size : {m.squares.size(), m.least.size(), m.greatest.size()})
+    if (size != m.entries()) throw wrong("statistics of different lengths");
+  if (!m.counts.empty() && (m.counts.size() != m.entries() ||
+                            std::any_of(m.counts.begin(), m.counts.end(), [&](auto n) { return n > m.replicas; })))
+    throw wrong("counts that cannot be");
+  try {
+    tree_.add(std::move(node));
+  } catch (const std::invalid_argument& error) {
+    throw wrong(error.what());
+  }
+}
+
+// The table of replicas and the statistics are of the same ones.
+void EnsembleState::check_replicas(const std::string& file) const {
+  std::uint64_t in_statistics = 0, in_table = 0;
+  for (const TreeNode& node : tree_.nodes()) in_statistics += node.moments.replicas;
+  std::optional<ReplicaIndex> before;
+  bool same = table_.size() == tree_.size();
+  for (const std::size_t k : table_.order()) {
+    const ReplicaRow row = table_[k];
+    same = same && tree_.contains(row.index) && before != row.index;
+    before = row.index;
+    in_table += row.outcome != ReplicaOutcome::failed;
+  }
+  if (!same || in_table != in_statistics)
+    throw Error({file, 0, name("replicas")}, "a damaged ensemble",
+                fmt::format("{} replicas listed, statistics of {}", table_.size(), tree_.size()),
+                "take it from a copy, or run it again", Exit::io);
 }
 
 }  // namespace cradle::tools

@@ -3,6 +3,7 @@
 // records, and to result files as groups; both keep every bit, so that ensembles can be continued and merged.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -12,9 +13,9 @@
 #include <vector>
 
 #include "cradle/core/ensemble.hpp"
-#include "cradle/tools/ensemble/bytes.hpp"
 #include "cradle/tools/ensemble/journal.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
+#include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {
 
@@ -42,6 +43,9 @@ class ReplicaTable {
   std::vector<std::uint64_t> integers_;  // index, outcome, contacts, merges
   std::vector<double> numbers_;
 };
+
+/// Of a node of the tree; what is too large for one stays so.
+inline unsigned level_of(std::uint64_t number) { return static_cast<unsigned>(std::min<std::uint64_t>(number, 64)); }
 
 class EnsembleState {
  public:
@@ -95,6 +99,8 @@ class EnsembleState {
 
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
   void check_length(std::size_t entries) const;
+  void take_node(TreeNode node, const std::string& from);
+  void check_replicas(const std::string& file) const;
   Group quantity_group(const Quantity& quantity, const Moments& total) const;
   Group spread_group(std::size_t k) const;
   Group replica_group() const;

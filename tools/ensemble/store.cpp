@@ -4,47 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 
-#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
-
-namespace {
-
-std::string plural(std::uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
-
-std::string describe(const std::vector<ReplicaRange>& ranges) {
-  if (ranges.empty()) return "none";
-  if (ranges.size() > 1)
-    return fmt::format("{} ranges, {} to {}", ranges.size(), ranges[0].first, ranges.back().end() - 1);
-  return fmt::format("{} to {}", ranges[0].first, ranges[0].end() - 1);
-}
-
-std::uint64_t size_of(const EnsembleStates& states) {
-  std::uint64_t sum = 0;
-  for (const auto& state : states) sum += state->replicas().size();
-  return sum;
-}
-
-}  // namespace
-
-JournalContents read_journal_contents(const std::string& path) {
-  JournalReader reader(path);
-  ByteReader header(reader.header());
-  header.integer();  // identity
-  JournalContents contents;
-  while (!header.empty()) {
-    const std::string group = header.text();
-    contents.scenes.emplace_back(group, header.text());
-  }
-  contents.replicas.resize(contents.scenes.size());
-  for (std::string record; reader.next(record);)
-    contents.replicas.at(EnsembleState::point(record)) += EnsembleState::replicas_in(record);
-  contents.torn_bytes = reader.torn_bytes();
-  return contents;
-}
 
 EnsembleStore::EnsembleStore(Study study, std::string file)
     : study_(std::move(study)), file_(std::move(file)), part_(file_ + ".part"), identity_(study_.identity()),
@@ -55,119 +19,6 @@ EnsembleStates EnsembleStore::empty_states() const {
   for (const auto& [group, scene] : study_.points)
     states.push_back(std::make_unique<EnsembleState>(group, scene, study_.spreads));
   return states;
-}
-
-// ---- what is there
-
-void EnsembleStore::check_identity(std::uint64_t identity, const std::vector<std::string>& scenes,
-                                   const std::string& path) const {
-  if (identity == identity_) return;
-  std::string found = scenes.size() == study_.points.size() ? "" : plural(scenes.size(), "ensemble");
-  for (std::size_t k = 0; k < scenes.size() && found.empty(); ++k)
-    found = scene_difference(parse_scene(scenes[k], path), study_.points[k].scene);
-  if (found.empty()) found = "another version of the program, other --spread bins or other listed bodies";
-  throw Error({path, 0, ""}, "holds ensembles of something else", found, "give another -o FILE, or remove this one");
-}
-
-void EnsembleStore::load_result() {
-  const Result result = read_result(file_);
-  const auto is = [&](const auto& attribute) { return attribute.first == "identity"; };
-  if (std::none_of(result.attributes.begin(), result.attributes.end(), is))
-    throw Error({file_, 0, ""}, "holds no ensemble", "a single run, or another command's result",
-                "give another -o FILE, or remove this one");
-  std::vector<std::string> scenes;
-  for (const Study::Point& point : study_.points) {
-    const bool alone = point.group.empty();
-    const Group* group = result.find(alone ? "ensemble" : point.group + "/ensemble");
-    if (group == nullptr) break;
-    scenes.push_back(attribute<std::string>(alone ? result.attributes : group->attributes, "scene", file_));
-  }
-  check_identity(attribute<std::uint64_t>(result.attributes, "identity", file_), scenes, file_);
-  for (const auto& state : states_) state->read(result, file_);
-  result_there_ = true;
-}
-
-std::string EnsembleStore::load() {
-  if (std::filesystem::exists(file_)) load_result();
-  std::string account;
-  if (std::filesystem::exists(part_)) {
-    journal_.emplace(part_);
-    std::uint64_t whole = 0;
-    account += read_journal(part_, whole);
-    journal_->go_on_after(whole);
-  }
-  const std::vector<std::string> others = rank_journals();
-  if (others.empty()) return account;
-  std::vector<JournalWriter> claims;
-  for (const std::string& path : others) {
-    claims.emplace_back(path);
-    std::uint64_t whole = 0;
-    account += read_journal(path, whole);
-  }
-  compact();
-  for (const std::string& path : others) ::unlink(path.c_str());
-  return account;
-}
-
-std::string EnsembleStore::read_journal(const std::string& path, std::uint64_t& whole_bytes) {
-  JournalReader reader(path);
-  ByteReader header(reader.header());
-  const std::uint64_t identity = header.integer();
-  std::vector<std::string> scenes;
-  while (!header.empty()) header.text(), scenes.push_back(header.text());
-  check_identity(identity, scenes, path);
-  EnsembleStates states = empty_states();
-  for (std::string record; reader.next(record);) {
-    const std::uint64_t point = EnsembleState::point(record);
-    if (point >= states.size())
-      throw Error({path, 0, ""}, "a record of no ensemble", fmt::format("number {}", point), "remove the file",
-                  Exit::io);
-    states[point]->apply(record);
-  }
-  whole_bytes = reader.whole_bytes();
-  std::string account = fmt::format("{}: {} taken from there", path, plural(size_of(states), "replica"));
-  if (reader.torn_bytes() > 0) account += fmt::format("; its end was damaged ({} bytes left out)", reader.torn_bytes());
-  take(states, path);
-  return account + "\n";
-}
-
-void EnsembleStore::take(EnsembleStates& others, const std::string& from) {
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (states_[k]->holds_all_of(*others[k])) continue;
-    result_there_ = false;
-    if (others[k]->holds_all_of(*states_[k]))
-      states_[k] = std::move(others[k]);
-    else if (!states_[k]->holds_any_of(*others[k]))
-      states_[k]->take(*others[k]);
-    else
-      throw Error({from, 0, ""}, "has some replicas in common with other files of this ensemble", "",
-                  "remove those files that do not belong to it", Exit::io);
-  }
-}
-
-std::vector<std::string> EnsembleStore::rank_journals() const {
-  const std::filesystem::path part(part_);
-  const std::string begin = part.filename().string() + ".";
-  const std::filesystem::path folder = part.has_parent_path() ? part.parent_path() : ".";
-  std::vector<std::string> found;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.size() > begin.size() && name.starts_with(begin) &&
-        name.find_first_not_of("0123456789", begin.size()) == name.npos)
-      found.push_back(part_ + name.substr(begin.size() - 1));
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-void EnsembleStore::merge(EnsembleStore& other) {
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (states_[k]->holds_any_of(*other.states_[k]))
-      throw Error({other.file_, 0, ""}, "has replicas that another of the files has too",
-                  describe(other.states_[k]->replicas().present()), "merge files of different replicas (--first)");
-    states_[k]->take(*other.states_[k]);
-  }
 }
 
 // ---- while replicas are being run
@@ -245,7 +96,7 @@ void EnsembleStore::apply(std::string_view record) { states_.at(EnsembleState::p
 
 // ---- the result
 
-std::uint64_t EnsembleStore::replicas() const { return size_of(states_); }
+std::uint64_t EnsembleStore::replicas() const { return replicas_in(states_); }
 
 std::string EnsembleStore::outcome() const {
   EnsembleState::Outcomes outcomes{};
@@ -280,7 +131,13 @@ Result EnsembleStore::result() const {
 }
 
 void EnsembleStore::finish() {
-  write_result(result(), file_);
+  try {
+    write_result(result(), file_);
+  } catch (const Error& error) {
+    throw Error(std::string(error.what()) + "; finished replicas are in " + part_ +
+                    ", the same command goes on from there",
+                error.status);
+  }
   journal_.reset();
   ::unlink(part_.c_str());
   for (const std::string& path : rank_journals()) ::unlink(path.c_str());

@@ -24,33 +24,22 @@
 
 namespace cradle::tools {
 
-/// What a journal of replicas holds, without running anything.
-struct JournalContents {
-  std::vector<std::pair<std::string, std::string>> scenes;  // of each ensemble: its group, and the scene as TOML
-  std::vector<std::uint64_t> replicas;                      // of each ensemble
-  std::uint64_t torn_bytes = 0;                             // at the end: what a kill has left of a record
-};
-/// Throws Error (Exit::io).
-JournalContents read_journal_contents(const std::string& path);
-
 class EnsembleStore {
  public:
   /// Looks at no files yet. Throws Error for a scene that no ensemble can be made of.
   EnsembleStore(Study study, std::string file);
 
-  /// Reads FILE and all journals, and claims FILE.part: another program that does so fails. Throws Error:
-  /// Exit::bad_input where they belong to other scenes, Exit::io where they cannot be read. Returns what there is to
-  /// tell about journals.
+  /// Claims FILE for as long as this lives, and reads it and all journals. Throws Error:
+  /// Exit::bad_input where they belong to other scenes, Exit::io where they cannot be read or another program is at
+  /// work on them. Returns what there is to tell about journals.
   std::string load();
   /// Reads FILE alone, which must be there; to look at it, or to merge it.
   void load_result();
 
   const Study& study() const { return study_; }
   const EnsembleStates& states() const { return states_; }
+  EnsembleStates& states() { return states_; }
   bool result_there() const { return result_there_; }  // and holds all replicas that there are
-
-  /// Takes the replicas of another store of the same study. Throws Error (Exit::bad_input) where some are in both.
-  void merge(EnsembleStore& other);
 
   /// From now on replicas are journalled: in FILE.part, or in that of a rank other than 0. It appears with the first,
   /// and is written anew where it grows beyond so many bytes.
@@ -88,6 +77,7 @@ class EnsembleStore {
   EnsembleStates states_;
   bool result_there_ = false;
 
+  std::optional<FileClaim> claim_;  // of FILE: two programs that begin together have no journal yet to meet at
   bool journalling_ = false;
   std::optional<JournalWriter> journal_;
   std::mutex appending_;        // to the journal

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "cradle/tools/ensemble/checksum.hpp"
+#include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
@@ -40,9 +40,15 @@ Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads) {
 
 std::string study_kind(const Result& result, const std::string& file) {
   for (const auto& [name, value] : result.attributes)
-    if (name == "kind") return std::get<std::string>(value);
+    if (name == "kind") return attribute<std::string>(result.attributes, name, file);
   throw Error({file, 0, ""}, "holds no ensemble", "a single run, or another command's result",
               "give a file that `cradle ensemble` or `cradle sweep` wrote");
+}
+
+std::uint64_t replicas_in(const EnsembleStates& states) {
+  std::uint64_t sum = 0;
+  for (const auto& state : states) sum += state->replicas().size();
+  return sum;
 }
 
 Study ensemble_in(const Result& result, const std::string& file) {
@@ -54,6 +60,10 @@ Study ensemble_in(const Result& result, const std::string& file) {
           {group.name.substr(under.size()),
            {attribute<double>(group.attributes, "from", file), attribute<double>(group.attributes, "to", file),
             attribute<std::uint64_t>(group.attributes, "bins", file)}});
+  for (const SpreadRequest& spread : spreads)
+    if (!(spread.bins.from < spread.bins.to) || spread.bins.bins < 1 || spread.bins.bins > 1'000'000)
+      throw Error({file, 0, under + spread.name}, "no bins", fmt::format("{}", spread.bins.bins), "make the file anew",
+                  Exit::io);
   return ensemble_of(scene_in(result.attributes, file), std::move(spreads));
 }
 

@@ -32,6 +32,9 @@ struct Study {
   std::uint64_t identity() const;
 };
 
+/// Replicas of all of them.
+std::uint64_t replicas_in(const EnsembleStates& states);
+
 /// The study of one ensemble.
 Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads = {});
 /// "ensemble" or "sweep". Throws Error (Exit::bad_input) for a file that holds neither.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tests {

@@ -1,55 +1,19 @@
 // Journals after every way of ending: whatever is on the disk, a reader gives the records before the damage, whole and
-// nothing else. The checksum against Boost's, bit by bit.
+// nothing else.
 
 #include "cradle/tools/ensemble/journal.hpp"
-
-#include <boost/crc.hpp>
 
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/ensemble/bytes.hpp"
-#include "cradle/tools/ensemble/checksum.hpp"
+#include "cradle/tests/tools/result/small_files.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests {
 namespace journal_test {
 
 using tools::JournalReader;
 using tools::JournalWriter;
-
-TEST(Checksum, IsTheCrc64OfXz) {
-  EXPECT_EQ(tools::crc64("123456789"), 0x995DC9BBDF1939FAU);  // the check value of the catalogue of CRC algorithms
-  std::string text;
-  for (int i = 0; i < 300; ++i) {
-    boost::crc_optimal<64, 0x42F0E1EBA9EA3693, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> slow;
-    slow.process_bytes(text.data(), text.size());
-    ASSERT_EQ(tools::crc64(text), slow.checksum()) << i;
-    ASSERT_EQ(tools::crc64(text.substr(text.size() / 3), tools::crc64(text.substr(0, text.size() / 3))),
-              slow.checksum());
-    text += static_cast<char>(hash(static_cast<std::uint64_t>(i)));
-  }
-}
-
-TEST(Bytes, ComeBackAsTheyWere) {
-  const std::vector<double> numbers{1.5, -0.0, 1e-310, std::numeric_limits<double>::infinity()};
-  tools::ByteWriter writer;
-  writer.put(std::uint64_t{7}).put("text").put(numbers).put(std::vector<std::uint64_t>{}).put(2.5);
-  tools::ByteReader reader(writer.bytes());
-  EXPECT_EQ(reader.integer(), 7U);
-  EXPECT_EQ(reader.text(), "text");
-  EXPECT_EQ(reader.numbers<double>(), numbers);
-  EXPECT_TRUE(reader.numbers<std::uint64_t>().empty());
-  EXPECT_EQ(reader.number<double>(), 2.5);
-  EXPECT_TRUE(reader.empty());
-  EXPECT_THROW(reader.integer(), tools::Error);
-}
-
-TEST(Bytes, LengthsThatCannotBeAreRefused) {
-  tools::ByteWriter writer;
-  writer.put(~std::uint64_t{0});
-  EXPECT_THROW(tools::ByteReader(writer.bytes()).numbers<double>(), tools::Error);
-  EXPECT_THROW(tools::ByteReader(writer.bytes()).text(), tools::Error);
-}
 
 class Journal : public ProgramTest {
  protected:
@@ -136,6 +100,17 @@ TEST_F(Journal, WrittenAnewAppearsOnlyWhole) {
   EXPECT_EQ(records(), three) << "the old one stays";
   const JournalWriter anew(path(), "header", [](const JournalWriter::Put& put) { put("all"); });
   EXPECT_EQ(records(), std::vector<std::string>{"all"});
+}
+
+TEST_F(Journal, HalfARecordIsTakenBackWhereTheDiskIsFull) {
+  JournalWriter writer(path(), "header");
+  writer.append("first");
+  {
+    const SmallFiles full;
+    EXPECT_THROW(writer.append(std::string(20000, 'x')), tools::Error);
+  }
+  writer.append("second");
+  EXPECT_EQ(records(), (std::vector<std::string>{"first", "second"}));
 }
 
 TEST_F(Journal, HasOneWriterAtATime) {

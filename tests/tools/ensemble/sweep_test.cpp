@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/result/reader.hpp"
 
 namespace cradle::tests {
 namespace sweep_test {

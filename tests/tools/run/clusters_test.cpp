@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/result/reader.hpp"
 
 namespace cradle::tests {
 namespace clusters_test {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/result/reader.hpp"
 
 namespace cradle::tests {
 namespace run_test {

@@ -1,6 +1,4 @@
-// CRC-64/XZ: tells whether bytes on a disk are those that were written. Reflected polynomial of ECMA-182, eight bytes a
-// step (slicing, Kounavis and Berry 2008, doi 10.1109/TC.2008.85): Boost's, one byte a step, would take as long as a
-// short replica itself.
+// CRC-64/XZ (reflected polynomial of ECMA-182): tells whether bytes on a disk are those that were written.
 #pragma once
 
 #include <cstdint>

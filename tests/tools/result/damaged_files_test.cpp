@@ -1,0 +1,135 @@
+// Files that are not what they seem: each a message that names the file and the place, status 4, no crash, and nothing
+// written outside the folder that was given. All are made with HDF5 itself, so only the reader stands against them.
+
+#include <functional>
+#include <vector>
+
+#include "cradle/tests/tools/result/result_files.hpp"
+
+namespace cradle::tests {
+namespace damaged_files_test {
+
+struct Damage {
+  const char* what;
+  std::function<void(hid_t file)> how;
+  const char* message;  // all of it comes after "cradle: "
+};
+
+void put_attribute(hid_t object, const char* name, hid_t type, hsize_t size, const void* data) {
+  const hid_t space = H5Screate_simple(1, &size, nullptr);
+  const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, data);
+  H5Aclose(attribute);
+  H5Sclose(space);
+}
+
+hid_t put_dataset(hid_t group, const char* name, hid_t type, std::vector<hsize_t> shape,
+                  hid_t properties = H5P_DEFAULT) {
+  const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  const hid_t data = H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  H5Sclose(space);
+  return data;
+}
+
+const std::vector<Damage>& damages() {
+  static const std::vector<std::uint64_t> many(4096, 0x4141414141414141);
+  static const std::vector<Damage> all{
+      {"an array as attribute",
+       [](hid_t file) { put_attribute(file, "numbers", H5T_NATIVE_UINT64, many.size(), many.data()); },
+       "a.h5: @numbers: an attribute is one number or one text (found 4096 of them): "},
+      {"an array as attribute of a column",
+       [](hid_t file) {
+         const hid_t data = H5Dopen2(file, "series/time", H5P_DEFAULT);
+         put_attribute(data, "numbers", H5T_NATIVE_UINT64, many.size(), many.data());
+         H5Dclose(data);
+       },
+       "a.h5: series/time@numbers: an attribute is one number or one text (found 4096 of them): "},
+      {"an array of texts as attribute",
+       [](hid_t file) {
+         const hid_t type = H5Tcopy(H5T_C_S1);
+         H5Tset_size(type, 8);
+         put_attribute(file, "texts", type, 100, many.data());
+         H5Tclose(type);
+       },
+       "a.h5: @texts: an attribute is one number or one text (found 100 of them): "},
+      {"a group in itself", [](hid_t file) { H5Lcreate_hard(file, "series", file, "series/again", 0, 0); },
+       "a.h5: series/again/again/again"},
+      {"the root in itself", [](hid_t file) { H5Lcreate_hard(file, "/", file, "series/root", 0, 0); }, "a.h5: "},
+      {"two to the 40 numbers", [](hid_t file) { H5Dclose(put_dataset(file, "x", H5T_IEEE_F64LE, {1ULL << 40})); },
+       "a.h5: x: more numbers than the file can hold (found 1099511627776 x 1): "},
+      {"two to the 40 numbers in chunks",
+       [](hid_t file) {
+         const hid_t chunked = H5Pcreate(H5P_DATASET_CREATE);
+         const hsize_t chunk = 1024;
+         H5Pset_chunk(chunked, 1, &chunk);
+         H5Dclose(put_dataset(file, "x", H5T_IEEE_F64LE, {1ULL << 40}, chunked));
+         H5Pclose(chunked);
+       },
+       "a.h5: x: more numbers than the file can hold (found 1099511627776 x 1): "},
+      {"numbers in another file",
+       [](hid_t file) {
+         const hid_t elsewhere = H5Pcreate(H5P_DATASET_CREATE);
+         H5Pset_external(elsewhere, "/etc/passwd", 0, 80);
+         H5Dclose(put_dataset(file, "x", H5T_IEEE_F64LE, {10}, elsewhere));
+         H5Pclose(elsewhere);
+       },
+       "a.h5: x: a column has its numbers in the file (found a reference to another file): "},
+      {"a unit that is a number",
+       [](hid_t file) {
+         const hid_t data = H5Dopen2(file, "series/time", H5P_DEFAULT);
+         H5Adelete(data, "unit");
+         const double number = 1;
+         put_attribute(data, "unit", H5T_NATIVE_DOUBLE, 1, &number);
+         H5Dclose(data);
+       },
+       "a.h5: series/time@unit: is to be text (found a number): "},
+      {"a column of texts", [](hid_t file) { H5Dclose(put_dataset(file, "series/texts", H5T_C_S1, {4})); },
+       "a.h5: series/texts: a column is made of numbers (found another type): "},
+      {"three dimensions",
+       [](hid_t file) {
+         H5Dclose(put_dataset(file, "series/cube", H5T_IEEE_F64LE, {2, 2, 2}));
+       },
+       "a.h5: series/cube: a column has one or two dimensions (found 3): "},
+      {"a group above the folder",
+       [](hid_t file) {
+         H5Gclose(H5Gcreate2(file, "..", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+         H5Dclose(put_dataset(file, "../outside", H5T_IEEE_F64LE, {0}));
+       },
+       "a.h5: holds a name that no result has (found ..): "},
+      {"a name of two lines",
+       [](hid_t file) { H5Gclose(H5Gcreate2(file, "a\nb", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)); },
+       "a.h5: holds a name that no result has (found a\nb): "},
+      {"no version", [](hid_t file) { H5Adelete(file, "format_version"); },
+       "a.h5: not a result of this program (found no attribute format_version): "}};
+  return all;
+}
+
+class DamagedFiles : public ProgramTest {};
+
+TEST_F(DamagedFiles, AreRefusedByName) {
+  for (const auto& [what, how, message] : damages()) {
+    write("a.h5", tools::file_image(small_result()));
+    change(folder / "a.h5", how);
+    for (const auto* command : {"info a.h5", "export a.h5 --to deep/csv", "plot a.h5", "merge a.h5 -o b.h5"}) {
+      const Printed refused = shell(std::string("timeout 20 cradle ") + command);
+      EXPECT_EQ(refused.status, 4) << command << ", " << what << ": " << refused.err;
+      EXPECT_EQ(refused.err.rfind(std::string("cradle: ") + message, 0), 0U) << what << ": " << refused.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "deep") || std::filesystem::exists(folder / "b.h5")) << what;
+  }
+}
+
+TEST_F(DamagedFiles, EmptySeriesAreListed) {
+  tools::Result result = small_result();
+  for (auto& column : result.groups[0].columns) column.values = std::vector<double>{};
+  write("a.h5", tools::file_image(result));
+  EXPECT_EQ(shell("cradle info a.h5").status, 0);
+  // One column of several.
+  result = small_result();
+  result.groups[0].columns[1].values = std::vector<double>{};
+  write("a.h5", tools::file_image(result));
+  EXPECT_EQ(shell("cradle info a.h5").status, 0);
+}
+
+}  // namespace damaged_files_test
+}  // namespace cradle::tests

@@ -1,0 +1,102 @@
+#include "cradle/tools/result/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/support/errors.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+// Text of several lines stays one comment.
+std::string comment(const Attribute& attribute) {
+  std::string value = std::visit([](const auto& v) { return fmt::format("{}", v); }, attribute.second);
+  for (std::size_t at = value.find('\n'); at != value.npos; at = value.find('\n', at + 1)) value.insert(at + 1, "#   ");
+  return fmt::format("# {} = {}\n", attribute.first, value);
+}
+
+std::string comments(const std::vector<Attribute>& attributes) {
+  std::string text;
+  for (const Attribute& attribute : attributes)
+    if (attribute.first != "scene") text += comment(attribute);
+  return text;
+}
+
+std::string heading(const std::string& name) {
+  if (name.find_first_of(",\"") == name.npos) return name;
+  std::string quoted = "\"";
+  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+const std::string* scene_in(const std::vector<Attribute>& attributes) {
+  for (const auto& [name, value] : attributes)
+    if (name == "scene") return std::get_if<std::string>(&value);
+  return nullptr;
+}
+
+class Folder {
+ public:
+  explicit Folder(const std::string& path) : path_(path) {}
+
+  void write(const std::string& name, const std::string& text) {
+    const std::filesystem::path file = path_ / name;
+    std::error_code error;
+    std::filesystem::create_directories(file.parent_path(), error);
+    // Made again with the same command: no need to wait for the disk.
+    replace_file(file.string(), text, Sync::no);
+    written_.push_back(file.string());
+  }
+  std::vector<std::string> written() && { return std::move(written_); }
+
+ private:
+  std::filesystem::path path_;
+  std::vector<std::string> written_;
+};
+
+}  // namespace
+
+std::string csv(const Group& group) {
+  std::string text = comments(group.attributes);
+  std::size_t rows = 0;
+  std::string separator;
+  const auto append = [&](const std::string& cell) {
+    text += separator + cell;
+    separator = ",";
+  };
+  for (const auto& column : group.columns) {
+    for (std::size_t i = 0; i < column.width; ++i)
+      append(heading(column.width > 1 ? fmt::format("{}[{}]", column.name, i) : column.name));
+    rows = std::max(rows, column.rows());
+  }
+  if (!group.columns.empty()) text += '\n';
+  for (std::size_t row = 0; row < rows; ++row) {
+    separator.clear();
+    for (const auto& column : group.columns)
+      for (std::size_t i = 0; i < column.width; ++i)
+        append(
+            row < column.rows()
+                ? std::visit([&](const auto& v) { return fmt::format("{}", v[row * column.width + i]); }, column.values)
+                : std::string());
+    text += '\n';
+  }
+  return text;
+}
+
+std::vector<std::string> export_csv(const Result& result, const std::string& folder) {
+  Folder files(folder);
+  if (const auto* scene = scene_in(result.attributes)) files.write("scene.toml", comments(result.attributes) + *scene);
+  for (const Group& group : result.groups) {
+    files.write(group.name + ".csv", csv(group));
+    const auto above = std::filesystem::path(group.name).parent_path();  // "points/0003"
+    if (const auto* scene = scene_in(group.attributes); scene != nullptr && !above.empty())
+      files.write((above / "scene.toml").string(), *scene);
+  }
+  return std::move(files).written();
+}
+
+}  // namespace cradle::tools

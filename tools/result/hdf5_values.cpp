@@ -1,0 +1,142 @@
+#include "cradle/tools/result/hdf5_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace cradle::tools::hdf5 {
+
+namespace {
+
+std::string text(const Source& source, hid_t attribute, hid_t type, const std::string& where) {
+  if (H5Tis_variable_str(type) > 0) {
+    const Handle memory = text_type(source.path);
+    char* characters = nullptr;
+    check(H5Aread(attribute, memory, static_cast<void*>(&characters)), source.unreadable(where));
+    const std::unique_ptr<char, decltype(&H5free_memory)> owner(characters, H5free_memory);
+    return characters == nullptr ? "" : characters;
+  }
+  const std::size_t size = H5Tget_size(type);
+  if (size > source.bytes) throw source.wrong(where, "longer than the file", fmt::format("{} bytes", size));
+  std::string characters(size, '\0');
+  check(H5Aread(attribute, type, characters.data()), source.unreadable(where));
+  return characters.substr(0, characters.find('\0'));
+}
+
+Attribute attribute(const Source& source, hid_t object, const std::string& name, const std::string& object_name) {
+  check_name(source, name, object_name);
+  const std::string where = object_name + "@" + name, what = source.unreadable(where);
+  const Handle id(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+  const Handle type(H5Aget_type(id), H5Tclose, what);
+  const Handle space(H5Aget_space(id), H5Sclose, what);
+  if (const auto points = H5Sget_simple_extent_npoints(space); points != 1)
+    throw source.wrong(where, "an attribute is one number or one text", fmt::format("{} of them", points));
+  const auto read = [&](auto value, hid_t memory) {
+    check(H5Aread(id, memory, &value), what);
+    return value;
+  };
+  switch (H5Tget_class(type)) {
+  case H5T_STRING:
+    return {name, text(source, id, type, where)};
+  case H5T_FLOAT:
+    return {name, read(double{}, H5T_NATIVE_DOUBLE)};
+  case H5T_INTEGER:
+    if (H5Tget_sign(type) != H5T_SGN_NONE)
+      if (const auto value = read(std::int64_t{}, H5T_NATIVE_INT64); value < 0)
+        return {name, static_cast<double>(value)};
+    return {name, read(std::uint64_t{}, H5T_NATIVE_UINT64)};
+  default:
+    throw source.wrong(where, "an attribute is one number or one text", "another type");
+  }
+}
+
+// Rows, and the column's width.
+hsize_t shape(const Source& source, hid_t data, const std::string& where, Column& column) {
+  const Handle space(H5Dget_space(data), H5Sclose, source.unreadable(where));
+  const int dimensions = H5Sget_simple_extent_ndims(space);
+  if (H5Sget_simple_extent_type(space) != H5S_SIMPLE || dimensions < 1 || dimensions > 2)
+    throw source.wrong(where, "a column has one or two dimensions", fmt::format("{}", dimensions));
+  hsize_t extent[2] = {0, 1};
+  if (H5Sget_simple_extent_dims(space, extent, nullptr) != dimensions) throw failure(source.unreadable(where));
+  if (extent[0] == 0 || extent[1] == 0) return 0;
+  column.width = extent[1];
+  return extent[0];
+}
+
+// Before memory is taken for so many numbers: does the file have them?
+void check_size(const Source& source, hid_t data, hid_t type, hsize_t rows, hsize_t width, const std::string& where) {
+  constexpr hsize_t most_compressed = 1032;  // deflate's limit
+  const Handle how(H5Dget_create_plist(data), H5Pclose, source.unreadable(where));
+  const H5D_layout_t layout = H5Pget_layout(how);
+  if (layout == H5D_VIRTUAL || (layout == H5D_CONTIGUOUS && H5Pget_external_count(how) != 0))
+    throw source.wrong(where, "a column has its numbers in the file", "a reference to another file");
+  const hsize_t stored = H5Dget_storage_size(data);
+  const hsize_t most =
+      stored * (layout == H5D_CHUNKED ? most_compressed : 1) / std::max<std::size_t>(H5Tget_size(type), 1);
+  if (stored > source.bytes || (rows > 0 && (width > most || rows > most / width)))
+    throw source.wrong(where, "more numbers than the file can hold", fmt::format("{} x {}", rows, width));
+}
+
+template <class Number>
+std::vector<Number> numbers(const Source& source, hid_t data, hid_t memory, hsize_t rows, Column& column) {
+  const std::string what = source.unreadable(column.name);
+  const bool all = source.reading == Reading::everything || rows <= 2;
+  const hsize_t size = (all ? rows : 2) * column.width;
+  std::vector<Number> values(size);
+  if (size == 0) return values;
+  const Handle space(H5Dget_space(data), H5Sclose, what), flat(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
+  if (!all) {
+    const hsize_t start[2] = {0, 0}, step[2] = {rows - 1, 1}, count[2] = {2, column.width};
+    check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, step, count, nullptr), what);
+    column.left_out = rows - 2;
+  }
+  check(H5Dread(data, memory, flat, space, H5P_DEFAULT, values.data()), what);
+  return values;
+}
+
+}  // namespace
+
+void check_name(const Source& source, const std::string& name, const std::string& where) {
+  constexpr std::size_t longest = 200;
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; };
+  if (name.empty() || name == "." || name == ".." || name.size() > longest || name.find('/') != name.npos ||
+      std::any_of(name.begin(), name.end(), control))
+    throw source.wrong(where, "holds a name that no result has", name.size() > longest ? "a long one" : name);
+}
+
+std::vector<Attribute> attributes(const Source& source, hid_t object, const std::string& where) {
+  std::vector<std::string> names;
+  hsize_t position = 0;
+  const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &position, collect, &names), source.unreadable(where));
+  std::vector<Attribute> found;
+  for (const auto& name : names) found.push_back(attribute(source, object, name, where));
+  return found;
+}
+
+Column column(const Source& source, hid_t data, const std::string& name, const std::string& where) {
+  Column column{name, "", "", {}};
+  for (const auto& [key, value] : attributes(source, data, where)) {
+    if (key != "unit" && key != "description") continue;
+    const auto* text = std::get_if<std::string>(&value);
+    if (text == nullptr) throw source.wrong(where + "@" + key, "is to be text", "a number");
+    (key == "unit" ? column.unit : column.description) = *text;
+  }
+  const Handle type(H5Dget_type(data), H5Tclose, source.unreadable(where));
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT)
+    throw source.wrong(where, "a column is made of numbers", "another type");
+  const hsize_t rows = shape(source, data, where, column);
+  check_size(source, data, type, rows, column.width, where);
+  if (kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_NONE)
+    column.values = numbers<std::uint64_t>(source, data, H5T_NATIVE_UINT64, rows, column);
+  else
+    column.values = numbers<double>(source, data, H5T_NATIVE_DOUBLE, rows, column);
+  return column;
+}
+
+}  // namespace cradle::tools::hdf5

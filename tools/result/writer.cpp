@@ -1,0 +1,119 @@
+#include "cradle/tools/result/writer.hpp"
+
+#include <stdlib.h>
+
+#include <exception>
+#include <filesystem>
+
+#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/hdf5.hpp"
+#include "cradle/tools/result/seal.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+using hdf5::check;
+using hdf5::Handle;
+
+constexpr const char* no_room = "the result could not be laid out in memory";
+
+// Bytes must not depend on when they are written. Columns and groups come back in the order in which they were written.
+Handle properties(hid_t property_class) {
+  Handle list(H5Pcreate(property_class), H5Pclose, no_room);
+  check(H5Pset_obj_track_times(list, false), no_room);
+  if (property_class != H5P_DATASET_CREATE)
+    check(H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), no_room);
+  return list;
+}
+
+void write_attribute(hid_t object, const Attribute& attribute) {
+  const auto& [name, value] = attribute;
+  const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, no_room);
+  const auto put = [&](hid_t type, hid_t memory, const void* data) {
+    const Handle id(H5Acreate2(object, name.c_str(), type, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, no_room);
+    check(H5Awrite(id, memory, data), no_room);
+  };
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    const Handle type = hdf5::text_type(name);
+    const char* characters = text->c_str();
+    put(type, type, &characters);
+  } else if (const auto* number = std::get_if<double>(&value)) {
+    put(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, number);
+  } else {
+    put(H5T_STD_U64LE, H5T_NATIVE_UINT64, &std::get<std::uint64_t>(value));
+  }
+}
+
+void write_column(hid_t group, const Column& column) {
+  const hsize_t shape[2] = {column.rows(), column.width};
+  const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, no_room);
+  const bool real = std::holds_alternative<std::vector<double>>(column.values);
+  const Handle data(H5Dcreate2(group, column.name.c_str(), real ? H5T_IEEE_F64LE : H5T_STD_U64LE, space, H5P_DEFAULT,
+                               properties(H5P_DATASET_CREATE), H5P_DEFAULT),
+                    H5Dclose, no_room);
+  const auto put = [&](const auto& values) {
+    check(H5Dwrite(data, real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+          no_room);
+  };
+  if (shape[0] > 0) std::visit(put, column.values);
+  write_attribute(data, {"unit", column.unit});
+  write_attribute(data, {"description", column.description});
+}
+
+Handle file_in_memory() {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_room);
+  constexpr std::size_t grows_by = std::size_t{1} << 20;
+  check(H5Pset_fapl_core(access, grows_by, false), no_room);
+  return {H5Fcreate("cradle", H5F_ACC_TRUNC, properties(H5P_FILE_CREATE), access), H5Fclose, no_room};
+}
+
+}  // namespace
+
+std::string file_image(const Result& result) {
+  hdf5::silence();
+  const Handle file = file_in_memory();
+  for (const auto& attribute : result.attributes) write_attribute(file, attribute);
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, no_room);
+  check(H5Pset_create_intermediate_group(links, 1), no_room);
+  const Handle of_groups = properties(H5P_GROUP_CREATE);
+  for (const auto& table : result.groups) {
+    const Handle group(H5Gcreate2(file, table.name.c_str(), links, of_groups, H5P_DEFAULT), H5Gclose, no_room);
+    for (const auto& attribute : table.attributes) write_attribute(group, attribute);
+    for (const auto& column : table.columns) write_column(group, column);
+  }
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size <= 0) throw hdf5::failure(no_room);
+  std::string image;
+  image.reserve(static_cast<std::size_t>(size) + seal_size);
+  image.resize(static_cast<std::size_t>(size));
+  if (H5Fget_file_image(file, image.data(), image.size()) != size) throw hdf5::failure(no_room);
+  image += seal_of(image);
+  return image;
+}
+
+void write_result(const Result& result, const std::string& path) { replace_file(path, file_image(result)); }
+
+void write_or_keep(const Result& result, const std::string& path) {
+  const std::string image = file_image(result);
+  std::string trouble;
+  try {
+    return replace_file(path, image);
+  } catch (const Error& error) {
+    trouble = error.what();
+  }
+  try {
+    std::string folder = (std::filesystem::temp_directory_path() / "cradle-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr)
+      throw Error({folder, 0, ""}, "could not be made", "", "make room", Exit::io);
+    const auto elsewhere = (folder / std::filesystem::path(path).filename()).string();
+    replace_file(elsewhere, image);
+    trouble += "; what was computed is in " + elsewhere + ", move it from there";
+  } catch (const std::exception& error) {
+    trouble += std::string("; it could not be kept elsewhere either: ") + error.what();
+  }
+  throw Error(trouble, Exit::io);
+}
+
+}  // namespace cradle::tools

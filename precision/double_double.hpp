@@ -8,6 +8,7 @@
 //   quotient    DWDivDW2 (17), with FMA                 15 u^2 + 56 u^3
 //
 // The bounds hold while nothing underflows, that is, while results stay above 2^-969: that is numeric_limits::min().
+// Beyond the greatest number they give NaN: infinity is there to be compared with, not to compute with.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>

@@ -136,13 +136,15 @@ template <int Limbs> class std::numeric_limits<cradle::Mpfr<Limbs>> {
   static constexpr bool has_infinity = true, has_quiet_NaN = true, is_iec559 = false, is_bounded = true;
   static constexpr int radix = 2;
   // digits are a run-time choice: see MpfrPrecision.
-  static constexpr long min_exponent = -(1L << 30) + 2, max_exponent = (1L << 30) - 1;
-  static T epsilon() { return ldexp(T(1), 1 - cradle::MpfrPrecision::bits()); }
-  // Above the least exponent by more than the precision: differences of larger numbers are exact or rounded, never
+  // Above MPFR's least exponent by more than the precision: differences of larger numbers are exact or rounded, never
   // zero.
-  static T min() { return ldexp(T(1), min_exponent + (1L << 20)); }
-  static T max() { return ldexp(T(1), max_exponent - 1); }
+  static constexpr long min_exponent = -(1L << 30) + (1L << 20) + 3, max_exponent = (1L << 30) - 1;
+  static T epsilon() { return ldexp(T(1), 1 - cradle::MpfrPrecision::bits()); }
+  static T min() { return ldexp(T(1), min_exponent - 1); }
+  static T max() { return ldexp(T(1) - ldexp(T(1), -cradle::MpfrPrecision::bits()), max_exponent); }
   static T lowest() { return -max(); }
+  static T infinity() { return T(std::numeric_limits<double>::infinity()); }
+  static T quiet_NaN() { return T(std::numeric_limits<double>::quiet_NaN()); }
 };
 
 template <int Limbs> inline constexpr std::string_view cradle::scalar_name<cradle::Mpfr<Limbs>> = "mpfr";

@@ -1,5 +1,5 @@
 #pragma once
-// Decimal text of an MPFR number.
+// Decimal text of a finite MPFR number.
 
 #include <mpfr.h>
 
@@ -15,7 +15,6 @@ inline std::string mpfr_text(mpfr_srcptr x, std::size_t digits) {
   char* raw = mpfr_get_str(nullptr, &exponent, 10, digits, x, MPFR_RNDN);
   std::string text = raw;
   mpfr_free_str(raw);
-  if (!mpfr_number_p(x)) return text;
   const std::string sign = text.front() == '-' ? "-" : "";
   std::string figures = text.substr(sign.size());
   figures.erase(figures.find_last_not_of('0') + 1);

@@ -1,6 +1,7 @@
 #pragma once
 // Exact text in and out, one specialisation per scalar type: `from_text` rounds a decimal literal once, to the nearest
-// number of the type; `to_text` writes as many digits as it takes to read the same number back.
+// number of the type; `to_text` writes as many digits as it takes to read the same number back, and inf, -inf, nan for
+// what is no number, which from_text does not take.
 
 #include <array>
 #include <charconv>
@@ -81,6 +82,10 @@ template <> struct Text<double> : detail::StandardText<double> {};
 template <> struct Text<long double> : detail::StandardText<long double> {};
 
 template <class T> T from_text(std::string_view literal) { return Text<T>::from(literal); }
-template <class T> std::string to_text(const T& value) { return Text<T>::to(value); }
+template <class T> std::string to_text(const T& value) {
+  if (value > std::numeric_limits<T>::max()) return "inf";
+  if (value < std::numeric_limits<T>::lowest()) return "-inf";
+  return value == value ? Text<T>::to(value) : "nan";
+}
 
 }  // namespace cradle

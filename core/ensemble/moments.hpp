@@ -81,7 +81,7 @@ inline void join_extremes(Moments& left, const Moments& right) {
 
 // Of both sets. Moments of no replica change nothing, not a bit. Throws std::invalid_argument for vectors of different
 // lengths.
-inline Moments combine(Moments left, Moments right) {
+inline Moments combine(Moments left, const Moments& right) {
   if (right.replicas == 0) return left;
   if (left.replicas == 0) return right;
   const std::size_t n = left.entries();

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -55,21 +56,14 @@ class MomentTree {
   }
 
   /// A node that was taken from another set, which must have no replica in common with this one; throws
-  /// std::invalid_argument for one that has, or that no tree can hold.
+  /// std::invalid_argument for one that has, that no tree can hold, or whose vectors are of another length.
   void add(TreeNode node) {
     if (node.level > 62 || node.first >> 63 || (node.first & (node.range().count - 1)) != 0)
       throw std::invalid_argument("no node of the tree of replicas: index " + std::to_string(node.first) + ", level " +
                                   std::to_string(node.level));
-    if (overlaps(node.range()))
-      throw std::invalid_argument("replicas " + std::to_string(node.first) + " to " +
-                                  std::to_string(node.range().end() - 1) + ": some of them are there already");
-    for (;;) {  // what is slow, putting two nodes together, is done outside the lock
-      std::optional<TreeNode> sibling = take_sibling_or_keep(node);
-      if (!sibling) return;
-      if (sibling->first < node.first) std::swap(*sibling, node);
-      node.moments = combine(std::move(node.moments), std::move(sibling->moments));
-      ++node.level;
-    }
+    std::optional<Siblings> siblings = keep(std::move(node));
+    // What is slow, putting two nodes together, is done outside the lock; until that is done readers see the two.
+    while (siblings) siblings = replace(*siblings, combine(*siblings->lower, *siblings->upper));
   }
 
   /// Statistics of the whole set.
@@ -88,7 +82,7 @@ class MomentTree {
     const std::scoped_lock lock(mutex_);
     std::vector<TreeNode> all;
     all.reserve(nodes_.size());
-    for (const auto& [first, held] : nodes_) all.push_back({first, held.level, held.moments});
+    for (const auto& [first, held] : nodes_) all.push_back({first, held.level, *held.moments});
     return all;
   }
   std::size_t nodes_held() const {
@@ -109,8 +103,7 @@ class MomentTree {
   /// Is any of these replicas there?
   bool overlaps(ReplicaRange wanted) const {
     const std::scoped_lock lock(mutex_);
-    auto after = nodes_.lower_bound(wanted.end());  // the first node beyond; the one before it reaches furthest
-    return after != nodes_.begin() && range(std::prev(after)).end() > wanted.first && wanted.count > 0;
+    return holds_some_of(wanted);
   }
 
   /// Those of these replicas that are not there, in order.
@@ -121,29 +114,58 @@ class MomentTree {
  private:
   struct Held {
     unsigned level;
-    Moments moments;
+    std::shared_ptr<const Moments> moments;
   };
   using Nodes = std::map<ReplicaIndex, Held>;  // disjoint, so the first index names a node
 
   static ReplicaRange range(Nodes::const_iterator at) { return {at->first, std::uint64_t{1} << at->second.level}; }
 
-  std::optional<TreeNode> take_sibling_or_keep(TreeNode& node) {
+  bool holds_some_of(ReplicaRange wanted) const {
+    auto after = nodes_.lower_bound(wanted.end());  // the first node beyond; the one before it reaches furthest
+    return after != nodes_.begin() && range(std::prev(after)).end() > wanted.first && wanted.count > 0;
+  }
+
+  struct Siblings {
+    ReplicaIndex first;  // of the lower one
+    unsigned level;
+    std::shared_ptr<const Moments> lower, upper;
+  };
+
+  std::optional<Siblings> keep(TreeNode node) {
     const std::scoped_lock lock(mutex_);
-    const auto at = nodes_.find(node.first ^ (std::uint64_t{1} << node.level));
-    if (at == nodes_.end() || at->second.level != node.level) {
-      nodes_.emplace(node.first, Held{node.level, std::move(node.moments)});
-      return std::nullopt;
+    if (holds_some_of(node.range()))
+      throw std::invalid_argument("replicas " + std::to_string(node.first) + " to " +
+                                  std::to_string(node.range().end() - 1) + ": some of them are there already");
+    if (node.moments.replicas > 0) {
+      if (entries_.value_or(node.moments.entries()) != node.moments.entries())
+        throw std::invalid_argument("statistics of vectors of different lengths (" + std::to_string(*entries_) +
+                                    " and " + std::to_string(node.moments.entries()) + " numbers)");
+      entries_ = node.moments.entries();
     }
-    TreeNode sibling{at->first, at->second.level, std::move(at->second.moments)};
-    nodes_.erase(at);
-    return sibling;
+    return hold(node.first, node.level, std::move(node.moments));
+  }
+
+  std::optional<Siblings> replace(const Siblings& halves, Moments whole) {
+    const std::scoped_lock lock(mutex_);
+    nodes_.erase(halves.first);
+    nodes_.erase(halves.first + (std::uint64_t{1} << halves.level));
+    return hold(halves.first, halves.level + 1, std::move(whole));
+  }
+
+  // Gives the node and its sibling if that is there. Whoever held the later of the two, and nobody else, gets them.
+  std::optional<Siblings> hold(ReplicaIndex first, unsigned level, Moments moments) {
+    auto lower = nodes_.emplace(first, Held{level, std::make_shared<const Moments>(std::move(moments))}).first;
+    auto upper = nodes_.find(first ^ (std::uint64_t{1} << level));
+    if (upper == nodes_.end() || upper->second.level != level) return std::nullopt;
+    if (upper->first < first) std::swap(lower, upper);
+    return Siblings{lower->first, level, lower->second.moments, upper->second.moments};
   }
 
   // Value of the node over `whole`, full or not.
   Moments fold(ReplicaRange whole) const {
     const auto at = nodes_.lower_bound(whole.first);
     if (at == nodes_.end() || at->first >= whole.end()) return {};
-    if (range(at) == whole) return at->second.moments;
+    if (range(at) == whole) return *at->second.moments;
     const std::uint64_t half = whole.count / 2;
     return combine(fold({whole.first, half}), fold({whole.first + half, half}));
   }
@@ -174,6 +196,7 @@ class MomentTree {
 
   mutable std::mutex mutex_;
   Nodes nodes_;
+  std::optional<std::size_t> entries_;  // of every vector
 };
 
 }  // namespace cradle

@@ -4,7 +4,9 @@
 // b, c, 6, 7). Lengths, speeds, masses in units of the scene; float64, since a bin holds many bodies. Bins without
 // bodies have density 0 and no velocity (NaN).
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -42,6 +44,12 @@ struct Bin {
     if (v < 0) left += 1, left_speed += v;
   }
 };
+
+// The bin of a body that is in range: `place` counts bins from the start of the range, and may round up to their number
+// for a body just below its end.
+inline std::size_t bin_at(double place, std::size_t bins) {
+  return std::min(static_cast<std::size_t>(place), bins - 1);
+}
 
 inline double mean(double sum, double weight) {
   return weight > 0 ? sum / weight : std::numeric_limits<double>::quiet_NaN();
@@ -90,10 +98,8 @@ Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& ela
     throw std::invalid_argument("profile without extent: give a range that increases and at least one bin");
   const double width = (range.to - range.from) / static_cast<double>(bins);
   std::vector<detail::Bin> sums(bins);
-  for_each_body(c, bodies, elapsed, range, [&](double x, double v, double m) {
-    const auto bin = static_cast<std::size_t>((x - range.from) / width);
-    if (bin < bins) sums[bin].add(v, m);
-  });
+  for_each_body(c, bodies, elapsed, range,
+                [&](double x, double v, double m) { sums[detail::bin_at((x - range.from) / width, bins)].add(v, m); });
 
   Profile p;
   p.time = to_double(c.time);

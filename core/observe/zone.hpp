@@ -45,8 +45,7 @@ class ZoneAverage {
     ++taken_;
     ++part.samples;
     for_each_body(c, bodies, elapsed, {-reach_, reach_}, [&](double x, double v, double m) {
-      const auto bin = static_cast<std::size_t>((x + reach_) / (2 * reach_) * static_cast<double>(bins_));
-      if (bin >= bins_) return;
+      const std::size_t bin = detail::bin_at((x + reach_) / (2 * reach_) * static_cast<double>(bins_), bins_);
       part.mass[bin] += m;
       if (m != row_mass_ || v == 0) return;
       (v > 0 ? part.right : part.left)[bin] += 1;

@@ -95,6 +95,23 @@ TEST(Zone, WidthOfALinearFall) {
   EXPECT_DOUBLE_EQ(zone.mass_density()[0], 4 * 51);
 }
 
+TEST(Zone, BodyJustBelowTheEndIsInTheLastBin) {
+  const List<double> nobody({-100, 100}, {0, 0});
+  for (const double reach : {1., 4., .7, 561.862178}) {
+    for (std::size_t bins = 4; bins <= 300; ++bins) {
+      Configuration<double> c;
+      c.to = 1;
+      c.x = {-reach, std::nextafter(reach, 0.)};
+      c.v = {1, 1};
+      c.m = {1, 1};
+      ZoneAverage zone(reach, bins, 16, 1);
+      zone.add(c, nobody, 0.0);
+      ASSERT_GT(zone.mass_density().front(), 0) << reach << " in " << bins;
+      ASSERT_GT(zone.mass_density().back(), 0) << reach << " in " << bins;
+    }
+  }
+}
+
 // Rows that nothing slows down have no zone; and bodies that no front has reached are seen.
 TEST(Zone, NoWidthWithoutAFall) {
   const auto rows = std::make_shared<Rows<double>>(symmetric_rows(200, 0.5, 1.0, test::rshock_displacement));

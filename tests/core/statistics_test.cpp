@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,7 @@
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/replicas.hpp"
@@ -166,6 +168,42 @@ TEST(Statistics, SetsWithReplicasInCommonAreRefused) {
   EXPECT_EQ(tree.present(), (std::vector<ReplicaRange>{{0, 20}}));
   EXPECT_TRUE(tree.contains(19));
   EXPECT_FALSE(tree.contains(20));
+}
+
+TEST(Statistics, VectorsOfAnotherLengthAreRefusedAndChangeNothing) {
+  MomentTree tree;
+  for (ReplicaIndex k = 0; k < 3; ++k) tree.add(k, values_of(k));
+  const std::vector<TreeNode> before = tree.nodes();
+  EXPECT_THROW(tree.add(3, std::vector<double>(entries - 1)), std::invalid_argument);
+  EXPECT_EQ(tree.nodes(), before);
+  EXPECT_NO_THROW(tree.add(3, std::nullopt)) << "a replica that failed has no vector";
+  EXPECT_EQ(tree.total(), statistics_of({0, 1, 2}));
+}
+
+// Vectors so long that the writing thread puts nodes together nearly all the time: whoever reads meanwhile sees every
+// replica whose add() has returned, and one replica is never taken twice.
+TEST(Statistics, NoReplicaIsOutOfSightWhileOthersAreAdded) {
+  constexpr ReplicaIndex n = 64;
+  MomentTree tree;
+  std::atomic<std::uint64_t> added = 0;
+  std::uint64_t unseen = 0, taken_twice = 0, looks = 0;
+  std::jthread writer([&] {
+    for (ReplicaIndex k = 0; k < n; ++k) tree.add(k, std::vector<double>(100000, 1)), ++added;
+  });
+  for (std::uint64_t there = 0; there < n; ++looks) {
+    there = added;
+    if (there == 0) continue;
+    unseen += tree.size() < there || !tree.contains(there - 1) || !tree.missing({0, there}).empty();
+    try {
+      tree.add(looks % there, std::nullopt);
+      ++taken_twice;
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  writer.join();
+  EXPECT_EQ(unseen, 0U) << "of " << looks;
+  EXPECT_EQ(taken_twice, 0U) << "of " << looks;
+  EXPECT_EQ(tree.nodes_held(), 1U);
 }
 
 TEST(Statistics, MissingReplicasAreFoundWhereverTheyAre) {

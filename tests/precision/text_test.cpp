@@ -115,6 +115,15 @@ TYPED_TEST(EveryText, ManyZerosAndAnExponent) {
   }
 }
 
+TYPED_TEST(EveryText, WhatIsNoNumberHasTheSameNameInEveryType) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  EXPECT_EQ(to_text(Limits::infinity()), "inf");
+  EXPECT_EQ(to_text(T(-Limits::infinity())), "-inf");
+  EXPECT_EQ(to_text(Limits::quiet_NaN()), "nan");
+  EXPECT_EQ(to_text(T(-Limits::quiet_NaN())), "nan");
+}
+
 TYPED_TEST(EveryText, RefusesWhatIsNotAFiniteDecimalLiteral) {
   using T = typename TypeParam::Scalar;
   for (const char* text :

@@ -1,0 +1,81 @@
+// What std::numeric_limits says of every scalar type against how the type computes. Proves: epsilon is the spacing that
+// the digits promise; least and greatest number are those that the exponents promise; infinity and NaN, where they are
+// claimed, are there and behave as such.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cradle/tests/precision/every_scalar.hpp"
+
+namespace limits_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+template <class P> using EveryLimit = InPrecision<P>;
+TYPED_TEST_SUITE(EveryLimit, EveryPrecision, PrecisionName);
+
+// 2^exponent, by squaring: exponents go to 2^30.
+template <class T> T power_of_two(long exponent) {
+  T power(1), base = exponent < 0 ? T(T(1) / T(2)) : T(2);
+  for (long left = std::abs(exponent); left > 0; left /= 2) {
+    if (left % 2 == 1) power *= base;
+    if (left > 1) base *= base;
+  }
+  return power;
+}
+
+TYPED_TEST(EveryLimit, EpsilonIsWhatTheDigitsSay) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  const T epsilon = Limits::epsilon();
+  EXPECT_TRUE(T(1) + epsilon > T(1) && T(1) - epsilon < T(1));
+  if constexpr (requires { Limits::digits; }) {
+    EXPECT_TRUE(epsilon == power_of_two<T>(1 - Limits::digits));
+    EXPECT_LE(Limits::digits10, (Limits::digits - 1) * std::log10(2));
+    EXPECT_GE(Limits::max_digits10, 1 + Limits::digits * std::log10(2));
+  }
+  // A double-double may hold a one and something far smaller: its epsilon is what operations keep, 2^-104.
+  if (!std::same_as<T, double_double>) {
+    EXPECT_TRUE(T(1) + epsilon / T(4) == T(1));
+  }
+}
+
+TYPED_TEST(EveryLimit, LeastAndGreatestAreWhatTheExponentsSay) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  EXPECT_TRUE(Limits::lowest() == -Limits::max());
+  const long above = std::same_as<T, bin_float> ? 1 : 0;  // Boost 1.74 counts exponents from 1 instead of from 1/2
+  EXPECT_TRUE(Limits::min() == power_of_two<T>(Limits::min_exponent - 1 + above));
+  // Scaled down, since 2^max_exponent is beyond the range: no number fits between it and 1. (A low part is at most half
+  // a unit of the high one, and that is what a double-double lacks.)
+  const T share = Limits::max() * power_of_two<T>(1 - Limits::max_exponent - above) / T(2);
+  EXPECT_TRUE(share < T(1) && share >= T(1) - (std::same_as<T, double_double> ? T(0x1p-53) : Limits::epsilon()));
+}
+
+TYPED_TEST(EveryLimit, InfinityIsBeyondEveryNumber) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  ASSERT_TRUE(Limits::has_infinity);
+  const T infinity = Limits::infinity();
+  EXPECT_TRUE(infinity > Limits::max() && -infinity < Limits::lowest());
+  EXPECT_TRUE(infinity == infinity && infinity != -infinity);
+  EXPECT_TRUE(is_positive(infinity) && is_negative(T(-infinity)));
+  if (!std::same_as<T, double_double>) {  // its parts cancel: see double_double.hpp
+    EXPECT_TRUE(T(1) / infinity == T(0));
+  }
+  EXPECT_EQ(to_double(infinity), std::numeric_limits<double>::infinity());
+}
+
+TYPED_TEST(EveryLimit, NanIsUnlikeEveryNumberAndItself) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  ASSERT_TRUE(Limits::has_quiet_NaN);
+  const T nan = Limits::quiet_NaN();
+  EXPECT_FALSE(nan == nan);
+  for (const T& x : {T(0), T(1), Limits::infinity(), nan})
+    EXPECT_FALSE(nan == x || nan < x || nan > x || nan <= x || nan >= x);
+  EXPECT_TRUE(std::isnan(to_double(nan)) && std::isnan(to_double(T(nan + T(1)))));
+}
+
+}  // namespace limits_test

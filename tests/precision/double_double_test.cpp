@@ -105,7 +105,7 @@ const auto minus = [](const double_double& x, const double_double& y) { return x
 const auto times = [](const double_double& x, const double_double& y) { return x * y; };
 const auto over = [](const double_double& x, const double_double& y) { return x / y; };
 
-constexpr int pairs = 1000000;
+constexpr int pairs = 200000;
 
 TEST(DoubleDouble, SumIsWithinThreeSquaredUnits) {
   const double near = worst_of(1, pairs, 3, false, plus, mpfr_add);

@@ -101,11 +101,11 @@ template <class T> Scene<T> three(int third_place) {
   return list<T>({T(0), T(1), T(third_place)}, {T(1), T(0), T(-1)});
 }
 
-// Next to 0 the second contact finds the gap at the bottom of double's range, at 0 on it: with a cut-off the bodies
-// part, without one the run says that it is exhausted, or, where the range allows, goes on and collapses.
+// Next to 0, far below epsilon, the second contact finds a gap that no time resolves, at 0 none: with a cut-off the
+// bodies part, without one the run says that it is exhausted.
 TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
   using T = typename TypeParam::Scalar;
-  for (const T& restitution : {T(0), from_text<T>("1e-300")}) {
+  for (const T& restitution : {T(0), from_text<T>(TypeParam::digits > 0 ? "1e-100000000" : "1e-300")}) {
     auto parting = gap_run(three<T>(3), Inelastic<T>(restitution, from_text<T>("1e-5")));
     // Double-double ends at 2^-969: there a gap of 1e-300 is the end of the run, and it says so.
     const bool underflows = restitution > T(0) && restitution < std::numeric_limits<T>::min();
@@ -116,8 +116,7 @@ TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
     EXPECT_EQ(collapsing.advance(T(1000)), Status::exhausted);
     EXPECT_EQ(collapsing.chain().account().order_lost, 0U);
     auto stopping = gap_run(three<T>(3), Inelastic<T>(restitution, T(0)), stop_below(T(0)));
-    const Status status = stopping.advance(T(1000));
-    EXPECT_TRUE(status == Status::collapsed || status == Status::exhausted) << static_cast<int>(status);
+    EXPECT_EQ(stopping.advance(T(1000)), underflows ? Status::collapsed : Status::exhausted);
   }
 }
 

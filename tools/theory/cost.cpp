@@ -36,10 +36,11 @@ double bodies_at_end(const Scene& scene) {
                                         : reached(scene);
 }
 
-// Contacts of two rows that bounce, as a share of those of elastic rows without end, K(K + 1)/2. It depends on
-// s = K (1-eps)/(1+eps) alone: counted at eps = .999 (N = 8000 and 16000), .992 and .9, which agree to a few percent.
-// At first the share falls as bodies lag behind, about ln(1+s)/s, which is what the first body of a row meets; from
-// s = 1.8 on bodies of the dense core meet again and again, ever more often up to inelastic collapse at s = 3.25.
+// Contacts of two rows that bounce, as a share of those of elastic rows without end, K(K + 1)/2, by
+// s = K (1-eps)/(1+eps). Counted, not derived: the points are those of eps = .999, N = 8000. Runs of N = 16000 there
+// and of eps = .992 follow them closely below s = 3, eps = .9 within a tenth or two; eps = .5 does not. At first the
+// share falls as bodies lag behind, about ln(1+s)/s, which is what the first body of a row meets; from s = 1.8 on
+// bodies of the dense core meet again and again, ever more often up to inelastic collapse at s = 3.25.
 struct Share {
   double s, share;
 };

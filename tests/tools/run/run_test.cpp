@@ -250,7 +250,8 @@ TEST_F(Run, ClosureErrorsAreWrittenWhereTheyAreMeasured) {
                         more + "until = 500\n[output]\nsnapshots = [300]\n");
     EXPECT_EQ(shell("cradle run s.toml --quiet -o s.h5").status, 0) << law;
     std::optional<double> found;
-    for (const auto& [key, value] : read_result((folder / "s.h5").string()).find("snapshots/0000")->attributes)
+    const auto result = read_result((folder / "s.h5").string());
+    for (const auto& [key, value] : result.find("snapshots/0000")->attributes)
       if (key == name) found = std::get<double>(value);
     return found;
   };

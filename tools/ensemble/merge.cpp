@@ -21,8 +21,8 @@ Study study_in(const std::string& file) {
   const Result result = read_result(file);
   Study study = study_kind(result, file) == "sweep" ? sweep_in(result, file) : ensemble_in(result, file);
   if (attribute<std::uint64_t>(result.attributes, "identity", file) != study.identity())
-    throw Error({file, 0, ""}, "cannot be merged here", "another version's file, or listed bodies that have changed",
-                "use the program that wrote it, where it was written");
+    throw Error({file, 0, ""}, "cannot be merged here", "another version's file, or a scene that was changed in it",
+                "use the program that wrote it");
   return study;
 }
 

@@ -28,7 +28,8 @@ Handle properties(hid_t property_class) {
 }
 
 void write_attribute(hid_t object, const Attribute& attribute) {
-  const auto& [name, value] = attribute;
+  const std::string& name = attribute.first;  // no structured binding: clang 14 captures none
+  const auto& value = attribute.second;
   const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, no_room);
   const auto put = [&](hid_t type, hid_t memory, const void* data) {
     const Handle id(H5Acreate2(object, name.c_str(), type, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, no_room);

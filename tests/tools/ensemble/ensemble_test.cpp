@@ -226,7 +226,8 @@ TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
 TEST_F(Ensembles, InfoTellsWhatFilesAndJournalsHold) {
   run("ensemble shock.toml --replicas 3 -o a.h5");
   const Printed file = shell("cradle info a.h5");
-  for (const auto* text : {"3 reached the end", "law.restitution = 0.99", "/replicas", "max of bodies, contacts"})
+  for (const auto* text :
+       {"3 reached the end", "law.restitution = 0.99", "/replicas", "max of energy, energy_lost, contacts"})
     EXPECT_NE(file.out.find(text), std::string::npos) << text << "\n" << file.out;
   EXPECT_EQ(file.out.find("ensemble/nodes"), std::string::npos) << "only with --all";
   EXPECT_EQ(shell(until_journalled(std::string(long_one) + "b.h5", "b.h5", "KILL")).status, 137);

@@ -92,11 +92,12 @@ TEST_F(AtomicFile, RefusesWhatIsNoFile) {
   ASSERT_EQ(::mkfifo(path("fifo").c_str(), 0600), 0);
   fs::create_directory(folder / "folder");
   fs::create_symlink("fifo", folder / "link");
-  for (const auto& [name, found] : {std::pair{path("fifo"), "a FIFO"},
-                                    {path("link"), "a FIFO"},
-                                    {path("folder"), "a folder of that name"},
-                                    {path("folder/"), "a folder of that name"}}) {
-    const std::string message = name + ": cannot be written (found " + found + "): give another -o FILE";
+  for (const auto& refused : {std::pair{path("fifo"), "a FIFO"},
+                              {path("link"), "a FIFO"},
+                              {path("folder"), "a folder of that name"},
+                              {path("folder/"), "a folder of that name"}}) {
+    const std::string& name = refused.first;
+    const std::string message = name + ": cannot be written (found " + refused.second + "): give another -o FILE";
     EXPECT_EQ(refusal([&] { replace_file(name, "text"); }), message);
     EXPECT_EQ(refusal([&] { FileClaim{name}; }), message);
   }

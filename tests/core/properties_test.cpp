@@ -83,6 +83,8 @@ template <class Run> void expect_conservation(Run run, const Case& scene) {
     const double ledger = scene.bodies->kinetic_energy() - run.energy_lost();
     const double direct = kinetic_energy(c, *scene.bodies);
     EXPECT_NEAR(ledger, direct, velocity_error * std::sqrt(2 * direct * mass));
+    ASSERT_EQ(c.closure_speed.has_value(), !in_positions);
+    ASSERT_EQ(c.closure_gap.has_value(), !in_positions);
     EXPECT_LE(std::abs(c.closure_speed.value_or(0)), velocity_error);
     EXPECT_LE(std::abs(c.closure_gap.value_or(0)), 2 * velocity_error * t);
     EXPECT_GE(run.energy_lost(), before);

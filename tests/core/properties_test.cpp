@@ -1,11 +1,11 @@
 // What no run may violate, whatever the initial state: momentum, the order of bodies, energy = ledger, closure.
 //
-// Bounds. A contact rounds three closing speeds by u of themselves at most, u = 2^-53. Closing speeds differ from contact
-// to contact, so errors add up in squares: neighbours' being like the pair's own, allow 2 times 3 w^2 u^2 a contact, and
-// six standard deviations (as tests/precision/drift_test.cpp for 1e8 contacts). Each may shift the velocity of every body
-// on one side: no velocity is off by more, and over a time t no place by more than t times that, and as much again for
-// the rounding of contact times. In absolute positions velocities are rounded themselves, of at most 1 instead of w. A
-// gap is 0 at its last contact: it knows the error of one flight only.
+// Bounds. A contact rounds three closing speeds by u of themselves at most, u = 2^-53. Closing speeds differ from
+// contact to contact, so errors add up in squares: neighbours' being like the pair's own, allow 2 times 3 w^2 u^2 a
+// contact, and six standard deviations (as tests/precision/drift_test.cpp for 1e8 contacts). Each may shift the
+// velocity of every body on one side: no velocity is off by more, and over a time t no place by more than t times that,
+// and as much again for the rounding of contact times. In absolute positions velocities are rounded themselves, of at
+// most 1 instead of w. A gap is 0 at its last contact: it knows the error of one flight only.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,8 +1,8 @@
-// Collapse of many bodies under policy stop. Proves: among 3, 10 and 100 bodies as soft as three need to be to collapse,
-// a run with exact dynamics ends by itself with the collapse time of the same run in 100 digits, to within the
-// uncertainty it states and what its contacts round; near the elastic limit 100 and 1e5 bodies get to just before the onset of collapse; no order is
-// lost on the way. A mirror-symmetric pattern of 4 bodies, in which symmetry is unstable, keeps it as long as the type's
-// digits allow.
+// Collapse of many bodies under policy stop. Proves: among 3, 10 and 100 bodies as soft as three need to be to
+// collapse, a run with exact dynamics ends by itself with the collapse time of the same run in 100 digits, to within
+// the uncertainty it states and what its contacts round; near the elastic limit 100 and 1e5 bodies get to just before
+// the onset of collapse; no order is lost on the way. A mirror-symmetric pattern of 4 bodies, in which symmetry is
+// unstable, keeps it as long as the type's digits allow.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,7 +53,8 @@ template <class T> void expect_ends_of_all_sizes() {
       const auto expected = collapse_of(in_wide[k], restitution, in_more_digits);
       const T resolution = report.time.value() * std::numeric_limits<T>::epsilon();
       const bin_float error = wide(report.time.high) + wide(report.time.low) - expected.time.value();
-      EXPECT_LE(magnitude(error), wide(T(report.uncertainty + resolution * T(12 * static_cast<std::int64_t>(contacts)))));
+      EXPECT_LE(magnitude(error),
+                wide(T(report.uncertainty + resolution * T(12 * static_cast<std::int64_t>(contacts)))));
       EXPECT_LE(report.uncertainty, resolution * T(2));
       EXPECT_GT(in_more_digits, contacts) << "more digits, more contacts that they tell apart";
     }

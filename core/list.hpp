@@ -26,7 +26,7 @@ template <Real T> class List final : public Bodies<T> {
                                   " masses): give one velocity and one mass per position");
     for (const auto& [values, name] : {std::pair{&x_, "position"}, {&v_, "velocity"}, {&m_, "mass"}})
       for (std::size_t i = 0; i < values->size(); ++i)
-        require_finite((*values)[i], std::string(name) + " of body " + std::to_string(i));
+        if (!is_finite((*values)[i])) require_finite((*values)[i], std::string(name) + " of body " + std::to_string(i));
     require_finite(circumference_, "circumference");
     if (is_negative(circumference_))
       throw std::invalid_argument("circumference is negative (" + in_message(circumference_) +

@@ -9,13 +9,11 @@
 
 #include <algorithm>
 #include <concepts>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "cradle/core/account.hpp"
@@ -86,14 +84,18 @@ class Simulation {
   }
 
   // Makes every contact at times <= until. Except for `reached`, the run ends with the contact that was made last.
-  // An observer is told of every contact, observer(const Contact<T>&), and may throw: the contact is then still to be
-  // made. Without an observer there is nothing to pay.
   // Throws std::invalid_argument for a time that is not finite, or before the last contact made.
-  template <class Observer = std::nullptr_t> Status advance(const T& until, Observer&& observer = nullptr) {
+  Status advance(const T& until) {
     head_for(until);
-    while (step(observer)) {
-    }
-    return status_;
+    return make_contacts();
+  }
+  // The same, observer(const Contact<T>&) being told of every contact. It may throw: the contact is then still to be
+  // made.
+  template <class Observer> Status advance(const T& until, Observer&& observer) {
+    head_for(until);
+    observer_ = std::ref(observer);
+    aim();
+    return make_contacts();
   }
 
   // The same contact by contact, for several simulations side by side in one thread:
@@ -108,22 +110,20 @@ class Simulation {
                                   "): a run goes forward only");
     target_.until = until;
     status_ = Status::reached;
+    observer_ = nullptr;
     aim();
   }
   // Makes the next contact; false where there is none to make, or it is the last one.
-  template <class Observer = std::nullptr_t> [[gnu::always_inline]] bool step(Observer&& observer = nullptr) {
-    constexpr bool observed = !std::same_as<std::remove_cvref_t<Observer>, std::nullptr_t>;
+  [[gnu::always_inline]] bool step() {
     const auto next = queue_.next();
     Slot s = queue_.slot(next);
     if (next >= target_.certainly_before) [[unlikely]] {
       if (!first_within_target(s)) return false;
+      if (observer_) tell_observer(s);
     } else if (queue_.contested()) [[unlikely]] {
       s = first_of_tied();
     }
     const T time = chain_.due(s);
-    if constexpr (observed)
-      observer(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.stamp(time), time - last_contact_,
-                          chain_.closing(s)});
     const Collision<T> collision = chain_.collide(law_, s, time);
     queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
     last_contact_ = time;
@@ -180,10 +180,17 @@ class Simulation {
     ties_.forget();
   }
 
-  // Where to go, in the terms of the chain and the queue as they are now.
+  [[gnu::noinline]] Status make_contacts() {
+    while (step()) {
+    }
+    return status_;
+  }
+
+  // Where to go, in the terms of the chain and the queue as they are now. Of an observed run every contact is one to
+  // look at more closely, so that the others have nothing to pay.
   void aim() {
     target_.horizon = chain_.local_time(target_.until);
-    target_.certainly_before = queue_.certainly_before(chain_.queue_time(target_.horizon));
+    target_.certainly_before = observer_ ? 0 : queue_.certainly_before(chain_.queue_time(target_.horizon));
   }
 
   // The next contact where keys do not tell whether it comes in time; false if it does not.
@@ -194,6 +201,11 @@ class Simulation {
     if (!(chain_.due(first) <= target_.horizon)) return false;
     if (contested) count_close_call();
     return true;
+  }
+  void tell_observer(Slot s) {
+    const T time = chain_.due(s);
+    observer_(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.stamp(time), time - last_contact_,
+                         chain_.closing(s)});
   }
   Slot first_of_tied() {
     count_close_call();
@@ -253,7 +265,7 @@ class Simulation {
 
   struct Target {
     T until, horizon;                      // the time to go to, of the scene and as the chain calls it
-    EventQueue::Key certainly_before = 0;  // contacts with lesser keys come before it
+    EventQueue::Key certainly_before = 0;  // contacts with lesser keys come before it, and nobody observes them
   };
 
   Law law_;
@@ -270,6 +282,7 @@ class Simulation {
   CollapseWatch<T> watch_;
   Ties<Chain> ties_;
   Target target_;
+  std::function<void(const Contact<T>&)> observer_;  // of this advance only
   Status status_ = Status::reached;
   T underflow_{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows no underflow
   T watch_below_{0};

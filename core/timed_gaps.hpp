@@ -60,7 +60,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     cells_ = std::move(cells);
     lag_ = std::move(lag);
   }
-  void put(Slot s, Cell cell) {
+  void put(Slot s, Cell&& cell) {
     cells_[s] = std::move(cell);
     lag_[s] = T(0);
   }

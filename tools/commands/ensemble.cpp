@@ -9,7 +9,7 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options : CommonOptions {
+struct EnsembleArguments : CommonOptions {
   std::uint64_t replicas = 0, first = 0;
   std::vector<std::string> spreads;
   std::string output;
@@ -34,7 +34,7 @@ SpreadRequest spread(const std::string& text) {
   return {text.substr(0, equals), {from, to, static_cast<std::size_t>(bins)}};
 }
 
-StudyPlan plan(const Options& options) {
+StudyPlan plan(const EnsembleArguments& options) {
   const Scene scene = options.read();
   std::vector<SpreadRequest> spreads;
   for (const std::string& text : options.spreads) spreads.push_back(spread(text));
@@ -48,7 +48,7 @@ StudyPlan plan(const Options& options) {
 void add_ensemble(CommandLine& program) {
   Command command = program.add("ensemble", "replicas of a scene with different perturbations, and statistics",
                                 "cradle ensemble fig4 --replicas 100");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<EnsembleArguments>();
   add_common_options(command, *options);
   command.option("--replicas", options->replicas, {1, most_replicas},
                  "how many; those that FILE has already are not run again", Needed::yes);

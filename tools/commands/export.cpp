@@ -10,11 +10,11 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options {
+struct ExportArguments {
   std::string file, folder;
 };
 
-Exit export_result(const Options& options) {
+Exit export_result(const ExportArguments& options) {
   for (const std::string& file : export_csv(read_result(options.file), options.folder)) fmt::print("{}\n", file);
   return Exit::done;
 }
@@ -23,7 +23,7 @@ Exit export_result(const Options& options) {
 
 void add_export(CommandLine& program) {
   Command command = program.add("export", "a result as CSV, one file per group", "cradle export fig2.h5 --to fig2");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportArguments>();
   command.argument("FILE", options->file, "result file");
   command.option("--to", options->folder, "folder to write to; made where it is missing", Needed::yes);
   command.does([options] { return export_result(*options); });

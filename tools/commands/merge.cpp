@@ -10,12 +10,12 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options {
+struct MergeArguments {
   std::vector<std::string> files;
   std::string output;
 };
 
-Exit merge(const Options& options) {
+Exit merge(const MergeArguments& options) {
   const FileClaim claim(options.output);
   const Result result = merged(options.files)->result();
   write_result(result, options.output);
@@ -29,7 +29,7 @@ Exit merge(const Options& options) {
 void add_merge(CommandLine& program) {
   Command command = program.add("merge", "ensembles (or sweeps) of the same scene with different replicas, as one",
                                 "cradle merge first.h5 second.h5 -o all.h5");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MergeArguments>();
   command.arguments("FILE", options->files, "result files of `cradle ensemble` or `cradle sweep`");
   command.option("-o,--output", options->output, "result file", Needed::yes);
   command.does([options] { return merge(*options); });

@@ -88,10 +88,10 @@ void Command::does(Action action) {
   command_.callback([&chosen = chosen_, action = std::move(action)] { chosen = action; });
 }
 
-CommandLine::CommandLine(const std::string& program, const std::string& description, const std::string& version,
+CommandLine::CommandLine(const std::string& program, const std::string& description, const std::string& about_version,
                          const std::string& example, const std::string& ending)
     : program_(std::make_unique<CLI::App>(description, program)), ending_(ending) {
-  program_->set_version_flag("--version", version);
+  program_->set_version_flag("--version", about_version);
   program_->require_subcommand(1);
   program_->footer(with_example(example, ending_));
 }

@@ -64,7 +64,7 @@ class Command {
 class CommandLine {
  public:
   /// `ending` is that of every help, below an example.
-  CommandLine(const std::string& program, const std::string& description, const std::string& version,
+  CommandLine(const std::string& program, const std::string& description, const std::string& about_version,
               const std::string& example, const std::string& ending);
   ~CommandLine();
 

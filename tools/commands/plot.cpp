@@ -20,7 +20,7 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options {
+struct PlotArguments {
   std::string file, output;
 };
 
@@ -88,7 +88,7 @@ std::string find_python() {
               Exit::io);
 }
 
-Exit plot(const Options& options) {
+Exit plot(const PlotArguments& options) {
   const Result result = read_result(options.file);
   const Scene scene = scene_in(result.attributes, options.file);
   const std::string output =
@@ -111,7 +111,7 @@ Exit plot(const Options& options) {
 void add_plot(CommandLine& program) {
   Command command = program.add("plot", "the pictures of a result file; PNG, PDF or SVG by extension",
                                 "cradle plot fig2.h5 -o fig2.pdf");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PlotArguments>();
   command.argument("FILE", options->file, "result file");
   command.option("-o,--output", options->output, "picture (default: FILE with .png)");
   command.does([options] { return plot(*options); });

@@ -15,7 +15,7 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options : CommonOptions {
+struct RunArguments : CommonOptions {
   std::string output;
 };
 
@@ -25,7 +25,7 @@ std::string summary(const RunOutcome& run, double seconds) {
                      static_cast<double>(run.contacts) / seconds * 1e-6);
 }
 
-Exit run(const Options& options) {
+Exit run(const RunArguments& options) {
   const Scene scene = options.read();
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   check_built(scene);
@@ -53,7 +53,7 @@ Exit run(const Options& options) {
 
 void add_run(CommandLine& program) {
   Command command = program.add("run", "run a scene", "cradle run fig2 --set run.until=2000 -o fig2.h5");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunArguments>();
   add_common_options(command, *options);
   command.option("-o,--output", options->output, "result file (default: the scene's name with .h5, in this folder)");
   command.does([options] { return run(*options); });

@@ -10,12 +10,12 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options {
+struct ScenesArguments {
   std::string name;
   bool keys = false;
 };
 
-Exit scenes(const Options& options) {
+Exit scenes(const ScenesArguments& options) {
   if (options.keys) {
     fmt::print("{}", describe_fields());
     return Exit::done;
@@ -39,7 +39,7 @@ Exit scenes(const Options& options) {
 
 void add_scenes(CommandLine& program) {
   Command command = program.add("scenes", "list the bundled scenes; print one", "cradle scenes fig2 > my.toml");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ScenesArguments>();
   command.argument("NAME", options->name, "the scene to print", Needed::no);
   command.flag("--keys", options->keys, "every key of a scene file: type, unit, default, range, meaning");
   command.does([options] { return scenes(*options); });

@@ -9,14 +9,14 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options : CommonOptions {
+struct SweepArguments : CommonOptions {
   Sweep sweep;
   std::uint64_t first = 0;
   std::string output;
 };
 
 // What the command line says, else what the scene says.
-StudyPlan plan(const Options& options) {
+StudyPlan plan(const SweepArguments& options) {
   const Scene scene = options.read();
   Sweep sweep = scene.sweep;
   if (!options.sweep.vary.empty() || !options.sweep.points.empty()) {
@@ -35,7 +35,7 @@ StudyPlan plan(const Options& options) {
 void add_sweep(CommandLine& program) {
   Command command = program.add("sweep", "a scene at many points: one ensemble each, one file",
                                 "cradle sweep fig4 --vary law.restitution=0.9:0.999:10 --replicas 10");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SweepArguments>();
   add_common_options(command, *options);
   command.repeated("--vary", options->sweep.vary,
                    "or KEY=FROM:TO:COUNT:log, or KEY=VALUE,VALUE,...; of several, all combinations",

@@ -9,11 +9,11 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options : CommonOptions {
+struct TheoryArguments : CommonOptions {
   bool csv = false;
 };
 
-Exit theory(const Options& options) {
+Exit theory(const TheoryArguments& options) {
   const Scene scene = options.read();
   const auto table = predictions(scene);
   if (options.csv) {
@@ -40,7 +40,7 @@ Exit theory(const Options& options) {
 void add_theory(CommandLine& program) {
   Command command =
       program.add("theory", "the paper's predictions for a scene, with equation numbers", "cradle theory fig2");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TheoryArguments>();
   add_common_options(command, *options);
   command.flag("--csv", options->csv, "all curves, as CSV: quantity,equation,form,t,value");
   command.does([options] { return theory(*options); });

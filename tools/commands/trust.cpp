@@ -13,13 +13,13 @@ namespace cradle::tools {
 
 namespace {
 
-struct Options : CommonOptions {
+struct TrustArguments : CommonOptions {
   std::vector<unsigned> digits;
   bool both = false;
   std::string output;
 };
 
-Exit run_trust(const Options& options) {
+Exit run_trust(const TrustArguments& options) {
   const Scene scene = options.read();
   const std::string output = options.output.empty() ? scene.name + "-trust.h5" : options.output;
   const FileClaim claim(output);
@@ -39,9 +39,9 @@ Exit run_trust(const Options& options) {
 }  // namespace
 
 void add_trust(CommandLine& program) {
-  Command command = program.add("trust", "the same run at rising precision: until when which number is right",
+  Command command = program.add("trust", "the same run at rising precision: which numbers are right, and until when",
                                 "cradle trust fig2 --set run.until=1000 --digits 16,50");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TrustArguments>();
   add_common_options(command, *options);
   command.list("--digits", options->digits, {10, 1000},
                "digits to compare, 10 to 1000, the reference last; 16 is double, 31 double-double, others mpfr "

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 
 #include "cradle/tools/ensemble/state.hpp"
@@ -11,8 +10,6 @@
 namespace cradle::tools {
 
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 const Group& get(const Result& result, const std::string& name, const std::string& file) {
   if (const Group* group = result.find(name)) return *group;
@@ -68,10 +65,10 @@ Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& tot
   bool all_have_all = true;
   for (std::size_t i = quantity.offset; i < quantity.offset + quantity.size(); ++i) {
     const std::uint64_t count = total.replicas > 0 ? total.count(i) : 0;
-    mean.push_back(count > 0 ? total.mean[i] : none);
-    sem.push_back(count > 0 ? total.standard_error(i) : none);
-    least.push_back(count > 0 ? total.least[i] : none);
-    greatest.push_back(count > 0 ? total.greatest[i] : none);
+    mean.push_back(count > 0 ? total.mean[i] : missing);
+    sem.push_back(count > 0 ? total.standard_error(i) : missing);
+    least.push_back(count > 0 ? total.least[i] : missing);
+    greatest.push_back(count > 0 ? total.greatest[i] : missing);
     counts.push_back(count);
     all_have_all = all_have_all && count == total.replicas;
   }

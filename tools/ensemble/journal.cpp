@@ -15,10 +15,10 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::string_view magic = "CRADLEJ1";
+constexpr std::string_view journal_begin = "CRADLEJ1";
 constexpr std::uint64_t frame = 16;  // bytes of a record beside itself
 
-[[noreturn]] void fail(const std::string& path, const char* what) {
+[[noreturn]] void fail_journal(const std::string& path, const char* what) {
   throw Error({path, 0, ""}, what, std::strerror(errno), "check the folder and the space on its disk", Exit::io);
 }
 
@@ -43,15 +43,15 @@ bool JournalReader::is_journal(const std::string& path) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(path, none)) return false;  // a FIFO would make us wait for ever
   std::ifstream file(path, std::ios::binary);
-  std::string begin(magic.size(), '\0');
-  return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == magic;
+  std::string begin(journal_begin.size(), '\0');
+  return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == journal_begin;
 }
 
 JournalReader::JournalReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-  if (!file_) fail(path, "the journal could not be read");
+  if (!file_) fail_journal(path, "the journal could not be read");
   size_ = std::filesystem::file_size(path);
-  file_.seekg(static_cast<std::streamoff>(magic.size()));
-  whole_ = magic.size();
+  file_.seekg(static_cast<std::streamoff>(journal_begin.size()));
+  whole_ = journal_begin.size();
   if (!is_journal(path) || !next(header_))
     throw Error({path, 0, ""}, "not a journal of this program, or its beginning is damaged", "", "remove it", Exit::io);
 }
@@ -78,8 +78,8 @@ JournalWriter::JournalWriter(const std::string& path, std::string_view header,
   NewFile file(path);
   claim(file.descriptor());
   const auto put = [&](std::string_view record) { bytes_ += write_record(file.descriptor(), record, path); };
-  file.write({magic});
-  bytes_ = magic.size();
+  file.write({journal_begin});
+  bytes_ = journal_begin.size();
   put(header);
   if (records) records(put);
   file_ = file.put_in_place_open();
@@ -87,13 +87,13 @@ JournalWriter::JournalWriter(const std::string& path, std::string_view header,
 
 JournalWriter::JournalWriter(const std::string& path)
     : path_(path), file_(::open(file_behind(path).c_str(), O_WRONLY | O_CLOEXEC)) {
-  if (file_ < 0) fail(path, "the journal could not be opened");
+  if (file_ < 0) fail_journal(path, "the journal could not be opened");
   claim(file_);
 }
 
 void JournalWriter::go_on_after(std::uint64_t whole_bytes) {
   if (::ftruncate(file_, static_cast<off_t>(whole_bytes)) != 0 || ::lseek(file_, 0, SEEK_END) < 0)
-    fail(path_, "the journal could not be continued");
+    fail_journal(path_, "the journal could not be continued");
   bytes_ = whole_bytes;
 }
 

@@ -3,34 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <type_traits>
 
-#include "cradle/tools/run/in_precision.hpp"
-#include "cradle/tools/run/schedule.hpp"
 #include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
 
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-struct Times {
-  std::vector<double> series, profiles;
-};
-
-// As runs write them: rounded from the working precision.
-Times planned_times(const Scene& scene) {
-  return in_precision<Times>(scene, [&]<class T>(std::type_identity<T>) {
-    const Schedule<T> plan = schedule<T>(scene);
-    Times times;
-    for (const T& time : plan.series) times.series.push_back(to_double(time));
-    for (const T& time : plan.profiles) times.profiles.push_back(to_double(time));
-    return times;
-  });
-}
 
 bool of_series(const std::string& group) { return group == "series" || group.starts_with("series/"); }
 
@@ -123,7 +103,7 @@ void check_ensemble(const Scene& scene) {
 
 ReplicaLayout replica_layout(const Scene& scene) {
   check_ensemble(scene);
-  const Times times = planned_times(scene);
+  const PlannedTimes times = planned_times(scene);
   const RunTables tables = run_tables(scene);
   ReplicaLayout layout;
   const auto add = [&](const Column& column, const std::string& group, std::size_t rows) {
@@ -156,7 +136,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
 }
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  ReplicaRow row{index, outcome_of(run), run.contacts, run.merges, std::vector<double>(numbers.size(), none)};
+  ReplicaRow row{index, outcome_of(run), run.contacts, run.merges, std::vector<double>(numbers.size(), missing)};
   const auto put = [&](const std::string& name, double value) {
     for (std::size_t k = 0; k < numbers.size(); ++k)
       if (numbers[k].name == name) return void(row.numbers[k] = value);
@@ -170,7 +150,7 @@ ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const 
 }
 
 std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {
-  std::vector<double> numbers_of_run(entries, none);
+  std::vector<double> numbers_of_run(entries, missing);
   const std::size_t samples =
       samples_taken(get(run.result, "series", "time"), std::get<std::vector<double>>(time.values));
   const bool early = ended_early(outcome_of(run));

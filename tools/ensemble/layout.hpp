@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
+
+/// What stands for a number that a replica or a point has not.
+inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// A column of "series", "series/heaviest", "profiles/0002", ...: `rows` times `width` numbers from `offset` on.
 struct Quantity {

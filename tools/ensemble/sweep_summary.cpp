@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace cradle::tools {
@@ -18,8 +17,7 @@ class Table {
            double value) {
     const auto [place, fresh] = places_.try_emplace(name, columns_.size());
     if (fresh) {
-      constexpr double none = std::numeric_limits<double>::quiet_NaN();
-      columns_.push_back({name, unit, description, std::vector<double>(points_, none)});
+      columns_.push_back({name, unit, description, std::vector<double>(points_, missing)});
     }
     std::get<std::vector<double>>(columns_[place->second].values)[point] = value;
   }
@@ -41,10 +39,9 @@ void put_mean(Table& table, std::size_t point, const Column& about, const std::v
     mean += before / n;
     squares += before * (value - mean);
   }
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  table.put(point, about.name, about.unit, "mean over replicas: " + about.description, n > 0 ? mean : none);
+  table.put(point, about.name, about.unit, "mean over replicas: " + about.description, n > 0 ? mean : missing);
   table.put(point, about.name + "_error", about.unit, "standard error of that mean",
-            n > 1 ? std::sqrt(squares / (n * (n - 1))) : none);
+            n > 1 ? std::sqrt(squares / (n * (n - 1))) : missing);
   table.put(point, about.name + "_replicas", "1", "replicas that have this number", n);
 }
 

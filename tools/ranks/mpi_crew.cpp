@@ -127,6 +127,7 @@ Exit MpiCrew::together(const std::function<void()>& step) {
   int first = size_;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
   if (first == size_) return Exit::done;
+  ignore_signals();  // launchers end all ranks with one as soon as the first of them has ended
   std::string message;
   int status = rank_ == first ? status_of(error, message) : 0;
   MPI_Bcast(&status, 1, MPI_INT, first, MPI_COMM_WORLD);

@@ -6,7 +6,8 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::uint64_t text = 0, real = 1, whole = 2;
+// Of values, as bytes name them.
+constexpr std::uint64_t text_kind = 0, real_kind = 1, whole_kind = 2;
 
 void put(ByteWriter& bytes, const std::vector<Attribute>& attributes) {
   bytes.put(std::uint64_t{attributes.size()});
@@ -21,10 +22,10 @@ std::vector<Attribute> attributes_in(ByteReader& bytes) {
   for (std::uint64_t left = bytes.integer(); left > 0; --left) {
     std::string name = bytes.text();
     switch (bytes.integer()) {
-    case text:
+    case text_kind:
       attributes.emplace_back(std::move(name), bytes.text());
       break;
-    case real:
+    case real_kind:
       attributes.emplace_back(std::move(name), bytes.number<double>());
       break;
     default:
@@ -36,7 +37,7 @@ std::vector<Attribute> attributes_in(ByteReader& bytes) {
 
 void put(ByteWriter& bytes, const Column& column) {
   bytes.put(column.name).put(column.unit).put(column.description);
-  bytes.put(std::uint64_t{column.width}).put(column.left_out).put(column.values.index() == 0 ? real : whole);
+  bytes.put(std::uint64_t{column.width}).put(column.left_out).put(column.values.index() == 0 ? real_kind : whole_kind);
   std::visit([&](const auto& values) { bytes.put(values); }, column.values);
 }
 
@@ -44,7 +45,7 @@ Column column_in(ByteReader& bytes) {
   Column column{bytes.text(), bytes.text(), bytes.text(), {}};
   column.width = bytes.integer();
   column.left_out = bytes.integer();
-  if (bytes.integer() == real)
+  if (bytes.integer() == real_kind)
     column.values = bytes.numbers<double>();
   else
     column.values = bytes.numbers<std::uint64_t>();

@@ -16,7 +16,7 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::string_view magic = "CRADLES1";
+constexpr std::string_view seal_begin = "CRADLES1";
 
 Error unreadable(const std::string& path, const char* found) {
   return {{path, 0, ""}, "not a file that can be read", found, "give a result file that cradle wrote", Exit::io};
@@ -38,7 +38,7 @@ std::uint64_t checksum(std::ifstream& file, std::uint64_t size, const std::strin
 }  // namespace
 
 std::string seal_of(std::string_view bytes) {
-  std::string seal(magic);
+  std::string seal(seal_begin);
   seal += ByteWriter().put(std::uint64_t{bytes.size()}).bytes();
   return seal + ByteWriter().put(crc64(seal, crc64(bytes))).bytes();
 }
@@ -57,8 +57,8 @@ Seal check_seal(const std::string& path) {
   std::string seal(seal_size, '\0');
   file.seekg(static_cast<std::streamoff>(size - seal_size));
   if (!file.read(seal.data(), seal_size)) throw unreadable(path, "it ends early");
-  if (!seal.starts_with(magic)) return Seal::none;
-  ByteReader numbers(std::string_view(seal).substr(magic.size()));
+  if (!seal.starts_with(seal_begin)) return Seal::none;
+  ByteReader numbers(std::string_view(seal).substr(seal_begin.size()));
   const std::uint64_t length = numbers.integer(), crc = numbers.integer();
   file.seekg(0);
   if (length != size - seal_size || checksum(file, size - sizeof crc, path) != crc)

@@ -12,6 +12,7 @@ namespace cradle::tools {
 
 // Compiled once per scalar type, in a source of its own: instances/ of the build tree.
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options);
+template <class T> PlannedTimes planned_in(const Scene& scene);
 
 namespace {
 
@@ -85,7 +86,7 @@ std::vector<Attribute> provenance(const Scene& scene, const std::string& precisi
 }
 
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file) {
-  Scene scene = parse_scene(attribute<std::string>(attributes, "scene", file), file);
+  Scene scene = parse_recorded_scene(attribute<std::string>(attributes, "scene", file), file);
   for (const auto& [name, value] : attributes)
     if (name == "name")
       if (const auto* text = std::get_if<std::string>(&value)) scene.name = *text;
@@ -101,6 +102,10 @@ void check_built(const Scene& scene) {
     if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   in_precision<void>(scene, [](auto) {});
+}
+
+PlannedTimes planned_times(const Scene& scene) {
+  return in_precision<PlannedTimes>(scene, [&]<class T>(std::type_identity<T>) { return planned_in<T>(scene); });
 }
 
 RunOutcome run_scene(const Scene& scene, const RunOptions& options) {

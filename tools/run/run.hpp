@@ -59,6 +59,12 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
 /// Throws Error for a scene that this build cannot run, naming the key.
 void check_built(const Scene& scene);
 
+/// The times at which a run samples its series and takes its profiles, as it writes them: rounded from its precision.
+struct PlannedTimes {
+  std::vector<double> series, profiles;
+};
+PlannedTimes planned_times(const Scene& scene);
+
 /// Runs the scene in its precision, coordinates and law. Throws Error for what this build cannot do.
 RunOutcome run_scene(const Scene& scene, const RunOptions& options);
 

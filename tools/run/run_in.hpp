@@ -4,20 +4,20 @@
 
 #include <limits>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 #include "cradle/core/cluster_chain.hpp"
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/position_chain.hpp"
 #include "cradle/core/sticky_gas.hpp"
+#include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/initial_state.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 
 namespace cradle::tools {
 
-template <Real T, class Law, class Chain>
-RunOutcome run_on(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Law law, Chain chain,
-                  const RunOptions& options, Progress& progress) {
+template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& options, Progress& progress) {
   Policy<T> policy;
   // Elastic bodies do not collapse, those that stick cannot.
   if (scene.run.collapse == CollapsePolicy::stop && scene.law.type == LawType::inelastic &&
@@ -29,38 +29,45 @@ RunOutcome run_on(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> b
   policy.progress = [&progress](const T& time, const Counts& counts) {
     progress.tell(to_double(time), counts.contacts);
   };
-  using Engine = Simulation<T, Law, Chain>;
-  Engine engine(std::move(law), std::move(chain), policy);
-  return SceneRun<T, Engine>(scene, std::move(bodies), std::move(engine), options, progress)();
+  return policy;
 }
 
-template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {
-  const auto bodies = initial_bodies<T>(scene);
+template <Real T>
+std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Bodies<T>>& bodies,
+                                     const Policy<T>& policy, bool observed) {
   const T start = number<T>(scene.run.start);
-  Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
-  if (scene.law.type == LawType::wet)
-    return run_on<T>(scene, bodies, Wet<T>(number<T>(scene.law.loss)), ClusterChain<T>(bodies, start), options,
-                     progress);
-  if (scene.law.type == LawType::sticky && !scene.output.events && !options.trace) {
-    using Gas = StickyGas<T>;  // where nobody asks for contacts none need be made
-    return SceneRun<T, Gas>(scene, bodies, Gas(bodies, start), options, progress)();
-  }
+  const auto simulation = [&]<class Law, class Chain>(const Law& law, std::type_identity<Chain>) {
+    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(law, Chain(bodies, start), policy);
+  };
+  const std::type_identity<ClusterChain<T>> clusters;
+  if (scene.law.type == LawType::wet) return simulation(Wet<T>(number<T>(scene.law.loss)), clusters);
+  if (scene.law.type == LawType::sticky && !observed)  // where nobody asks for contacts none need be made
+    return std::make_unique<EngineOf<T, StickyGas<T>>>(bodies, start);
   if (scene.law.type == LawType::sticky || scene.run.collapse == CollapsePolicy::merge) {
     const bool sticky = scene.law.type == LawType::sticky;
     const InelasticMerging<T> law(Inelastic<T>(sticky ? T(0) : number<T>(scene.law.restitution)),
                                   sticky ? std::numeric_limits<T>::max() : number<T>(scene.run.merge_speed));
-    return run_on<T>(scene, bodies, law, ClusterChain<T>(bodies, start), options, progress);
+    return simulation(law, clusters);
   }
-  const auto bouncing = [&](auto law) {
-    if (scene.run.coordinates == Coordinates::absolute)
-      return run_on<T>(scene, bodies, law, PositionChain<T>(bodies, start), options, progress);
-    if (bodies->identical_masses()) return run_on<T>(scene, bodies, law, GapChain<T>(bodies, start), options, progress);
-    return run_on<T>(scene, bodies, law, GapChain<T, IndividualMasses<T>>(bodies, start), options, progress);
-  };
   const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff));
-  if (scene.run.collapse == CollapsePolicy::contact_time)
-    return bouncing(ContactTime<T>(law, number<T>(scene.run.contact_time)));
+  // Few runs remember contacts: these do without a loop of their own for identical masses, whose bits are the same.
+  const bool remembers = scene.run.collapse == CollapsePolicy::contact_time;
+  if (!remembers && scene.run.coordinates == Coordinates::gaps && bodies->identical_masses())
+    return simulation(law, std::type_identity<GapChain<T>>{});
+  const auto bouncing = [&](const auto& any) -> std::unique_ptr<Engine<T>> {
+    if (scene.run.coordinates == Coordinates::absolute) return simulation(any, std::type_identity<PositionChain<T>>{});
+    return simulation(any, std::type_identity<GapChain<T, IndividualMasses<T>>>{});
+  };
+  if (remembers) return bouncing(ContactTime<T>(law, number<T>(scene.run.contact_time)));
   return bouncing(law);
+}
+
+template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {
+  const auto bodies = initial_bodies<T>(scene);
+  Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
+  const auto engine =
+      engine_of<T>(scene, bodies, policy_of<T>(scene, options, progress), scene.output.events || options.trace);
+  return SceneRun<T>(scene, bodies, *engine, options, progress)();
 }
 
 }  // namespace cradle::tools

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "cradle/core/observe/trace.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/recorder.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
@@ -21,12 +21,12 @@
 
 namespace cradle::tools {
 
-template <Real T, class Simulation> class SceneRun {
+template <Real T> class SceneRun {
  public:
-  SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Simulation simulation,
+  SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Engine<T>& engine,
            const RunOptions& options, Progress& progress)
       : scene_(scene), options_(options), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
-        simulation_(std::move(simulation)), progress_(progress), plan_(schedule<T>(scene)) {
+        engine_(engine), progress_(progress), plan_(schedule<T>(scene)) {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
   }
 
@@ -36,7 +36,7 @@ template <Real T, class Simulation> class SceneRun {
     if (scene_.output.scenario)
       observer_ = [this, record = std::move(observer_)](const Contact<T>& c) {
         if (record) record(c);
-        scenario_.contact(c.left, c.right, to_double(T(c.time.value())), simulation_.counts().merges);
+        scenario_.contact(c.left, c.right, to_double(T(c.time.value())), engine_.counts().merges);
       };
     if (options_.trace) observer_ = [this](const Contact<T>& c) { trace_.contact(c.left, c.right); };
     Status status = Status::reached;
@@ -44,18 +44,15 @@ template <Real T, class Simulation> class SceneRun {
       status = advance(stop);
       if (status != Status::reached) break;
       look(stop);
-      progress_.tell(to_double(stop), simulation_.counts().contacts);
+      progress_.tell(to_double(stop), engine_.counts().contacts);
     }
     if (status == Status::reached) return finish(status, plan_.stops.back());
-    const T end = simulation_.last_contact_time();
+    const T end = engine_.last_contact_time();
     record_end(end);
     return finish(status, end);
   }
 
  private:
-  // Others go from time to time without any.
-  static constexpr bool makes_contacts = requires(const Simulation& run) { run.chain(); };
-
   static bool take(const std::vector<T>& times, std::size_t& next, const T& time) {
     if (next >= times.size() || times[next] != time) return false;
     ++next;
@@ -63,8 +60,8 @@ template <Real T, class Simulation> class SceneRun {
   }
 
   Status advance(const T& until) {
-    if constexpr (makes_contacts) return observer_ ? simulation_.advance(until, observer_) : simulation_.advance(until);
-    const Status status = simulation_.advance(until);
+    const Status status = engine_.advance(until, observer_);
+    if (engine_.makes_contacts()) return status;  // these ask for signals themselves
     return options_.interrupt != nullptr && options_.interrupt->signal() != 0 ? Status::interrupted : status;
   }
 
@@ -74,7 +71,7 @@ template <Real T, class Simulation> class SceneRun {
                profiled = take(plan_.profiles, next_profile_, time), masses = take(plan_.masses, next_masses_, time),
                zone = take(plan_.zone, next_zone_, time);
     if (!snapshot && !profiled && !masses && !zone) return;
-    const Configuration<T> now = simulation_.configuration(time);
+    const Configuration<T> now = engine_.configuration(time);
     if (snapshot) snapshots_.push_back(snapshot_table(now, numbered("snapshots", snapshots_.size())));
     if (profiled) record_profile(now, time);
     if (masses) masses_.push_back(masses_table(now, bodies_->least_mass(), numbered("masses", masses_.size())));
@@ -87,21 +84,21 @@ template <Real T, class Simulation> class SceneRun {
     BinRange range{to_double(now.x.front()), to_double(now.x.back())};
     if (!wanted.range.empty())
       range = {wanted.range[0].value, wanted.range[1].value};
-    else if (simulation_.collided_bodies() > 0 && !simulation_.on_ring())
-      range = {to_double(simulation_.front_left(time)), to_double(simulation_.front_right(time))};
+    else if (engine_.collided_bodies() > 0 && !engine_.on_ring())
+      range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
     if (!(range.from < range.to)) range.to = range.from + 1;  // all in one place: one length around it
     profiles_.push_back(
         profile_table(profile(now, *bodies_, elapsed, range, wanted.bins), numbered("profiles", profiles_.size())));
   }
 
   void record_sample(const T& time) {
-    const Sample<T> now = sample(simulation_, energy_, time);
+    const Sample<T> now = sample(engine_, energy_, time);
     series_.add(now);
     if (has_clouds(scene_)) {
-      const Cloud<T> seen = cloud(simulation_.configuration(time));
+      const Cloud<T> seen = cloud(engine_.configuration(time));
       cloud_.add(seen);
       if (scene_.output.scenario)
-        scenario_.look(seen, to_double(T(time - number<T>(scene_.run.start))), simulation_.counts().merges);
+        scenario_.look(seen, to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
     }
     if (options_.trace)
       trace_samples_.push_back({to_double(time), trace_.digest(), now.counts.contacts, now.counts.merges,
@@ -111,7 +108,7 @@ template <Real T, class Simulation> class SceneRun {
   // A run that ends early leaves its last state.
   void record_end(const T& time) {
     record_sample(time);
-    snapshots_.push_back(snapshot_table(simulation_.configuration(time), numbered("snapshots", snapshots_.size())));
+    snapshots_.push_back(snapshot_table(engine_.configuration(time), numbered("snapshots", snapshots_.size())));
   }
 
   static std::string numbered(const char* folder, std::size_t number) {
@@ -119,14 +116,14 @@ template <Real T, class Simulation> class SceneRun {
   }
 
   RunOutcome finish(Status status, const T& time) {
-    const Counts& counts = simulation_.counts();
+    const Counts& counts = engine_.counts();
     RunOutcome end;
     end.end = end_of(status);
     end.contacts = counts.contacts;
     end.merges = counts.merges;
     end.time = to_double(time);
-    end.energy = to_double(T(energy_ - simulation_.energy_lost()));
-    const ToldAccount account = told(simulation_.account());
+    end.energy = to_double(T(energy_ - engine_.energy_lost()));
+    const ToldAccount account = told(engine_.account());
     end.warning = account_warning(account, scene_.run);
     if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.contacts, scene_.run);
     end.result.attributes = provenance(scene_, precision_name(scene_.run), end_text(end.end));
@@ -135,13 +132,12 @@ template <Real T, class Simulation> class SceneRun {
           Attribute("unresolved_gaps", account.unresolved), Attribute("close_calls", counts.close_calls)})
       end.result.attributes.push_back(attribute);
     put_tables(end);
-    if constexpr (makes_contacts)
-      if (status == Status::collapsed) {
-        const ToldCollapse collapse = told(simulation_.collapse());
-        end.report = collapse_report(collapse, counts.contacts);
-        end.collapse_time = collapse.time.digits;
-        end.result.groups.push_back(collapse_table(collapse));
-      }
+    if (status == Status::collapsed) {
+      const ToldCollapse collapse = told(*engine_.collapse());
+      end.report = collapse_report(collapse, counts.contacts);
+      end.collapse_time = collapse.time.digits;
+      end.result.groups.push_back(collapse_table(collapse));
+    }
     end.trace = std::move(trace_samples_);
     return end;
   }
@@ -157,7 +153,7 @@ template <Real T, class Simulation> class SceneRun {
     case Status::interrupted:
       return RunEnd::interrupted;
     }
-    return simulation_.account().order_lost > 0 ? RunEnd::order_lost : RunEnd::reached;
+    return engine_.account().order_lost > 0 ? RunEnd::order_lost : RunEnd::reached;
   }
 
   void put_tables(RunOutcome& end) {
@@ -175,7 +171,7 @@ template <Real T, class Simulation> class SceneRun {
       end.summary.emplace_back("zone_width", width.width);
     }
     if (scene_.output.scenario) {
-      const auto numbers = scenario_numbers(scenario_.result(simulation_.counts().merges));
+      const auto numbers = scenario_numbers(scenario_.result(engine_.counts().merges));
       groups.push_back({"scenario", {numbers.begin(), numbers.end()}, {}});
       end.summary.insert(end.summary.end(), numbers.begin(), numbers.end());
     }
@@ -186,7 +182,7 @@ template <Real T, class Simulation> class SceneRun {
   const RunOptions& options_;
   std::shared_ptr<const cradle::Bodies<T>> bodies_;
   T energy_;
-  Simulation simulation_;
+  Engine<T>& engine_;
   Progress& progress_;
   Schedule<T> plan_;
   std::size_t next_series_ = 0, next_snapshot_ = 0, next_profile_ = 0, next_masses_ = 0, next_zone_ = 0;
@@ -197,7 +193,7 @@ template <Real T, class Simulation> class SceneRun {
   EventRecorder<T> events_;
   Trace trace_;
   std::vector<TraceSample> trace_samples_;
-  std::function<void(const Contact<T>&)> observer_;
+  Observer<T> observer_;
   std::vector<Group> snapshots_, profiles_, masses_;
 };
 

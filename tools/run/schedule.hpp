@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cradle/tools/run/initial_state.hpp"
+#include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
 
@@ -68,6 +69,14 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
   std::sort(plan.stops.begin(), plan.stops.end());
   plan.stops.erase(std::unique(plan.stops.begin(), plan.stops.end()), plan.stops.end());
   return plan;
+}
+
+template <class T> PlannedTimes planned_in(const Scene& scene) {
+  const Schedule<T> plan = schedule<T>(scene);
+  PlannedTimes times;
+  for (const T& time : plan.series) times.series.push_back(to_double(time));
+  for (const T& time : plan.profiles) times.profiles.push_back(to_double(time));
+  return times;
 }
 
 }  // namespace cradle::tools

@@ -153,7 +153,7 @@ template <class T> void read(const Field& field, const Value& value, Scene& scen
   target = std::move(inner);
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -167,12 +167,12 @@ std::string quoted(std::string_view text) {
   return result + '"';
 }
 
-std::optional<std::string> written(const Field&, const std::string& value) { return quoted(value); }
+std::optional<std::string> written(const Field&, const std::string& value) { return in_quotes(value); }
 std::optional<std::string> written(const Field&, const Decimal& value) { return value.text; }
 std::optional<std::string> written(const Field&, const std::uint64_t& value) {
   // TOML integers end at 2^63 - 1.
   const auto text = std::to_string(value);
-  return value >> 63U == 0 ? text : quoted(text);
+  return value >> 63U == 0 ? text : in_quotes(text);
 }
 std::optional<std::string> written(const Field&, const bool& value) { return value ? "true" : "false"; }
 std::optional<std::string> written(const Field& field, const std::vector<Decimal>& value) {
@@ -189,12 +189,12 @@ std::optional<std::string> written(const Field&, const DecimalColumn& value) {
 }
 std::optional<std::string> written(const Field&, const std::vector<std::string>& value) {
   std::string text;
-  for (const std::string& item : value) text += (text.empty() ? "" : ", ") + quoted(item);
+  for (const std::string& item : value) text += (text.empty() ? "" : ", ") + in_quotes(item);
   return '[' + text + ']';
 }
 template <class E>
 requires is_choice<E> std::optional<std::string> written(const Field& field, const E& value) {
-  return quoted(choices_of(field).at(static_cast<std::size_t>(value)));
+  return in_quotes(choices_of(field).at(static_cast<std::size_t>(value)));
 }
 template <class T> std::optional<std::string> written(const Field& field, const std::optional<T>& value) {
   return value ? written(field, *value) : std::nullopt;

@@ -77,7 +77,7 @@ constexpr std::string_view any = "(-inf, inf)";
 constexpr std::string_view within_run = "[run.start, run.until]";
 
 // key, member, unit, default, range, applies when, documentation
-const Field table[] = {
+const Field all_fields[] = {
     {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
 
     {"law.type", law_type, "", "required", "inelastic | wet | sticky", &always, "what happens at a contact"},
@@ -160,7 +160,7 @@ const Field table[] = {
      "the run ends when a gap is below this; without it, when the extrapolated collapse time is settled"},
 
     {"output.series.every", output_of<&Output::series, &Series::every>, "t", "", "(0, inf)", &always,
-     "time between samples of the series, of which there may be 1e7"},
+     "time between samples of the series, at most 1e7 of them"},
     {"output.series.times", output_of<&Output::series, &Series::times>, "t", "", within_run, &not_every,
      "times of the samples of the series"},
     {"output.series.points", output_of<&Output::series, &Series::points>, "", "1000", "[2, 1e7]", &by_points,
@@ -202,11 +202,11 @@ const Field table[] = {
 
 }  // namespace
 
-std::span<const Field> scene_fields() { return table; }
+std::span<const Field> scene_fields() { return all_fields; }
 
 const Field* find_field(std::string_view key, const Scene& scene) {
   const Field* found = nullptr;
-  for (const Field& field : table) {
+  for (const Field& field : all_fields) {
     if (field.key != key) continue;
     if (field.when->holds(scene)) return &field;
     if (found == nullptr) found = &field;

@@ -56,20 +56,10 @@ std::string bundled_names() {
   return names;
 }
 
-}  // namespace
-
-bool operator==(const Scene& a, const Scene& b) {
-  return a.title == b.title && a.law == b.law && a.initial == b.initial && a.run == b.run && a.output == b.output &&
-         a.sweep == b.sweep;
-}
-
-Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {
-  Entries entries = read_entries(text, source_name);
-  apply_overrides(entries, overrides);
+Scene scene_of(const Entries& entries, const std::string& source_name) {
   Scene scene;
   const std::filesystem::path path(source_name);
   scene.name = path.stem().string();
-
   refuse_unknown_keys(entries, scene);
   store_all(entries, source_name, scene);
   refuse_inapplicable_keys(entries, scene);
@@ -80,6 +70,25 @@ Scene parse_scene(std::string_view text, const std::string& source_name, const s
   sort_times(scene.output.masses);
   if (scene.initial.file) read_list(path.parent_path() / *scene.initial.file, scene);
   return scene;
+}
+
+}  // namespace
+
+bool operator==(const Scene& a, const Scene& b) {
+  return a.title == b.title && a.law == b.law && a.initial == b.initial && a.run == b.run && a.output == b.output &&
+         a.sweep == b.sweep;
+}
+
+Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {
+  Entries entries = read_entries(text, source_name);
+  apply_overrides(entries, overrides);
+  return scene_of(entries, source_name);
+}
+
+Scene parse_recorded_scene(std::string_view text, const std::string& file) {
+  Entries entries = read_entries(text, file);
+  for (const std::string_view key : withdrawn_keys) entries.erase(std::string(key));
+  return scene_of(entries, file);
 }
 
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {

@@ -156,6 +156,9 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
 Scene parse_scene(std::string_view text, const std::string& source_name,
                   const std::vector<std::string>& overrides = {});
 
+/// The same from the effective scene that a result carries; what is no key any more is passed over.
+Scene parse_recorded_scene(std::string_view text, const std::string& file);
+
 /// The whole scene with every default filled in, listed bodies included; the same text for the same scene, reads back
 /// as an equal scene wherever that is done.
 std::string effective_toml(const Scene& scene);

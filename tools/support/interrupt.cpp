@@ -16,6 +16,8 @@ std::atomic<long> first_at = 0;  // milliseconds; 0: none yet
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free && std::atomic<Interrupt*>::is_always_lock_free);
 
+constexpr int noted[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
+
 long milliseconds() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
@@ -49,10 +51,14 @@ Exit status_of_signal(int signal) { return signal == SIGINT ? Exit::interrupted 
 void note_signals(Interrupt& interrupt) {
   noting = &interrupt;
   first_at = 0;
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1, SIGHUP}) {
+  for (const int signal : noted) {
     const auto before = std::signal(signal, note);
     if (signal == SIGHUP && before == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   }
+}
+
+void ignore_signals() {
+  for (const int signal : noted) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace cradle::tools

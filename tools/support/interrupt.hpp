@@ -31,4 +31,7 @@ Exit status_of_signal(int signal);
 /// them, and where a second one comes after the first, the program ends at once. SIGHUP stays ignored under nohup.
 void note_signals(Interrupt& interrupt);
 
+/// From now on they change nothing: the program ends by itself, and what is wrong has been said.
+void ignore_signals();
+
 }  // namespace cradle::tools

@@ -347,6 +347,12 @@ TEST(Scene, KeysThatDoNothingAreNone) {
   EXPECT_EQ(effective_toml(parse(good)).find("checkpoint"), std::string::npos);
 }
 
+TEST(Scene, OfAnEarlierResultIsReadWithoutWhatIsNoKeyAnyMore) {
+  const std::string recorded = effective_toml(parse(good)) + "\n[output.checkpoint]\nevery_seconds = 60\n";
+  EXPECT_EQ(tools::parse_recorded_scene(recorded, "old.h5"), parse(good));
+  EXPECT_THROW(tools::parse_recorded_scene(recorded + "hourly = true\n", "old.h5"), tools::Error);
+}
+
 TEST(ReadScene, ResultsAreNoScenes) {
   const auto path = std::filesystem::temp_directory_path() / ("cradle_result_" + std::to_string(::getpid()) + ".h5");
   std::ofstream(path) << "\x89HDF\r\n\x1a\nand so on";

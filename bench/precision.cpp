@@ -13,6 +13,7 @@
 // Errors are relative and at most 1. The CSV has a line per number: scene, representation, type, quantity, t, value.
 // Times are of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -20,6 +21,8 @@
 #include <stdexcept>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 
 #include <benchmark/benchmark.h>
 

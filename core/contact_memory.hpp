@@ -2,6 +2,7 @@
 // When there was last a contact at each gap, for laws with a memory (LawWithMemory); nothing for all others.
 
 #include <initializer_list>
+#include <utility>
 #include <vector>
 
 #include "cradle/core/event_queue.hpp"

@@ -8,6 +8,11 @@
 // With p the closing speed of the gap that closes, q and g those of the other kind, and c = 2 where both outer gaps
 // push the middle one, else 1:  q -> q + c (1 + eps) p/2,  p -> -eps p,  and the next contact comes after g/q.
 
+#include <algorithm>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
 #include "engines.hpp"
 
 namespace precision {

@@ -3,6 +3,10 @@
 // long again. In exact arithmetic every body is back where it started; unequal masses make the gas unstable, so what
 // is missing is rounding and nothing else, amplified by the contacts in between.
 
+#include <algorithm>
+#include <memory>
+#include <type_traits>
+
 #include "engines.hpp"
 
 namespace precision {

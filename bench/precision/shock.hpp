@@ -7,7 +7,10 @@
 //            disagree from the first sample on from which digests differ for good (a sample between two runs' times of
 //            one contact differs only for the moment)
 
+#include <algorithm>
+#include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "cradle/core/observe/trace.hpp"
 #include "engines.hpp"

@@ -1,6 +1,9 @@
 #include "merging.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace twins {
 

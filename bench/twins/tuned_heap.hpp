@@ -2,6 +2,9 @@
 // The indexed heap of indexed_heap.hpp made fast: entries carry their times, so that comparing two does not look
 // anything up, and an entry on its way up or down leaves a hole instead of being exchanged at every level.
 
+#include <algorithm>
+#include <memory>
+
 #include "line.hpp"
 
 namespace twins {

@@ -11,6 +11,7 @@
 
 #include "cradle/core/theory/cluster_force.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <bit>
+#include <chrono>
 #include <set>
 #include <stdexcept>
 #include <string>

@@ -85,7 +85,7 @@ struct Flight {
 // Slow twin: from flight to flight, crossings by bisection.
 class Flights {
  public:
-  Flights(double alpha, double rate, double x0) : alpha_(alpha), flight_{0, x0, 0, -alpha, rate} {}
+  Flights(double alpha, double rate, double x0) : flight_{0, x0, 0, -alpha, rate} {}
   double position(double t) {
     while (true) {
       const long double end = next_crossing();
@@ -108,7 +108,6 @@ class Flights {
     }
     return high;
   }
-  double alpha_;
   Flight flight_;
 };
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <mpfr.h>
 
+#include <algorithm>
 #include <random>
 
 #include "cradle/precision/double_double.hpp"

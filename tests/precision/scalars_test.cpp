@@ -1,5 +1,7 @@
 // From the name of a precision to a type. Proves: every name leads to its type, digits to the smallest MPFR type with
 // room for them, which then works in that many bits; a name there is not is refused with what to do instead.
+#include <concepts>
+
 #include <gtest/gtest.h>
 
 #include "cradle/precision/scalars.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 
 #include "cradle/tools/ensemble/state.hpp"
 
@@ -11,13 +12,13 @@ namespace cradle::tools {
 
 namespace {
 
-const Group& get(const Result& result, const std::string& name, const std::string& file) {
+const Group& get(const Result& result, std::string_view name, const std::string& file) {
   if (const Group* group = result.find(name)) return *group;
-  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", "no " + name,
+  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", fmt::format("no {}", name),
               "give a file that `cradle ensemble` or `cradle merge` wrote", Exit::io);
 }
 
-template <class T> const std::vector<T>& get(const Group& group, const std::string& name, const std::string& file) {
+template <class T> const std::vector<T>& get(const Group& group, std::string_view name, const std::string& file) {
   for (const Column& column : group.columns)
     if (column.name == name)
       if (const auto* values = std::get_if<std::vector<T>>(&column.values)) return *values;

@@ -4,7 +4,7 @@
 
 namespace cradle::tools {
 
-const Group* Result::find(const std::string& name) const {
+const Group* Result::find(std::string_view name) const {
   for (const auto& group : groups)
     if (group.name == name) return &group;
   return nullptr;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -41,7 +42,7 @@ struct Result {
   std::vector<Attribute> attributes;  // of the file
   std::vector<Group> groups;
 
-  const Group* find(const std::string& name) const;
+  const Group* find(std::string_view name) const;
 };
 
 /// The attribute of this name, which must be there and of this type; throws Error (Exit::io) naming `where` otherwise.

@@ -96,9 +96,9 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
 void check_built(const Scene& scene) {
   if (scene.initial.type == InitialType::clusters && scene.run.precision != Precision::double_)
     not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
-  const bool merging = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
+  const bool merges = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
   if (scene.run.coordinates == Coordinates::absolute) {
-    if (merging) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
+    if (merges) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
     if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   in_precision<void>(scene, [](auto) {});

@@ -1,5 +1,6 @@
 #include "cradle/tools/scene/overrides.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 

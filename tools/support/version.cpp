@@ -1,5 +1,8 @@
 #include "cradle/tools/support/version.hpp"
 
+#include <memory>
+#include <type_traits>
+
 #include <fmt/format.h>
 
 #include "cradle/precision/scalars.hpp"

@@ -1,6 +1,8 @@
 // The other commands, and what becomes of bad input: one message with file, line and key, and the documented status.
 
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"

@@ -3,6 +3,7 @@
 
 #include "cradle/tools/ensemble/journal.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"

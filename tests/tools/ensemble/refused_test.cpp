@@ -2,6 +2,8 @@
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 
+#include <algorithm>
+
 namespace cradle::tests {
 namespace refused_test {
 

@@ -2,6 +2,7 @@
 // included, has the same bits. Also where very many contacts are simultaneous (a lattice), which is where the order of
 // events is hardest to keep.
 #include <cstring>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 

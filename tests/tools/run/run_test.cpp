@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <type_traits>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/reader.hpp"

@@ -32,6 +32,7 @@
 #include "cradle/core/simulation.hpp"
 #include "twins/indexed_heap.hpp"
 #include "twins/priority_queue.hpp"
+#include "twins/time_slots.hpp"
 #include "twins/tuned_heap.hpp"
 
 namespace {
@@ -89,6 +90,7 @@ template <class Engine> struct Twin : Engine {
 using IndexedHeap = Twin<twins::IndexedHeapEngine>;
 using TunedHeap = Twin<twins::TunedHeapEngine>;
 using PriorityQueue = Twin<twins::PriorityQueueEngine>;
+using TimeSlots = Twin<twins::TimeSlotsEngine>;
 
 // ---- measurements
 
@@ -160,6 +162,7 @@ void enter_all(const Case& c) {
   const auto shared = std::make_shared<const Case>(c);
   enter<Gaps>("cradle_gaps", shared);
   enter<Positions>("cradle_positions", shared);
+  enter<TimeSlots>("time_slots", shared);
   enter<TunedHeap>("tuned_heap", shared);
   enter<IndexedHeap>("indexed_heap", shared);
   enter<PriorityQueue>("priority_queue", shared);

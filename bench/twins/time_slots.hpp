@@ -1,0 +1,52 @@
+#pragma once
+// The best of the conventional engines: neighbours as gaps, as in Cradle, and a flat table of time slots for the next
+// contacts, each slot a list that is searched from end to end (a calendar queue; R. Brown 1988, doi
+// 10.1145/63039.63045). A slot is as wide as holds some two contacts and is fitted to the pace of contacts as it
+// changes, the table has a slot for every gap or two, so that few entries lie further ahead than once around.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "line.hpp"
+
+namespace twins {
+
+class TimeSlotsEngine {
+ public:
+  TimeSlotsEngine(const cradle::Bodies<double>& bodies, Law law);
+
+  // Makes every contact at times <= until.
+  void advance(double until);
+
+  std::uint64_t contacts() const { return contacts_; }
+
+ private:
+  static constexpr std::uint32_t nobody = ~std::uint32_t{0};
+  static constexpr std::uint64_t nowhere = ~std::uint64_t{0};
+
+  struct Gap {
+    double gap, closing, time;  // as it was at `time`
+    double due = never;
+    std::uint64_t slot = nowhere;  // since the time 0; in the table at that modulo its size
+    std::uint32_t next = nobody, previous = nobody;
+  };
+
+  std::uint32_t first();
+  void kick(std::uint32_t i, double gain, double time);
+  void predict(std::uint32_t i);
+  void enter(std::uint32_t i);
+  void leave(std::uint32_t i);
+  void fit(double time);
+
+  Law law_;
+  std::vector<Gap> gaps_;
+  std::vector<std::uint32_t> slots_;
+  double slots_per_time_ = 0;
+  std::uint64_t now_ = 0;      // the slot that is looked at
+  std::uint64_t entered_ = 0;  // gaps in the table
+  std::uint64_t contacts_ = 0, fitted_at_ = 0, next_fit_ = 0;
+  double fitted_time_ = 0;
+};
+
+}  // namespace twins

@@ -1,20 +1,17 @@
 // The filtered queue: 64-bit keys made from rounded times, exact times only where keys are too close to call. Proves it
 // equal to a loop that looks through all gaps for the least (exact time, position): the same contacts in the same order
-// at each gap, at the same times to the last bit, in scenes that collapse and in shocks. Where many contacts fall on
+// at each body, at the same times to the last bit, in scenes that collapse and in shocks. Where many contacts fall on
 // the same time by construction, in lattices, contacts that commute may swap, and rounding decides triple collisions:
 // there every single choice is checked, against all gaps that could claim to come first. The number of index bits in a
 // key changes no bit of a run.
-//
-// The twin moves its origin of time where the run did (after the same number of contacts, by the same offset), since
-// times are rounded as offsets; it knows nothing else of the run.
 #include <gtest/gtest.h>
 
-#include <map>
-#include <vector>
+#include <utility>
 
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
+#include "cradle/tests/precision/search.hpp"
 
 namespace filtered_queue_test {
 
@@ -24,82 +21,12 @@ using namespace cradle::test;
 template <class P> using FilteredQueue = InPrecision<P>;
 TYPED_TEST_SUITE(FilteredQueue, WidePrecision, PrecisionName);
 
-// Contacts, in order, at a gap and its right neighbour.
-template <class T> using Events = std::map<BodyIndex, std::vector<std::pair<BodyIndex, T>>>;
-
-template <class T> void note(Events<T>& events, BodyIndex body, const T& time) {
-  events[body].push_back({body, time});
-  events[body - 1].push_back({body, time});
-}
-
-template <class T> struct Origin {
-  std::uint64_t contacts;  // made before it moved
-  T offset;                // to where
-};
-
-template <class T> struct Recorded {
-  Events<T> events;
-  std::vector<Origin<T>> origins;
-  Counts counts;
-};
-
-template <class T>
-Recorded<T> filtered(const Scene<T>& bodies, const Inelastic<T>& law, const T& end, Policy<T> policy) {
-  auto run = gap_run(bodies, law, std::move(policy));
-  Recorded<T> record;
-  T last(0);
-  const auto take_origin = [&] {
-    if (run.counts().origin_moves > record.origins.size()) record.origins.push_back({run.counts().contacts, last});
-  };
-  run.advance(end, [&](const Contact<T>& contact) {
-    take_origin();
-    const Slot s = static_cast<Slot>(contact.left - run.chain().body(0));
-    last = run.chain().due(s);
-    note(record.events, contact.left, contact.time.value());
-  });
-  take_origin();
-  record.counts = run.counts();
-  EXPECT_EQ(record.origins.size(), run.counts().origin_moves);
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
-  return record;
-}
-
-template <class T> Events<T> unfiltered(const Scene<T>& bodies, const Inelastic<T>& law, const Recorded<T>& run) {
-  GapChain<T> chain(bodies, T(0));
-  Events<T> events;
-  auto origin = run.origins.begin();
-  for (std::uint64_t n = 1; n <= run.counts.contacts; ++n) {
-    Slot first = chain.slots();
-    T time(0);
-    for (Slot s = chain.first(); s <= chain.last(); ++s) {
-      if (!(chain.closing(s) > T(0))) continue;
-      const T due = chain.due(s);
-      if (first == chain.slots() || due < time) first = s, time = due;
-    }
-    if (first == chain.slots()) break;
-    note(events, chain.body(first), chain.stamp(time).value());
-    const Collision<T> collision = chain.collide(law, first, time);
-    if (asks(collision.notice, Notice::needs_slots)) chain.make_room();
-    if (origin != run.origins.end() && origin->contacts == n) chain.move_origin((origin++)->offset);
-  }
-  return events;
-}
-
 template <class T>
 void expect_same_contacts(const Scene<T>& bodies, const Inelastic<T>& law, const T& end, std::uint64_t least_contacts,
                           Policy<T> policy = {}) {
-  const Recorded<T> run = filtered(bodies, law, end, std::move(policy));
+  const Recorded<T> run = recorded(gap_run(bodies, law, std::move(policy)), end);
   EXPECT_GE(run.counts.contacts, least_contacts);
-  const Events<T> twin = unfiltered(bodies, law, run);
-  ASSERT_EQ(run.events.size(), twin.size());
-  for (const auto& [body, events] : run.events) {
-    const auto& expected = twin.at(body);
-    ASSERT_EQ(events.size(), expected.size()) << "gap " << body;
-    for (std::size_t k = 0; k < events.size(); ++k) {
-      ASSERT_EQ(events[k].first, expected[k].first) << "gap " << body << ", contact " << k;
-      ASSERT_TRUE(events[k].second == expected[k].second) << "gap " << body << ", time of contact " << k;
-    }
-  }
+  expect_same_meetings(run.meetings, searched(GapChain<T>(bodies, T(0)), law, run));
 }
 
 // Of all gaps the chosen one is first by (exact time, position), whatever the keys can tell.
@@ -150,16 +77,6 @@ TYPED_TEST(FilteredQueue, ManyBodyCollapse) {
 template <class T> Scene<T> perfect_lattice() {
   return std::make_shared<Rows<T>>(
       symmetric_rows<T>(40, T(T(1) / T(2)), T(1), [](BodyIndex) { return std::int64_t{0}; }));
-}
-
-// Bodies on integers with a few integer velocities: times are small rationals, equal ones abound.
-template <class T> Scene<T> integers() {
-  std::vector<T> x, v;
-  for (BodyIndex i = 0; i < 60; ++i) {
-    x.push_back(T(i));
-    v.push_back(T(bits_of(i, 7, 3) - 1));
-  }
-  return list(std::move(x), std::move(v));
 }
 
 // Elastic rows of a perfect lattice: all pairs of a generation meet at one time, exactly representable.

@@ -1,0 +1,114 @@
+#pragma once
+// What the filtered queue is compared with: a loop that looks through all gaps for the least (exact time, position).
+//
+// It moves its origin of time where the run did (after the same number of contacts, by the same offset), since times
+// are rounded as offsets; it knows nothing else of the run.
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace cradle::test {
+
+template <class T> struct Meeting {
+  BodyIndex other;
+  T time;
+};
+// Of each body, in order.
+template <class T> using Meetings = std::map<BodyIndex, std::vector<Meeting<T>>>;
+
+template <class T> void note(Meetings<T>& meetings, BodyIndex left, BodyIndex right, const T& time) {
+  meetings[left].push_back({right, time});
+  meetings[right].push_back({left, time});
+}
+
+template <class T> struct Origin {
+  std::uint64_t contacts;  // made before it moved
+  T offset;                // to where
+};
+
+template <class T> struct Recorded {
+  Meetings<T> meetings;
+  std::vector<Origin<T>> origins;
+  Counts counts;
+};
+
+// Of a run as the queue orders it, which must be the same observed and not: observed ones take another path through the
+// loop.
+template <class Run, class T> Recorded<T> recorded(Run run, const T& end) {
+  Run unobserved = run;
+  const Status status = unobserved.advance(end);
+  Recorded<T> record;
+  T last(0);
+  const auto take_origin = [&] {
+    if (run.counts().origin_moves > record.origins.size()) record.origins.push_back({run.counts().contacts, last});
+  };
+  EXPECT_EQ(status, run.advance(end, [&](const Contact<T>& contact) {
+    take_origin();
+    const auto& chain = run.chain();
+    for (Slot s = chain.first(); s <= chain.last(); ++s)
+      if (chain.right(s) != s && chain.body(s) == contact.left) last = chain.due(s);
+    note(record.meetings, contact.left, contact.right, contact.time.value());
+  }));
+  take_origin();
+  record.counts = run.counts();
+  EXPECT_EQ(record.origins.size(), run.counts().origin_moves);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+  const T seen = status == Status::reached ? end : run.last_contact_time();
+  EXPECT_TRUE(same_contacts(run.counts(), unobserved.counts()));
+  EXPECT_EQ(run.counts().close_calls, unobserved.counts().close_calls);
+  EXPECT_TRUE(run.energy_lost() == unobserved.energy_lost());
+  EXPECT_TRUE(identical(run.configuration(seen), unobserved.configuration(seen)));
+  return record;
+}
+
+template <class Chain, class Law, class T> Meetings<T> searched(Chain chain, const Law& law, const Recorded<T>& run) {
+  Meetings<T> meetings;
+  auto origin = run.origins.begin();
+  for (std::uint64_t n = 1; n <= run.counts.contacts; ++n) {
+    Slot first = chain.slots();
+    T time(0);
+    for (Slot s = chain.first(); s <= chain.last(); ++s) {
+      if (chain.right(s) == s || !(chain.closing(s) > T(0))) continue;
+      const T due = chain.due(s);
+      if (first == chain.slots() || due < time) first = s, time = due;
+    }
+    if (first == chain.slots()) break;
+    note(meetings, chain.body(first), chain.body(chain.right(first)), chain.stamp(time).value());
+    const Collision<T> collision = chain.collide(law, first, time);
+    if (asks(collision.notice, Notice::needs_slots)) chain.make_room();
+    if (origin != run.origins.end() && origin->contacts == n) chain.move_origin((origin++)->offset);
+  }
+  return meetings;
+}
+
+// Every body has the same contacts with the same others in the same order, at the same times to the last bit.
+template <class T> void expect_same_meetings(const Meetings<T>& found, const Meetings<T>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (const auto& [body, meetings] : found) {
+    const auto& others = expected.at(body);
+    ASSERT_EQ(meetings.size(), others.size()) << "body " << body;
+    for (std::size_t k = 0; k < meetings.size(); ++k) {
+      ASSERT_EQ(meetings[k].other, others[k].other) << "body " << body << ", contact " << k;
+      ASSERT_TRUE(meetings[k].time == others[k].time) << "body " << body << ", time of contact " << k;
+    }
+  }
+}
+
+// Bodies on integers with a few integer velocities: times are small rationals at first, equal ones abound.
+template <class T> Scene<T> integers() {
+  std::vector<T> x, v;
+  for (BodyIndex i = 0; i < 60; ++i) {
+    x.push_back(T(i));
+    v.push_back(T(bits_of(i, 7, 3) - 1));
+  }
+  return list(std::move(x), std::move(v));
+}
+
+}  // namespace cradle::test

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <sstream>
 #include <utility>
 
@@ -14,7 +15,16 @@ namespace {
 
 const char* const whole_number = "N";
 
-CLI::Validator within(WholeNumbers range) { return CLI::Range(range.least, range.most).description(""); }
+CLI::Validator within(WholeNumbers range) {
+  const auto check = [range](const std::string& text) -> std::string {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = error == std::errc{} && end == text.data() + text.size();
+    if (whole && number >= range.least && number <= range.most) return {};
+    return fmt::format("not a whole number from {} to {} (found {})", range.least, range.most, text);
+  };
+  return CLI::Validator(check, "");
+}
 
 std::string with_example(const std::string& example, const std::string& ending) {
   return fmt::format("Example: {}\n{}", example, ending);

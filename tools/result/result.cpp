@@ -11,15 +11,15 @@ const Group* Result::find(std::string_view name) const {
 }
 
 template <class T>
-const T& attribute(const std::vector<Attribute>& attributes, const std::string& name, const std::string& where) {
+const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where) {
   for (const auto& [key, value] : attributes)
     if (key == name)
       if (const T* found = std::get_if<T>(&value)) return *found;
-  throw Error({where, 0, ""}, "not a result of this program", "no attribute " + name, "give a file that cradle wrote",
-              Exit::io);
+  throw Error({std::string(where), 0, ""}, "not a result of this program", "no attribute " + std::string(name),
+              "give a file that cradle wrote", Exit::io);
 }
-template const std::string& attribute(const std::vector<Attribute>&, const std::string&, const std::string&);
-template const double& attribute(const std::vector<Attribute>&, const std::string&, const std::string&);
-template const std::uint64_t& attribute(const std::vector<Attribute>&, const std::string&, const std::string&);
+template const std::string& attribute(const std::vector<Attribute>&, std::string_view, std::string_view);
+template const double& attribute(const std::vector<Attribute>&, std::string_view, std::string_view);
+template const std::uint64_t& attribute(const std::vector<Attribute>&, std::string_view, std::string_view);
 
 }  // namespace cradle::tools

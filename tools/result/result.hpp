@@ -47,6 +47,6 @@ struct Result {
 
 /// The attribute of this name, which must be there and of this type; throws Error (Exit::io) naming `where` otherwise.
 template <class T>
-const T& attribute(const std::vector<Attribute>& attributes, const std::string& name, const std::string& where);
+const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where);
 
 }  // namespace cradle::tools

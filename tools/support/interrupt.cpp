@@ -1,5 +1,6 @@
 #include "cradle/tools/support/interrupt.hpp"
 
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -15,6 +16,18 @@ std::atomic<Interrupt*> noting = nullptr;
 std::atomic<long> first_at = 0;  // milliseconds; 0: none yet
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free && std::atomic<Interrupt*>::is_always_lock_free);
+
+// Under nohup. Libraries take signals before main() does (UCX, which MPI uses, takes SIGHUP): how the program was
+// started is read before theirs is run, and in the plainest way, since nothing is set up yet.
+bool hang_ups_ignored = false;
+#ifdef __linux__
+[[gnu::no_sanitize("address"), gnu::no_sanitize("undefined"), gnu::no_sanitize("thread")]] void look_at_hang_ups() {
+  unsigned long action[4] = {};  // the handler first
+  if (::syscall(SYS_rt_sigaction, SIGHUP, nullptr, action, sizeof action[3]) == 0)
+    hang_ups_ignored = action[0] == reinterpret_cast<unsigned long>(SIG_IGN);
+}
+[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = look_at_hang_ups;
+#endif
 
 constexpr int noted[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
 
@@ -51,10 +64,7 @@ Exit status_of_signal(int signal) { return signal == SIGINT ? Exit::interrupted 
 void note_signals(Interrupt& interrupt) {
   noting = &interrupt;
   first_at = 0;
-  for (const int signal : noted) {
-    const auto before = std::signal(signal, note);
-    if (signal == SIGHUP && before == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  }
+  for (const int signal : noted) std::signal(signal, signal == SIGHUP && hang_ups_ignored ? SIG_IGN : note);
 }
 
 void ignore_signals() {

@@ -233,8 +233,11 @@ TEST_F(Commands, BadCommandLinesSayWhatIsWrongAndWhoseHelpToRead) {
       {"run fig2 --sett a=1", "more than this command takes (found --sett a=1): see `cradle run --help`"},
       {"ensemble fig2", "--replicas is required: see `cradle ensemble --help`"},
       {"ensemble fig2 --replicas 0",
-       "--replicas: Value 0 not in range 1 to 9007199254740992: see `cradle ensemble --help`"},
-      {"trust fig2 --digits 16,5", "--digits: Value 5 not in range 10 to 1000: see `cradle trust --help`"}};
+       "--replicas: not a whole number from 1 to 9007199254740992 (found 0): see `cradle ensemble --help`"},
+      {"ensemble fig2 --replicas 1e3",
+       "--replicas: not a whole number from 1 to 9007199254740992 (found 1e3): see `cradle ensemble --help`"},
+      {"trust fig2 --digits 16,5",
+       "--digits: not a whole number from 10 to 1000 (found 5): see `cradle trust --help`"}};
   for (const auto& [command, message] : commands)
     EXPECT_EQ(shell(std::string("cradle ") + command).err, std::string("cradle: ") + message + "\n");
 }

@@ -94,13 +94,13 @@ class Ensembles : public ProgramTest {
     EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
   }
 
-  static const Column& column(const Result& result, const std::string& group, const std::string& name) {
+  static const Column& column(const Result& result, std::string_view group, std::string_view name) {
     if (const auto* found = result.find(group))
       for (const Column& c : found->columns)
         if (c.name == name) return c;
-    throw std::out_of_range(group + "/" + name);
+    throw std::out_of_range(std::string(group).append("/").append(name));
   }
-  static std::vector<double> numbers(const Result& result, const std::string& group, const std::string& name) {
+  static std::vector<double> numbers(const Result& result, std::string_view group, std::string_view name) {
     return std::visit([](const auto& v) { return std::vector<double>(v.begin(), v.end()); },
                       column(result, group, name).values);
   }

@@ -56,10 +56,10 @@ TEST(SweepPoints, RefuseWhatTheyCannotRead) {
 
 class SweepCommand : public ProgramTest {};
 
-const std::vector<double>& column(const Group& group, const std::string& name) {
+const std::vector<double>& column(const Group& group, std::string_view name) {
   for (const auto& c : group.columns)
     if (c.name == name) return std::get<std::vector<double>>(c.values);
-  throw std::runtime_error("no column " + name);
+  throw std::runtime_error("no column " + std::string(name));
 }
 
 TEST_F(SweepCommand, TableIsTheMeanOfTheRuns) {

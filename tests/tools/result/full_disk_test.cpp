@@ -10,11 +10,11 @@ namespace full_disk_test {
 
 class FullDisk : public ProgramTest {
  protected:
-  // Runs a command in a folder, `disk`, on a file system of 64 kB that no one else sees; $HERE is the test's folder. No
-  // status where the system lets nobody have one.
+  // Runs a command in a folder, `disk`, on a file system of 64 kB that no one else sees; $HERE is the test's folder.
+  // Status 77 where the system lets nobody have one.
   Printed on_small_disk(const std::string& command) const {
     write("command", "mkdir -p disk; mount -t tmpfs -o size=64k none disk || exit 77; HERE=$PWD; cd disk\n" + command);
-    return shell("unshare -rm sh ../\"$(basename \"$PWD\")\"/command");
+    return shell("unshare -rm true || exit 77; unshare -rm sh ../\"$(basename \"$PWD\")\"/command");
   }
 };
 

@@ -22,16 +22,15 @@ class RunClusters : public ProgramTest {
   }
 };
 
-const tools::Column& column(const tools::Result& result, const std::string& group, const std::string& name) {
+const tools::Column& column(const tools::Result& result, std::string_view group, std::string_view name) {
   for (const auto& c : result.find(group)->columns)
     if (c.name == name) return c;
-  throw std::out_of_range(group + "/" + name);
+  throw std::out_of_range(std::string(group).append("/").append(name));
 }
-const std::vector<double>& numbers(const tools::Result& result, const std::string& group, const std::string& name) {
+const std::vector<double>& numbers(const tools::Result& result, std::string_view group, std::string_view name) {
   return std::get<std::vector<double>>(column(result, group, name).values);
 }
-const std::vector<std::uint64_t>& counts(const tools::Result& result, const std::string& group,
-                                         const std::string& name) {
+const std::vector<std::uint64_t>& counts(const tools::Result& result, std::string_view group, std::string_view name) {
   return std::get<std::vector<std::uint64_t>>(column(result, group, name).values);
 }
 

@@ -15,16 +15,20 @@ constexpr double contacts_per_slot = 2;
 TimeSlotsEngine::TimeSlotsEngine(const cradle::Bodies<double>& bodies, Law law) : law_(law) {
   const cradle::BodyIndex count = bodies.count() - 1;
   gaps_.reserve(static_cast<std::size_t>(count));
-  double soonest = never;
+  std::vector<double> due;
   for (cradle::BodyIndex b = 0; b < count; ++b) {
     Gap gap{bodies.gap(b), bodies.closing_speed(b), 0};
     if (gap.closing > 0) gap.due = gap.gap / gap.closing;
-    soonest = std::min(soonest, gap.due);
+    if (gap.due < never) due.push_back(gap.due);
     gaps_.push_back(gap);
   }
   slots_.assign(std::bit_ceil(gaps_.size()), nobody);
-  // Until the pace of contacts is known: as if all gaps were due once in the time that the first one takes.
-  slots_per_time_ = soonest < never && soonest > 0 ? 1 / soonest : 1;
+  // The pace of contacts at first: of those that are foreseen now.
+  if (const std::size_t some = std::min<std::size_t>(due.size(), 1000); some > 0) {
+    const auto last = due.begin() + static_cast<std::ptrdiff_t>(some - 1);
+    std::nth_element(due.begin(), last, due.end());
+    if (*last > 0) slots_per_time_ = static_cast<double>(some) / *last / contacts_per_slot;
+  }
   for (std::uint32_t i = 0; i < gaps_.size(); ++i) enter(i);
   next_fit_ = 64;
 }

@@ -42,7 +42,7 @@ class TimeSlotsEngine {
   Law law_;
   std::vector<Gap> gaps_;
   std::vector<std::uint32_t> slots_;
-  double slots_per_time_ = 0;
+  double slots_per_time_ = 1;
   std::uint64_t now_ = 0;      // the slot that is looked at
   std::uint64_t entered_ = 0;  // gaps in the table
   std::uint64_t contacts_ = 0, fitted_at_ = 0, next_fit_ = 0;

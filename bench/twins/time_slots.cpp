@@ -92,7 +92,8 @@ void TimeSlotsEngine::kick(std::uint32_t i, double gain, double time) {
 // Slots as wide as the contacts since the last time ask for.
 void TimeSlotsEngine::fit(double time) {
   const double pace = static_cast<double>(contacts_ - fitted_at_) / (time - fitted_time_);
-  next_fit_ = contacts_ + std::max<std::uint64_t>(64, gaps_.size() / 8);
+  next_fit_ =
+      contacts_ + std::clamp<std::uint64_t>(contacts_ / 4, 64, 64 + gaps_.size() / 8);  // at first the pace rises
   if (!(time > fitted_time_)) return;
   fitted_at_ = contacts_;
   fitted_time_ = time;

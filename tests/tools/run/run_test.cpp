@@ -117,7 +117,9 @@ TEST_F(Run, EveryPrecisionReportsTheCollapseTimeToItsLastDigits) {
   const std::vector<std::pair<std::string, std::size_t>> digits{{"double", 15},
                                                                 {"'long double'", 18},
                                                                 {"double-double", 30},
+#ifdef CRADLE_WITH_FLOAT128
                                                                 {"float128", 32},
+#endif
                                                                 {"cpp_bin_float", 90},
                                                                 {"mpfr --set run.digits=20", 19},
                                                                 {"mpfr --set run.digits=80", 79}};

@@ -1,7 +1,7 @@
 #pragma once
 // Bodies on a line as a conventional event-driven program keeps them: absolute positions and velocities in double, each
-// body advanced only when it takes part in a contact. Equal masses; inelastic law with a velocity cut-off. The heaps and
-// the priority queue beside this file differ in how they find the next contact and in nothing else.
+// body advanced only when it takes part in a contact. Equal masses; inelastic law with a velocity cut-off. The heaps
+// and the priority queue beside this file differ in how they find the next contact and in nothing else.
 
 #include <algorithm>
 #include <cstddef>

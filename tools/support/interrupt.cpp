@@ -64,7 +64,10 @@ Exit status_of_signal(int signal) { return signal == SIGINT ? Exit::interrupted 
 void note_signals(Interrupt& interrupt) {
   noting = &interrupt;
   first_at = 0;
-  for (const int signal : noted) std::signal(signal, signal == SIGHUP && hang_ups_ignored ? SIG_IGN : note);
+  for (const int signal : noted) {
+    const auto before = std::signal(signal, signal == SIGHUP && hang_ups_ignored ? SIG_IGN : note);
+    if (signal == SIGHUP && before == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // systems where it is not read before
+  }
 }
 
 void ignore_signals() {

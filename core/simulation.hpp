@@ -93,6 +93,10 @@ class Simulation {
   // made.
   template <class Observer> Status advance(const T& until, Observer&& observer) {
     head_for(until);
+    const struct Forget {
+      Simulation& run;
+      ~Forget() { run.observer_ = nullptr; }
+    } forget{*this};
     observer_ = std::ref(observer);
     aim();
     return make_contacts();
@@ -110,7 +114,6 @@ class Simulation {
                                   "): a run goes forward only");
     target_.until = until;
     status_ = Status::reached;
-    observer_ = nullptr;
     aim();
   }
   // Makes the next contact; false where there is none to make, or it is the last one.

@@ -157,6 +157,21 @@ TEST(Exceptions, FromAnObserverLeaveTheContactToBeMade) {
   }
 }
 
+TEST(Exceptions, AnObserverIsForgottenWhenItsAdvanceEnds) {
+  auto run = gap_run(rshock<double>(200), law), twin = gap_run(rshock<double>(200), law);
+  int seen = 0;
+  EXPECT_THROW(run.advance(end,
+                           [&](const Contact<double>&) {
+                             if (++seen == 5) throw Thrown();
+                           }),
+               Thrown);
+  while (run.step()) {
+  }
+  EXPECT_EQ(seen, 5) << "a reference to it must not be kept";
+  twin.advance(end);
+  expect_identical(run, twin, end);
+}
+
 TEST(Exceptions, OfACollapseTheReportIsNotLost) {
   auto run = gap_run<double>(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic(.05),
                              {CollapsePolicy::stop, 0, {}, [](const double&, const Counts&) { throw Thrown(); }});

@@ -9,6 +9,8 @@
 
 #include <concepts>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 
 #include "cradle/core/account.hpp"
 #include "cradle/core/collision.hpp"
@@ -55,6 +57,10 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
   { chain.account() } -> std::same_as<const Account<typename C::Scalar>&>;
 
+  // Energy that a contact at a gap has lost; all that was lost.
+  changing.lose(s, time);
+  { chain.energy_lost() } -> std::convertible_to<typename C::Scalar>;
+
   // Reading, at a local time not before the last contact: a gap; the outermost bodies that have collided and how many
   // there are from one to the other; everything.
   { chain.gap_at(s, time) } -> std::convertible_to<typename C::Scalar>;
@@ -63,6 +69,21 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.collided_bodies() } -> std::same_as<BodyIndex>;
   { chain.configuration(time) } -> std::same_as<Configuration<typename C::Scalar>>;
 };
+
+// Of the gaps held at the start; throws std::invalid_argument where one is not a number.
+template <Chain C> typename C::Scalar smallest_gap(const C& chain) {
+  using T = typename C::Scalar;
+  const T start = chain.local_time(chain.start());
+  T least = far_away<T>();
+  for (Slot s = chain.first(); s <= chain.last(); ++s) {
+    const T gap = chain.gap_at(s, start);
+    if (!is_finite(gap) || !is_finite(T(chain.closing(s))))
+      throw std::invalid_argument("the distance or closing speed of bodies " + std::to_string(chain.body(s)) +
+                                  " and the next is not finite: check their positions and velocities");
+    if (gap < least) least = gap;
+  }
+  return least;
+}
 
 // A chain that asks for slots (Notice::needs_slots) when bodies come into it. Afterwards slots are others.
 template <class C>

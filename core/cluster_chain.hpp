@@ -135,6 +135,8 @@ template <Real T> class ClusterChain {
     return on_left < on_right ? on_left : on_right;
   }
   const Account<T>& account() const { return gaps_.account(); }
+  void lose(Slot s, const T& energy) { gaps_.lose(s, energy); }
+  T energy_lost() const { return gaps_.energy_lost(first(), last()); }
   T time_resolution(Slot, const T& time) const { return gaps_.time_resolution(time); }
 
   // ---- reading, at a local time not before the last contact
@@ -156,7 +158,7 @@ template <Real T> class ClusterChain {
 
  private:
   ClusterChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, GapRange held)
-      : bodies_(std::move(bodies)), gaps_(start),
+      : bodies_(std::move(bodies)), gaps_(start, bodies_->kinetic_energy()),
         window_(bodies_->on_ring(), held.first, bodies_->count() - 2 - held.last, 3),
         frame_(bodies_->momentum() / bodies_->total_mass()), runaway_(T(2) + T(4) * bodies_->energy_over_least_mass()) {
     require_bodies(*bodies_, start);

@@ -22,20 +22,27 @@
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/contact_memory.hpp"
-#include "cradle/core/masses.hpp"
-#include "cradle/core/timed_gaps.hpp"
+#include "cradle/core/gap_line.hpp"
 #include "cradle/core/window.hpp"
 
 namespace cradle {
 
-// In double 32 bytes, two to a line of the cache.
-template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap : TimedGap<T> { T closing{-1}; };
+// How the front at one end of a line has moved in a window (segments.hpp): the outermost slot with a contact, and the
+// contacts at the last gap of the line, with what each handed to the body that ends it.
+template <Real T> struct FrontMove {
+  struct AtEnd {
+    T time, handed;
+  };
+  Slot reached = 0;
+  std::vector<AtEnd> at_end;
+};
 
 template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
  public:
   using Scalar = T;
+  using Line = GapLine<T, Masses>;
   static constexpr bool may_collapse = true;
-  static constexpr bool keys_are_exact = TimedGaps<T, Gap<T>, may_collapse>::keys_are_exact;
+  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
   // start. Throws std::invalid_argument for masses that are not identical where the chain is for such.
@@ -44,43 +51,42 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
                  hold_all && !bodies->on_ring() ? GapRange{0, bodies->count() - 2} : bodies->gaps_in_motion()) {}
 
   // ---- times: local ones are offsets from an origin that moves
-  const Clock<T>& clock() const { return gaps_.clock(); }
+  const Clock<T>& clock() const { return line_.gaps.clock(); }
   const T& start() const { return clock().start(); }
   T local_time(const T& time) const { return clock().offset(time); }
   Pair<T> stamp(const T& local) const { return clock().stamp(local); }
-  double queue_time(const T& local) const { return gaps_.queue_time(local); }
+  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
 
   // ---- slots: the gaps held are first() to last()
-  std::size_t slots() const { return gaps_.slots(); }
+  std::size_t slots() const { return line_.gaps.slots(); }
   Slot first() const { return window_.first(); }
   Slot last() const { return window_.last(); }
   Slot left(Slot s) const { return on_ring() && s == first() ? last() : s - 1; }
   Slot right(Slot s) const { return on_ring() && s == last() ? first() : s + 1; }
   bool on_ring() const { return window_.on_ring(); }
-  BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) + body_of_slot_0_; }
+  BodyIndex body(Slot s) const { return line_.body(s); }
   BodyIndex collided_bodies() const {
     if (on_ring()) return bodies_->count();
     return window_.has_fronts() ? body(window_.front_right()) - body(window_.front_left()) + 2 : 0;
   }
 
   // Local time of the next contact of a gap that is closing.
-  T due(Slot s) const { return gaps_.due(s, closing(s)); }
-  double queue_due(Slot s) const { return gaps_.queue_due(s, closing(s)); }
-  const T& closing(Slot s) const { return gaps_[s].closing; }
+  T due(Slot s) const { return line_.due(s); }
+  double queue_due(Slot s) const { return line_.queue_due(s); }
+  const T& closing(Slot s) const { return line_.closing(s); }
 
-  // ---- events. Inlined by force: the loop comes in two versions, observed or not, and as a call this passes all
-  // results through memory, a fifth of the time per contact.
+  // ---- events (inlined by force, see gap_line.hpp)
   template <class Law>
   [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
     if (!window_.inside(s, s)) [[unlikely]]
       return collide_at_end(law, s, time);
-    return strike(s - 1, s, s + 1, time, outcome(law, s, time), Notice::none);
+    return line_.strike(s - 1, s, s + 1, time, outcome(law, s, time), Notice::none);
   }
 
   // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
   // times they are told in.
   T move_origin(const T& local) {
-    gaps_.move_origin(local, [this](auto&& each) {
+    line_.gaps.move_origin(local, [this](auto&& each) {
       for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
     });
     memory_.move_origin(local);
@@ -95,20 +101,22 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   // Contacts that leave a gap below `floor` beside them are noticed (gap_below_floor).
-  void set_floor(const T& floor) { gaps_.set_floor(floor); }
+  void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
   // The smaller gap next to a contact, as of its local time; an end of the line counts as far away.
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
-    const T on_left = on_ring() || s > first() ? gaps_[left(s)].gap : far,
-            on_right = on_ring() || s < last() ? gaps_[right(s)].gap : far;
+    const T on_left = on_ring() || s > first() ? line_.gaps[left(s)].gap : far,
+            on_right = on_ring() || s < last() ? line_.gaps[right(s)].gap : far;
     return on_left < on_right ? on_left : on_right;
   }
-  const Account<T>& account() const { return gaps_.account(); }
+  const Account<T>& account() const { return line_.gaps.account(); }
+  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
+  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
   // What times of contacts are told apart by, as times since the start.
-  T time_resolution(Slot, const T& time) const { return gaps_.time_resolution(time); }
+  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
 
   // ---- reading, at a local time not before the last contact
-  T gap_at(Slot s, const T& time) const { return gaps_.gap_at(s, closing(s), time); }
+  T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
   // Positions of the outermost bodies that have collided; only once there are some.
   T front_left(const T& time) const {
     const Pair<T> x = flight(left_, time).x;
@@ -121,17 +129,50 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     return (body(front) + 1 < right_.body() ? x - gap_at(front + 1, time) : x).value();
   }
 
+  // ---- for segments (segments.hpp)
+  const Bodies<T>& bodies() const { return *bodies_; }
+  const Line& line() const { return line_; }
+  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
+  // Slots free for bodies that the fronts reach.
+  std::size_t within_reach_left() const { return window_.free_left(); }
+  std::size_t within_reach_right() const { return window_.free_right(slots()); }
+  bool cramped(std::size_t bodies) const { return window_.cramped_for(bodies, slots()); }
+  bool fronts_are_within(Slot left, Slot right) const {
+    return on_ring() || (window_.has_fronts() && window_.front_left() <= left && window_.front_right() >= right);
+  }
+  Slot front_slot_left() const { return window_.front_left(); }
+  Slot front_slot_right() const { return window_.front_right(); }
+  // Goes over to the gaps after a window, at the same slots and at those that the fronts have reached.
+  void go_on_with(typename Line::Gaps& after, const FrontMove<T>& to_left, const FrontMove<T>& to_right) {
+    line_.gaps.swap_gaps(after);
+    if (on_ring()) return;
+    window_.reach(to_left.reached, to_right.reached);
+    while (first() >= window_.front_left() && window_.beyond_left(first()) == Window::Beyond::row) {
+      window_.take_in_left();
+      line_.load_mass(first(), *bodies_);
+    }
+    while (last() <= window_.front_right() && window_.beyond_right(last()) == Window::Beyond::row) {
+      window_.take_in_right(bodies_->count());
+      line_.load_mass(last() + 1, *bodies_);
+    }
+    const BodyIndex left = body(window_.front_left()), right = body(window_.front_right()) + 1;
+    if (left > 0) left_.take(left - 1);
+    if (right + 1 < bodies_->count()) right_.take(right + 1);
+    for (const auto& contact : to_left.at_end) left_.follow(left, *bodies_, clock(), contact.time, T(-contact.handed));
+    for (const auto& contact : to_right.at_end) right_.follow(right, *bodies_, clock(), contact.time, contact.handed);
+  }
+
   // The bodies that have collided and the next one on each side; all that are held before the first contact. On a ring
   // all bodies, from the first one right of x = 0. (gap_chain_configuration.hpp)
   Configuration<T> configuration(const T& time) const;
 
  private:
   GapChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, GapRange held)
-      : bodies_(std::move(bodies)), gaps_(start), masses_(*bodies_),
+      : bodies_(std::move(bodies)), line_(*bodies_, start),
         window_(bodies_->on_ring(), held.first, bodies_->on_ring() ? 0 : bodies_->count() - 2 - held.last, 2) {
     require_bodies(*bodies_, start);
     lay_out({}, held.last - held.first + 1);
-    for (Slot s = first(); s <= last(); ++s) load(s, T(0));
+    for (Slot s = first(); s <= last(); ++s) line_.load(s, *bodies_, T(0));
     left_.take(body(first()));
     right_.take(body(last()) + 1);
     if (!on_ring()) return;
@@ -146,53 +187,24 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // Goes over to slots enough for the zone to grow by half on either side, with the gaps at `kept`.
   void lay_out(const std::vector<Slot>& kept, BodyIndex held) {
     const std::size_t slots = window_.lay_out(static_cast<std::size_t>(held), held / 2 + 8, kept);
-    body_of_slot_0_ = window_.unheld_left() - static_cast<BodyIndex>(first());
-    gaps_.lay_out(slots, first(), kept);
+    line_.body_of_slot_0 = window_.unheld_left() - static_cast<BodyIndex>(first());
+    line_.gaps.lay_out(slots, first(), kept);
     memory_.lay_out(slots, first(), kept);
-    masses_.resize(slots);
-    for (Slot s = first(); s <= last() + 1; ++s) load_mass(s);
+    line_.masses.resize(slots);
+    for (Slot s = first(); s <= last() + 1; ++s) line_.load_mass(s, *bodies_);
   }
-
-  // As it is at the start, of the body on the left of a slot, its gap and its mass.
-  void load(Slot s, const T& time) {
-    gaps_.put(s, {{bodies_->gap(body(s)), time}, bodies_->closing_speed(body(s))});
-    gaps_.foresee(s, closing(s));
-  }
-  void load_mass(Slot s) { masses_.set(s, bodies_->mass(body(s) < bodies_->count() ? body(s) : 0)); }
 
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
     if constexpr (LawWithMemory<Law, T>)
       if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots()))
-        return law.elastic(closing(s), masses_.of_pair(s));
-    return law(closing(s), masses_.of_pair(s));
+        return law.elastic(closing(s), line_.masses.of_pair(s));
+    return law(closing(s), line_.masses.of_pair(s));
   }
   // A contact at an end of the active zone, or at the seam of a ring.
   template <class Law> [[gnu::noinline]] Collision<T> collide_at_end(const Law& law, Slot s, const T& time) {
     const Outcome<T> of_law = outcome(law, s, time);
     const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
-    return strike(left(s), s, right(s), time, of_law, notice);
-  }
-
-  // What a contact at the gap s does to it and to its neighbours p and n.
-  [[gnu::always_inline]] Collision<T> strike(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
-                                             Notice notice) {
-    const T since = gaps_.flown(s, time);
-    notice |= of_flight(queue_time(since), queue_time(time));
-    gaps_.close(s, outcome.closing, since, time);
-    gaps_[s].closing = outcome.closing;
-    gaps_.forget(s);
-    notice |= kick(p, outcome.to_left, time);
-    notice |= kick(n, outcome.to_right, time);
-    return {outcome, gaps_.predict(p, closing(p)), EventQueue::never, gaps_.predict(n, closing(n)), notice, p, n};
-  }
-  // Brings a gap up to date and adds to its closing speed.
-  [[gnu::always_inline]] Notice kick(Slot s, const T& gain, const T& time) {
-    const T since = gaps_.kick(
-        s, closing(s), [&]() -> const T& { return gain; }, time);
-    gaps_[s].closing += gain;
-    if (gaps_.below_floor(s)) [[unlikely]]
-      return gaps_.note(s, closing(s), body(s), since, time);
-    return Notice::none;
+    return line_.strike(left(s), s, right(s), time, of_law, notice);
   }
 
   // A contact at an end of the active zone: takes in the next body there, or, at an end of the line, follows the last
@@ -203,41 +215,36 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       const Window::Beyond beyond = window_.beyond_left(s);
       if (beyond == Window::Beyond::row) {
         window_.take_in_left();
-        load(s - 1, time);
-        load_mass(s - 1);
+        line_.load(s - 1, *bodies_, time);
+        line_.load_mass(s - 1, *bodies_);
       }
       if (beyond != Window::Beyond::nothing) {
         left_.take(body(s) - 1);
       } else {
         left_.follow(body(s), *bodies_, clock(), time, T(-outcome.to_left));
-        seal(s - 1, time, outcome.to_left);
+        line_.seal(s - 1, time, outcome.to_left);
       }
     }
     if (s == window_.front_right()) {
       const Window::Beyond beyond = window_.beyond_right(s);
       if (beyond == Window::Beyond::row) {
         window_.take_in_right(bodies_->count());
-        load(s + 1, time);
-        load_mass(s + 2);
+        line_.load(s + 1, *bodies_, time);
+        line_.load_mass(s + 2, *bodies_);
       }
       if (beyond != Window::Beyond::nothing) {
         right_.take(body(s) + 2);
       } else {
         right_.follow(body(s) + 1, *bodies_, clock(), time, outcome.to_right);
-        seal(s + 1, time, outcome.to_right);
+        line_.seal(s + 1, time, outcome.to_right);
       }
     }
     return window_.cramped(slots()) ? Notice::needs_slots : Notice::none;
   }
 
-  // There is no gap beyond the last body: what stands in its slot keeps opening, whatever it is handed.
-  void seal(Slot s, const T& time, const T& handed) { gaps_.put(s, {{T(1), time}, T(-(handed + handed) - T(1))}); }
-
   std::shared_ptr<const Bodies<T>> bodies_;
-  TimedGaps<T, Gap<T>, may_collapse> gaps_;
-  Masses masses_;
+  Line line_;
   Window window_;
-  BodyIndex body_of_slot_0_ = 0;
   ContactMemory<T> memory_;
   T centre_{0};  // on a ring: of mass, at the start
   Anchor<T> left_, right_;

@@ -21,7 +21,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
   std::vector<T> ways, slowings;  // from body 0 to each one
   for (Slot s = first(); s <= last(); ++s) {
     c.index.push_back(body(s));
-    c.m.push_back(masses_[s]);
+    c.m.push_back(line_.masses[s]);
     ways.push_back(way.value());
     slowings.push_back(slowing.value());
     moment.add(c.m.back() * ways.back());
@@ -55,7 +55,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
   c.time = clock().time(time);
   for (Slot s = from; s <= to + 1; ++s) {
     c.index.push_back(body(s));
-    c.m.push_back(masses_[s]);
+    c.m.push_back(line_.masses[s]);
   }
   c.from = body(from);
   c.to = body(to) + 1;

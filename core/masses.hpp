@@ -2,6 +2,7 @@
 // The masses of a chain's bodies: one for all, or one for each. Identical masses cost nothing, neither memory nor the
 // divisions of the reduced mass.
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,16 +24,23 @@ template <Real T> struct IdenticalMasses {
                                 "): use GapChain<T, IndividualMasses<T>>");
   }
   T mass, reduced_mass;
+  IdenticalMasses without_slots() const { return *this; }
   void resize(std::size_t) {}
+  void copy(const IdenticalMasses&, Slot, Slot, std::size_t) {}
   void set(Slot, const T&) {}
   const T& operator[](Slot) const { return mass; }
   EqualMasses<T> of_pair(Slot) const { return {mass, reduced_mass}; }
 };
 
 template <Real T> struct IndividualMasses {
+  IndividualMasses() = default;
   explicit IndividualMasses(const Bodies<T>&) {}
+  IndividualMasses without_slots() const { return IndividualMasses(); }
   std::vector<T> masses;  // of the body on the left of each slot
   void resize(std::size_t slots) { masses.assign(slots, T(1)); }
+  void copy(const IndividualMasses& other, Slot from, Slot to, std::size_t bodies) {
+    std::copy_n(&other.masses[from], bodies, &masses[to]);
+  }
   void set(Slot s, const T& mass) { masses[s] = mass; }
   const T& operator[](Slot s) const { return masses[s]; }
   TwoMasses<T> of_pair(Slot s) const { return {masses[s], masses[s + 1]}; }

@@ -2,9 +2,14 @@
 // How often the event loop looks after what is not a contact, and when the origin of time moves. Both follow from the
 // history of contacts alone, never from who asks or how often.
 //
-// Regular reviews come after some 32 contacts per active body, sooner in a small zone. A move of the origin costs as
-// much as a few contacts per gap: it is rare in a large zone and comes with every second contact in a few-body
-// collapse.
+// A small zone is looked after by numbers of contacts. A move of the origin costs as much as a few contacts per gap: it
+// comes with every second contact in a few-body collapse and after some 32 contacts per body otherwise.
+//
+// A large zone whose bodies can collapse goes through time in epochs: when the origin moves next is a time, known since
+// it moved last, so that contacts far apart need no common order for it (segments.hpp). An epoch lasts as long as some
+// 8 contacts per active body should take, by the rate of the epoch before. It ends early, with the contact after which
+// that is asked for: where the flight before it was too short for the time since the origin, or where there are four
+// times as many contacts as were expected.
 
 #include <algorithm>
 #include <cstdint>
@@ -17,10 +22,19 @@ namespace cradle {
 template <Real T> struct Pacing {
   explicit Pacing(const T& start) : time_before(start) {}
 
+  static constexpr std::uint64_t large = 512;  // active bodies from which on there are epochs
+
   std::uint64_t next_review = 1;       // contacts made when the next regular review is due
   std::uint64_t contacts_at_move = 0;  // contacts made when the origin moved last
   std::uint64_t contacts_before = 0;   // contacts made, and the local time, at the regular review or the move before
   T time_before;
+
+  bool in_epochs = false;
+  T epoch{0};                       // how long this one is to last, from time_before
+  T epoch_end{0};                   // local
+  std::uint64_t expected = 0;       // contacts in it
+  std::uint64_t next_poll = 0;      // contacts made when the caller is asked again
+  std::uint64_t most_contacts = 0;  // made in all when it ends at the latest
 
   // After a contact at the given local time, with so many bodies active. The chain may ask for a move; at a regular
   // review there is one if bodies can collapse. If they merge instead, the origin moves only after many contacts, or
@@ -29,6 +43,7 @@ template <Real T> struct Pacing {
                     bool may_collapse) const {
     const std::uint64_t since_move = contacts - contacts_at_move;
     if (asks(notice, Notice::origin_must_move)) return true;
+    if (in_epochs) return contacts >= most_contacts;
     if (asks(notice, Notice::origin_should_move) && 16 * since_move >= active) return true;
     if (contacts < next_review) return false;
     if (may_collapse || since_move >= 32 * active + 16) return true;
@@ -36,14 +51,51 @@ template <Real T> struct Pacing {
            T(static_cast<std::int64_t>(contacts - contacts_before)) * time;
   }
 
-  // After a review; `time` as it is called now. Reviews that a chain asked for (Notice::needs_slots) change nothing:
-  // they depend on what is streamed.
-  void reviewed(std::uint64_t contacts, const T& time, std::uint64_t active, bool moved) {
+  // After a review at the local time `then`, which is called `now` since. Reviews that a chain asked for
+  // (Notice::needs_slots) change nothing: they depend on what is streamed.
+  void reviewed(std::uint64_t contacts, const T& then, const T& now, std::uint64_t active, bool moved,
+                bool may_collapse) {
+    const bool regular = contacts >= next_review;
+    if (moved && may_collapse && active >= large && (in_epochs ? contacts >= most_contacts : regular))
+      foresee(T(then - time_before), contacts - contacts_before, active);
     if (moved) contacts_at_move = contacts;
-    if (!moved && contacts < next_review) return;
+    if (in_epochs) {
+      if (moved) begin_epoch(contacts, now, active);
+      return passed(contacts, active);
+    }
+    if (!moved && !regular) return;
     contacts_before = contacts;
-    time_before = time;
+    time_before = now;
     next_review = contacts + std::min(32 * active + 16, active * active / 8 + 1);
+  }
+  // After so many contacts without any review. They are fewer than an epoch's most.
+  void passed(std::uint64_t contacts, std::uint64_t active) {
+    if (contacts >= next_poll) next_poll = contacts + std::min<std::uint64_t>(32 * active, 1 << 20);
+    next_review = std::min(most_contacts, next_poll);
+  }
+  // The origin has moved to where the epoch ends, which is called `now` since.
+  void epoch_ended(std::uint64_t contacts, const T& now, std::uint64_t active) {
+    foresee(epoch, contacts - contacts_before, active);
+    contacts_at_move = contacts;
+    begin_epoch(contacts, now, active);
+    passed(contacts, active);
+  }
+
+ private:
+  // How long the next epoch is to be where so many contacts have taken so long.
+  void foresee(const T& took, std::uint64_t contacts, std::uint64_t active) {
+    const auto aim = static_cast<std::int64_t>(8 * active), made = static_cast<std::int64_t>(contacts);
+    T next = aim > 64 * made ? T(took * T(64)) : T(took * T(aim) / T(made));
+    if (!is_positive(next)) next = epoch / T(64);  // no time has passed
+    in_epochs = is_positive(next);
+    epoch = next;
+    expected = static_cast<std::uint64_t>(std::min(64 * std::max<std::int64_t>(made, 1), aim));
+  }
+  void begin_epoch(std::uint64_t contacts, const T& now, std::uint64_t active) {
+    contacts_before = contacts;
+    time_before = now;
+    epoch_end = now + epoch;
+    most_contacts = contacts + 32 * active + 16;
   }
 };
 

@@ -13,6 +13,7 @@
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
+#include "cradle/core/ledger.hpp"
 
 namespace cradle {
 
@@ -23,7 +24,8 @@ template <Real T> class PositionChain {
   static constexpr bool may_collapse = true;
 
   // Throws std::invalid_argument for bodies on a ring.
-  PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start) : start_(start), origin_(start) {
+  PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start)
+      : start_(start), origin_(start), lost_(bodies->kinetic_energy()) {
     require_bodies(*bodies, start);
     if (bodies->on_ring())
       throw std::invalid_argument("a ring in absolute positions (circumference " + in_message(bodies->circumference()) +
@@ -87,6 +89,8 @@ template <Real T> class PositionChain {
     return on_left < on_right ? on_left : on_right;
   }
   const Account<T>& account() const { return account_; }
+  void lose(Slot, const T& energy) { lost_.add(energy); }
+  T energy_lost() const { return lost_.value(); }
   // What times of contacts are told apart by: a position is rounded, and a slow pair takes long for that way.
   T time_resolution(Slot s, const T& time) const {
     const T slowest = magnitude(closing_[s]);
@@ -169,6 +173,7 @@ template <Real T> class PositionChain {
   T start_, origin_;
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;
   Account<T> account_;
+  Ledger<T> lost_;
 };
 
 }  // namespace cradle

@@ -7,60 +7,24 @@
 //
 // Nothing depends on how often or until when `advance` is called: same initial state, same contacts, same bits.
 
-#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
-#include "cradle/core/account.hpp"
 #include "cradle/core/chain.hpp"
 #include "cradle/core/collapse.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
 #include "cradle/core/law.hpp"
-#include "cradle/core/ledger.hpp"
 #include "cradle/core/pacing.hpp"
+#include "cradle/core/run.hpp"
 #include "cradle/core/standstill.hpp"
 #include "cradle/core/ties.hpp"
 
 namespace cradle {
-
-enum class Status {
-  reached,     // all contacts up to the time asked for are made
-  collapsed,   // policy stop: inelastic collapse, see collapse()
-  exhausted,   // a gap is about to underflow, or time stands still: the scalar type resolves no more
-  interrupted  // the caller's `interrupt` said so
-};
-
-struct Counts {
-  std::uint64_t contacts = 0;  // all of them: those below the cut-off and merges included
-  std::uint64_t below_cutoff = 0;
-  std::uint64_t merges = 0;
-  std::uint64_t close_calls = 0;  // contacts that the queue's keys could not tell from another one
-  std::uint64_t origin_moves = 0;
-};
-
-// A contact as an observer sees it, before the law acts.
-template <Real T> struct Contact {
-  BodyIndex left, right;  // by their numbers at the start
-  Pair<T> time;
-  T interval;  // since the contact before it, or the start: resolves what differences of times cannot
-  T closing_speed;
-};
-
-template <Real T> struct Policy {
-  CollapsePolicy collapse = CollapsePolicy::cutoff;
-  T stop_gap{0};  // policy stop: go on until a gap is below this; 0: until the collapse time is settled
-  // Called after a contact now and then. What they throw leaves `advance`; the run is as it would be without, and can
-  // go on.
-  std::function<bool()> interrupt = {};  // true ends the run there
-  std::function<void(const T& time, const Counts&)> progress = {};
-};
 
 template <Real T, class Law, class Chain>
 requires CollidesBy<Chain, Law> && std::same_as<T, typename Chain::Scalar>
@@ -73,12 +37,11 @@ class Simulation {
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
         last_contact_(chain_.local_time(chain_.start())), pacing_(last_contact_),
-        standstill_(last_contact_), target_{chain_.start(), last_contact_} {
-    const T least = smallest_gap();
-    watch_below_ = underflow_;
-    if (policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last()) watch_below_ = least / T(64);
-    if (watch_below_ < policy_.stop_gap) watch_below_ = policy_.stop_gap;
-    chain_.set_floor(watch_below_);
+        standstill_(last_contact_), target_{chain_.start(), last_contact_, last_contact_} {
+    const T least = smallest_gap(chain_);
+    const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
+    const T floor = watched ? T(least / T(64)) : underflow_;
+    chain_.set_floor(floor < policy_.stop_gap ? policy_.stop_gap : floor);
     fill_queue();
     aim();
   }
@@ -88,6 +51,13 @@ class Simulation {
   Status advance(const T& until) {
     head_for(until);
     return make_contacts();
+  }
+  // The same in segments (segments.hpp).
+  template <class Segments>
+  requires requires { typename Segments::Window; }
+  Status advance(const T& until, Segments& segments) {
+    set_target(until);
+    return make_windows(segments);
   }
   // The same, observer(const Contact<T>&) being told of every contact. It may throw: the contact is then still to be
   // made.
@@ -105,16 +75,8 @@ class Simulation {
   // The same contact by contact, for several simulations side by side in one thread:
   // `run.head_for(until); while (run.step()) ...; run.status()`.
   void head_for(const T& until) {
-    if (!is_finite(until))
-      throw std::invalid_argument("the time to advance to is not finite (found " + std::to_string(to_double(until)) +
-                                  "): give a number");
-    if (until < last_contact_time())
-      throw std::invalid_argument("the time to advance to is in the past (found " + std::to_string(to_double(until)) +
-                                  ", the last contact was at " + std::to_string(to_double(last_contact_time())) +
-                                  "): a run goes forward only");
-    target_.until = until;
-    status_ = Status::reached;
-    aim();
+    set_target(until);
+    hold_queue();
   }
   // Makes the next contact; false where there is none to make, or it is the last one.
   [[gnu::always_inline]] bool step() {
@@ -130,7 +92,7 @@ class Simulation {
     const Collision<T> collision = chain_.collide(law_, s, time);
     queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
     last_contact_ = time;
-    lost_.add(collision.outcome.energy_lost);
+    chain_.lose(s, collision.outcome.energy_lost);
     counts_.below_cutoff += collision.outcome.below_cutoff;
     counts_.merges += collision.outcome.event == Event::merge;
     if (++counts_.contacts >= pacing_.next_review || collision.notice != Notice::none) [[unlikely]] {
@@ -141,7 +103,6 @@ class Simulation {
   }
   Status status() const { return status_; }
 
-  const Law& law() const { return law_; }
   const Chain& chain() const { return chain_; }
   const Account<T>& account() const { return chain_.account(); }
 
@@ -153,66 +114,99 @@ class Simulation {
   T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
 
   const Counts& counts() const { return counts_; }
-  T energy_lost() const { return lost_.value(); }
+  T energy_lost() const { return chain_.energy_lost(); }
   // The start if there was no contact yet.
   T last_contact_time() const { return chain_.stamp(last_contact_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report; }
 
  private:
-  // Of those held; throws where one is not a number.
-  T smallest_gap() const {
-    const T start = chain_.local_time(chain_.start());
-    T least = far_away<T>();
-    for (Slot s = chain_.first(); s <= chain_.last(); ++s) {
-      const T gap = chain_.gap_at(s, start);
-      if (!is_finite(gap) || !is_finite(T(chain_.closing(s))))
-        throw std::invalid_argument("the distance or closing speed of bodies " + std::to_string(chain_.body(s)) +
-                                    " and the next is not finite: check their positions and velocities");
-      if (gap < least) least = gap;
-    }
-    return least;
-  }
-
   void fill_queue() {
     queue_ = EventQueue(chain_.slots(), Chain::keys_are_exact, least_queue_bits_);
+    queue_holds_ = true;
     refill_queue();
   }
   void refill_queue() {
+    if (!queue_holds_) return;
     for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
     queue_.rebuild(chain_.first(), chain_.last());
     ties_.forget();
   }
-
+  // The plain loop needs a queue of the whole, windows do not.
+  void hold_queue() {
+    if (!queue_holds_) fill_queue(), aim();
+  }
+  void release_queue() {
+    if (std::exchange(queue_holds_, false)) queue_ = EventQueue(8, Chain::keys_are_exact);
+  }
+  void set_target(const T& until) {
+    require_ahead(until, last_contact_time());
+    target_.until = until;
+    status_ = Status::reached;
+    aim();
+  }
   [[gnu::noinline]] Status make_contacts() {
-    while (step()) {
-    }
+    while (step()) continue;
     return status_;
   }
 
-  // Where to go, in the terms of the chain and the queue as they are now. Of an observed run every contact is one to
-  // look at more closely, so that the others have nothing to pay.
+  // The window loop: windows of time in segments, and where those do not do, contacts in the plain loop.
+  template <class Segments> Status make_windows(Segments& segments) {
+    for (T from = last_contact_;;) {
+      const bool in_windows = pacing_.in_epochs && policy_.collapse == CollapsePolicy::cutoff;
+      const double epochs = in_windows ? to_double(T((target_.horizon - from) / pacing_.epoch)) : 0;
+      if (auto plain = segments.plain_contacts(chain_, epochs, pacing_.expected)) {
+        for (hold_queue(); plain > 0; --plain)
+          if (!step()) return status_;
+        from = last_contact_;
+        continue;
+      }
+      const T end = segments.end(from, pacing_.epoch, target_.stop);
+      release_queue();
+      const auto window = segments.make(chain_, law_, end, pacing_.most_contacts - counts_.contacts);
+      if (!window) continue;
+      counts_.contacts += window->contacts;
+      counts_.below_cutoff += window->below_cutoff;
+      if (window->contacts > 0) last_contact_ = window->last_contact;
+      if (end == target_.horizon) return status_;
+      from = end == target_.stop ? end_epoch() : end;
+      pacing_.passed(counts_.contacts, active());
+      status_ = policy_.ask(last_contact_time(), counts_);
+      if (status_ != Status::reached) return status_;
+    }
+  }
+
+  // Where to go, as chain and queue call it now. Observed contacts are all looked at closely, others pay nothing.
   void aim() {
     target_.horizon = chain_.local_time(target_.until);
-    target_.certainly_before = observer_ ? 0 : queue_.certainly_before(chain_.queue_time(target_.horizon));
+    target_.stop = pacing_.in_epochs && pacing_.epoch_end < target_.horizon ? pacing_.epoch_end : target_.horizon;
+    target_.certainly_before = observer_ ? 0 : queue_.certainly_before(chain_.queue_time(target_.stop));
   }
 
   // The next contact where keys do not tell whether it comes in time; false if it does not.
   bool first_within_target(Slot& first) {
-    if (queue_.next() > queue_.possibly_before(chain_.queue_time(target_.horizon))) return false;
-    const bool contested = queue_.contested();
-    if (contested) first = ties_.first(queue_, chain_, counts_.contacts);
-    if (!(chain_.due(first) <= target_.horizon)) return false;
-    if (contested) count_close_call();
+    while (!first_by(target_.stop, first)) {
+      if (target_.stop == target_.horizon) return false;
+      end_epoch();
+      first = queue_.slot(queue_.next());
+    }
     return true;
   }
-  void tell_observer(Slot s) {
-    const T time = chain_.due(s);
-    observer_(Contact<T>{chain_.body(s), chain_.body(chain_.right(s)), chain_.stamp(time), time - last_contact_,
-                         chain_.closing(s)});
+  bool first_by(const T& time, Slot& first) {
+    if (queue_.next() > queue_.possibly_before(chain_.queue_time(time))) return false;
+    const bool contested = queue_.contested();
+    if (contested) first = ties_.first(queue_, chain_, counts_.contacts);
+    if (!(chain_.due(first) <= time)) return false;
+    if (contested) count_close_call();
+    return true;
   }
   Slot first_of_tied() {
     count_close_call();
     return ties_.first(queue_, chain_, counts_.contacts);
+  }
+  void tell_observer(Slot s) {
+    const T time = chain_.due(s);
+    observer_(
+        {chain_.body(s), chain_.body(chain_.right(s)), chain_.stamp(time), time - last_contact_, chain_.closing(s)});
   }
   // Once for every contact, however often it is asked for before it is made.
   void count_close_call() {
@@ -221,8 +215,8 @@ class Simulation {
     close_calls_until_ = counts_.contacts + 1;
   }
 
-  // Looks after everything that is not a contact, after the contact at slot s. What it does depends on the history of
-  // contacts only. What the caller has asked to be called comes last, since it may throw.
+  // Looks after all that is not a contact, after the one at slot s. What it does depends on the history of contacts
+  // only. What the caller has asked to be called comes last, since it may throw.
   Status review(Slot s, Notice notice) {
     const Status judged = asks(notice, Notice::gap_below_floor) ? judge(s) : Status::reached;
     if constexpr (StreamingChain<Chain>)
@@ -230,27 +224,36 @@ class Simulation {
         chain_.make_room();
         fill_queue();
       }
-    const auto active = static_cast<std::uint64_t>(chain_.collided_bodies());
-    const bool stands_still = standstill_.at(last_contact_, counts_.contacts, active);
-    const bool moves =
-        !stands_still && pacing_.origin_moves(notice, counts_.contacts, last_contact_, active, Chain::may_collapse);
-    if (moves) move_origin();
-    standstill_.time = last_contact_;
-    pacing_.reviewed(counts_.contacts, last_contact_, active, moves);
+    const bool move = pacing_.origin_moves(notice, counts_.contacts, last_contact_, active(), Chain::may_collapse);
+    const bool stands_still = (move || !pacing_.in_epochs) && standstill_.at(last_contact_, counts_.contacts, active());
+    const bool moves = move && !stands_still, ask = moves || counts_.contacts >= pacing_.next_review;
+    const T before = last_contact_;
+    if (moves) move_origin(before);
+    if (moves || !pacing_.in_epochs) standstill_.time = last_contact_;
+    pacing_.reviewed(counts_.contacts, before, last_contact_, active(), moves, Chain::may_collapse);
     aim();
     if (stands_still) return Status::exhausted;
-    if (judged != Status::reached || !moves) return judged;
-    if (policy_.progress) policy_.progress(last_contact_time(), counts_);
-    return policy_.interrupt && policy_.interrupt() ? Status::interrupted : Status::reached;
+    return judged == Status::reached && ask ? policy_.ask(last_contact_time(), counts_) : judged;
   }
+  std::uint64_t active() const { return static_cast<std::uint64_t>(chain_.collided_bodies()); }
 
-  // To the last contact.
-  void move_origin() {
-    const T before = last_contact_;
-    last_contact_ = chain_.move_origin(before);
-    watch_.origin_moved(T(before - last_contact_));
+  // There are no more contacts in this epoch. Returns what the local time of its end is called now.
+  T end_epoch() {
+    const T now = move_origin(pacing_.epoch_end);
+    pacing_.epoch_ended(counts_.contacts, now, active());
+    standstill_ = Standstill<T>(now, counts_.contacts);
+    aim();
+    return now;
+  }
+  // Returns what the local time that it moves to is called now.
+  T move_origin(const T& to) {
+    const T called = chain_.move_origin(to);
+    const T by = to - called;
+    last_contact_ -= by;
+    watch_.origin_moved(by);
     ++counts_.origin_moves;
     refill_queue();
+    return called;
   }
 
   // Whether the gap that the last contact, at slot s, has left beside it ends the run.
@@ -268,6 +271,7 @@ class Simulation {
 
   struct Target {
     T until, horizon;                      // the time to go to, of the scene and as the chain calls it
+    T stop;                                // where an epoch ends before that, its end, else the horizon
     EventQueue::Key certainly_before = 0;  // contacts with lesser keys come before it, and nobody observes them
   };
 
@@ -276,8 +280,8 @@ class Simulation {
   Policy<T> policy_;
   int least_queue_bits_;
   EventQueue queue_;
+  bool queue_holds_ = true;
   T last_contact_;  // local time; the start if there was none
-  Ledger<T> lost_;
   Counts counts_;
   std::uint64_t close_calls_until_ = 0;  // contacts up to this number have been looked at for close calls
   Pacing<T> pacing_;
@@ -288,7 +292,6 @@ class Simulation {
   std::function<void(const Contact<T>&)> observer_;  // of this advance only
   Status status_ = Status::reached;
   T underflow_{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows no underflow
-  T watch_below_{0};
 };
 
 template <class Law, class Chain> Simulation(Law, Chain) -> Simulation<typename Chain::Scalar, Law, Chain>;

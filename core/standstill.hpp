@@ -9,10 +9,10 @@
 namespace cradle {
 
 template <Real T> struct Standstill {
-  explicit Standstill(const T& start) : time(start) {}
+  explicit Standstill(const T& start, std::uint64_t contacts = 0) : time(start), contacts_then(contacts) {}
 
-  T time;                           // local, at the last review
-  std::uint64_t contacts_then = 0;  // made when time was last seen to go on
+  T time;                       // local, at the last review
+  std::uint64_t contacts_then;  // made when time was last seen to go on
 
   // At a review: local time now, contacts made, bodies active.
   bool at(const T& now, std::uint64_t contacts, std::uint64_t active) {

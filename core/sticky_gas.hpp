@@ -31,7 +31,8 @@ template <Real T> class StickyGas {
   using Scalar = T;
 
   StickyGas(std::shared_ptr<const Bodies<T>> bodies, const T& start)
-      : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), start_(start), time_(start) {
+      : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), start_(start), time_(start),
+        lost_(bodies_->kinetic_energy()) {
     const GapRange moving = ring_ ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
     for (BodyIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }

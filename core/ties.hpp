@@ -20,7 +20,8 @@
 
 namespace cradle {
 
-template <Chain C> class Ties {
+// C: a chain, or a segment of one.
+template <class C> class Ties {
  public:
   // The first of all contacts, where the queue is contested; so many contacts have been made.
   Slot first(const EventQueue& queue, const C& chain, std::uint64_t contacts) {

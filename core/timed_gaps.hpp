@@ -17,6 +17,7 @@
 // so that a move touches no gap. A lag is other than zero only where the local time is negative, and is looked up only
 // there.
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <concepts>
@@ -29,11 +30,16 @@
 #include "cradle/core/clock.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/event_queue.hpp"
+#include "cradle/core/ledger.hpp"
 
 namespace cradle {
 
-// What a chain's cell begins with.
-template <Real T> struct TimedGap { T gap{1}, time{0}; };
+// What a chain's cell begins with; `lost`: the energy lost in contacts here.
+template <Real T> struct TimedGap { T gap{1}, time{0}, lost{0}; };
+template <Real T>
+requires(Ledger<T>::in_any_order) struct TimedGap<T> {
+  T gap{1}, time{0};
+};
 // In double the time of the next contact is its own key: it is kept, which saves a division when it comes.
 template <> struct TimedGap<double> { double gap = 1, time = 0, due = EventQueue::never; };
 
@@ -43,7 +49,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   static constexpr bool keys_are_exact = std::same_as<T, double>;
   static constexpr bool beyond_double = may_collapse && WiderRange<T>;
 
-  explicit TimedGaps(const T& start) : clock_(start) {}
+  TimedGaps(const T& start, const T& energy) : clock_(start), lost_(energy) {}
 
   // ---- slots
   std::size_t slots() const { return cells_.size(); }
@@ -75,6 +81,26 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     cells_[to].gap = cells_[from].gap;
     cells_[to].time = cells_[from].time;
     lag_[to] = lag_[from];
+    if constexpr (!Ledger<T>::in_any_order) cells_[to].lost += std::exchange(cells_[from].lost, T(0));
+  }
+
+  // ---- copies of a part (segments.hpp). Goes on with so many slots and all that belongs to no slot like `other`.
+  void resemble(const TimedGaps& other, std::size_t slots) {
+    cells_.resize(slots);
+    lag_.resize(slots);
+    clock_ = other.clock_;
+    floor_ = other.floor_;
+    shift_ = other.shift_;
+    lost_ = other.lost_;
+    lost_.clear();
+  }
+  void copy(const TimedGaps& other, Slot from, Slot to, std::size_t gaps) {
+    std::copy_n(&other.cells_[from], gaps, &cells_[to]);
+    std::copy_n(&other.lag_[from], gaps, &lag_[to]);
+  }
+  void swap_gaps(TimedGaps& other) {
+    cells_.swap(other.cells_);
+    lag_.swap(other.lag_);
   }
 
   // ---- times
@@ -199,6 +225,23 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
   const Account<T>& account() const { return account_; }
 
+  // ---- energy lost in a contact at the gap; in all of those from one slot to another
+  [[gnu::always_inline]] void lose(Slot s, const T& energy) {
+    if constexpr (Ledger<T>::in_any_order)
+      lost_.add(energy);
+    else
+      cells_[s].lost += energy;
+  }
+  void lose(const Ledger<T>& elsewhere) { lost_.add(elsewhere); }
+  const Ledger<T>& ledger() const { return lost_; }
+  T energy_lost(Slot first, Slot last) const {
+    if constexpr (Ledger<T>::in_any_order) return lost_.value();
+    T sum(0);
+    if constexpr (!Ledger<T>::in_any_order)
+      for (Slot s = first; s <= last; ++s) sum += cells_[s].lost;
+    return sum;
+  }
+
  private:
   T contact_time(Slot s, const T& closing) const {
     const Cell& cell = cells_[s];
@@ -232,6 +275,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   T floor_{0};
   long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
   Account<T> account_;
+  Ledger<T> lost_;
 };
 
 }  // namespace cradle

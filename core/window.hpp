@@ -50,6 +50,19 @@ class Window {
     return (unheld_left_ > 0 && first_ <= spare_) || (unheld_right_ > 0 && last_ + spare_ + 1 >= slots);
   }
 
+  // Slots free for the next bodies of the rows.
+  std::size_t free_left() const { return std::min(static_cast<std::size_t>(unheld_left_), first_ - spare_); }
+  std::size_t free_right(std::size_t slots) const {
+    return std::min(static_cast<std::size_t>(unheld_right_), slots - 1 - spare_ - last_);
+  }
+
+  // Whether there are fewer than so many, although rows have them.
+  bool cramped_for(std::size_t bodies, std::size_t slots) const {
+    const auto wanted = static_cast<BodyIndex>(bodies);
+    return static_cast<BodyIndex>(free_left()) < std::min(wanted, unheld_left_) ||
+           static_cast<BodyIndex>(free_right(slots)) < std::min(wanted, unheld_right_);
+  }
+
   // ---- fronts
   bool on_ring() const { return extent_ == Extent::ring; }
   bool has_fronts() const { return extent_ == Extent::between_fronts; }

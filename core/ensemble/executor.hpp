@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <concepts>
 #include <functional>
+#include <mutex>
+#include <numeric>
 #include <thread>
 #include <vector>
+
+#include "cradle/core/workers.hpp"
 
 namespace cradle {
 
@@ -45,5 +49,36 @@ class ThreadExecutor {
  private:
   unsigned threads_;
 };
+
+/// Calls work(job, worker) for all jobs from 0 to jobs - 1, on the executor's threads, and returns when they are done.
+/// `worker` is below the number of threads, and another one for each call that runs at the same time. `work` throws
+/// nothing.
+template <Executor E> void for_each(const E& executor, std::size_t jobs, const Workers::Work& work) {
+  std::mutex mutex;
+  std::size_t next = 0;
+  std::vector<std::size_t> idle(executor.threads());
+  std::iota(idle.begin(), idle.end(), std::size_t{0});
+  executor.run([&] {
+    std::size_t job = 0, worker = 0;
+    {
+      const std::lock_guard lock(mutex);
+      if (next == jobs) return false;
+      job = next++;
+      worker = idle.back();
+      idle.pop_back();
+    }
+    work(job, worker);
+    const std::lock_guard lock(mutex);
+    idle.push_back(worker);
+    return true;
+  });
+}
+
+/// The executor's threads for the segments of one run. Refers to the executor.
+template <Executor E> Workers workers(const E& executor) {
+  if (executor.threads() < 2) return {};
+  return {executor.threads(),
+          [&executor](std::size_t jobs, const Workers::Work& work) { for_each(executor, jobs, work); }};
+}
 
 }  // namespace cradle

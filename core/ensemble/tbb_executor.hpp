@@ -12,19 +12,19 @@ namespace cradle {
 
 class TbbExecutor {
  public:
-  explicit TbbExecutor(unsigned threads = 0) : threads_(thread_count(threads)) {}
+  // More threads than processors only where asked for; oneTBB would not start them.
+  explicit TbbExecutor(unsigned threads = 0)
+      : threads_(thread_count(threads)), allowed_(oneapi::tbb::global_control::max_allowed_parallelism, threads_),
+        arena_(static_cast<int>(threads_)) {}
 
   unsigned threads() const { return threads_; }
 
   void run(const Step& step) const {
-    // More threads than processors only where asked for; oneTBB would not start them.
-    const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism, threads_);
-    oneapi::tbb::task_arena arena(static_cast<int>(threads_));
-    arena.execute([&] {
+    arena_.execute([&] {
       oneapi::tbb::task_group_context alone(oneapi::tbb::task_group_context::isolated);
       oneapi::tbb::task_group group(alone);
-      for (unsigned k = 0; k < threads_; ++k) group.run(Link{group, step});
-      group.wait();
+      for (unsigned k = 1; k < threads_; ++k) group.run(Link{group, step});
+      group.run_and_wait(Link{group, step});
     });
   }
 
@@ -39,6 +39,8 @@ class TbbExecutor {
   };
 
   unsigned threads_;
+  oneapi::tbb::global_control allowed_;
+  mutable oneapi::tbb::task_arena arena_;
 };
 
 }  // namespace cradle

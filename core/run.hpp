@@ -1,0 +1,61 @@
+#pragma once
+// What a run is asked for, and what it tells of itself: how it ended, how many contacts it made, what an observer sees
+// of one, what the caller wants done on the way.
+
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+
+#include "cradle/core/bodies.hpp"
+#include "cradle/core/collapse.hpp"
+
+namespace cradle {
+
+enum class Status {
+  reached,     // all contacts up to the time asked for are made
+  collapsed,   // policy stop: inelastic collapse, see collapse()
+  exhausted,   // a gap is about to underflow, or time stands still: the scalar type resolves no more
+  interrupted  // the caller's `interrupt` said so
+};
+
+struct Counts {
+  std::uint64_t contacts = 0;  // all of them: those below the cut-off and merges included
+  std::uint64_t below_cutoff = 0;
+  std::uint64_t merges = 0;
+  std::uint64_t close_calls = 0;  // contacts that the queue's keys could not tell from another one
+  std::uint64_t origin_moves = 0;
+};
+
+// A contact as an observer sees it, before the law acts.
+template <Real T> struct Contact {
+  BodyIndex left, right;  // by their numbers at the start
+  Pair<T> time;
+  T interval;  // since the contact before it, or the start: resolves what differences of times cannot
+  T closing_speed;
+};
+
+template <Real T> struct Policy {
+  CollapsePolicy collapse = CollapsePolicy::cutoff;
+  T stop_gap{0};  // policy stop: go on until a gap is below this; 0: until the collapse time is settled
+  // Called after a contact now and then. What they throw leaves `advance`; the run is as it would be without, and can
+  // go on.
+  std::function<bool()> interrupt = {};  // true ends the run there
+  std::function<void(const T& time, const Counts&)> progress = {};
+
+  Status ask(const T& time, const Counts& counts) const {
+    if (progress) progress(time, counts);
+    return interrupt && interrupt() ? Status::interrupted : Status::reached;
+  }
+};
+
+// Throws std::invalid_argument for a time that a run cannot go on to.
+template <Real T> void require_ahead(const T& until, const T& last_contact) {
+  if (!is_finite(until))
+    throw std::invalid_argument("the time to advance to is not finite (found " + in_message(until) +
+                                "): give a number");
+  if (until < last_contact)
+    throw std::invalid_argument("the time to advance to is in the past (found " + in_message(until) +
+                                ", the last contact was at " + in_message(last_contact) + "): a run goes forward only");
+}
+
+}  // namespace cradle

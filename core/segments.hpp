@@ -1,0 +1,253 @@
+#pragma once
+// One run in segments: parts of the line that go through a window of time each alone, on several threads or, on one, in
+// the caches next to the processor. The result is that of the plain loop, bit for bit.
+//
+// Why it is exact. A contact at the gap i reads and changes the gaps i - 1, i and i + 1, and every gap has a local time
+// of its own: what becomes of a gap depends on the contacts at it and beside it, in their order, and on nothing else. A
+// segment owns the gaps from one cut to the next and is computed on a copy of them with some ghosts on either side,
+// gaps of its neighbours as they were when the window began. What lies beyond the ghosts is missing, and what is wrong
+// for that reason moves inwards by one gap per contact at most. At each cut both sides keep a log of the contacts at
+// the last gap before it and the first one behind it: which of the two, exact time, closing speed.
+//
+//   If both logs of every cut are the same, the owned gaps of all segments together are those of the plain loop.
+//
+// For let both sides make their contacts in increasing order of (exact time, position), as is made sure of below, and
+// let the plain loop have made some contacts like them. It takes the first of those pending, at a gap that one side
+// owns, A say. There all gaps that A owns and the first one behind its cut have had the same contacts, so the contact
+// is pending in A as well, and is the next that A makes at a gap it owns, unless A makes one behind the cut before it.
+// That one is in the log, hence the next of the other side's there, at an earlier time than the plain loop's: B, which
+// makes contacts in order, has it pending already, and so has the plain loop, which would have taken it. So the plain
+// loop goes on like the segments, to the end of the window.
+//
+// What a window must not contain is left to the plain loop, which goes through that window instead: contacts out of
+// order (a gap below zero), a contact after which the origin moves, or a gap falls below the floor. Where logs differ
+// the segments on either side of the cut are joined and computed again, until no logs differ. None of this shows in the
+// result; how long windows are, where the cuts lie, and how many ghosts there are, is chosen for speed alone.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/segment.hpp"
+#include "cradle/core/workers.hpp"
+
+namespace cradle {
+
+// How segments are made. What is chosen here shows in how long a run takes, never in what it gives.
+struct Segmentation {
+  std::size_t gaps = 2800;  // owned by a segment, about
+  std::size_t ghosts = 64;  // on either side
+  double contacts = 0;      // per gap in a window; 0: as many as do well
+  bool anywhere = false;    // also where the plain loop is sure to be quicker
+};
+
+// Goes through windows of time in segments.
+template <Real T, class Law, class Masses> class Segments {
+ public:
+  using Chain = GapChain<T, Masses>;
+
+  explicit Segments(Workers workers = {}, Segmentation how = {})
+      : workers_(std::move(workers)), how_(how), segments_(workers_.count) {}
+
+  // What a window has made.
+  struct Window {
+    std::uint64_t contacts = 0, below_cutoff = 0;
+    T last_contact{0};
+  };
+
+  struct Statistics {
+    std::uint64_t windows = 0, given_up = 0;  // made in segments; begun so, and left to the plain loop
+    std::uint64_t contacts = 0;               // in the former
+    std::uint64_t again = 0;                  // contacts of joined segments
+    std::uint64_t largest = 0;                // contacts of the largest segment of each window, summed up
+  };
+  const Statistics& statistics() const { return statistics_; }
+
+  // Contacts to be made in the plain loop before the next window; so many epochs are to come before the run stops, of
+  // so many contacts each.
+  std::uint64_t plain_contacts(const Chain& chain, double epochs, std::uint64_t expected) {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    if (!(epochs > 0)) return 64;
+    const std::size_t middle = (chain.first() + chain.last()) / 2;
+    if (segments(held) < 2 || !chain.fronts_are_within(middle, middle)) return 256;
+    if (!how_.anywhere) {
+      // A window looks at every gap, and pays in threads or in caches only.
+      if (held < (workers_.count > 1 ? workers_.count * 500 : 6000)) return held;
+      if (std::min(epochs, 1.) * static_cast<double>(expected) < static_cast<double>(held) / 8) return expected + 1;
+    }
+    return std::exchange(plain_, 0);
+  }
+  // Where the next window should end, in an epoch of the given length.
+  T end(const T& from, const T& epoch, const T& stop) const {
+    // The rest of an epoch in equal windows.
+    const double left = to_double(T((stop - from) / epoch)), windows = std::ceil(left / share_);
+    if (!(windows > 1)) return stop;
+    return from + (stop - from) / T(static_cast<std::int64_t>(std::min(windows, 0x1p40)));
+  }
+
+  // Makes all contacts up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain
+  // loop.
+  std::optional<Window> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most) {
+    if (chain.cramped(how_.ghosts)) chain.make_room();
+    cut(chain);
+    if (!chain.fronts_are_within(own_.front().first + own_.front().gaps - 1, own_.back().first)) return give_up(chain);
+    if (!after_) after_.emplace(chain.start(), T(1));
+    after_->resemble(chain.line().gaps, chain.slots());
+    std::vector<std::size_t> todo(own_.size());
+    std::iota(todo.begin(), todo.end(), std::size_t{0});
+    std::uint64_t again = 0, all = 0;
+    for (bool first = true; !todo.empty(); first = false) {
+      workers_.run(todo.size(), [&](std::size_t job, std::size_t worker) {
+        if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<T, Law, Masses>>(chain);
+        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, *after_, reports_[todo[job]]);
+      });
+      for (const std::size_t k : todo) {
+        if (reports_[k].plain) return give_up(chain);
+        (first ? all : again) += reports_[k].contacts;
+      }
+      todo = join(chain);
+      if (own_.size() < 2 && !todo.empty()) return give_up(chain);
+    }
+    Window window;
+    std::uint64_t largest = 0;
+    for (const Report& report : reports_) {
+      largest = std::max(largest, report.contacts);
+      window.contacts += report.contacts;
+      window.below_cutoff += report.below_cutoff;
+      if (report.contacts > 0 && !(report.last_contact < window.last_contact))
+        window.last_contact = report.last_contact;
+    }
+    if (window.contacts >= most) return give_up(chain);
+    for (const Report& report : reports_) chain.lose(report.lost);
+    chain.go_on_with(*after_, reports_.front().to_left, reports_.back().to_right);
+    statistics_.windows += 1;
+    statistics_.contacts += window.contacts;
+    statistics_.again += again;
+    statistics_.largest += largest;
+    adapt(chain, static_cast<double>(again) / static_cast<double>(all + 1));
+    return window;
+  }
+
+ private:
+  using Report = SegmentReport<T>;
+
+  std::optional<Window> give_up(const Chain& chain) {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    ++statistics_.given_up;
+    failed_ = true;
+    patience_ = std::min<std::size_t>(2 * patience_ + 1, 63);
+    plain_ = patience_ * held;
+    share_ = std::max(share_ / 2, 1. / 64);
+    return {};
+  }
+  void adapt(const Chain& chain, double again) {
+    patience_ /= 2;
+    failed_ = failed_ || again > 0;
+    share_ = again > 0 ? share_ * std::max(.5, 1 - 10 * again) : share_ * (failed_ ? 1.01 : 1.3);
+    share_ = std::min(share_, how_.contacts > 0 ? how_.contacts / 8 : 1.);
+    weights_.clear();
+    for (std::size_t k = 0; k < own_.size(); ++k)
+      weights_.push_back({chain.body(own_[k].first), own_[k].gaps, reports_[k].contacts});
+  }
+
+  // How many segments so many gaps make.
+  std::size_t segments(std::size_t held) const {
+    return std::max<std::size_t>(1, std::min(std::max((held + how_.gaps / 2) / how_.gaps, workers_.count), held / 2));
+  }
+
+  // Cuts the line into segments of about as many contacts each, by those of the window before; gaps count for a quarter
+  // of a mean gap's contacts, so that no segment gets too long.
+  void cut(const Chain& chain) {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    const std::size_t count = segments(held);
+    own_.clear();
+    double contacts = 0;
+    for (const Weight& weight : weights_) contacts += static_cast<double>(weight.contacts);
+    // Weight of a gap: 1 where nothing is known.
+    const double per_contact = contacts > 0 ? .8 * static_cast<double>(held) / contacts : 0;
+    const double share = 1. / static_cast<double>(count);
+    Slot from = chain.first(), slot = from;
+    double passed = 0;                                // of the whole weight, up to `slot`
+    const auto go_on = [&](Slot to, double weight) {  // gaps up to `to` have so much of it each
+      while (slot < to && own_.size() + 1 < count) {
+        const double wanted = (share * static_cast<double>(own_.size() + 1) - passed) / weight;
+        const auto gaps = static_cast<std::size_t>(std::max(1., std::ceil(wanted)));
+        if (slot + gaps > to) break;
+        slot += gaps;
+        passed += static_cast<double>(gaps) * weight;
+        own_.push_back({from, slot - from});
+        from = slot;
+      }
+      if (slot < to) passed += static_cast<double>(to - slot) * weight, slot = to;
+    };
+    const double gap = 1. / static_cast<double>(held);
+    for (const Weight& weight : weights_) {
+      const BodyIndex begin = std::max(weight.body, chain.body(chain.first()));
+      const BodyIndex end = std::min(weight.body + static_cast<BodyIndex>(weight.gaps), chain.body(chain.last()) + 1);
+      if (end <= begin || chain.body(slot) > begin) continue;
+      const Slot at = chain.first() + static_cast<Slot>(begin - chain.body(chain.first()));
+      go_on(at, gap);
+      go_on(at + static_cast<Slot>(end - begin),
+            gap * (.2 + per_contact * static_cast<double>(weight.contacts) / static_cast<double>(weight.gaps)));
+    }
+    go_on(chain.last() + 1, gap);
+    own_.push_back({from, chain.last() + 1 - from});
+    reports_.resize(own_.size());
+  }
+
+  // Joins segments whose logs differ, and says which are to be made again.
+  std::vector<std::size_t> join(const Chain& chain) {
+    const std::size_t count = own_.size();
+    const auto agree = [&](std::size_t k) {  // with the next one
+      if (k + 1 == count && !chain.on_ring()) return true;
+      return reports_[k].right == reports_[(k + 1) % count].left;
+    };
+    // On a ring begin behind a cut that is kept.
+    std::size_t begin = 0;
+    while (begin < count && !agree((begin + count - 1) % count)) ++begin;
+    if (begin == count) return own_.clear(), std::vector<std::size_t>{0};
+    std::vector<std::size_t> again;
+    std::vector<Own> own;
+    std::vector<Report> reports;
+    std::vector<char> kept(count);
+    for (std::size_t k = 0; k < count; ++k) kept[k] = agree((k + count - 1) % count);
+    for (std::size_t j = 0; j < count; ++j) {
+      const std::size_t k = (begin + j) % count;
+      if (kept[k]) {
+        own.push_back(own_[k]);
+        reports.push_back(std::move(reports_[k]));
+      } else {
+        own.back().gaps += own_[k].gaps;
+        if (again.empty() || again.back() + 1 != own.size()) again.push_back(own.size() - 1);
+      }
+    }
+    own_ = std::move(own);
+    reports_ = std::move(reports);
+    return again;
+  }
+
+  Workers workers_;
+  Segmentation how_;
+  Statistics statistics_;
+  double share_ = 1. / 8;  // of an epoch, that a window is to take
+  bool failed_ = false;    // whether a cut ever has
+  std::size_t patience_ = 0;
+  std::uint64_t plain_ = 0;  // contacts
+  struct Weight {
+    BodyIndex body;  // on the left of the first gap
+    std::size_t gaps;
+    std::uint64_t contacts;
+  };
+  std::vector<Weight> weights_;                                     // of the last window
+  std::vector<std::unique_ptr<Segment<T, Law, Masses>>> segments_;  // one for each worker
+  std::vector<Own> own_;
+  std::vector<Report> reports_;
+  std::optional<typename Chain::Line::Gaps> after_;  // the chain's gaps after the window
+};
+
+}  // namespace cradle

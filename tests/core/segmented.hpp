@@ -1,0 +1,79 @@
+#pragma once
+// Runs in segments against the plain loop, bit for bit: state, counts, energy, account, at several times.
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/ensemble/executor.hpp"
+#include "cradle/core/segments.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace cradle::test {
+
+inline Workers threads(unsigned count) {
+  if (count < 2) return {};
+  return {count, [count](std::size_t jobs, const Workers::Work& work) { for_each(ThreadExecutor(count), jobs, work); }};
+}
+
+// Segments that no one would choose among them: of three gaps, with one ghost, with more ghosts than gaps.
+struct SegmentsAs {
+  Segmentation how;
+  unsigned threads;
+};
+inline std::vector<SegmentsAs> segmentations() {
+  return {{{.gaps = 3, .ghosts = 1, .contacts = 4, .anywhere = true}, 1},
+          {{.gaps = 3, .ghosts = 40, .contacts = .5, .anywhere = true}, 2},
+          {{.gaps = 50, .ghosts = 16, .anywhere = true}, 3},
+          {{.gaps = 200, .ghosts = 64, .contacts = 1, .anywhere = true}, 2},
+          {{.gaps = 300, .ghosts = 8, .contacts = 8, .anywhere = true}, 8}};
+}
+
+struct WindowsMade {
+  std::uint64_t windows = 0, given_up = 0, again = 0;
+  WindowsMade& operator+=(const WindowsMade& other) {
+    windows += other.windows, given_up += other.given_up, again += other.again;
+    return *this;
+  }
+};
+
+// Bodies at random places and velocities, on a line or, with a circumference, on a ring; masses from 1 to 4.5.
+template <class T> Scene<T> gas(BodyIndex n, const T& circumference = T(0), bool unequal = false) {
+  std::vector<T> x, v, m;
+  for (BodyIndex i = 0; i < n; ++i) {
+    x.push_back(T(i) + T(bits_of(i, 0, 0x3FF)) / T(2048));
+    v.push_back(T(bits_of(i, 20, 0x3FFF) - 8192) / T(8192));
+    if (unequal) m.push_back(T(1) + T(bits_of(i, 40, 7)) / T(2));
+  }
+  return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m), circumference);
+}
+
+template <class Run, class T> void expect_same_state(const Run& a, const Run& b, const T& time) {
+  EXPECT_TRUE(identical(configuration_at(a, time), configuration_at(b, time)));
+  EXPECT_TRUE(same_contacts(a.counts(), b.counts()));
+  EXPECT_EQ(a.counts().contacts, b.counts().contacts);
+  EXPECT_EQ(a.counts().origin_moves, b.counts().origin_moves);
+  EXPECT_EQ(a.energy_lost(), b.energy_lost());
+  EXPECT_EQ(a.last_contact_time(), b.last_contact_time());
+  EXPECT_EQ(a.account().simultaneous, b.account().simultaneous);
+  EXPECT_EQ(a.account().order_lost, b.account().order_lost);
+  EXPECT_EQ(a.account().first_order_lost.time, b.account().first_order_lost.time);
+  EXPECT_EQ(a.collided_bodies(), b.collided_bodies());
+}
+
+// Advances a run in segments, and one in the plain loop, through the same times.
+template <class T, class Masses, class Law>
+WindowsMade expect_same_in_segments(const Scene<T>& scene, const Law& law, const SegmentsAs& as,
+                                    const std::vector<T>& times) {
+  using Chain = GapChain<T, Masses>;
+  Simulation<T, Law, Chain> plain(law, Chain(scene, T(0))), segmented(law, Chain(scene, T(0)));
+  Segments<T, Law, Masses> segments(threads(as.threads), as.how);
+  for (const T& time : times) {
+    const Status status = plain.advance(time);
+    EXPECT_EQ(segmented.advance(time, segments), status);
+    expect_same_state(plain, segmented, time);
+    if (status != Status::reached) break;
+  }
+  return {segments.statistics().windows, segments.statistics().given_up, segments.statistics().again};
+}
+
+}  // namespace cradle::test

@@ -9,12 +9,14 @@
 //         long rows are not met yet: Cradle streams them.
 // gas     N bodies of random velocities, all of them active from the start, eps = .999.
 //
-// Times are of the thread, not of the wall, so that other work on the machine disturbs less. The contacts that engines
+// Times are of the thread, not of the wall (but for the run on two threads), so that other work on the machine disturbs
+// less. The contacts that engines
 // count must be the same; where they are not, the program says so and ends with status 1. Debian's Google Benchmark
 // prints "library was built as DEBUG": that concerns its own timers, not the code timed here.
 
 #include <ctime>
 
+#include <concepts>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -24,11 +26,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/law.hpp"
 #include "cradle/core/list.hpp"
 #include "cradle/core/position_chain.hpp"
 #include "cradle/core/rows.hpp"
+#include "cradle/core/segments.hpp"
 #include "cradle/core/simulation.hpp"
 #include "twins/indexed_heap.hpp"
 #include "twins/priority_queue.hpp"
@@ -82,6 +86,22 @@ template <class Chain> class Cradle {
   cradle::Simulation<double, cradle::Inelastic<double>, Chain> simulation_;
 };
 using Gaps = Cradle<cradle::GapChain<double>>;
+
+// One run in segments (core/segments.hpp), on so many threads.
+template <unsigned threads> class InSegments {
+ public:
+  InSegments(const BodiesPointer& bodies)
+      : simulation_(cradle::Inelastic<double>(law.restitution, law.cutoff), cradle::GapChain<double>(bodies, 0.0)),
+        executor_(threads), segments_(cradle::workers(executor_)) {}
+  void advance(double until) { simulation_.advance(until, segments_); }
+  std::uint64_t contacts() const { return simulation_.counts().contacts; }
+
+ private:
+  using Law = cradle::Inelastic<double>;
+  cradle::Simulation<double, Law, cradle::GapChain<double>> simulation_;
+  cradle::TbbExecutor executor_;
+  cradle::Segments<double, Law, cradle::IdenticalMasses<double>> segments_;
+};
 using Positions = Cradle<cradle::PositionChain<double>>;
 
 template <class Engine> struct Twin : Engine {
@@ -94,9 +114,10 @@ using TimeSlots = Twin<twins::TimeSlotsEngine>;
 
 // ---- measurements
 
-double thread_seconds() {
+// Engines on several threads are timed by the wall.
+double seconds_of(clockid_t clock) {
   std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -124,6 +145,9 @@ void check(const Case& c, const std::string& engine, const Check& at, std::uint6
   std::exit(1);
 }
 
+template <class Engine>
+constexpr clockid_t clock_of = std::same_as<Engine, InSegments<2>> ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
+
 template <class Engine> void measure(benchmark::State& state, const Case& c, const std::string& engine_name) {
   double late_seconds = 0;
   std::uint64_t contacts = 0, late_contacts = 0;
@@ -134,9 +158,9 @@ template <class Engine> void measure(benchmark::State& state, const Case& c, con
     double last = 0;
     for (const Check& at : c.checks) {
       before = engine.contacts();
-      const double start = thread_seconds();
+      const double start = seconds_of(clock_of<Engine>);
       engine.advance(at.time);
-      last = thread_seconds() - start;
+      last = seconds_of(clock_of<Engine>) - start;
       seconds += last;
       check(c, engine_name, at, engine.contacts());
     }
@@ -161,6 +185,8 @@ template <class Engine> void enter(const std::string& engine, const std::shared_
 void enter_all(const Case& c) {
   const auto shared = std::make_shared<const Case>(c);
   enter<Gaps>("cradle_gaps", shared);
+  enter<InSegments<1>>("cradle_segments", shared);
+  enter<InSegments<2>>("cradle_two_threads", shared);
   enter<Positions>("cradle_positions", shared);
   enter<TimeSlots>("time_slots", shared);
   enter<TunedHeap>("tuned_heap", shared);
@@ -179,7 +205,8 @@ int main(int argc, char** argv) {
       {"shock/8000", shock(8000), {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
   for (const BodyIndex n : {100'000, 1'000'000})
     enter_all({"shock/" + std::to_string(n), shock(n), {{2000, 0}, {4000, 0}}});
-  const std::pair<BodyIndex, double> gases[] = {{1000, 300}, {8000, 300}, {100'000, 40}, {1'000'000, 10}};
+  const std::pair<BodyIndex, double> gases[] = {{100, 300},      {1000, 300},     {8000, 300},
+                                                {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
   for (const auto& [n, until] : gases) enter_all({"gas/" + std::to_string(n), gas(n), {{until / 2, 0}, {until, 0}}});
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

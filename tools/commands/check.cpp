@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/run/initial_state.hpp"
 #include "cradle/tools/run/run.hpp"
@@ -36,6 +37,12 @@ Exit check(const CommonOptions& options) {
   } else {
     fmt::print("contacts and time: not known beforehand for this initial state\n");
   }
+  const unsigned threads = thread_count(options.threads);
+  const Threading threading = expected_threading(scene, cost, threads);
+  if (threading.alone.empty())
+    fmt::print("threads: {}, about {:.2g} times as fast as one once all bodies are active\n", threads, threading.gain);
+  else
+    fmt::print("threads: one does the work ({})\n", threading.alone);
   fmt::print("memory: about {:.2g} MB\n", cost.memory * 1e-6);
   return Exit::done;
 }

@@ -17,7 +17,7 @@ void add_common_options(Command& command, CommonOptions& options) {
   command.option("--seed", options.seed, "instead of initial.seed");
   command.option(
       "--threads", options.threads,
-      "threads to use at most, where there are replicas to share; 0: all processors; never changes a result");
+      "threads to use at most, for replicas or for one run of many bodies; 0: all processors; never changes a result");
   command.flag("--quiet", options.quiet, "no messages but errors and the collapse report");
   command.flag("--progress", options.progress, "tell progress also where standard error is not a terminal");
 }

@@ -10,6 +10,7 @@
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/tell.hpp"
+#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 
@@ -36,7 +37,8 @@ Exit run(const RunArguments& options) {
   const auto show = options.progress ? Progress::Show::always
                     : options.quiet  ? Progress::Show::never
                                      : Progress::Show::on_terminal;
-  const RunOutcome end = run_scene(scene, {show, false, &interrupt});
+  const Threads threads(options.threads);
+  const RunOutcome end = run_scene(scene, {show, false, &interrupt, workers(threads)});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   // An existing file is replaced only by a run that went its way; one cut short leaves what it has beside it.
   const bool cut = end.end == RunEnd::interrupted;

@@ -6,16 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "cradle/tools/support/threads.hpp"
+
 namespace cradle::tools {
 
 namespace {
-
-// ThreadSanitizer sees races in Debian's oneTBB that are none.
-#ifdef __SANITIZE_THREAD__
-using Workers = ThreadExecutor;
-#else
-using Workers = TbbExecutor;
-#endif
 
 struct Finished {
   ReplicaRow row;
@@ -77,7 +72,7 @@ std::string failure_warning(const EnsembleStates& states) {
 void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew, const NextJob& next,
           const std::function<void()>& finished) {
   run_jobs(
-      Workers(options.threads > 0 ? options.threads : crew.threads()), next,
+      Threads(options.threads > 0 ? options.threads : crew.threads()), next,
       [&](const Job& job) { return run_replica(*store.states()[job.point], job.replica, options, crew.interrupt()); },
       [&](const Job& job, Finished&& done) {
         store.add(job.point, done.row, std::move(done.values));

@@ -2,10 +2,12 @@
 // compiled once per scalar type, not once per engine. It costs a virtual call per time looked at, none per contact.
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <optional>
 #include <utility>
 
+#include "cradle/core/segments.hpp"
 #include "cradle/core/simulation.hpp"
 
 namespace cradle::tools {
@@ -39,16 +41,30 @@ template <Real T> class Engine {
   virtual Configuration<T> configuration(const T& time) const = 0;
 };
 
+// What takes a run through windows in segments; nothing for runs that cannot be cut.
+struct NoSegments {
+  explicit NoSegments(const Workers&) {}
+};
+template <class Run> struct SegmentsFor { using Type = NoSegments; };
+template <Real T, class Law, class Masses>
+requires(!LawWithMemory<Law, T>) struct SegmentsFor<Simulation<T, Law, GapChain<T, Masses>>> {
+  using Type = Segments<T, Law, Masses>;
+};
+
 template <Real T, class Run> class EngineOf final : public Engine<T> {
  public:
   template <class... Arguments>
-  explicit EngineOf(Arguments&&... arguments) : run_(std::forward<Arguments>(arguments)...) {}
+  explicit EngineOf(const Workers& workers, Arguments&&... arguments)
+      : run_(std::forward<Arguments>(arguments)...), segments_(workers) {}
 
   bool makes_contacts() const override { return has_chain; }
   Status advance(const T& until, const Observer<T>& observer) override {
     if constexpr (has_chain)
       if (observer) return run_.advance(until, observer);
-    return run_.advance(until);
+    if constexpr (!std::same_as<RunSegments, NoSegments>)
+      return run_.advance(until, segments_);
+    else
+      return run_.advance(until);
   }
 
   const Counts& counts() const override { return run_.counts(); }
@@ -69,9 +85,11 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   Configuration<T> configuration(const T& time) const override { return run_.configuration(time); }
 
  private:
+  using RunSegments = typename SegmentsFor<Run>::Type;
   static constexpr bool has_chain = requires(const Run& run) { run.chain(); };
 
   Run run_;
+  RunSegments segments_;
 };
 
 }  // namespace cradle::tools

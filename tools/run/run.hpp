@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/workers.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/errors.hpp"
@@ -33,6 +34,7 @@ struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
   bool trace = false;              // take trace samples at the times of the series
   Interrupt* interrupt = nullptr;  // asked now and then whether to stop; heeded once there is something to keep
+  Workers workers = {};            // for a run that is cut into segments
 };
 
 struct RunOutcome {

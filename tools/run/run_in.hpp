@@ -34,15 +34,15 @@ template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& opti
 
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Bodies<T>>& bodies,
-                                     const Policy<T>& policy, bool observed) {
+                                     const Policy<T>& policy, const Workers& workers, bool observed) {
   const T start = number<T>(scene.run.start);
   const auto simulation = [&]<class Law, class Chain>(const Law& law, std::type_identity<Chain>) {
-    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(law, Chain(bodies, start), policy);
+    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(bodies, start), policy);
   };
   const std::type_identity<ClusterChain<T>> clusters;
   if (scene.law.type == LawType::wet) return simulation(Wet<T>(number<T>(scene.law.loss)), clusters);
   if (scene.law.type == LawType::sticky && !observed)  // where nobody asks for contacts none need be made
-    return std::make_unique<EngineOf<T, StickyGas<T>>>(bodies, start);
+    return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, bodies, start);
   if (scene.law.type == LawType::sticky || scene.run.collapse == CollapsePolicy::merge) {
     const bool sticky = scene.law.type == LawType::sticky;
     const InelasticMerging<T> law(Inelastic<T>(sticky ? T(0) : number<T>(scene.law.restitution)),
@@ -65,8 +65,8 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {
   const auto bodies = initial_bodies<T>(scene);
   Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
-  const auto engine =
-      engine_of<T>(scene, bodies, policy_of<T>(scene, options, progress), scene.output.events || options.trace);
+  const auto engine = engine_of<T>(scene, bodies, policy_of<T>(scene, options, progress), options.workers,
+                                   scene.output.events || options.trace);
   return SceneRun<T>(scene, bodies, *engine, options, progress)();
 }
 

@@ -129,7 +129,7 @@ template <Real T> class SceneRun {
     end.result.attributes = provenance(scene_, precision_name(scene_.run), end_text(end.end));
     for (const Attribute& attribute :
          {Attribute("simultaneous_contacts", account.simultaneous), Attribute("order_lost", account.order_lost),
-          Attribute("unresolved_gaps", account.unresolved), Attribute("close_calls", counts.close_calls)})
+          Attribute("unresolved_gaps", account.unresolved)})
       end.result.attributes.push_back(attribute);
     put_tables(end);
     if (status == Status::collapsed) {

@@ -140,4 +140,20 @@ Cost expected_cost(const Scene& scene) {
   return cost;
 }
 
+Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads) {
+  const auto alone = [](const char* why) { return Threading{1, why}; };
+  if (scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge)
+    return alone("bodies that merge");
+  if (scene.run.coordinates != Coordinates::gaps) return alone("absolute coordinates");
+  if (scene.run.collapse == CollapsePolicy::contact_time) return alone("contacts with a memory");
+  if (scene.run.collapse == CollapsePolicy::stop && scene.law.restitution < Decimal("1"))
+    return alone("a collapse to be found");
+  if (scene.output.events || scene.output.scenario) return alone("every contact to be told, in order");
+  // Two segments in two threads: 1.8 to 2.1 times the plain loop, bench/RESULTS.md.
+  constexpr double fewest = 500, efficiency = .9;
+  const double segments = std::min<double>(threads, std::floor(cost.bodies / fewest));
+  if (segments < 2) return alone(threads < 2 ? "one thread" : "few bodies");
+  return {efficiency * segments, ""};
+}
+
 }  // namespace cradle::tools

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "cradle/tools/scene/scene.hpp"
 
@@ -17,5 +18,12 @@ struct Cost {
 };
 
 Cost expected_cost(const Scene& scene);
+
+/// What threads do for one run: how many times as fast it gets, at its end, or why it stays on one.
+struct Threading {
+  double gain = 1;
+  std::string alone;  // empty: in segments
+};
+Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads);
 
 }  // namespace cradle::tools

@@ -225,7 +225,7 @@ TEST_F(Run, OutputCadenceChangesNothingElse) {
           of_a.values);
     }
   }
-  for (const auto* name : {"simultaneous_contacts", "order_lost", "close_calls"})
+  for (const auto* name : {"simultaneous_contacts", "order_lost"})
     EXPECT_EQ(tools::attribute<std::uint64_t>(a.attributes, name, ""),
               tools::attribute<std::uint64_t>(b.attributes, name, ""));
 }

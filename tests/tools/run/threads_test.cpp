@@ -1,0 +1,39 @@
+// `cradle run --threads`. Proves: result files are the same to the byte whatever the number of threads, where a run is
+// cut into segments, in double and in wider types; and `check` says beforehand whether threads will do anything.
+
+#include <string>
+
+#include "cradle/tests/tools/program.hpp"
+
+namespace cradle::tests {
+namespace run_threads_test {
+
+class RunThreads : public ProgramTest {};
+
+TEST_F(RunThreads, NeverChangeAResult) {
+  for (const std::string precision : {"double", "double-double", "mpfr"}) {
+    const std::string scene =
+        "cradle run fig2 --quiet --set initial.particles=4000 --set run.until=1500 --set run.precision=" + precision;
+    std::string first;
+    for (const std::string threads : {"1", "2", "3", "8"}) {
+      const std::string file = precision + threads + ".h5";
+      ASSERT_EQ(shell(scene + " --threads " + threads + " -o " + file).status, 0);
+      if (first.empty()) first = contents(folder / file);
+      EXPECT_EQ(contents(folder / file), first) << precision << ", " << threads << " threads";
+    }
+  }
+}
+
+TEST_F(RunThreads, AreWhatCheckTellsBeforehand) {
+  const auto told = [&](const std::string& scene) { return shell("cradle check --threads 2 " + scene).out; };
+  EXPECT_NE(told("fig2").find("threads: 2, about 1.8 times as fast as one once all bodies are active\n"),
+            std::string::npos);
+  EXPECT_NE(told("fig11").find("threads: one does the work (bodies that merge)\n"), std::string::npos);
+  EXPECT_NE(told("fig2 --set initial.particles=200").find("(few bodies)"), std::string::npos);
+  EXPECT_NE(told("fig2 --set run.coordinates=absolute").find("(absolute coordinates)"), std::string::npos);
+  EXPECT_NE(told("fig2 --set output.events=true").find("(every contact to be told, in order)"), std::string::npos);
+  EXPECT_NE(told("collapse3").find("(a collapse to be found)"), std::string::npos);
+}
+
+}  // namespace run_threads_test
+}  // namespace cradle::tests

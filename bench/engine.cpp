@@ -87,17 +87,24 @@ template <class Chain> class Cradle {
 };
 using Gaps = Cradle<cradle::GapChain<double>>;
 
-// One run in segments (core/segments.hpp), on so many threads.
-template <unsigned threads> class InSegments {
+// One run in segments (core/segments.hpp), on so many threads; or cut into so many pieces, which shows how evenly the
+// work would be shared by as many processors: `parallel`, contacts of all over those of the busiest in each window.
+template <unsigned threads, unsigned pieces = 0> class InSegments {
  public:
   InSegments(const BodiesPointer& bodies)
       : simulation_(cradle::Inelastic<double>(law.restitution, law.cutoff), cradle::GapChain<double>(bodies, 0.0)),
-        executor_(threads), segments_(cradle::workers(executor_)) {}
+        executor_(threads), segments_(cradle::workers(executor_), segmentation(*bodies)) {}
   void advance(double until) { simulation_.advance(until, segments_); }
   std::uint64_t contacts() const { return simulation_.counts().contacts; }
+  const auto& statistics() const { return segments_.statistics(); }
 
  private:
   using Law = cradle::Inelastic<double>;
+  static cradle::Segmentation segmentation(const cradle::Bodies<double>& bodies) {
+    cradle::Segmentation how;
+    if (pieces > 0) how.gaps = static_cast<std::size_t>(bodies.count()) / pieces;
+    return how;
+  }
   cradle::Simulation<double, Law, cradle::GapChain<double>> simulation_;
   cradle::TbbExecutor executor_;
   cradle::Segments<double, Law, cradle::IdenticalMasses<double>> segments_;
@@ -165,6 +172,13 @@ template <class Engine> void measure(benchmark::State& state, const Case& c, con
       check(c, engine_name, at, engine.contacts());
     }
     contacts += engine.contacts();
+    if constexpr (requires { engine.statistics(); }) {
+      const auto& s = engine.statistics();
+      state.counters["windows"] = static_cast<double>(s.windows);
+      state.counters["given_up"] = static_cast<double>(s.given_up);
+      state.counters["again"] = static_cast<double>(s.again);
+      if (s.largest > 0) state.counters["parallel"] = static_cast<double>(s.contacts) / static_cast<double>(s.largest);
+    }
     late_contacts += engine.contacts() - before;
     late_seconds += last;
     state.SetIterationTime(seconds);
@@ -187,6 +201,7 @@ void enter_all(const Case& c) {
   enter<Gaps>("cradle_gaps", shared);
   enter<InSegments<1>>("cradle_segments", shared);
   enter<InSegments<2>>("cradle_two_threads", shared);
+  enter<InSegments<1, 16>>("cradle_16_pieces", shared);
   enter<Positions>("cradle_positions", shared);
   enter<TimeSlots>("time_slots", shared);
   enter<TunedHeap>("tuned_heap", shared);
@@ -205,7 +220,7 @@ int main(int argc, char** argv) {
       {"shock/8000", shock(8000), {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
   for (const BodyIndex n : {100'000, 1'000'000})
     enter_all({"shock/" + std::to_string(n), shock(n), {{2000, 0}, {4000, 0}}});
-  const std::pair<BodyIndex, double> gases[] = {{100, 300},      {1000, 300},     {8000, 300},
+  const std::pair<BodyIndex, double> gases[] = {{100, 300},    {1000, 300},     {8000, 300},
                                                 {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
   for (const auto& [n, until] : gases) enter_all({"gas/" + std::to_string(n), gas(n), {{until / 2, 0}, {until, 0}}});
   benchmark::RunSpecifiedBenchmarks();

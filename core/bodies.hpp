@@ -3,6 +3,7 @@
 // here what they hold; bodies of a row that the front has not reached are in no chain, only here.
 
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -50,6 +51,12 @@ template <Real T> class Bodies {
     CompensatedSum<T> moment;
     for (BodyIndex body = 0; body < count(); ++body) moment.add(mass(body) * position(body));
     return moment.value() / total_mass();
+  }
+  // What can be lost of it, the energy in the frame of the centre of mass, as well as the type tells the two apart.
+  T energy_to_lose() const {
+    const T energy = kinetic_energy(), least = energy * T(std::numeric_limits<T>::epsilon()) * T(1024);
+    const T own = energy - momentum() * momentum() / (T(2) * total_mass());
+    return own < least ? least : own;
   }
   // Bounds the square of any speed to come, by a factor 2: energy is never gained.
   T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }

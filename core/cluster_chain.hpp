@@ -42,8 +42,7 @@ template <Real T> class ClusterChain {
   static constexpr bool may_collapse = false;
   static constexpr bool keys_are_exact = TimedGaps<T, Cell<T>, may_collapse>::keys_are_exact;
 
-  // Holds the bodies at the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every
-  // body.
+  // Holds the bodies at the gaps in motion and streams the others in as fronts reach them; `hold_all`: holds all.
   ClusterChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
       : ClusterChain(bodies, start,
                      hold_all || bodies->on_ring() ? GapRange{0, bodies->count() - 2} : bodies->gaps_in_motion()) {}
@@ -158,7 +157,7 @@ template <Real T> class ClusterChain {
 
  private:
   ClusterChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, GapRange held)
-      : bodies_(std::move(bodies)), gaps_(start, bodies_->kinetic_energy()),
+      : bodies_(std::move(bodies)), gaps_(start, bodies_->energy_to_lose()),
         window_(bodies_->on_ring(), held.first, bodies_->count() - 2 - held.last, 3),
         frame_(bodies_->momentum() / bodies_->total_mass()), runaway_(T(2) + T(4) * bodies_->energy_over_least_mass()) {
     require_bodies(*bodies_, start);

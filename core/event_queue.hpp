@@ -30,7 +30,7 @@ class EventQueue {
         mask_(leaves_ - 1), slack_(exact_keys ? 0 : 2 * leaves_), tree_(2 * leaves_, key(never, 0)) {}
 
   std::size_t slots() const { return leaves_; }
-  Key next() const { return next_; }
+  Key next() const { return tree_[1]; }
   Slot slot(Key key) const { return key & mask_; }
 
   // A negative time (an event left behind when the origin moved) has its sign bit set and would sort last: it comes
@@ -49,7 +49,7 @@ class EventQueue {
   // Whether any other key is too close to the root's to tell which comes first: the least of the others stands beside
   // the path from the root to its leaf.
   bool contested() const {
-    const Key root = next_;
+    const Key root = tree_[1];
     std::size_t node = leaves_ + slot(root);
     Key second = tree_[node ^ 1];
     for (node >>= 1; node > 1; node >>= 1) second = std::min(second, tree_[node ^ 1]);
@@ -60,7 +60,7 @@ class EventQueue {
 
   // Sets the times of three neighbouring gaps. Their paths to the root are two neighbouring paths that soon meet.
   // Branches are on the shape of the tree only: which of two times is the smaller cannot be predicted.
-  void replace(Slot s, double left_due, double due, double right_due) {
+  [[gnu::always_inline]] void replace(Slot s, double left_due, double due, double right_due) {
     Key* const tree = tree_.data();
     const std::size_t leaf = leaves_ + s;
     const Key left = key(left_due, s - 1), own = key(due, s), right = key(right_due, s + 1);
@@ -70,34 +70,40 @@ class EventQueue {
     const bool own_with_left = leaf & 1;
     const Key other = tree[own_with_left ? leaf + 2 : leaf - 2];
     std::size_t a = (leaf - 1) >> 1, b = a + 1;
-    Key fresh_a = own_with_left ? std::min(left, own) : left, others_a = own_with_left ? last_key : other;
-    Key fresh_b = own_with_left ? right : std::min(own, right), others_b = own_with_left ? other : last_key;
-    tree[a] = std::min(fresh_a, others_a);
-    tree[b] = std::min(fresh_b, others_b);
+    Key least_a = own_with_left ? std::min(left, own) : std::min(left, other);
+    Key least_b = own_with_left ? std::min(right, other) : std::min(own, right);
+    tree[a] = least_a;
+    tree[b] = least_b;
     while ((a >> 1) != (b >> 1)) {
-      others_a = std::min(others_a, tree[a ^ 1]);
-      others_b = std::min(others_b, tree[b ^ 1]);
+      const Key beside_a = tree[a ^ 1], beside_b = tree[b ^ 1];
+      least_a = std::min(least_a, beside_a);
+      least_b = std::min(least_b, beside_b);
       a >>= 1;
       b >>= 1;
-      tree[a] = std::min(fresh_a, others_a);
-      tree[b] = std::min(fresh_b, others_b);
+      tree[a] = least_a;
+      tree[b] = least_b;
     }
     a >>= 1;
-    const Key fresh = std::min(fresh_a, fresh_b);
-    Key others = std::min(others_a, others_b);
-    tree[a] = std::min(fresh, others);
+    least_a = std::min(least_a, least_b);
+    tree[a] = least_a;
     while (a > 1) {
-      others = std::min(others, tree[a ^ 1]);
+      least_a = std::min(least_a, tree[a ^ 1]);
       a >>= 1;
-      tree[a] = std::min(fresh, others);
+      tree[a] = least_a;
     }
-    choose(fresh, others);
   }
 
   // The same for gaps that are neighbours on the line but not in the tree: left < s < right, or around the end of a
   // ring.
-  void replace(Slot left, double left_due, Slot s, double due, Slot right, double right_due) {
-    if (left + 1 == s && s + 1 == right) return replace(s, left_due, due, right_due);
+  [[gnu::always_inline]] void replace(Slot left, double left_due, Slot s, double due, Slot right, double right_due) {
+    if (left + 1 == s && s + 1 == right)
+      replace(s, left_due, due, right_due);
+    else
+      replace_apart(left, left_due, s, due, right, right_due);
+  }
+
+ private:
+  [[gnu::noinline]] void replace_apart(Slot left, double left_due, Slot s, double due, Slot right, double right_due) {
     Key* const tree = tree_.data();
     std::size_t a = leaves_ + left, b = leaves_ + s, c = leaves_ + right;
     Key least_a = key(left_due, left), least_b = key(due, s), least_c = key(right_due, right);
@@ -112,20 +118,16 @@ class EventQueue {
       tree[b >>= 1] = least_b;
       tree[c >>= 1] = least_c;
     }
-    next_ = tree[1];
   }
 
+ public:
   // Empties all slots.
-  void clear() {
-    std::fill(tree_.begin(), tree_.end(), key(never, 0));
-    next_ = tree_[1];
-  }
+  void clear() { std::fill(tree_.begin(), tree_.end(), key(never, 0)); }
   // Sets one time without telling the tree; `rebuild` once all from the first to the last slot set are.
   void set(Slot s, double due) { tree_[leaves_ + s] = key(due, s); }
   void rebuild(Slot first, Slot last) {
     for (std::size_t from = (leaves_ + first) / 2, to = (leaves_ + last) / 2; from > 0; from /= 2, to /= 2)
       for (std::size_t node = from; node <= to; ++node) refresh(node);
-    next_ = tree_[1];
   }
 
   // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; looks at
@@ -136,16 +138,6 @@ class EventQueue {
   Key no_later_than(Key key) const { return std::min<Key>((key | mask_) + slack_, std::bit_cast<Key>(never) - 1); }
 
  private:
-  static constexpr Key last_key = std::numeric_limits<Key>::max();
-  // By a jump, not by a choice: nearly always it is one of the others, which is known long before the fresh ones are.
-  [[gnu::always_inline]] void choose(Key fresh, Key others) {
-    if (fresh < others) [[unlikely]] {
-      asm volatile("");
-      next_ = fresh;
-    } else {
-      next_ = others;
-    }
-  }
   void refresh(std::size_t node) { tree_[node] = std::min(tree_[2 * node], tree_[2 * node + 1]); }
   template <class Visit> bool visit_before(Key bound, Visit& visit, std::size_t node) const {
     if (tree_[node] > bound) return true;
@@ -157,7 +149,6 @@ class EventQueue {
   Key mask_;
   Key slack_;
   std::vector<Key> tree_;  // tree_[1] the root, tree_[leaves_ + s] the key of slot s
-  Key next_ = tree_[1];
 };
 
 }  // namespace cradle

@@ -22,7 +22,7 @@ template <Real T, class MassesOf> class GapLine {
   using Masses = MassesOf;
   using Gaps = TimedGaps<T, Gap<T>, true>;
 
-  GapLine(const Bodies<T>& bodies, const T& start) : gaps(start, bodies.kinetic_energy()), masses(bodies) {}
+  GapLine(const Bodies<T>& bodies, const T& start) : gaps(start, bodies.energy_to_lose()), masses(bodies) {}
 
   // Like another one, without any gaps yet.
   explicit GapLine(const GapLine& other, std::size_t slots)

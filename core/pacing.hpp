@@ -82,14 +82,16 @@ template <Real T> struct Pacing {
   }
 
  private:
-  // How long the next epoch is to be where so many contacts have taken so long.
+  // How long the next epoch is to be where so many contacts have taken so long: as long as eight per active body should
+  // take, but not too many times as long, since a rate is not known well from a few contacts.
   void foresee(const T& took, std::uint64_t contacts, std::uint64_t active) {
     const auto aim = static_cast<std::int64_t>(8 * active), made = static_cast<std::int64_t>(contacts);
-    T next = aim > 64 * made ? T(took * T(64)) : T(took * T(aim) / T(made));
+    const std::int64_t most = made < 64 ? 64 : 4096;
+    T next = aim > most * made ? T(took * T(most)) : T(took * T(aim) / T(made));
     if (!is_positive(next)) next = epoch / T(64);  // no time has passed
     in_epochs = is_positive(next);
     epoch = next;
-    expected = static_cast<std::uint64_t>(std::min(64 * std::max<std::int64_t>(made, 1), aim));
+    expected = static_cast<std::uint64_t>(std::min(most * std::max<std::int64_t>(made, 1), aim));
   }
   void begin_epoch(std::uint64_t contacts, const T& now, std::uint64_t active) {
     contacts_before = contacts;

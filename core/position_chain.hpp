@@ -25,7 +25,7 @@ template <Real T> class PositionChain {
 
   // Throws std::invalid_argument for bodies on a ring.
   PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start)
-      : start_(start), origin_(start), lost_(bodies->kinetic_energy()) {
+      : start_(start), origin_(start), lost_(bodies->energy_to_lose()) {
     require_bodies(*bodies, start);
     if (bodies->on_ring())
       throw std::invalid_argument("a ring in absolute positions (circumference " + in_message(bodies->circumference()) +

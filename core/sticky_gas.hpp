@@ -32,7 +32,7 @@ template <Real T> class StickyGas {
 
   StickyGas(std::shared_ptr<const Bodies<T>> bodies, const T& start)
       : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), start_(start), time_(start),
-        lost_(bodies_->kinetic_energy()) {
+        lost_(bodies_->energy_to_lose()) {
     const GapRange moving = ring_ ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
     for (BodyIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }

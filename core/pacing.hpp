@@ -68,6 +68,8 @@ template <Real T> struct Pacing {
     time_before = now;
     next_review = contacts + std::min(32 * active + 16, active * active / 8 + 1);
   }
+  // Contacts of this epoch: as many as foreseen, or as there have been already.
+  std::uint64_t expected_by(std::uint64_t contacts) const { return std::max(expected, contacts - contacts_before); }
   // After so many contacts without any review. They are fewer than an epoch's most.
   void passed(std::uint64_t contacts, std::uint64_t active) {
     if (contacts >= next_poll) next_poll = contacts + std::min<std::uint64_t>(32 * active, 1 << 20);

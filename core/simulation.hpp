@@ -154,7 +154,7 @@ class Simulation {
     for (T from = last_contact_;;) {
       const bool in_windows = pacing_.in_epochs && policy_.collapse == CollapsePolicy::cutoff;
       const double epochs = in_windows ? to_double(T((target_.horizon - from) / pacing_.epoch)) : 0;
-      if (auto plain = segments.plain_contacts(chain_, epochs, pacing_.expected)) {
+      if (auto plain = segments.plain_contacts(chain_, epochs, pacing_.expected_by(counts_.contacts))) {
         for (hold_queue(); plain > 0; --plain)
           if (!step()) return status_;
         from = last_contact_;

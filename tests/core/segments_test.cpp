@@ -29,7 +29,7 @@ template <class T, class Masses> void expect_same(const Scene<T>& scene, const s
   EXPECT_GT(all.again, 5000U) << "cuts that fail are part of what is to be shown";
 }
 
-// ---- law x initial state x masses x type x segmentation: 420 runs, of which every one is compared at several times
+// ---- law x initial state x masses x type x segmentation: 360 runs, every one compared at several times
 
 template <class T> class Cells : public ::testing::Test {};
 using Types = ::testing::Types<double, long double, float>;

@@ -1,68 +1,28 @@
-// The paper's formulas for the inelastic shock and for few-body collapse.
+// The paper's formulas for the inelastic shock.
 // Proves: closed forms to all digits of the reference values (evaluated to 40 digits elsewhere, printed to 18), the
-// limits eps -> 1 and t -> 0, what the linear profiles conserve, that doubles lose no more than a stated number of
-// roundings, and that nothing assumes a built-in scalar: a strict type without conversions to or from double goes
-// through everything.
-#include "cradle/core/theory/inelastic_collapse.hpp"
+// limits eps -> 1 and t -> 0, what the linear profiles conserve, and that doubles lose no more than a stated number of
+// roundings.
 #include "cradle/core/theory/inelastic_shock.hpp"
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
-namespace theory_test {
+#include "cradle/tests/core/digits.hpp"
+
+namespace inelastic_shock_test {
 
 using namespace cradle::theory;
-using Wide = boost::multiprecision::cpp_bin_float_50;  // 168 bits, expression templates on
-
-/// Arithmetic of Wide, an int to build one, ADL maths, and nothing else.
-class Strict {
- public:
-  explicit Strict(int value) : value_(value) {}
-  explicit Strict(const Wide& value) : value_(value) {}
-  const Wide& wide() const { return value_; }
-
-  friend Strict operator+(const Strict& a, const Strict& b) { return Strict(Wide(a.value_ + b.value_)); }
-  friend Strict operator-(const Strict& a, const Strict& b) { return Strict(Wide(a.value_ - b.value_)); }
-  friend Strict operator*(const Strict& a, const Strict& b) { return Strict(Wide(a.value_ * b.value_)); }
-  friend Strict operator/(const Strict& a, const Strict& b) { return Strict(Wide(a.value_ / b.value_)); }
-  friend Strict operator-(const Strict& a) { return Strict(Wide(-a.value_)); }
-  friend bool operator<(const Strict& a, const Strict& b) { return a.value_ < b.value_; }
-  friend bool operator>(const Strict& a, const Strict& b) { return b < a; }
-  friend bool operator==(const Strict& a, const Strict& b) { return a.value_ == b.value_; }
-  friend Strict sqrt(const Strict& a) { return Strict(Wide(sqrt(a.value_))); }
-  friend Strict log(const Strict& a) { return Strict(Wide(log(a.value_))); }
-  friend Strict atan(const Strict& a) { return Strict(Wide(atan(a.value_))); }
-  friend Strict cos(const Strict& a) { return Strict(Wide(cos(a.value_))); }
-
- private:
-  Wide value_;
-};
+using namespace cradle::test;
 
 template <class T> InelasticShock<T> paper_shock(const T& eps) {
   InelasticShock<T> shock{eps};
   shock.particles = 8000;
   return shock;
-}
-
-Wide decimal(const char* digits) { return Wide(std::string(digits)); }
-
-/// Half a unit in the last place that the reference was printed to.
-Wide printed_tolerance(const std::string& digits) {
-  const auto point = digits.find('.');
-  const auto places = point == std::string::npos ? 0 : static_cast<int>(digits.size() - point - 1);
-  return pow(Wide(10), -places) * Wide(51) / Wide(100);
-}
-
-#define EXPECT_DIGITS(value, digits)                                                                                   \
-  EXPECT_LE(abs(Wide((value)-decimal(digits))), printed_tolerance(digits)) << "value " << Wide(value).str(30)
-
-void expect_close(const Wide& value, const Wide& expected, const Wide& relative, const std::string& what) {
-  EXPECT_LE(abs(Wide(value - expected)), Wide(relative * abs(expected))) << what << ": " << value << " / " << expected;
 }
 
 // Identities evaluated in Wide: a few hundred roundings of 2^-168, some after factors of up to 1e4.
@@ -310,162 +270,4 @@ TEST(InelasticShock, HasTheScalesOfItsUnits) {
   EXPECT_EQ(*collapse_onset_time(scaled), 8 * *collapse_onset_time(unit));
 }
 
-// ---- collapse ----
-
-TEST(Collapse, OnsetReproducesTheReferenceDigits) {
-  const std::array<std::array<const char*, 2>, 3> rows{{{"0.999", "6280.04"}, {"0.99", "625.17"}, {"0.9", "59.66"}}};
-  for (const auto& [eps, time] : rows) EXPECT_DIGITS(*collapse_onset_time(paper_shock<Wide>(decimal(eps))), time);
-  for (int n = 2; n <= 100; n += 7) {
-    expect_close(*collapse_onset_bodies(collapse_limit<Wide>(n)), Wide(n), tiny, "inverse of the limit");
-  }
-  EXPECT_EQ(*collapse_onset_bodies(0.0), 2.0);
-}
-
-TEST(Collapse, LimitsReproduceTheReferenceDigits) {
-  EXPECT_DIGITS(three_body_collapse_limit<Wide>(), "0.0717967697244908258902146339765105");
-  expect_close(collapse_limit<Wide>(3), three_body_collapse_limit<Wide>(), tiny, "three bodies");
-  expect_close(collapse_limit<Wide>(4), Wide(3 - 2 * sqrt(Wide(2))), tiny, "four bodies");
-  const Wide below = three_body_collapse_limit<Wide>() * (1 - tiny);
-  const Wide above = three_body_collapse_limit<Wide>() * (1 + tiny);
-  EXPECT_TRUE(collapse_rates(below, checkerboard_coupling(below, 3)));
-  EXPECT_FALSE(collapse_rates(above, checkerboard_coupling(above, 3)));
-  for (const int n : {3, 4, 5, 12, 100}) {
-    const Wide limit = collapse_limit<Wide>(n);
-    EXPECT_TRUE(collapse_rates(Wide(limit * (1 - tiny)), checkerboard_coupling(Wide(limit * (1 - tiny)), n)));
-    EXPECT_FALSE(collapse_rates(Wide(limit * (1 + tiny)), checkerboard_coupling(Wide(limit * (1 + tiny)), n)));
-  }
-}
-
-struct ThreeBodies {
-  const char* eps;
-  const char* time;
-  std::array<std::uint64_t, 4> passes;  // collision, counted from 1, at which the gap passes 1e-16, -34, -100, -300
-  std::uint64_t frozen;                 // collision at which a clock in double stops advancing
-};
-const std::array three_bodies{
-    ThreeBodies{"0.05", nullptr, {18, 38, 111, 333}, 31},
-    ThreeBodies{"0.01", "1.6736937682559527405521559675474991365441632665957", {11, 21, 61, 179}, 12},
-    ThreeBodies{"0.0625", "1.7377984054260977582367587110958928498213699562943", {22, 45, 133, 398}, 49}};
-
-TEST(Collapse, ThreeBodiesReproduceTheReferenceDigits) {
-  for (const auto& row : three_bodies) {
-    const Wide eps = decimal(row.eps);
-    // x = (0, 1, 3), v = (1, 0, -1): gaps 1 and 2, both closing at 1
-    const auto time = three_body_collapse_time(eps, Wide(1), Wide(1), Wide(2), Wide(1));
-    ASSERT_TRUE(time);
-    if (row.time != nullptr)
-      EXPECT_DIGITS(*time, row.time);
-    else
-      expect_close(*time, Wide(Wide(12) / 7), tiny, row.eps);
-    EXPECT_EQ(*three_body_collapse_time(eps, Wide(2), Wide(1), Wide(1), Wide(1)), *time);
-    EXPECT_FALSE(three_body_collapse_time(eps, Wide(1), Wide(1), Wide(1), Wide(1))) << "a triple collision";
-    EXPECT_FALSE(three_body_collapse_time(eps, Wide(1), Wide(-1), Wide(2), Wide(0))) << "never meet";
-    EXPECT_FALSE(three_body_collapse_time(eps, Wide(1), Wide(1), Wide(2), Wide(-1))) << "the third runs away";
-  }
-  const auto rates = *collapse_rates(decimal("0.05"), checkerboard_coupling(decimal("0.05"), 3));
-  expect_close(rates.plus, decimal("0.4"), tiny, "lam+");
-  expect_close(rates.minus, decimal("0.125"), tiny, "lam-");
-  EXPECT_FALSE(three_body_collapse_time(decimal("0.08"), Wide(1), Wide(1), Wide(2), Wide(1)));
-}
-
-TEST(Collapse, SequencePassesTheGapsAtTheReferenceCollisions) {
-  const std::array sizes{Wide("1e-16"), Wide("1e-34"), Wide("1e-100"), Wide("1e-300")};
-  for (const auto& row : three_bodies) {
-    const Wide eps = decimal(row.eps);
-    const Wide limit = *three_body_collapse_time(eps, Wide(1), Wide(1), Wide(2), Wide(1));
-    const auto rates = *collapse_rates(eps, checkerboard_coupling(eps, 3));
-    CollapseSequence<Wide> sequence(eps, checkerboard_coupling(eps, 3), Wide(1), Wide(1), Wide(1), Wide(1));
-    std::array<std::uint64_t, 4> passes{};
-    for (int steps = 0; steps < 420; ++steps) {
-      for (std::size_t k = 0; k < sizes.size(); ++k) {
-        if (passes[k] == 0 && sequence.now().other_gap < sizes[k]) passes[k] = sequence.now().contact + 1;
-      }
-      const Wide interval = sequence.interval();
-      ASSERT_TRUE(sequence.advance());
-      ASSERT_LE(sequence.now().time, Wide(limit * (1 + tiny)));
-      if (steps > 400)
-        expect_close(Wide(sequence.interval() / interval), Wide(rates.minus / rates.plus), tiny, row.eps);
-    }
-    EXPECT_EQ(passes, row.passes) << row.eps;
-    expect_close(sequence.now().time, limit, tiny, row.eps);
-  }
-}
-
-TEST(Collapse, FourBodiesInTheCheckerboardPattern) {
-  // Gaps (1,2,1) all closing at 1. Amplitudes: outer pairs sqrt 2 times the gap, the middle one as it is.
-  const auto time = [](const Wide& eps) {
-    const Wide coupling = checkerboard_coupling(eps, 4);
-    const Wide p0 = sqrt(Wide(2));
-    return collapse_time(eps, coupling, Wide(1), p0, Wide(1), Wide(1 + coupling * p0));
-  };
-  expect_close(*time(decimal("0.15")), Wide(Wide(11) / 7), tiny, "eps = .15");
-  // Source: the surd 1 + 1/(2.1 - sqrt 2 lam-) and a plain event-driven run, both at 60 digits. (The validation table
-  // has the 20th and 23rd decimals, 4 and 0, interchanged.)
-  EXPECT_DIGITS(*time(decimal("0.1")), "1.53471469049059024594590831142126492903216478");
-  EXPECT_FALSE(time(decimal("0.18")));
-  // coupling: the closed forms for 3 and 4 bodies are the cosine of the others
-  const Wide pi = 4 * atan(Wide(1));
-  expect_close(checkerboard_coupling(decimal("0.1"), 4), Wide(decimal("1.1") * cos(Wide(pi / 4))), tiny, "n = 4");
-  expect_close(checkerboard_coupling(decimal("0.1"), 3), Wide(decimal("1.1") * cos(Wide(pi / 3))), tiny, "n = 3");
-}
-
-TEST(Collapse, SequenceThatPartsEnds) {
-  const double eps = 0.5;
-  CollapseSequence<double> sequence(eps, checkerboard_coupling(eps, 3), 0.0, 1.0, 1.0, 0.0);
-  int contacts = 0;
-  while (sequence.advance()) ASSERT_LT(++contacts, 100);
-  EXPECT_FALSE(sequence.next_closing_speed() > 0);
-  EXPECT_FALSE(sequence.advance());
-}
-
-// ---- scalars ----
-
-TEST(TheoryScalars, StrictTypeGivesTheBitsOfTheTypeItWraps) {
-  const Strict eps = Strict(999) / Strict(1000);
-  const Strict t(700);
-  InelasticShock<Strict> strict{eps, Strict(1) / Strict(2), Strict(1), Strict(1), 8000};
-  const auto wide = paper_shock<Wide>(Wide(Wide(999) / 1000));
-  const Wide wide_t(700);
-  EXPECT_EQ(front_position(strict, t).wide(), front_position(wide, wide_t));
-  EXPECT_EQ(front_velocity(strict, t).wide(), front_velocity(wide, wide_t));
-  EXPECT_EQ(turnover_time(strict)->wide(), *turnover_time(wide));
-  EXPECT_EQ(maximal_front(strict)->wide(), *maximal_front(wide));
-  EXPECT_EQ(turnover_contact(strict)->position.wide(), turnover_contact(wide)->position);
-  EXPECT_EQ(front_position_discrete(strict, t).wide(), front_position_discrete(wide, wide_t));
-  EXPECT_EQ(interaction_density(strict, t).wide(), interaction_density(wide, wide_t));
-  EXPECT_EQ(left_mover_density(strict, Strict(3), t).wide(), left_mover_density(wide, Wide(3), wide_t));
-  EXPECT_EQ(left_mover_velocity(strict, Strict(3), t).wide(), left_mover_velocity(wide, Wide(3), wide_t));
-  EXPECT_EQ(mean_velocity(strict, Strict(3), t).wide(), mean_velocity(wide, Wide(3), wide_t));
-  EXPECT_EQ(mean_velocity_slope_early(strict).wide(), mean_velocity_slope_early(wide));
-  EXPECT_EQ(energy(strict, t).wide(), energy(wide, wide_t));
-  EXPECT_EQ(sticky_energy(strict, t).wide(), sticky_energy(wide, wide_t));
-  EXPECT_EQ(collapse_onset_time(strict)->wide(), *collapse_onset_time(wide));
-  FrontRecursion<Strict> recursion(strict);
-  recursion.advance();
-  EXPECT_LE(abs(recursion.now().position.wide()), tiny);
-  const Strict small = Strict(1) / Strict(20);
-  const auto time = three_body_collapse_time(small, Strict(1), Strict(1), Strict(2), Strict(1));
-  expect_close(time->wide(), Wide(Wide(12) / 7), tiny, "three bodies");
-  CollapseSequence<Strict> sequence(small, checkerboard_coupling(small, 5), Strict(0), Strict(1), Strict(1), Strict(1));
-  EXPECT_TRUE(sequence.advance());
-  EXPECT_TRUE(collapse_limit<Strict>(7) > collapse_limit<Strict>(6));
-}
-
-template <class T> class BuiltIn : public testing::Test {};
-using BuiltInTypes = testing::Types<float, double, long double>;
-TYPED_TEST_SUITE(BuiltIn, BuiltInTypes);
-
-TYPED_TEST(BuiltIn, AgreesWithWideToItsOwnPrecision) {
-  using T = TypeParam;
-  const T eps = T(999) / T(1000);
-  const auto shock = paper_shock<T>(eps);
-  const auto wide = paper_shock<Wide>(Wide(eps));
-  const Wide few = 30 * Wide(std::numeric_limits<T>::epsilon());
-  expect_close(*maximal_front(shock), *maximal_front(wide), few, "x_max");
-  expect_close(front_displacement(shock, T(700)), front_displacement(wide, Wide(700)), few, "(5)");
-  expect_close(energy(shock, T(700)), energy(wide, Wide(700)), few, "(7)");
-  expect_close(*collapse_onset_time(shock), *collapse_onset_time(wide), few, "onset");
-  expect_close(three_body_collapse_limit<T>(), three_body_collapse_limit<Wide>(), few, "7 - 4 sqrt 3");
-}
-
-}  // namespace theory_test
+}  // namespace inelastic_shock_test

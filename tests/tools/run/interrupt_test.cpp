@@ -1,6 +1,8 @@
 // Signals: what has been computed is kept, whoever does not wait for that is not made to, and nothing else changes.
 #include "cradle/tools/support/interrupt.hpp"
 
+#include <signal.h>
+
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -47,6 +49,22 @@ TEST(Interrupts, OnesThatDoNotComeChangeNothing) {
   EXPECT_EQ(asked.result.attributes, alone.result.attributes);
 }
 
+// Programs started meanwhile end when they are hung up on, also where the tests themselves run under nohup: a program
+// inherits that a signal is ignored, but takes the default for one that is handled.
+class HangUpsNotIgnored {
+ public:
+  HangUpsNotIgnored() {
+    ::sigaction(SIGHUP, nullptr, &before_);
+    if (before_.sa_handler == SIG_IGN) std::signal(SIGHUP, [](int) {});
+  }
+  ~HangUpsNotIgnored() { ::sigaction(SIGHUP, &before_, nullptr); }
+  HangUpsNotIgnored(const HangUpsNotIgnored&) = delete;
+  HangUpsNotIgnored& operator=(const HangUpsNotIgnored&) = delete;
+
+ private:
+  struct sigaction before_ = {};
+};
+
 class Signals : public ProgramTest {
  protected:
   // Starts a command, waits until it has worked for so many hundredths of a second, then does what is said.
@@ -54,6 +72,9 @@ class Signals : public ProgramTest {
     return shell(command + " & pid=$!; while [ $(cut -d' ' -f14 /proc/$pid/stat) -lt " + std::to_string(work) +
                  " ]; do sleep 0.01; done; " + then);
   }
+
+ private:
+  HangUpsNotIgnored hang_ups_not_ignored_;
 };
 
 // Contacts without end once it collapses.
@@ -102,7 +123,16 @@ void get(bool heeded, std::initializer_list<std::pair<int, int>> signals_after_m
   std::_Exit(interrupt.signal());
 }
 
-TEST(SignalsDeathTest, TheFirstIsNotedTheSecondEndsTheProgram) {
+// How the program was started is read once, before main(): it is started anew for each of them.
+class SignalsDeathTest : public testing::Test {
+ protected:
+  SignalsDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }  // until the case ends
+
+ private:
+  HangUpsNotIgnored hang_ups_not_ignored_;
+};
+
+TEST_F(SignalsDeathTest, TheFirstIsNotedTheSecondEndsTheProgram) {
   EXPECT_EXIT(get(true, {{SIGINT, 0}}), testing::ExitedWithCode(SIGINT), "^$");
   EXPECT_EXIT(get(true, {{SIGINT, 0}, {SIGINT, 300}}), testing::ExitedWithCode(130), "interrupted again");
   EXPECT_EXIT(get(true, {{SIGHUP, 0}, {SIGTERM, 300}}), testing::ExitedWithCode(143), "interrupted again");
@@ -110,7 +140,7 @@ TEST(SignalsDeathTest, TheFirstIsNotedTheSecondEndsTheProgram) {
       << "one signal that was sent in two ways";
 }
 
-TEST(SignalsDeathTest, WhereNobodyAsksOneEndsTheProgram) {
+TEST_F(SignalsDeathTest, WhereNobodyAsksOneEndsTheProgram) {
   EXPECT_EXIT(get(false, {{SIGINT, 0}}), testing::ExitedWithCode(130), "before there was anything to keep");
   EXPECT_EXIT(get(false, {{SIGHUP, 0}}), testing::ExitedWithCode(143), "before there was anything to keep");
 }

@@ -107,7 +107,7 @@ template <unsigned threads, unsigned pieces = 0> class InSegments {
   }
   cradle::Simulation<double, Law, cradle::GapChain<double>> simulation_;
   cradle::TbbExecutor executor_;
-  cradle::Segments<double, Law, cradle::IdenticalMasses<double>> segments_;
+  cradle::Segments<Law, cradle::GapChain<double>> segments_;
 };
 using Positions = Cradle<cradle::PositionChain<double>>;
 

@@ -23,7 +23,7 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
   CompensatedSum<T> way, moment, mass;
   std::vector<T> ways;
   for (Slot s = from;; s = right(s)) {
-    const Cell<T>& cell = gaps_[s];
+    const Cell<T>& cell = line_.gaps[s];
     c.index.push_back(cell.body);
     c.m.push_back(cell.mass);
     c.v.push_back(cell.velocity + frame_);

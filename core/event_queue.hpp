@@ -102,6 +102,22 @@ class EventQueue {
       replace_apart(left, left_due, s, due, right, right_due);
   }
 
+  // Empties all slots.
+  void clear() { std::fill(tree_.begin(), tree_.end(), key(never, 0)); }
+  // Sets one time without telling the tree; `rebuild` once all from the first to the last slot set are.
+  void set(Slot s, double due) { tree_[leaves_ + s] = key(due, s); }
+  void rebuild(Slot first, Slot last) {
+    for (std::size_t from = (leaves_ + first) / 2, to = (leaves_ + last) / 2; from > 0; from /= 2, to /= 2)
+      for (std::size_t node = from; node <= to; ++node) refresh(node);
+  }
+
+  // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; looks at
+  // nothing else of the tree. Returns whether all were visited.
+  template <class Visit> bool for_each_before(Key bound, Visit visit) const { return visit_before(bound, visit, 1); }
+  // The largest key that may belong to the same time as `key`.
+  // Never as far as the keys of `never`, which are those of slots without a gap too.
+  Key no_later_than(Key key) const { return std::min<Key>((key | mask_) + slack_, std::bit_cast<Key>(never) - 1); }
+
  private:
   [[gnu::noinline]] void replace_apart(Slot left, double left_due, Slot s, double due, Slot right, double right_due) {
     Key* const tree = tree_.data();
@@ -120,24 +136,6 @@ class EventQueue {
     }
   }
 
- public:
-  // Empties all slots.
-  void clear() { std::fill(tree_.begin(), tree_.end(), key(never, 0)); }
-  // Sets one time without telling the tree; `rebuild` once all from the first to the last slot set are.
-  void set(Slot s, double due) { tree_[leaves_ + s] = key(due, s); }
-  void rebuild(Slot first, Slot last) {
-    for (std::size_t from = (leaves_ + first) / 2, to = (leaves_ + last) / 2; from > 0; from /= 2, to /= 2)
-      for (std::size_t node = from; node <= to; ++node) refresh(node);
-  }
-
-  // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; looks at
-  // nothing else of the tree. Returns whether all were visited.
-  template <class Visit> bool for_each_before(Key bound, Visit visit) const { return visit_before(bound, visit, 1); }
-  // The largest key that may belong to the same time as `key`.
-  // Never as far as the keys of `never`, which are those of slots without a gap too.
-  Key no_later_than(Key key) const { return std::min<Key>((key | mask_) + slack_, std::bit_cast<Key>(never) - 1); }
-
- private:
   void refresh(std::size_t node) { tree_[node] = std::min(tree_[2 * node], tree_[2 * node + 1]); }
   template <class Visit> bool visit_before(Key bound, Visit& visit, std::size_t node) const {
     if (tree_[node] > bound) return true;

@@ -133,10 +133,11 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   const Bodies<T>& bodies() const { return *bodies_; }
   const Line& line() const { return line_; }
   void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
+  BodyIndex place(Slot s) const { return body(s); }  // in the order of the line, whatever slots are called
   // Slots free for bodies that the fronts reach.
   std::size_t within_reach_left() const { return window_.free_left(); }
   std::size_t within_reach_right() const { return window_.free_right(slots()); }
-  bool cramped(std::size_t bodies) const { return window_.cramped_for(bodies, slots()); }
+  bool cramped(std::size_t bodies) const { return window_.cramped(slots(), static_cast<BodyIndex>(bodies)); }
   bool fronts_are_within(Slot left, Slot right) const {
     return on_ring() || (window_.has_fronts() && window_.front_left() <= left && window_.front_right() >= right);
   }

@@ -4,8 +4,7 @@
 // of a segment (segments.hpp), which is a copy of a part of it.
 
 #include <concepts>
-#include <utility>
-#include <vector>
+#include <cstddef>
 
 #include "cradle/core/collision.hpp"
 #include "cradle/core/masses.hpp"

@@ -1,8 +1,9 @@
 #pragma once
 // The ledger of energy: the sum of what contacts have lost. In the native types it is the same whatever the order of
 // its terms, for contacts that commute are not always made in one order (segments.hpp). Each term is rounded to a grid
-// on which sums of up to four times the energy that there is are exact; what it lacks there, an even finer grid takes,
-// as an integer. So 1e12 terms are cut off by less than the type resolves.
+// on which sums of up to four times the energy E that there is are exact; what it lacks there is rounded to an even
+// finer one, of E eps / 2^22 or less, and summed up as an integer, for which 1e12 terms are few enough. A term is off
+// by half of that at most.
 //
 // Wider types have digits to spare for a plain sum, and no cheap way to this one: chains keep one sum for each gap
 // (timed_gaps.hpp).
@@ -27,6 +28,7 @@ template <Real T> class Ledger {
       const T least = std::numeric_limits<T>::min() / std::numeric_limits<T>::epsilon() * T(1 << 30);
       while (above <= energy && is_finite(above)) above += above;
       while (above > least && above > energy + energy) above /= T(2);
+      if (!is_finite(T(T(8) * above))) return;  // a plain sum
       rounder_ = T(3) * above;
       fine_ = above * std::numeric_limits<T>::epsilon() / T(1 << 22);
       per_fine_ = T(1) / fine_;
@@ -35,9 +37,10 @@ template <Real T> class Ledger {
 
   [[gnu::always_inline]] void add(const T& loss) {
     if constexpr (in_any_order) {
+      constexpr T to_integer = T(1.5) / std::numeric_limits<T>::epsilon();
       const T coarse = (loss + rounder_) - rounder_;
       sum_ += coarse;
-      rest_ += static_cast<std::int64_t>((loss - coarse) * per_fine_);
+      rest_ += static_cast<std::int64_t>(((loss - coarse) * per_fine_ + to_integer) - to_integer);
     } else {
       sum_ += loss;
     }

@@ -37,7 +37,7 @@ template <Real T> struct IndividualMasses {
   explicit IndividualMasses(const Bodies<T>&) {}
   IndividualMasses without_slots() const { return IndividualMasses(); }
   std::vector<T> masses;  // of the body on the left of each slot
-  void resize(std::size_t slots) { masses.assign(slots, T(1)); }
+  void resize(std::size_t slots) { masses.resize(slots, T(1)); }
   void copy(const IndividualMasses& other, Slot from, Slot to, std::size_t bodies) {
     std::copy_n(&other.masses[from], bodies, &masses[to]);
   }

@@ -5,11 +5,11 @@
 // A small zone is looked after by numbers of contacts. A move of the origin costs as much as a few contacts per gap: it
 // comes with every second contact in a few-body collapse and after some 32 contacts per body otherwise.
 //
-// A large zone whose bodies can collapse goes through time in epochs: when the origin moves next is a time, known since
-// it moved last, so that contacts far apart need no common order for it (segments.hpp). An epoch lasts as long as some
-// 8 contacts per active body should take, by the rate of the epoch before. It ends early, with the contact after which
-// that is asked for: where the flight before it was too short for the time since the origin, or where there are four
-// times as many contacts as were expected.
+// A large zone goes through time in epochs: when the origin moves next is a time, known since it moved last, so that
+// contacts far apart need no common order for it (segments.hpp). An epoch lasts as long as some 8 contacts per active
+// body should take, by the rate of the epoch before. It ends early, with the contact after which that is asked for:
+// where the flight before it was too short for the time since the origin, or where there are four times as many
+// contacts as were expected.
 
 #include <algorithm>
 #include <cstdint>
@@ -46,17 +46,16 @@ template <Real T> struct Pacing {
     if (in_epochs) return contacts >= most_contacts;
     if (asks(notice, Notice::origin_should_move) && 16 * since_move >= active) return true;
     if (contacts < next_review) return false;
-    if (may_collapse || since_move >= 32 * active + 16) return true;
+    if (may_collapse || active >= large || since_move >= 32 * active + 16) return true;
     return T(static_cast<std::int64_t>(2 * since_move)) * (time - time_before) <
            T(static_cast<std::int64_t>(contacts - contacts_before)) * time;
   }
 
   // After a review at the local time `then`, which is called `now` since. Reviews that a chain asked for
   // (Notice::needs_slots) change nothing: they depend on what is streamed.
-  void reviewed(std::uint64_t contacts, const T& then, const T& now, std::uint64_t active, bool moved,
-                bool may_collapse) {
+  void reviewed(std::uint64_t contacts, const T& then, const T& now, std::uint64_t active, bool moved) {
     const bool regular = contacts >= next_review;
-    if (moved && may_collapse && active >= large && (in_epochs ? contacts >= most_contacts : regular))
+    if (moved && active >= large && (in_epochs ? contacts >= most_contacts : regular))
       foresee(T(then - time_before), contacts - contacts_before, active);
     if (moved) contacts_at_move = contacts;
     if (in_epochs) {
@@ -68,8 +67,13 @@ template <Real T> struct Pacing {
     time_before = now;
     next_review = contacts + std::min(32 * active + 16, active * active / 8 + 1);
   }
-  // Contacts of this epoch: as many as foreseen, or as there have been already.
-  std::uint64_t expected_by(std::uint64_t contacts) const { return std::max(expected, contacts - contacts_before); }
+  // Contacts to come up to a time, or to the end of the epoch: by the rate foreseen, or by that so far. 0: no epochs.
+  double ahead(std::uint64_t contacts, const T& now, const T& until) const {
+    if (!in_epochs) return 0;
+    const double made = static_cast<double>(contacts - contacts_before);
+    const double passed = to_double(T((now - time_before) / epoch)), left = to_double(T((until - now) / epoch));
+    return std::min(left, 1.) * std::max(static_cast<double>(expected), passed > 0 ? made / passed : 0);
+  }
   // After so many contacts without any review. They are fewer than an epoch's most.
   void passed(std::uint64_t contacts, std::uint64_t active) {
     if (contacts >= next_poll) next_poll = contacts + std::min<std::uint64_t>(32 * active, 1 << 20);

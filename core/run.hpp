@@ -22,8 +22,14 @@ struct Counts {
   std::uint64_t contacts = 0;  // all of them: those below the cut-off and merges included
   std::uint64_t below_cutoff = 0;
   std::uint64_t merges = 0;
-  std::uint64_t close_calls = 0;  // contacts that the queue's keys could not tell from another one
+  std::uint64_t close_calls = 0;  // contacts in the plain loop that the queue's keys could not tell from another one
   std::uint64_t origin_moves = 0;
+
+  Counts& operator+=(const Counts& other) {
+    contacts += other.contacts, below_cutoff += other.below_cutoff, merges += other.merges;
+    close_calls += other.close_calls, origin_moves += other.origin_moves;
+    return *this;
+  }
 };
 
 // A contact as an observer sees it, before the law acts.

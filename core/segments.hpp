@@ -33,7 +33,8 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/segment.hpp"
+#include "cradle/core/cluster_segment.hpp"
+#include "cradle/core/gap_segment.hpp"
 #include "cradle/core/workers.hpp"
 
 namespace cradle {
@@ -47,16 +48,17 @@ struct Segmentation {
 };
 
 // Goes through windows of time in segments.
-template <Real T, class Law, class Masses> class Segments {
+template <class Law, class Chain>
+requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
  public:
-  using Chain = GapChain<T, Masses>;
+  using T = typename Chain::Scalar;
 
   explicit Segments(Workers workers = {}, Segmentation how = {})
       : workers_(std::move(workers)), how_(how), segments_(workers_.count) {}
 
   // What a window has made.
   struct Window {
-    std::uint64_t contacts = 0, below_cutoff = 0;
+    Counts counts;
     T last_contact{0};
   };
 
@@ -68,17 +70,17 @@ template <Real T, class Law, class Masses> class Segments {
   };
   const Statistics& statistics() const { return statistics_; }
 
-  // Contacts to be made in the plain loop before the next window; so many epochs are to come before the run stops, of
-  // so many contacts each.
-  std::uint64_t plain_contacts(const Chain& chain, double epochs, std::uint64_t expected) {
+  // Contacts to be made in the plain loop before the next window, where about so many are to come before the run stops
+  // or the epoch ends; none are if there are to be no windows.
+  std::uint64_t plain_contacts(const Chain& chain, double ahead) {
     const std::size_t held = chain.last() + 1 - chain.first();
-    if (!(epochs > 0)) return 64;
+    if (!(ahead > 0)) return 64;
     const std::size_t middle = (chain.first() + chain.last()) / 2;
     if (segments(held) < 2 || !chain.fronts_are_within(middle, middle)) return 256;
     if (!how_.anywhere) {
       // A window looks at every gap, and pays in threads or in caches only.
-      if (held < (workers_.count > 1 ? workers_.count * 500 : 6000)) return held;
-      if (std::min(epochs, 1.) * static_cast<double>(expected) < static_cast<double>(held) / 8) return expected + 1;
+      if (held < (workers_.count > 1 ? 2 * gaps_per_thread : 6000)) return held;
+      if (ahead < static_cast<double>(held) / 8) return held / 64;
     }
     return std::exchange(plain_, 0);
   }
@@ -93,40 +95,45 @@ template <Real T, class Law, class Masses> class Segments {
   // Makes all contacts up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain
   // loop.
   std::optional<Window> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most) {
-    if (chain.cramped(how_.ghosts)) chain.make_room();
+    if (chain.cramped(how_.ghosts)) {
+      chain.make_room();
+      weights_.clear();
+    }
     cut(chain);
     if (!chain.fronts_are_within(own_.front().first + own_.front().gaps - 1, own_.back().first)) return give_up(chain);
     if (!after_) after_.emplace(chain.start(), T(1));
-    after_->resemble(chain.line().gaps, chain.slots());
+    after_->resize(chain.slots());
     std::vector<std::size_t> todo(own_.size());
     std::iota(todo.begin(), todo.end(), std::size_t{0});
     std::uint64_t again = 0, all = 0;
     for (bool first = true; !todo.empty(); first = false) {
       workers_.run(todo.size(), [&](std::size_t job, std::size_t worker) {
-        if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<T, Law, Masses>>(chain);
+        if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<Law, Chain>>(chain);
         segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, *after_, reports_[todo[job]]);
       });
       for (const std::size_t k : todo) {
         if (reports_[k].plain) return give_up(chain);
-        (first ? all : again) += reports_[k].contacts;
+        (first ? all : again) += reports_[k].counts.contacts;
       }
       todo = join(chain);
       if (own_.size() < 2 && !todo.empty()) return give_up(chain);
     }
     Window window;
     std::uint64_t largest = 0;
+    bool first = true;
     for (const Report& report : reports_) {
-      largest = std::max(largest, report.contacts);
-      window.contacts += report.contacts;
-      window.below_cutoff += report.below_cutoff;
-      if (report.contacts > 0 && !(report.last_contact < window.last_contact))
+      largest = std::max(largest, report.counts.contacts);
+      window.counts += report.counts;
+      if (report.counts.contacts > 0 && (first || window.last_contact < report.last_contact)) {
         window.last_contact = report.last_contact;
+        first = false;
+      }
     }
-    if (window.contacts >= most) return give_up(chain);
+    if (window.counts.contacts >= most) return give_up(chain);
     for (const Report& report : reports_) chain.lose(report.lost);
-    chain.go_on_with(*after_, reports_.front().to_left, reports_.back().to_right);
+    Segment<Law, Chain>::Part::go_on(chain, *after_, reports_);
     statistics_.windows += 1;
-    statistics_.contacts += window.contacts;
+    statistics_.contacts += window.counts.contacts;
     statistics_.again += again;
     statistics_.largest += largest;
     adapt(chain, static_cast<double>(again) / static_cast<double>(all + 1));
@@ -134,7 +141,8 @@ template <Real T, class Law, class Masses> class Segments {
   }
 
  private:
-  using Report = SegmentReport<T>;
+  using Report = typename Segment<Law, Chain>::Report;
+  static constexpr double least_share = 1. / 64;
 
   std::optional<Window> give_up(const Chain& chain) {
     const std::size_t held = chain.last() + 1 - chain.first();
@@ -142,22 +150,23 @@ template <Real T, class Law, class Masses> class Segments {
     failed_ = true;
     patience_ = std::min<std::size_t>(2 * patience_ + 1, 63);
     plain_ = patience_ * held;
-    share_ = std::max(share_ / 2, 1. / 64);
+    share_ = std::max(share_ / 2, least_share);
     return {};
   }
   void adapt(const Chain& chain, double again) {
     patience_ /= 2;
     failed_ = failed_ || again > 0;
     share_ = again > 0 ? share_ * std::max(.5, 1 - 10 * again) : share_ * (failed_ ? 1.01 : 1.3);
-    share_ = std::min(share_, how_.contacts > 0 ? how_.contacts / 8 : 1.);
+    share_ = std::min(std::max(share_, least_share), how_.contacts > 0 ? how_.contacts / 8 : 1.);
     weights_.clear();
     for (std::size_t k = 0; k < own_.size(); ++k)
-      weights_.push_back({chain.body(own_[k].first), own_[k].gaps, reports_[k].contacts});
+      weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.contacts});
   }
 
   // How many segments so many gaps make.
   std::size_t segments(std::size_t held) const {
-    return std::max<std::size_t>(1, std::min(std::max((held + how_.gaps / 2) / how_.gaps, workers_.count), held / 2));
+    const std::size_t threads = how_.anywhere ? workers_.count : std::min(workers_.count, held / gaps_per_thread);
+    return std::max<std::size_t>(1, std::min(std::max((held + how_.gaps / 2) / how_.gaps, threads), held / 2));
   }
 
   // Cuts the line into segments of about as many contacts each, by those of the window before; gaps count for a quarter
@@ -168,8 +177,9 @@ template <Real T, class Law, class Masses> class Segments {
     own_.clear();
     double contacts = 0;
     for (const Weight& weight : weights_) contacts += static_cast<double>(weight.contacts);
+    if (!(contacts > 0)) weights_.clear();
     // Weight of a gap: 1 where nothing is known.
-    const double per_contact = contacts > 0 ? .8 * static_cast<double>(held) / contacts : 0;
+    const double per_contact = .8 * static_cast<double>(held) / contacts;
     const double share = 1. / static_cast<double>(count);
     Slot from = chain.first(), slot = from;
     double passed = 0;                                // of the whole weight, up to `slot`
@@ -187,10 +197,10 @@ template <Real T, class Law, class Masses> class Segments {
     };
     const double gap = 1. / static_cast<double>(held);
     for (const Weight& weight : weights_) {
-      const BodyIndex begin = std::max(weight.body, chain.body(chain.first()));
-      const BodyIndex end = std::min(weight.body + static_cast<BodyIndex>(weight.gaps), chain.body(chain.last()) + 1);
-      if (end <= begin || chain.body(slot) > begin) continue;
-      const Slot at = chain.first() + static_cast<Slot>(begin - chain.body(chain.first()));
+      const BodyIndex begin = std::max(weight.place, chain.place(chain.first()));
+      const BodyIndex end = std::min(weight.place + static_cast<BodyIndex>(weight.gaps), chain.place(chain.last()) + 1);
+      if (end <= begin || chain.place(slot) > begin) continue;
+      const Slot at = chain.first() + static_cast<Slot>(begin - chain.place(chain.first()));
       go_on(at, gap);
       go_on(at + static_cast<Slot>(end - begin),
             gap * (.2 + per_contact * static_cast<double>(weight.contacts) / static_cast<double>(weight.gaps)));
@@ -200,22 +210,20 @@ template <Real T, class Law, class Masses> class Segments {
     reports_.resize(own_.size());
   }
 
-  // Joins segments whose logs differ, and says which are to be made again.
+  // Joins segments whose logs differ, and says which are to be made again; the only one where no cut is left.
   std::vector<std::size_t> join(const Chain& chain) {
     const std::size_t count = own_.size();
-    const auto agree = [&](std::size_t k) {  // with the next one
-      if (k + 1 == count && !chain.on_ring()) return true;
-      return reports_[k].right == reports_[(k + 1) % count].left;
-    };
+    std::vector<char> kept(count);  // the cut on the left of each
+    for (std::size_t k = 0; k < count; ++k) {
+      const Report &left = reports_[(k + count - 1) % count], &right = reports_[k];
+      kept[k] = (k == 0 && !chain.on_ring()) || (!left.nothing_left && !right.nothing_left && left.right == right.left);
+    }
     // On a ring begin behind a cut that is kept.
-    std::size_t begin = 0;
-    while (begin < count && !agree((begin + count - 1) % count)) ++begin;
-    if (begin == count) return own_.clear(), std::vector<std::size_t>{0};
+    const auto begin = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), 1) - kept.begin());
+    if (begin == count) return own_.resize(1), std::vector<std::size_t>{0};
     std::vector<std::size_t> again;
     std::vector<Own> own;
     std::vector<Report> reports;
-    std::vector<char> kept(count);
-    for (std::size_t k = 0; k < count; ++k) kept[k] = agree((k + count - 1) % count);
     for (std::size_t j = 0; j < count; ++j) {
       const std::size_t k = (begin + j) % count;
       if (kept[k]) {
@@ -234,17 +242,17 @@ template <Real T, class Law, class Masses> class Segments {
   Workers workers_;
   Segmentation how_;
   Statistics statistics_;
-  double share_ = 1. / 8;  // of an epoch, that a window is to take
+  double share_ = 1. / 2;  // of an epoch, that a window is to take
   bool failed_ = false;    // whether a cut ever has
   std::size_t patience_ = 0;
   std::uint64_t plain_ = 0;  // contacts
   struct Weight {
-    BodyIndex body;  // on the left of the first gap
+    BodyIndex place;  // of the first gap
     std::size_t gaps;
     std::uint64_t contacts;
   };
-  std::vector<Weight> weights_;                                     // of the last window
-  std::vector<std::unique_ptr<Segment<T, Law, Masses>>> segments_;  // one for each worker
+  std::vector<Weight> weights_;                                 // of the last window
+  std::vector<std::unique_ptr<Segment<Law, Chain>>> segments_;  // one for each worker
   std::vector<Own> own_;
   std::vector<Report> reports_;
   std::optional<typename Chain::Line::Gaps> after_;  // the chain's gaps after the window

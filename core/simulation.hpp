@@ -41,7 +41,7 @@ class Simulation {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
     const T floor = watched ? T(least / T(64)) : underflow_;
-    chain_.set_floor(floor < policy_.stop_gap ? policy_.stop_gap : floor);
+    chain_.set_floor(watched && floor < policy_.stop_gap ? policy_.stop_gap : floor);
     fill_queue();
     aim();
   }
@@ -52,12 +52,12 @@ class Simulation {
     head_for(until);
     return make_contacts();
   }
-  // The same in segments (segments.hpp).
+  // The same in segments (segments.hpp), unless it is to stop at a contact.
   template <class Segments>
   requires requires { typename Segments::Window; }
   Status advance(const T& until, Segments& segments) {
-    set_target(until);
-    return make_windows(segments);
+    head_for(until);
+    return policy_.collapse == CollapsePolicy::stop ? make_contacts() : make_windows(segments);
   }
   // The same, observer(const Contact<T>&) being told of every contact. It may throw: the contact is then still to be
   // made.
@@ -75,8 +75,10 @@ class Simulation {
   // The same contact by contact, for several simulations side by side in one thread:
   // `run.head_for(until); while (run.step()) ...; run.status()`.
   void head_for(const T& until) {
-    set_target(until);
-    hold_queue();
+    require_ahead(until, last_contact_time());
+    target_.until = until;
+    status_ = Status::reached;
+    aim();
   }
   // Makes the next contact; false where there is none to make, or it is the last one.
   [[gnu::always_inline]] bool step() {
@@ -131,18 +133,9 @@ class Simulation {
     queue_.rebuild(chain_.first(), chain_.last());
     ties_.forget();
   }
-  // The plain loop needs a queue of the whole, windows do not.
-  void hold_queue() {
-    if (!queue_holds_) fill_queue(), aim();
-  }
+  // The plain loop needs a queue of the whole (and fills one where there is none), windows do not.
   void release_queue() {
     if (std::exchange(queue_holds_, false)) queue_ = EventQueue(8, Chain::keys_are_exact);
-  }
-  void set_target(const T& until) {
-    require_ahead(until, last_contact_time());
-    target_.until = until;
-    status_ = Status::reached;
-    aim();
   }
   [[gnu::noinline]] Status make_contacts() {
     while (step()) continue;
@@ -152,10 +145,9 @@ class Simulation {
   // The window loop: windows of time in segments, and where those do not do, contacts in the plain loop.
   template <class Segments> Status make_windows(Segments& segments) {
     for (T from = last_contact_;;) {
-      const bool in_windows = pacing_.in_epochs && policy_.collapse == CollapsePolicy::cutoff;
-      const double epochs = in_windows ? to_double(T((target_.horizon - from) / pacing_.epoch)) : 0;
-      if (auto plain = segments.plain_contacts(chain_, epochs, pacing_.expected_by(counts_.contacts))) {
-        for (hold_queue(); plain > 0; --plain)
+      const double ahead = pacing_.ahead(counts_.contacts, from, target_.horizon);
+      if (auto plain = segments.plain_contacts(chain_, ahead)) {
+        for (; plain > 0; --plain)
           if (!step()) return status_;
         from = last_contact_;
         continue;
@@ -164,9 +156,8 @@ class Simulation {
       release_queue();
       const auto window = segments.make(chain_, law_, end, pacing_.most_contacts - counts_.contacts);
       if (!window) continue;
-      counts_.contacts += window->contacts;
-      counts_.below_cutoff += window->below_cutoff;
-      if (window->contacts > 0) last_contact_ = window->last_contact;
+      counts_ += window->counts;
+      if (window->counts.contacts > 0) last_contact_ = window->last_contact;
       if (end == target_.horizon) return status_;
       from = end == target_.stop ? end_epoch() : end;
       pacing_.passed(counts_.contacts, active());
@@ -184,6 +175,11 @@ class Simulation {
 
   // The next contact where keys do not tell whether it comes in time; false if it does not.
   bool first_within_target(Slot& first) {
+    if (!queue_holds_) {
+      fill_queue();
+      aim();
+      first = queue_.slot(queue_.next());
+    }
     while (!first_by(target_.stop, first)) {
       if (target_.stop == target_.horizon) return false;
       end_epoch();
@@ -218,6 +214,8 @@ class Simulation {
   // Looks after all that is not a contact, after the one at slot s. What it does depends on the history of contacts
   // only. What the caller has asked to be called comes last, since it may throw.
   Status review(Slot s, Notice notice) {
+    if (notice == Notice::origin_should_move && pacing_.in_epochs && counts_.contacts < pacing_.next_review)
+      return Status::reached;  // it does not, there
     const Status judged = asks(notice, Notice::gap_below_floor) ? judge(s) : Status::reached;
     if constexpr (StreamingChain<Chain>)
       if (asks(notice, Notice::needs_slots)) {
@@ -230,7 +228,7 @@ class Simulation {
     const T before = last_contact_;
     if (moves) move_origin(before);
     if (moves || !pacing_.in_epochs) standstill_.time = last_contact_;
-    pacing_.reviewed(counts_.contacts, before, last_contact_, active(), moves, Chain::may_collapse);
+    pacing_.reviewed(counts_.contacts, before, last_contact_, active(), moves);
     aim();
     if (stands_still) return Status::exhausted;
     return judged == Status::reached && ask ? policy_.ask(last_contact_time(), counts_) : judged;

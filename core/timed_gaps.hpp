@@ -86,8 +86,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
 
   // ---- copies of a part (segments.hpp). Goes on with so many slots and all that belongs to no slot like `other`.
   void resemble(const TimedGaps& other, std::size_t slots) {
-    cells_.resize(slots);
-    lag_.resize(slots);
+    resize(slots);
     clock_ = other.clock_;
     floor_ = other.floor_;
     shift_ = other.shift_;
@@ -97,6 +96,11 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   void copy(const TimedGaps& other, Slot from, Slot to, std::size_t gaps) {
     std::copy_n(&other.cells_[from], gaps, &cells_[to]);
     std::copy_n(&other.lag_[from], gaps, &lag_[to]);
+  }
+  // To be given gaps in so many slots, and nothing else.
+  void resize(std::size_t slots) {
+    cells_.resize(slots);
+    lag_.resize(slots);
   }
   void swap_gaps(TimedGaps& other) {
     cells_.swap(other.cells_);
@@ -114,6 +118,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       return to_double(local);
     }
   }
+  const T& lag(Slot s) const { return lag_[s]; }
   // Since the gap's local time.
   [[gnu::always_inline]] T flown(Slot s, const T& now) const {
     const T& then = cells_[s].time;
@@ -188,6 +193,13 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
         return std::isfinite(rounded) ? rounded : queue_due(s, closing);
       }
     }
+  }
+  // The same for any gap, its contact foreseen.
+  double queue_key(Slot s, const T& closing) {
+    if constexpr (keys_are_exact)
+      return cells_[s].due;
+    else
+      return predict(s, closing);
   }
   // The same off the hot path, for a gap as old as it may be.
   void foresee(Slot s, const T& closing) {

@@ -45,22 +45,16 @@ class Window {
         *front = first_ + static_cast<Slot>(std::lower_bound(kept.begin(), kept.end(), *front) - kept.begin());
     return last_ + 1 + static_cast<Slot>(std::min(unheld_right_, growth)) + spare_;
   }
-  // Whether the next contact at a front could find no slot for the body that it takes in.
-  bool cramped(std::size_t slots) const {
-    return (unheld_left_ > 0 && first_ <= spare_) || (unheld_right_ > 0 && last_ + spare_ + 1 >= slots);
-  }
-
   // Slots free for the next bodies of the rows.
   std::size_t free_left() const { return std::min(static_cast<std::size_t>(unheld_left_), first_ - spare_); }
   std::size_t free_right(std::size_t slots) const {
     return std::min(static_cast<std::size_t>(unheld_right_), slots - 1 - spare_ - last_);
   }
-
-  // Whether there are fewer than so many, although rows have them.
-  bool cramped_for(std::size_t bodies, std::size_t slots) const {
-    const auto wanted = static_cast<BodyIndex>(bodies);
-    return static_cast<BodyIndex>(free_left()) < std::min(wanted, unheld_left_) ||
-           static_cast<BodyIndex>(free_right(slots)) < std::min(wanted, unheld_right_);
+  // Whether there are fewer than so many, although rows have them: by default, whether the next contact at a front
+  // could find no slot for the body that it takes in.
+  bool cramped(std::size_t slots, BodyIndex bodies = 1) const {
+    return static_cast<BodyIndex>(free_left()) < std::min(bodies, unheld_left_) ||
+           static_cast<BodyIndex>(free_right(slots)) < std::min(bodies, unheld_right_);
   }
 
   // ---- fronts
@@ -83,6 +77,8 @@ class Window {
   // ---- of a front
   Beyond beyond_left(Slot s) const { return s != first_ ? Beyond::held : row_or_nothing(unheld_left_); }
   Beyond beyond_right(Slot s) const { return s != last_ ? Beyond::held : row_or_nothing(unheld_right_); }
+  // Held are other slots now, fewer of them.
+  void hold(Slot first, Slot last) { first_ = first, last_ = last; }
   // Takes in the next body of a row, in the slot next to the last one held; returns its number, `count` bodies in all.
   BodyIndex take_in_left() {
     --first_;

@@ -6,6 +6,8 @@
 
 namespace cradle {
 
+constexpr std::size_t gaps_per_thread = 500;  // at least, for a thread to pay
+
 // Calls work(job, worker) for all jobs from 0 to jobs - 1, and returns when they are done.
 // Several may run at once, each with another worker below `count`. (ensemble/executor.hpp makes one of threads.)
 struct Workers {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <numeric>
@@ -51,11 +52,13 @@ class ThreadExecutor {
 };
 
 /// Calls work(job, worker) for all jobs from 0 to jobs - 1, on the executor's threads, and returns when they are done.
-/// `worker` is below the number of threads, and another one for each call that runs at the same time. `work` throws
-/// nothing.
+/// `worker` is below the number of threads, and another one for each call that runs at the same time. What `work`
+/// throws is thrown on, the first of it, once no call runs any more; jobs not begun by then are left.
 template <Executor E> void for_each(const E& executor, std::size_t jobs, const Workers::Work& work) {
+  if (jobs == 1) return work(0, 0);
   std::mutex mutex;
   std::size_t next = 0;
+  std::exception_ptr thrown;
   std::vector<std::size_t> idle(executor.threads());
   std::iota(idle.begin(), idle.end(), std::size_t{0});
   executor.run([&] {
@@ -67,11 +70,18 @@ template <Executor E> void for_each(const E& executor, std::size_t jobs, const W
       worker = idle.back();
       idle.pop_back();
     }
-    work(job, worker);
+    std::exception_ptr now;
+    try {
+      work(job, worker);
+    } catch (...) {
+      now = std::current_exception();
+    }
     const std::lock_guard lock(mutex);
+    if (now && !thrown) thrown = now, next = jobs;
     idle.push_back(worker);
     return true;
   });
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 /// The executor's threads for the segments of one run. Refers to the executor.

@@ -36,12 +36,13 @@ struct WindowsMade {
   }
 };
 
-// Bodies at random places and velocities, on a line or, with a circumference, on a ring; masses from 1 to 4.5.
+// The mixture of fixtures.hpp, on a line or, with a circumference, on a ring; masses from 1 to 4.5.
 template <class T> Scene<T> gas(BodyIndex n, const T& circumference = T(0), bool unequal = false) {
+  const Scene<T> like = rmix<T>(n);
   std::vector<T> x, v, m;
   for (BodyIndex i = 0; i < n; ++i) {
-    x.push_back(T(i) + T(bits_of(i, 0, 0x3FF)) / T(2048));
-    v.push_back(T(bits_of(i, 20, 0x3FFF) - 8192) / T(8192));
+    x.push_back(like->position(i));
+    v.push_back(like->velocity(i));
     if (unequal) m.push_back(T(1) + T(bits_of(i, 40, 7)) / T(2));
   }
   return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m), circumference);
@@ -61,12 +62,11 @@ template <class Run, class T> void expect_same_state(const Run& a, const Run& b,
 }
 
 // Advances a run in segments, and one in the plain loop, through the same times.
-template <class T, class Masses, class Law>
+template <class Chain, class T, class Law>
 WindowsMade expect_same_in_segments(const Scene<T>& scene, const Law& law, const SegmentsAs& as,
                                     const std::vector<T>& times) {
-  using Chain = GapChain<T, Masses>;
   Simulation<T, Law, Chain> plain(law, Chain(scene, T(0))), segmented(law, Chain(scene, T(0)));
-  Segments<T, Law, Masses> segments(threads(as.threads), as.how);
+  Segments<Law, Chain> segments(threads(as.threads), as.how);
   for (const T& time : times) {
     const Status status = plain.advance(time);
     EXPECT_EQ(segmented.advance(time, segments), status);

@@ -48,7 +48,10 @@ struct NoSegments {
 template <class Run> struct SegmentsFor { using Type = NoSegments; };
 template <Real T, class Law, class Masses>
 requires(!LawWithMemory<Law, T>) struct SegmentsFor<Simulation<T, Law, GapChain<T, Masses>>> {
-  using Type = Segments<T, Law, Masses>;
+  using Type = Segments<Law, GapChain<T, Masses>>;
+};
+template <Real T, class Law> struct SegmentsFor<Simulation<T, Law, ClusterChain<T>>> {
+  using Type = Segments<Law, ClusterChain<T>>;
 };
 
 template <Real T, class Run> class EngineOf final : public Engine<T> {

@@ -1,0 +1,110 @@
+#pragma once
+// The bare line of cells that a chain in gaps and body velocities works on, and what a contact does to it. What is at
+// its ends is the chain's (cluster_chain.hpp), or that of a segment (cluster_segment.hpp), which is a copy of a part.
+//
+// A cell holds a body and the gap between it and the next one (timed_gaps.hpp). Cells are linked from left to right.
+// When two bodies merge they go on in the left one's cell, and the right one's is vacated: links pass over it until the
+// chain is laid out anew. Bodies that pass exchange cells, so that cells stay in the order of the line.
+
+#include <utility>
+
+#include "cradle/core/collision.hpp"
+#include "cradle/core/law.hpp"
+#include "cradle/core/timed_gaps.hpp"
+
+namespace cradle {
+
+template <Real T> struct Cell : TimedGap<T> {
+  T velocity{0}, mass{1};
+  Slot left = 0, right = 0;
+  BodyIndex body = 0;  // by whose number at the start a cluster goes: its heaviest one's
+};
+
+template <Real T> class ClusterLine {
+ public:
+  using Gaps = TimedGaps<T, Cell<T>, false>;
+
+  // `runaway`: no speed exceeds half of it.
+  ClusterLine(const T& start, const T& energy, const T& runaway) : gaps(start, energy), runaway_(runaway) {}
+
+  Gaps gaps;
+
+  // ---- slots; a vacant one is linked to itself
+  Slot left(Slot s) const { return gaps[s].left; }
+  Slot right(Slot s) const { return gaps[s].right; }
+  bool vacant(Slot s) const { return gaps[s].right == s; }
+  void link(Slot s, Slot next) {
+    gaps[s].right = next;
+    gaps[next].left = s;
+  }
+  // Beyond the bodies held something runs away, faster than any body can.
+  void place_end(Slot s, Slot beside) {
+    const bool on_left = s < beside;
+    gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), on_left ? s : beside, on_left ? beside : s, 0});
+    (on_left ? gaps[beside].left : gaps[beside].right) = s;
+  }
+
+  T closing(Slot s) const { return gaps[s].velocity - gaps[gaps[s].right].velocity; }
+  TwoMasses<T> masses(Slot s) const { return {gaps[s].mass, gaps[gaps[s].right].mass}; }
+  T due(Slot s) const { return gaps.due(s, closing(s)); }
+  double queue_due(Slot s) const { return vacant(s) ? EventQueue::never : gaps.queue_due(s, closing(s)); }
+
+  // What a contact at the gap of a cell does to it and to its neighbours. (Inlined by force, see gap_line.hpp.)
+  [[gnu::always_inline]] Collision<T> strike(Slot s, const T& time, const Outcome<T>& outcome, Notice notice) {
+    Cell<T>& l = gaps[s];
+    const Slot p = l.left, n = l.right;
+    Cell<T>& r = gaps[n];
+    const T since = gaps.flown(s, time);
+    notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
+    const T closing_left = closing(p), closing_right = closing(n);
+    const T before_left = l.velocity, before_right = r.velocity;
+    const T slowed = before_left - outcome.to_left, sped = before_right + outcome.to_right;
+    Slot beyond = n;
+    if (outcome.event == Event::merge) {
+      absorb_right(s, l.mass < r.mass ? sped : slowed);  // the heavier one's velocity hardly changes
+      beyond = s;
+    } else {
+      gaps.close(s, outcome.closing, since, time);
+      const bool pass = outcome.event == Event::pass;
+      l.velocity = pass ? sped : slowed;
+      r.velocity = pass ? slowed : sped;
+      if (pass) {
+        std::swap(l.mass, r.mass);
+        std::swap(l.body, r.body);
+      }
+    }
+    notice |= kick(p, closing_left, before_left, l.velocity, time);
+    notice |= kick(beyond, closing_right, gaps[beyond].velocity, before_right, time);
+    return {outcome, predict(p), predict(s), beyond == n ? predict(n) : EventQueue::never, notice, p, n};
+  }
+
+ private:
+  // The bodies at s and right of it go on as one, in the cell s.
+  void absorb_right(Slot s, const T& velocity) {
+    Cell<T>& l = gaps[s];
+    const Slot n = l.right;
+    Cell<T>& r = gaps[n];
+    if (l.mass < r.mass) l.body = r.body;
+    l.velocity = velocity;
+    l.mass += r.mass;
+    gaps.carry(n, s);
+    gaps.forget(n);
+    link(s, r.right);
+    r.right = n;
+  }
+
+  // A gap between bodies of which one has had a contact, by which it closes faster by as much as u_left exceeds
+  // u_right.
+  [[gnu::always_inline]] Notice kick(Slot s, const T& so_far, const T& u_left, const T& u_right, const T& time) {
+    const T since = gaps.kick(
+        s, so_far, [&] { return T(u_left - u_right); }, time);
+    if (gaps.below_floor(s)) [[unlikely]]
+      return gaps.note(s, closing(s), gaps[s].body, since, time);
+    return Notice::none;
+  }
+  [[gnu::always_inline]] double predict(Slot s) { return gaps.predict(s, closing(s)); }
+
+  T runaway_;
+};
+
+}  // namespace cradle

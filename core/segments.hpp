@@ -76,12 +76,9 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     const std::size_t held = chain.last() + 1 - chain.first();
     if (!(ahead > 0)) return 64;
     const std::size_t middle = (chain.first() + chain.last()) / 2;
-    if (segments(held) < 2 || !chain.fronts_are_within(middle, middle)) return 256;
-    if (!how_.anywhere) {
-      // A window looks at every gap, and pays in threads or in caches only.
-      if (held < (workers_.count > 1 ? 2 * gaps_per_thread : 6000)) return held;
-      if (ahead < static_cast<double>(held) / 8) return held / 64;
-    }
+    if (!chain.fronts_are_within(middle, middle) || (chain.on_ring() && segments(chain, held) < 2)) return 256;
+    // A window looks at every gap.
+    if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64;
     return std::exchange(plain_, 0);
   }
   // Where the next window should end, in an epoch of the given length.
@@ -163,17 +160,18 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
       weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.contacts});
   }
 
-  // How many segments so many gaps make.
-  std::size_t segments(std::size_t held) const {
+  // How many segments so many gaps make. A ring has two cuts at least.
+  std::size_t segments(const Chain& chain, std::size_t held) const {
     const std::size_t threads = how_.anywhere ? workers_.count : std::min(workers_.count, held / gaps_per_thread);
-    return std::max<std::size_t>(1, std::min(std::max((held + how_.gaps / 2) / how_.gaps, threads), held / 2));
+    const std::size_t least = chain.on_ring() && held >= 2 * gaps_per_thread ? 2 : 1;
+    return std::max(least, std::min(std::max((held + how_.gaps / 2) / how_.gaps, threads), held / 2));
   }
 
   // Cuts the line into segments of about as many contacts each, by those of the window before; gaps count for a quarter
   // of a mean gap's contacts, so that no segment gets too long.
   void cut(const Chain& chain) {
     const std::size_t held = chain.last() + 1 - chain.first();
-    const std::size_t count = segments(held);
+    const std::size_t count = segments(chain, held);
     own_.clear();
     double contacts = 0;
     for (const Weight& weight : weights_) contacts += static_cast<double>(weight.contacts);

@@ -10,9 +10,9 @@
 // gas     N bodies of random velocities, all of them active from the start, eps = .999.
 //
 // Times are of the thread, not of the wall (but for the run on two threads), so that other work on the machine disturbs
-// less. The contacts that engines
-// count must be the same; where they are not, the program says so and ends with status 1. Debian's Google Benchmark
-// prints "library was built as DEBUG": that concerns its own timers, not the code timed here.
+// less. The contacts that engines count must be the same; where they are not, the program says so and ends with status
+// 1. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers, not the code timed
+// here.
 
 #include <ctime>
 

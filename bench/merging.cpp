@@ -10,7 +10,8 @@
 //          ones.
 // cooling  N bodies on a ring, Gaussian velocities of variance 1, to t = 1000.
 //
-// Times are of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers.
+// Times are of the thread, with two threads of the wall. Debian's Google Benchmark prints "library was built as DEBUG":
+// that concerns its own timers.
 
 #include <ctime>
 
@@ -23,8 +24,10 @@
 #include <benchmark/benchmark.h>
 
 #include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/ring.hpp"
 #include "cradle/core/rows.hpp"
+#include "cradle/core/segments.hpp"
 #include "cradle/core/simulation.hpp"
 #include "twins/merging.hpp"
 
@@ -32,9 +35,9 @@ namespace {
 
 using BodiesPointer = std::shared_ptr<const cradle::Bodies<double>>;
 
-double thread_seconds() {
+double seconds_of(clockid_t clock) {
   std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -54,6 +57,7 @@ BodiesPointer ring(cradle::BodyIndex n) {
 }
 
 struct Cradle {
+  static constexpr clockid_t clock = CLOCK_THREAD_CPUTIME_ID;
   static std::uint64_t run(const cradle::Bodies<double>&, const BodiesPointer& bodies, double loss, double until) {
     const auto made = [&](auto law) {
       cradle::Simulation engine(law, cradle::ClusterChain<double>(bodies, 0.0));
@@ -63,7 +67,23 @@ struct Cradle {
     return loss < 0 ? made(cradle::Sticky<double>{}) : made(cradle::Wet<double>(loss));
   }
 };
+// In segments, on so many threads.
+template <unsigned threads> struct InSegments {
+  static constexpr clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
+  static std::uint64_t run(const cradle::Bodies<double>&, const BodiesPointer& bodies, double loss, double until) {
+    const cradle::TbbExecutor executor(threads);
+    const auto made = [&]<class Law>(const Law& law) {
+      using Chain = cradle::ClusterChain<double>;
+      cradle::Simulation engine(law, Chain(bodies, 0.0));
+      cradle::Segments<Law, Chain> segments(cradle::workers(executor));
+      engine.advance(until, segments);
+      return engine.counts().contacts;
+    };
+    return loss < 0 ? made(cradle::Sticky<double>{}) : made(cradle::Wet<double>(loss));
+  }
+};
 struct Twin {
+  static constexpr clockid_t clock = CLOCK_THREAD_CPUTIME_ID;
   static std::uint64_t run(const cradle::Bodies<double>& bodies, const BodiesPointer&, double loss, double until) {
     twins::MergingEngine engine(bodies, loss);
     engine.advance(until);
@@ -81,9 +101,9 @@ void enter(const std::string& of, const std::string& engine, const BodiesPointer
       [=](benchmark::State& state) {
         std::uint64_t contacts = 0;
         for (auto iteration : state) {
-          const double start = thread_seconds();
+          const double start = seconds_of(Engine::clock);
           const std::uint64_t made = Engine::run(*bodies, bodies, loss, until);
-          state.SetIterationTime(thread_seconds() - start);
+          state.SetIterationTime(seconds_of(Engine::clock) - start);
           static std::map<std::string, std::uint64_t> seen;  // by the first engine asked
           const std::uint64_t expected = published > 0 ? published : seen.try_emplace(of, made).first->second;
           if (made != expected) {
@@ -116,6 +136,8 @@ int main(int argc, char** argv) {
     for (const double loss : {-1.0, 0.1}) {
       const std::string of = (loss < 0 ? "sticky/cooling/" : "wet/cooling/") + std::to_string(n);
       enter<Cradle>(of, "cradle", bodies, loss, 1000);
+      enter<InSegments<1>>(of, "cradle_segments", bodies, loss, 1000);
+      enter<InSegments<2>>(of, "cradle_two_threads", bodies, loss, 1000);
       enter<Twin>(of, "conventional", bodies, loss, 1000);
     }
   }

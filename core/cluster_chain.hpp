@@ -71,16 +71,15 @@ template <Real T> class ClusterChain {
   [[gnu::always_inline]] Collision<T> collide(const Law& law, Slot s, const T& time) requires(!LawWithMemory<Law, T>) {
     const Outcome<T> outcome = law(closing(s), line_.masses(s));
     Notice notice = Notice::none;
-    if (const Slot n = right(s); !window_.inside(s, n)) [[unlikely]] {
+    if (!window_.inside(s, right(s))) [[unlikely]] {
       if (on_ring())
         cross_seam(s, outcome.event);
       else
         notice = widen(s, time);
     }
-    Collision<T> collision = line_.strike(s, time, outcome, notice);
-    beyond_ = collision.right;
-    if (outcome.event == Event::merge) collision.notice |= merged(s, std::exchange(beyond_, s));
-    return collision;
+    beyond_ = right(s);
+    if (outcome.event == Event::merge) notice |= merge(s, std::exchange(beyond_, s));
+    return line_.strike(s, time, outcome, notice);
   }
 
   T move_origin(const T& local) {
@@ -243,9 +242,9 @@ template <Real T> class ClusterChain {
     if (event == Event::pass) carried_.add(T(-line_.gaps[s].mass));
   }
 
-  // The body that was at `gone` is part of the one at s now.
-  Notice merged(Slot s, Slot gone) {
-    window_.merge(s, gone, right(s));
+  // The body at `gone` is to go on as part of the one at s.
+  Notice merge(Slot s, Slot gone) {
+    window_.merge(s, gone, right(gone));
     --active_;
     ++vacated_;
     return sparse() ? Notice::needs_slots : Notice::none;

@@ -7,9 +7,9 @@
 //
 // A large zone goes through time in epochs: when the origin moves next is a time, known since it moved last, so that
 // contacts far apart need no common order for it (segments.hpp). An epoch lasts as long as some 8 contacts per active
-// body should take, by the rate of the epoch before. It ends early, with the contact after which that is asked for:
-// where the flight before it was too short for the time since the origin, or where there are four times as many
-// contacts as were expected.
+// body should take, or 32 where bodies merge, by the rate of the epoch before. It ends early, with the contact after
+// which that is asked for: where the flight before it was too short for the time since the origin, or where there are
+// four times as many contacts per body as it should have.
 
 #include <algorithm>
 #include <cstdint>
@@ -20,7 +20,8 @@
 namespace cradle {
 
 template <Real T> struct Pacing {
-  explicit Pacing(const T& start) : time_before(start) {}
+  Pacing(const T& start, bool may_collapse)
+      : time_before(start), may_collapse_(may_collapse), per_body_(may_collapse ? 8 : 32) {}
 
   static constexpr std::uint64_t large = 512;  // active bodies from which on there are epochs
 
@@ -39,14 +40,13 @@ template <Real T> struct Pacing {
   // After a contact at the given local time, with so many bodies active. The chain may ask for a move; at a regular
   // review there is one if bodies can collapse. If they merge instead, the origin moves only after many contacts, or
   // where these come at more than twice the rate, since the review before, that they have had since the last move.
-  bool origin_moves(Notice notice, std::uint64_t contacts, const T& time, std::uint64_t active,
-                    bool may_collapse) const {
+  bool origin_moves(Notice notice, std::uint64_t contacts, const T& time, std::uint64_t active) const {
     const std::uint64_t since_move = contacts - contacts_at_move;
     if (asks(notice, Notice::origin_must_move)) return true;
     if (in_epochs) return contacts >= most_contacts;
     if (asks(notice, Notice::origin_should_move) && 16 * since_move >= active) return true;
     if (contacts < next_review) return false;
-    if (may_collapse || active >= large || since_move >= 32 * active + 16) return true;
+    if (may_collapse_ || active >= large || since_move >= 32 * active + 16) return true;
     return T(static_cast<std::int64_t>(2 * since_move)) * (time - time_before) <
            T(static_cast<std::int64_t>(contacts - contacts_before)) * time;
   }
@@ -67,12 +67,12 @@ template <Real T> struct Pacing {
     time_before = now;
     next_review = contacts + std::min(32 * active + 16, active * active / 8 + 1);
   }
-  // Contacts to come up to a time, or to the end of the epoch: by the rate foreseen, or by that so far. 0: no epochs.
+  // Contacts to come up to a time in this epoch: by the rate foreseen, or by that so far. 0: no epochs.
   double ahead(std::uint64_t contacts, const T& now, const T& until) const {
     if (!in_epochs) return 0;
     const double made = static_cast<double>(contacts - contacts_before);
     const double passed = to_double(T((now - time_before) / epoch)), left = to_double(T((until - now) / epoch));
-    return std::min(left, 1.) * std::max(static_cast<double>(expected), passed > 0 ? made / passed : 0);
+    return left * std::max(static_cast<double>(expected), passed > 0 ? made / passed : 0);
   }
   // After so many contacts without any review. They are fewer than an epoch's most.
   void passed(std::uint64_t contacts, std::uint64_t active) {
@@ -88,10 +88,10 @@ template <Real T> struct Pacing {
   }
 
  private:
-  // How long the next epoch is to be where so many contacts have taken so long: as long as eight per active body should
-  // take, but not too many times as long, since a rate is not known well from a few contacts.
+  // How long the next epoch is to be where so many contacts have taken so long: as long as those that it is to have
+  // should take, but not too many times as long, since a rate is not known well from a few contacts.
   void foresee(const T& took, std::uint64_t contacts, std::uint64_t active) {
-    const auto aim = static_cast<std::int64_t>(8 * active), made = static_cast<std::int64_t>(contacts);
+    const auto aim = static_cast<std::int64_t>(per_body_ * active), made = static_cast<std::int64_t>(contacts);
     const std::int64_t most = made < 64 ? 64 : 4096;
     T next = aim > most * made ? T(took * T(most)) : T(took * T(aim) / T(made));
     if (!is_positive(next)) next = epoch / T(64);  // no time has passed
@@ -103,8 +103,11 @@ template <Real T> struct Pacing {
     contacts_before = contacts;
     time_before = now;
     epoch_end = now + epoch;
-    most_contacts = contacts + 32 * active + 16;
+    most_contacts = contacts + 4 * per_body_ * active + 16;
   }
+
+  bool may_collapse_;
+  std::uint64_t per_body_;  // contacts in an epoch
 };
 
 }  // namespace cradle

@@ -81,10 +81,10 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64;
     return std::exchange(plain_, 0);
   }
-  // Where the next window should end, in an epoch of the given length.
-  T end(const T& from, const T& epoch, const T& stop) const {
-    // The rest of an epoch in equal windows.
-    const double left = to_double(T((stop - from) / epoch)), windows = std::ceil(left / share_);
+  // Where the next window should end, with so many contacts ahead up to `stop`.
+  T end(const Chain& chain, const T& from, const T& stop, double ahead) const {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    const double windows = std::ceil(ahead / (per_gap_ * static_cast<double>(held)));
     if (!(windows > 1)) return stop;
     return from + (stop - from) / T(static_cast<std::int64_t>(std::min(windows, 0x1p40)));
   }
@@ -139,7 +139,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
  private:
   using Report = typename Segment<Law, Chain>::Report;
-  static constexpr double least_share = 1. / 64;
+  static constexpr double least_per_gap = 1. / 8;
 
   std::optional<Window> give_up(const Chain& chain) {
     const std::size_t held = chain.last() + 1 - chain.first();
@@ -147,14 +147,14 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     failed_ = true;
     patience_ = std::min<std::size_t>(2 * patience_ + 1, 63);
     plain_ = patience_ * held;
-    share_ = std::max(share_ / 2, least_share);
+    per_gap_ = std::max(per_gap_ / 2, least_per_gap);
     return {};
   }
   void adapt(const Chain& chain, double again) {
     patience_ /= 2;
     failed_ = failed_ || again > 0;
-    share_ = again > 0 ? share_ * std::max(.5, 1 - 10 * again) : share_ * (failed_ ? 1.01 : 1.3);
-    share_ = std::min(std::max(share_, least_share), how_.contacts > 0 ? how_.contacts / 8 : 1.);
+    per_gap_ *= again > 0 ? std::max(.5, 1 - 10 * again) : failed_ ? 1.01 : 1.3;
+    per_gap_ = std::min(std::max(per_gap_, least_per_gap), how_.contacts > 0 ? how_.contacts : 8);
     weights_.clear();
     for (std::size_t k = 0; k < own_.size(); ++k)
       weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.contacts});
@@ -240,8 +240,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   Workers workers_;
   Segmentation how_;
   Statistics statistics_;
-  double share_ = 1. / 2;  // of an epoch, that a window is to take
-  bool failed_ = false;    // whether a cut ever has
+  double per_gap_ = 4;   // contacts that a window is to have
+  bool failed_ = false;  // whether a cut ever has
   std::size_t patience_ = 0;
   std::uint64_t plain_ = 0;  // contacts
   struct Weight {

@@ -36,7 +36,7 @@ class Simulation {
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
-        last_contact_(chain_.local_time(chain_.start())), pacing_(last_contact_),
+        last_contact_(chain_.local_time(chain_.start())), pacing_(last_contact_, Chain::may_collapse),
         standstill_(last_contact_), target_{chain_.start(), last_contact_, last_contact_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
@@ -145,14 +145,14 @@ class Simulation {
   // The window loop: windows of time in segments, and where those do not do, contacts in the plain loop.
   template <class Segments> Status make_windows(Segments& segments) {
     for (T from = last_contact_;;) {
-      const double ahead = pacing_.ahead(counts_.contacts, from, target_.horizon);
+      const double ahead = pacing_.ahead(counts_.contacts, from, target_.stop);
       if (auto plain = segments.plain_contacts(chain_, ahead)) {
         for (; plain > 0; --plain)
           if (!step()) return status_;
         from = last_contact_;
         continue;
       }
-      const T end = segments.end(from, pacing_.epoch, target_.stop);
+      const T end = segments.end(chain_, from, target_.stop, ahead);
       release_queue();
       const auto window = segments.make(chain_, law_, end, pacing_.most_contacts - counts_.contacts);
       if (!window) continue;
@@ -222,7 +222,7 @@ class Simulation {
         chain_.make_room();
         fill_queue();
       }
-    const bool move = pacing_.origin_moves(notice, counts_.contacts, last_contact_, active(), Chain::may_collapse);
+    const bool move = pacing_.origin_moves(notice, counts_.contacts, last_contact_, active());
     const bool stands_still = (move || !pacing_.in_epochs) && standstill_.at(last_contact_, counts_.contacts, active());
     const bool moves = move && !stands_still, ask = moves || counts_.contacts >= pacing_.next_review;
     const T before = last_contact_;

@@ -18,6 +18,8 @@ set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)  # libraries outside the system's fold
 add_library(cradle_options INTERFACE)
 target_compile_features(cradle_options INTERFACE cxx_std_20)
 target_compile_options(cradle_options INTERFACE -ffp-contract=off
+                       # Else g++ may call sqrt for what is one instruction, for the sake of errno, which nobody reads.
+                       -fno-math-errno
                        # g++ would store two members of a gap in one piece, which are read one by one a contact later:
                        # processors cannot hand on parts of a store (bench/RESULTS.md: a tenth of the time of a contact).
                        $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)

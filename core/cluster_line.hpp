@@ -27,6 +27,12 @@ template <Real T> class ClusterLine {
   // `runaway`: no speed exceeds half of it.
   ClusterLine(const T& start, const T& energy, const T& runaway) : gaps(start, energy), runaway_(runaway) {}
 
+  // Like another one, without any cells yet.
+  ClusterLine(const ClusterLine& other, std::size_t slots)
+      : gaps(other.gaps.clock().start(), T(1)), runaway_(other.runaway_) {
+    gaps.resemble(other.gaps, slots);
+  }
+
   Gaps gaps;
 
   // ---- slots; a vacant one is linked to itself

@@ -32,7 +32,7 @@ template <Real T> struct ClusterContact {
   bool behind;  // at the gap right of the cut
   T time;
   Body left, right;
-  T gap{0}, gap_time{0}, lag{0};  // in a contact 0
+  T gap{0}, gap_time{0}, lag{0}, lost{0};  // in a contact 0
   friend bool operator==(const ClusterContact&, const ClusterContact&) = default;
 };
 
@@ -46,7 +46,7 @@ template <Real T> class ClusterSegment {
     std::vector<T> carried;          // mass across the seam
   };
 
-  explicit ClusterSegment(const Chain& chain) : line_(chain.line()) {}
+  explicit ClusterSegment(const Chain& chain) : line_(chain.line(), 0) {}
 
   // ---- slots of the copy: ghosts and what is owned; beyond them something runs away
   static constexpr Slot first() { return first_; }
@@ -127,14 +127,17 @@ template <Real T> class ClusterSegment {
     });
   }
 
-  static void go_on(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
+  // False where the window is for the plain loop.
+  static bool go_on(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
     std::vector<CellsInARow> cells;
-    const std::vector<T>* carried = nullptr;
+    std::vector<T> carried;
     for (const Report& report : reports) {
+      if (!carried.empty() && !report.carried.empty()) return false;
       cells.insert(cells.end(), report.cells.begin(), report.cells.end());
-      if (!report.carried.empty()) carried = &report.carried;
+      if (carried.empty()) carried = report.carried;
     }
-    chain.go_on_with(after, std::move(cells), carried ? *carried : std::vector<T>());
+    chain.go_on_with(after, std::move(cells), carried);
+    return true;
   }
 
  private:
@@ -161,7 +164,7 @@ template <Real T> class ClusterSegment {
       log.push_back({behind, time, what(s), what(n)});
       if (!merge || behind) return;
       const Cell<T>& next = line_.gaps[n];
-      log.push_back({true, time, what(n), what(right(n)), next.gap, next.time, line_.gaps.lag(n)});
+      log.push_back({true, time, what(n), what(right(n)), next.gap, next.time, line_.gaps.lag(n), line_.gaps.lost(n)});
     };
     if (n == own_first_ || s == own_first_) enter(report.left, s == own_first_);
     if (s == own_last_ || left(s) == own_last_) enter(report.right, s != own_last_);

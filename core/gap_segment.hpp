@@ -94,8 +94,9 @@ template <Real T, class Masses> class GapSegment {
     report.to_right.reached = in_chain(reached_right_);
   }
 
-  static void go_on(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
+  static bool go_on(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
     chain.go_on_with(after, reports.front().to_left, reports.back().to_right);
+    return true;
   }
 
  private:

@@ -63,9 +63,7 @@ template <Real T> struct Pacing {
       return passed(contacts, active);
     }
     if (!moved && !regular) return;
-    contacts_before = contacts;
-    time_before = now;
-    next_review = contacts + std::min(32 * active + 16, active * active / 8 + 1);
+    begin_reviews(contacts, now, active);
   }
   // Contacts to come up to a time in this epoch: by the rate foreseen, or by that so far. 0: no epochs.
   double ahead(std::uint64_t contacts, const T& now, const T& until) const {
@@ -74,6 +72,8 @@ template <Real T> struct Pacing {
     const double passed = to_double(T((now - time_before) / epoch)), left = to_double(T((until - now) / epoch));
     return left * std::max(static_cast<double>(expected), passed > 0 ? made / passed : 0);
   }
+  // After so many more contacts this epoch ends.
+  std::uint64_t left(std::uint64_t contacts) const { return contacts < most_contacts ? most_contacts - contacts : 0; }
   // After so many contacts without any review. They are fewer than an epoch's most.
   void passed(std::uint64_t contacts, std::uint64_t active) {
     if (contacts >= next_poll) next_poll = contacts + std::min<std::uint64_t>(32 * active, 1 << 20);
@@ -83,6 +83,7 @@ template <Real T> struct Pacing {
   void epoch_ended(std::uint64_t contacts, const T& now, std::uint64_t active) {
     foresee(epoch, contacts - contacts_before, active);
     contacts_at_move = contacts;
+    if (!in_epochs) return begin_reviews(contacts, now, active);
     begin_epoch(contacts, now, active);
     passed(contacts, active);
   }
@@ -98,6 +99,11 @@ template <Real T> struct Pacing {
     in_epochs = is_positive(next);
     epoch = next;
     expected = static_cast<std::uint64_t>(std::min(most * std::max<std::int64_t>(made, 1), aim));
+  }
+  void begin_reviews(std::uint64_t contacts, const T& now, std::uint64_t active) {
+    contacts_before = contacts;
+    time_before = now;
+    next_review = contacts + std::min(32 * active + 16, active * active / 8 + 1);
   }
   void begin_epoch(std::uint64_t contacts, const T& now, std::uint64_t active) {
     contacts_before = contacts;

@@ -53,15 +53,15 @@ template <class Law, class Chain> class Segment {
 
   explicit Segment(const Chain& chain) : part_(chain), queue_(16, Chain::keys_are_exact) {}
 
-  // Makes all contacts up to the local time `stop`, on a copy of a part of the chain, and puts what is the segment's
-  // own into `after`, at the chain's slots. Several segments of one chain may do so at once.
-  void run(const Chain& chain, const Law& law, const Own& own, std::size_t ghosts, const T& stop,
+  // Makes all contacts up to the local time `stop`, fewer than `most`, on a copy of a part of the chain, and puts what
+  // is the segment's own into `after`, at the chain's slots. Several segments of one chain may do so at once.
+  void run(const Chain& chain, const Law& law, const Own& own, std::size_t ghosts, const T& stop, std::uint64_t most,
            typename Chain::Line::Gaps& after, Report& report) {
     if (!begin(chain, own, ghosts, report)) return;
-    Made made = make_contacts<false>(law, stop, report);
+    Made made = make_contacts<false>(law, stop, most, report);
     if (made == Made::contested) {
       begin(chain, own, ghosts, report);
-      made = make_contacts<true>(law, stop, report);
+      made = make_contacts<true>(law, stop, most, report);
     }
     report.plain = made == Made::for_plain;
     if (!report.plain && !report.nothing_left) part_.give(chain, own, after, report);
@@ -74,6 +74,7 @@ template <class Law, class Chain> class Segment {
   bool begin(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
     report.left.clear(), report.right.clear();
     report.nothing_left = report.plain = false;
+    report.counts = {};
     const bool some = part_.take(chain, own, ghosts, report);
     if (some) fill_queue();
     return some;
@@ -93,7 +94,7 @@ template <class Law, class Chain> class Segment {
   }
 
   // The event loop of a segment.
-  template <bool exact> Made make_contacts(const Law& law, const T& stop, Report& report) {
+  template <bool exact> Made make_contacts(const Law& law, const T& stop, std::uint64_t most, Report& report) {
     const double latest = part_.queue_time(stop);
     const EventQueue::Key certainly_before = queue_.certainly_before(latest);
     const EventQueue::Key possibly_before = queue_.possibly_before(latest);
@@ -105,7 +106,7 @@ template <class Law, class Chain> class Segment {
       report.counts = counts;
       return made;
     };
-    for (std::uint64_t made = 0;; ++made) {
+    for (std::uint64_t made = 0; made < most; ++made) {
       const EventQueue::Key next = queue_.next();
       Slot s = queue_.slot(next);
       if (next >= certainly_before) [[unlikely]] {
@@ -133,18 +134,19 @@ template <class Law, class Chain> class Segment {
       const auto [collision, own] = part_.collide(law, s, time, report);
       queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
       const Outcome<T>& outcome = collision.outcome;
+      if (collision.notice != Notice::none && is_for_plain(collision.notice)) [[unlikely]]
+        return Made::for_plain;
       if (own || !Ledger<T>::in_any_order) part_.lose(s, outcome.energy_lost);
       if (!own) [[unlikely]] {
         if (report.nothing_left) return end(Made::all);
         continue;
       }
-      if (collision.notice != Notice::none && is_for_plain(collision.notice)) [[unlikely]]
-        return Made::for_plain;
       ++counts.contacts;
       counts.below_cutoff += outcome.below_cutoff;
       counts.merges += outcome.event == Event::merge;
       report.last_contact = time;
     }
+    return Made::for_plain;
   }
 
   Part part_;

@@ -54,7 +54,10 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   using T = typename Chain::Scalar;
 
   explicit Segments(Workers workers = {}, Segmentation how = {})
-      : workers_(std::move(workers)), how_(how), segments_(workers_.count) {}
+      : workers_(std::move(workers)), how_(how), segments_(workers_.count) {
+    how_.gaps = std::max<std::size_t>(how_.gaps, 1);
+    how_.ghosts = std::max<std::size_t>(how_.ghosts, 1);  // a cut has a gap on either side
+  }
 
   // What a window has made.
   struct Window {
@@ -78,7 +81,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     const std::size_t middle = (chain.first() + chain.last()) / 2;
     if (!chain.fronts_are_within(middle, middle) || (chain.on_ring() && segments(chain, held) < 2)) return 256;
     // A window looks at every gap.
-    if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64;
+    if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64 + 1;
     return std::exchange(plain_, 0);
   }
   // Where the next window should end, with so many contacts ahead up to `stop`.
@@ -106,7 +109,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     for (bool first = true; !todo.empty(); first = false) {
       workers_.run(todo.size(), [&](std::size_t job, std::size_t worker) {
         if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<Law, Chain>>(chain);
-        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, *after_, reports_[todo[job]]);
+        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, most, *after_, reports_[todo[job]]);
       });
       for (const std::size_t k : todo) {
         if (reports_[k].plain) return give_up(chain);
@@ -126,9 +129,9 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
         first = false;
       }
     }
-    if (window.counts.contacts >= most) return give_up(chain);
+    if (window.counts.contacts >= most || !Segment<Law, Chain>::Part::go_on(chain, *after_, reports_))
+      return give_up(chain);
     for (const Report& report : reports_) chain.lose(report.lost);
-    Segment<Law, Chain>::Part::go_on(chain, *after_, reports_);
     statistics_.windows += 1;
     statistics_.contacts += window.counts.contacts;
     statistics_.again += again;
@@ -160,11 +163,13 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
       weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.contacts});
   }
 
-  // How many segments so many gaps make. A ring has two cuts at least.
+  // How many segments so many gaps make: as many for each thread. A ring has two cuts at least.
   std::size_t segments(const Chain& chain, std::size_t held) const {
-    const std::size_t threads = how_.anywhere ? workers_.count : std::min(workers_.count, held / gaps_per_thread);
+    const std::size_t threads =
+        how_.anywhere ? workers_.count : std::max<std::size_t>(1, std::min(workers_.count, held / gaps_per_thread));
+    const std::size_t each = (held + threads * how_.gaps / 2) / (threads * how_.gaps);
     const std::size_t least = chain.on_ring() && held >= 2 * gaps_per_thread ? 2 : 1;
-    return std::max(least, std::min(std::max((held + how_.gaps / 2) / how_.gaps, threads), held / 2));
+    return std::max(least, std::min(threads * std::max<std::size_t>(each, 1), held / 2));
   }
 
   // Cuts the line into segments of about as many contacts each, by those of the window before; gaps count for a quarter

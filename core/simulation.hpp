@@ -154,7 +154,7 @@ class Simulation {
       }
       const T end = segments.end(chain_, from, target_.stop, ahead);
       release_queue();
-      const auto window = segments.make(chain_, law_, end, pacing_.most_contacts - counts_.contacts);
+      const auto window = segments.make(chain_, law_, end, pacing_.left(counts_.contacts));
       if (!window) continue;
       counts_ += window->counts;
       if (window->counts.contacts > 0) last_contact_ = window->last_contact;

@@ -182,7 +182,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
                  std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
     } else {
       if (!is_positive(closing)) return EventQueue::never;
-      if (is_negative(cell.time)) [[unlikely]]
+      // Exact times of a narrower type are too far from those in double for the queue's slack.
+      if (std::numeric_limits<T>::digits < std::numeric_limits<double>::digits || is_negative(cell.time)) [[unlikely]]
         return queue_due(s, closing);
       if constexpr (beyond_double) {
         long of_gap = 0, of_closing = 0;
@@ -246,6 +247,12 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
   void lose(const Ledger<T>& elsewhere) { lost_.add(elsewhere); }
   const Ledger<T>& ledger() const { return lost_; }
+  T lost(Slot s) const {
+    if constexpr (Ledger<T>::in_any_order)
+      return T(0);
+    else
+      return cells_[s].lost;
+  }
   T energy_lost(Slot first, Slot last) const {
     if constexpr (Ledger<T>::in_any_order) return lost_.value();
     T sum(0);

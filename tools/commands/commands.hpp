@@ -29,6 +29,7 @@ void add_run(CommandLine& program);
 void add_check(CommandLine& program);
 void add_info(CommandLine& program);
 void add_export(CommandLine& program);
+void add_diff(CommandLine& program);
 void add_theory(CommandLine& program);
 void add_scenes(CommandLine& program);
 void add_plot(CommandLine& program);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run.hpp"
 
 namespace cradle::tests {

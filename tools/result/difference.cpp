@@ -1,0 +1,174 @@
+#include "cradle/tools/result/difference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+
+namespace cradle::tools {
+
+namespace {
+
+bool same(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
+}
+bool same(std::uint64_t a, std::uint64_t b) { return a == b; }
+
+// |a - b| against the larger of both; of infinities and of what is no number infinite.
+double relative(double a, double b) {
+  if (a == b) return 0;
+  const double size = std::abs(a - b) / std::max(std::abs(a), std::abs(b));
+  return std::isfinite(a) && std::isfinite(b) ? size : std::numeric_limits<double>::infinity();
+}
+double relative(std::uint64_t a, std::uint64_t b) {
+  return static_cast<double>(std::max(a, b) - std::min(a, b)) / static_cast<double>(std::max(a, b));
+}
+
+std::string size_of(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return "";
+  return fmt::format(" ({} ULPs, {:.2g} relative)", ulps_between(a, b), relative(a, b));
+}
+std::string size_of(std::uint64_t a, std::uint64_t b) {
+  return fmt::format(" (by {})", std::max(a, b) - std::min(a, b));
+}
+
+std::string shown(double value) { return fmt::format("{}", value); }
+std::string shown(std::uint64_t value) { return fmt::format("{}", value); }
+
+// The first line in which two texts differ.
+std::string first_line(std::string_view a, std::string_view b) {
+  const auto [at, other] = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
+  const auto before = static_cast<std::size_t>(at - a.begin());
+  const std::size_t begin = a.substr(0, before).rfind('\n') + 1;  // npos + 1 = 0
+  const auto line = [&](std::string_view text) { return text.substr(begin, text.find('\n', begin) - begin); };
+  const bool of_one_line = a.find('\n') == a.npos && b.find('\n') == b.npos;
+  const std::string where = of_one_line ? "" : fmt::format("line {}: ", 1 + std::count(a.begin(), at, '\n'));
+  if (line(a) == line(b)) return where + "not the same end";
+  return fmt::format("{}\"{}\" against \"{}\"", where, line(a), line(b));
+}
+
+class Comparison {
+ public:
+  Comparison(const std::string& first, const std::string& second, double rtol)
+      : first_(first), second_(second), rtol_(rtol) {}
+
+  // Calls both(x, y) for what is in both lists under one name, in the order of the first, and tells of all others.
+  template <class Named, class Name, class Both>
+  void pair(const std::vector<Named>& a, const std::vector<Named>& b, const Name& name, const std::string& kind,
+            const Both& both) {
+    for (const Named& x : a) {
+      const auto y = std::find_if(b.begin(), b.end(), [&](const Named& other) { return name(other) == name(x); });
+      if (y == b.end())
+        tell(kind + name(x), "only in " + first_);
+      else
+        both(x, *y);
+    }
+    for (const Named& y : b)
+      if (std::none_of(a.begin(), a.end(), [&](const Named& other) { return name(other) == name(y); }))
+        tell(kind + name(y), "only in " + second_);
+  }
+
+  void attributes(const std::vector<Attribute>& a, const std::vector<Attribute>& b, const std::string& where) {
+    pair(
+        a, b, [](const Attribute& attribute) { return attribute.first; }, where + "@",
+        [&](const Attribute& x, const Attribute& y) { attribute(where + "@" + x.first, x.second, y.second); });
+  }
+
+  void column(const std::string& where, const Column& a, const Column& b) {
+    if (a.unit != b.unit) tell(where, fmt::format("unit \"{}\" against \"{}\"", a.unit, b.unit));
+    if (a.description != b.description) tell(where, "description " + first_line(a.description, b.description));
+    if (a.values.index() != b.values.index()) return tell(where, "real numbers against whole ones");
+    if (a.width != b.width) tell(where, fmt::format("{} numbers a row against {}", a.width, b.width));
+    if (a.rows() != b.rows()) tell(where, fmt::format("{} rows against {}", a.rows(), b.rows()));
+    if (a.width != b.width) return;
+    std::visit([&](const auto& x) { numbers(where, x, std::get<std::decay_t<decltype(x)>>(b.values), a.width); },
+               a.values);
+  }
+
+  Differences result() && { return std::move(found_); }
+
+ private:
+  void tell(const std::string& where, const std::string& what) { found_.lines.push_back(where + ": " + what); }
+
+  template <class Number> bool differ(Number a, Number b) {
+    ++found_.numbers;
+    if (same(a, b)) return false;
+    if (rtol_ > 0 && relative(a, b) <= rtol_) {
+      ++found_.tolerated;
+      return false;
+    }
+    return true;
+  }
+
+  void attribute(const std::string& where, const decltype(Attribute::second)& a, const decltype(Attribute::second)& b) {
+    if (a.index() != b.index()) return tell(where, "text, real or whole number against another of these");
+    if (const auto* text = std::get_if<std::string>(&a)) {
+      if (*text != std::get<std::string>(b)) tell(where, first_line(*text, std::get<std::string>(b)));
+    } else if (const auto* real = std::get_if<double>(&a)) {
+      number(where, *real, std::get<double>(b));
+    } else {
+      number(where, std::get<std::uint64_t>(a), std::get<std::uint64_t>(b));
+    }
+  }
+  template <class Number> void number(const std::string& where, Number a, Number b) {
+    if (differ(a, b)) tell(where, fmt::format("{} against {}{}", shown(a), shown(b), size_of(a, b)));
+  }
+
+  template <class Number>
+  void numbers(const std::string& where, const std::vector<Number>& a, const std::vector<Number>& b,
+               std::size_t width) {
+    std::optional<std::size_t> first;
+    std::size_t count = 0;
+    double largest = 0;
+    const std::size_t both = std::min(a.size(), b.size());
+    for (std::size_t i = 0; i < both; ++i)
+      if (differ(a[i], b[i])) {
+        if (!first) first = i;
+        ++count;
+        largest = std::max(largest, relative(a[i], b[i]));
+      }
+    if (!first) return;
+    std::string line = fmt::format("first in row {}: {} against {}{}", *first / width, shown(a[*first]),
+                                   shown(b[*first]), size_of(a[*first], b[*first]));
+    if (count > 1) line += fmt::format("; {} of {} numbers differ, by up to {:.2g} relative", count, both, largest);
+    tell(where, line);
+  }
+
+  const std::string &first_, &second_;
+  double rtol_;
+  Differences found_;
+};
+
+}  // namespace
+
+std::uint64_t ulps_between(double a, double b) {
+  // Bits of negative numbers count down: as signed integers in the order of the numbers.
+  const auto place = [](double x) {
+    const auto bits = std::bit_cast<std::int64_t>(x);
+    return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
+  };
+  const std::int64_t x = place(a), y = place(b);
+  return static_cast<std::uint64_t>(std::max(x, y)) - static_cast<std::uint64_t>(std::min(x, y));
+}
+
+Differences differences(const Result& a, const Result& b, const std::string& first, const std::string& second,
+                        double rtol) {
+  Comparison comparison(first, second, rtol);
+  comparison.attributes(a.attributes, b.attributes, "");
+  comparison.pair(
+      a.groups, b.groups, [](const Group& group) { return group.name; }, "",
+      [&](const Group& x, const Group& y) {
+        comparison.attributes(x.attributes, y.attributes, x.name);
+        comparison.pair(
+            x.columns, y.columns, [](const Column& column) { return column.name; }, x.name + "/",
+            [&](const Column& c, const Column& d) { comparison.column(x.name + "/" + c.name, c, d); });
+      });
+  return std::move(comparison).result();
+}
+
+}  // namespace cradle::tools

@@ -182,8 +182,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
                  std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
     } else {
       if (!is_positive(closing)) return EventQueue::never;
-      // Exact times of a narrower type are too far from those in double for the queue's slack.
-      if (std::numeric_limits<T>::digits < std::numeric_limits<double>::digits || is_negative(cell.time)) [[unlikely]]
+      // Exact times of float are too far from those in double for the queue's slack.
+      if (std::same_as<T, float> || is_negative(cell.time)) [[unlikely]]
         return queue_due(s, closing);
       if constexpr (beyond_double) {
         long of_gap = 0, of_closing = 0;

@@ -8,6 +8,7 @@
 // Wider types have digits to spare for a plain sum, and no cheap way to this one: chains keep one sum for each gap
 // (timed_gaps.hpp).
 
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -37,10 +38,9 @@ template <Real T> class Ledger {
 
   [[gnu::always_inline]] void add(const T& loss) {
     if constexpr (in_any_order) {
-      constexpr T to_integer = T(1.5) / std::numeric_limits<T>::epsilon();
       const T coarse = (loss + rounder_) - rounder_;
       sum_ += coarse;
-      rest_ += static_cast<std::int64_t>(((loss - coarse) * per_fine_ + to_integer) - to_integer);
+      rest_ += std::llrint((loss - coarse) * per_fine_);  // an instruction
     } else {
       sum_ += loss;
     }

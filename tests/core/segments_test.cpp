@@ -51,7 +51,7 @@ template <class T> void expect_same_clusters(const Scene<T>& scene, const std::v
   all("sticky when slow", InelasticMerging<T>(Inelastic<T>(T(9) / T(10)), T(1) / T(20)));
 }
 
-// ---- law x initial state x masses x type x segmentation: 540 runs, every one compared at several times
+// ---- law x initial state x masses x type x segmentation: 510 runs, every one compared at several times
 
 template <class T> class Cells : public ::testing::Test {};
 using Types = ::testing::Types<double, long double, float>;

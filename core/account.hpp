@@ -2,6 +2,7 @@
 // What could not be resolved, and how often; nothing is clamped or skipped.
 
 #include <cstdint>
+#include <tuple>
 
 #include "cradle/core/bodies.hpp"
 
@@ -12,6 +13,7 @@ template <Real T> struct Incident {
   T time{0};
   BodyIndex body = -1;  // the body on the left of the gap
   T gap{0};
+  static auto state(auto& self) { return std::tie(self.time, self.body, self.gap); }
 };
 
 template <Real T> struct Account {
@@ -24,6 +26,10 @@ template <Real T> struct Account {
   // Positions only: gaps next to a contact below 1e6 units in the last place of the position.
   std::uint64_t unresolved = 0;
   Incident<T> first_unresolved;
+
+  static auto state(auto& self) {
+    return std::tie(self.simultaneous, self.order_lost, self.first_order_lost, self.unresolved, self.first_unresolved);
+  }
 
   // A gap that is not positive although no contact was made there.
   void enter(const Incident<T>& closed, const T& rounding) {

@@ -7,7 +7,10 @@
 
 namespace cradle {
 
-template <Real T> struct Flight { Pair<T> x, v; };
+template <Real T> struct Flight {
+  Pair<T> x, v;
+  static auto state(auto& self) { return std::tie(self.x, self.v); }
+};
 
 // Of a body that has not collided, so long after the start.
 template <Real T> Flight<T> undisturbed(const Bodies<T>& bodies, BodyIndex body, const T& elapsed) {
@@ -36,6 +39,7 @@ template <Real T> class Anchor {
     collided_ = true;
   }
   void move_origin(const T& by) { since_ = since_ - by; }
+  static auto state(auto& self) { return std::tie(self.body_, self.collided_, self.from_, self.since_); }
 
  private:
   BodyIndex body_ = 0;

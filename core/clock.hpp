@@ -22,6 +22,7 @@ template <Real T> class Clock {
   T elapsed(const T& offset) const { return difference(stamp(offset), Pair<T>{start_, T(0)}); }
 
   void move_origin(const T& by) { origin_ = origin_ + by; }
+  static auto state(auto& self) { return std::tie(self.origin_); }
 
  private:
   T start_;

@@ -23,6 +23,7 @@
 #include "cradle/core/cluster_line.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
+#include "cradle/core/state.hpp"
 #include "cradle/core/window.hpp"
 
 namespace cradle {
@@ -127,6 +128,22 @@ template <Real T> class ClusterChain {
     if (last() == front) return configuration(time).x.back();
     return (undisturbed_place(right(front), time) - gap_at(front, time)).value();
   }
+  static auto state(auto& self) {
+    return std::tie(self.line_, self.window_, self.vacated_, self.active_, self.beyond_, self.centre_, self.carried_);
+  }
+  void loaded() const {
+    const auto& cells = line_.gaps;
+    require_state(window_.fits(slots(), bodies_->count()) && window_.on_ring() == bodies_->on_ring(), "slots");
+    require_state(beyond_ < slots() && active_ >= 0 && active_ <= bodies_->count(), "counts");
+    for (Slot s = 0; s < slots(); ++s)
+      require_state(cells[s].left < slots() && cells[s].right < slots() && cells[s].body >= 0 &&
+                        cells[s].body < bodies_->count() && is_positive(cells[s].mass),
+                    "cells");
+    for (Slot s = first(); s != last(); s = right(s))
+      require_state(right(s) > s && right(s) <= last() && left(right(s)) == s, "links");
+    require_state(!on_ring() || (right(last()) == first() && left(first()) == last()), "links");
+  }
+
   // ---- for segments (segments.hpp), of a ring
   const Line& line() const { return line_; }
   void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }

@@ -18,6 +18,11 @@ template <Real T> struct Cell : TimedGap<T> {
   T velocity{0}, mass{1};
   Slot left = 0, right = 0;
   BodyIndex body = 0;  // by whose number at the start a cluster goes: its heaviest one's
+
+  static auto state(auto& self) {
+    return std::tuple_cat(TimedGap<T>::state(self),
+                          std::tie(self.velocity, self.mass, self.left, self.right, self.body));
+  }
 };
 
 template <Real T> class ClusterLine {
@@ -34,6 +39,7 @@ template <Real T> class ClusterLine {
   }
 
   Gaps gaps;
+  static auto state(auto& self) { return std::tie(self.gaps); }
 
   // ---- slots; a vacant one is linked to itself
   Slot left(Slot s) const { return gaps[s].left; }

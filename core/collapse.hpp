@@ -12,6 +12,7 @@
 // collapse of many bodies without a steady ratio is followed to the end of the type's range.
 
 #include <cstdint>
+#include <tuple>
 #include <unordered_map>
 
 #include "cradle/core/bodies.hpp"
@@ -30,6 +31,11 @@ template <Real T> struct CollapseReport {
   T gap{0};             // smallest gap beside the last contact
   BodyIndex body = -1;  // the body on the left of the gap of the last contact
   bool extrapolated = false;
+
+  static auto state(auto& self) {
+    return std::tie(self.time, self.uncertainty, self.last_contact, self.interval, self.ratio, self.gap, self.body,
+                    self.extrapolated);
+  }
 };
 
 // The contacts noticed at one gap, by what extrapolation needs of them.
@@ -40,11 +46,17 @@ template <Real T> struct CollapseHistory {
   Pair<T> estimate;                            // of the collapse time
   T last{0};                                   // local time of the last contact
   T interval{0}, first_interval{0}, ratio{1};  // since the one before; the first of those shrinking; last two of them
+
+  static auto state(auto& self) {
+    return std::tie(self.contacts, self.steady, self.extrapolated, self.estimate, self.last, self.interval,
+                    self.first_interval, self.ratio);
+  }
 };
 
 template <Real T> struct CollapseWatch {
   std::unordered_map<BodyIndex, CollapseHistory<T>> histories;  // by the body on the left of the gap
   CollapseReport<T> report;
+  static auto state(auto& self) { return std::tie(self.histories, self.report); }
 
   // Takes note of a contact next to a small gap; true when the collapse time is settled. `local` is the time as an
   // offset, which resolves intervals that the full time no longer does;

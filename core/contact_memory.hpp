@@ -2,6 +2,7 @@
 // When there was last a contact at each gap, for laws with a memory (LawWithMemory); nothing for all others.
 
 #include <initializer_list>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,8 @@ template <Real T> class ContactMemory {
     for (T& time : last_) time -= by;
     never_ -= by;
   }
+  std::size_t slots() const { return last_.size(); }  // 0: nothing is remembered yet
+  static auto state(auto& self) { return std::tie(self.last_, self.never_); }
 
  private:
   std::vector<T> last_;  // local times

@@ -23,6 +23,7 @@
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/contact_memory.hpp"
 #include "cradle/core/gap_line.hpp"
+#include "cradle/core/state.hpp"
 #include "cradle/core/window.hpp"
 
 namespace cradle {
@@ -127,6 +128,18 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     const Pair<T> x = flight(right_, time).x;
     const Slot front = window_.front_right();
     return (body(front) + 1 < right_.body() ? x - gap_at(front + 1, time) : x).value();
+  }
+
+  static auto state(auto& self) { return std::tie(self.line_, self.window_, self.memory_, self.left_, self.right_); }
+  void loaded() const {
+    const BodyIndex count = bodies_->count();
+    require_state(window_.fits(slots(), count) && window_.on_ring() == bodies_->on_ring(), "slots");
+    require_state(on_ring() ||
+                      (body(first()) == window_.unheld_left() && body(last()) + 2 == count - window_.unheld_right()),
+                  "bodies");
+    require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
+    for (const Anchor<T>* anchor : {&left_, &right_})
+      require_state(on_ring() || (anchor->body() >= 0 && anchor->body() < count), "anchors");
   }
 
   // ---- for segments (segments.hpp)

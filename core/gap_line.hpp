@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <tuple>
 
 #include "cradle/core/collision.hpp"
 #include "cradle/core/masses.hpp"
@@ -13,7 +14,10 @@
 namespace cradle {
 
 // In double 32 bytes, two to a line of the cache.
-template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap : TimedGap<T> { T closing{-1}; };
+template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap : TimedGap<T> {
+  T closing{-1};
+  static auto state(auto& self) { return std::tuple_cat(TimedGap<T>::state(self), std::tie(self.closing)); }
+};
 
 template <Real T, class MassesOf> class GapLine {
  public:
@@ -32,6 +36,8 @@ template <Real T, class MassesOf> class GapLine {
   Gaps gaps;
   Masses masses;
   BodyIndex body_of_slot_0 = 0;
+
+  static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.body_of_slot_0); }
 
   // ---- copies of a part (segments.hpp): with so many slots; slot s here is s + offset there
   void resemble(const GapLine& other, std::size_t slots, std::ptrdiff_t offset) {

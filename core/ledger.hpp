@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 
 #include "cradle/core/real.hpp"
 
@@ -61,6 +62,7 @@ template <Real T> class Ledger {
     else
       return sum_;
   }
+  static auto state(auto& self) { return std::tie(self.sum_, self.rest_); }
 
  private:
   T rounder_{0};             // what is added to it and taken off again is rounded to the grid

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cradle/core/bodies.hpp"
@@ -24,7 +25,9 @@ template <Real T> struct IdenticalMasses {
                                 "): use GapChain<T, IndividualMasses<T>>");
   }
   T mass, reduced_mass;
+  static std::tuple<> state(auto&) { return {}; }
   IdenticalMasses without_slots() const { return *this; }
+  bool fits(std::size_t) const { return true; }
   void resize(std::size_t) {}
   void copy(const IdenticalMasses&, Slot, Slot, std::size_t) {}
   void set(Slot, const T&) {}
@@ -37,6 +40,8 @@ template <Real T> struct IndividualMasses {
   explicit IndividualMasses(const Bodies<T>&) {}
   IndividualMasses without_slots() const { return IndividualMasses(); }
   std::vector<T> masses;  // of the body on the left of each slot
+  static auto state(auto& self) { return std::tie(self.masses); }
+  bool fits(std::size_t slots) const { return masses.size() == slots; }
   void resize(std::size_t slots) { masses.resize(slots, T(1)); }
   void copy(const IndividualMasses& other, Slot from, Slot to, std::size_t bodies) {
     std::copy_n(&other.masses[from], bodies, &masses[to]);

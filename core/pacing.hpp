@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <tuple>
 
 #include "cradle/core/notice.hpp"
 #include "cradle/core/real.hpp"
@@ -86,6 +87,11 @@ template <Real T> struct Pacing {
     if (!in_epochs) return begin_reviews(contacts, now, active);
     begin_epoch(contacts, now, active);
     passed(contacts, active);
+  }
+
+  static auto state(auto& self) {
+    return std::tie(self.next_review, self.contacts_at_move, self.contacts_before, self.time_before, self.in_epochs,
+                    self.epoch, self.epoch_end, self.expected, self.next_poll, self.most_contacts);
   }
 
  private:

@@ -14,6 +14,7 @@
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
 #include "cradle/core/ledger.hpp"
+#include "cradle/core/state.hpp"
 
 namespace cradle {
 
@@ -99,6 +100,16 @@ template <Real T> class PositionChain {
            (is_positive(slowest) ? T(T(8) * way / slowest) : way);
   }
 
+  static auto state(auto& self) {
+    return std::tie(self.bodies_, self.due_, self.closing_, self.floor_, self.origin_, self.front_left_,
+                    self.front_right_, self.account_, self.lost_);
+  }
+  void loaded() const {
+    require_state(due_.size() == slots() && closing_.size() == slots(), "lists");
+    const bool none = front_right_ < front_left_;
+    require_state(none || (front_left_ >= first() && front_right_ <= last()), "fronts");
+  }
+
   T gap_at(Slot s, const T& time) const { return place(at(s + 1), time) - place(at(s), time); }
   T front_left(const T& time) const { return place(at(front_left_), time); }
   T front_right(const T& time) const { return place(at(front_right_ + 1), time); }
@@ -129,6 +140,7 @@ template <Real T> class PositionChain {
   struct Particle {
     T x, v, time, m;  // time: of the last contact, or the start
     bool collided = false;
+    static auto state(auto& self) { return std::tie(self.x, self.v, self.time, self.m, self.collided); }
     bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
   };
 

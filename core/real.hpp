@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <tuple>
 
 namespace cradle {
 
@@ -87,6 +88,7 @@ template <Real T> struct Pair {
   T low{0};
 
   T value() const { return high + low; }
+  static auto state(auto& self) { return std::tie(self.high, self.low); }
 };
 
 // a + b without error.
@@ -123,6 +125,7 @@ template <Real T> struct CompensatedSum {
   }
   T value() const { return sum + errors; }
   Pair<T> pair() const { return two_sum(sum, errors); }
+  static auto state(auto& self) { return std::tie(self.sum, self.errors); }
 };
 
 }  // namespace cradle

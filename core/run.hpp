@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <stdexcept>
+#include <tuple>
 
 #include "cradle/core/bodies.hpp"
 #include "cradle/core/collapse.hpp"
@@ -30,6 +32,9 @@ struct Counts {
     close_calls += other.close_calls, origin_moves += other.origin_moves;
     return *this;
   }
+  static auto state(auto& self) {  // close calls are of how a run was made
+    return std::tie(self.contacts, self.below_cutoff, self.merges, self.origin_moves);
+  }
 };
 
 // A contact as an observer sees it, before the law acts.
@@ -48,6 +53,16 @@ template <Real T> struct Policy {
   std::function<bool()> interrupt = {};  // true ends the run there
   std::function<void(const T& time, const Counts&)> progress = {};
 
+  // What a contact beside which this gap is left makes of the run; `settled`: the collapse time is. Without one that
+  // settles (irregular collapse of many bodies) the end of the type's range is the end too.
+  Status after(const T& gap, bool settled) const {
+    const bool goes_on_to = is_positive(stop_gap);
+    const T underflow{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows none
+    if (collapse == CollapsePolicy::stop &&
+        ((settled && !goes_on_to) || (is_positive(gap) && gap < (goes_on_to ? stop_gap : underflow))))
+      return Status::collapsed;
+    return gap > T(0) && gap < underflow ? Status::exhausted : Status::reached;
+  }
   Status ask(const T& time, const Counts& counts) const {
     if (progress) progress(time, counts);
     return interrupt && interrupt() ? Status::interrupted : Status::reached;

@@ -40,7 +40,7 @@ class Simulation {
         standstill_(last_contact_), target_{chain_.start(), last_contact_, last_contact_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
-    const T floor = watched ? T(least / T(64)) : underflow_;
+    const T floor = watched ? T(least / T(64)) : T(std::numeric_limits<T>::min());
     chain_.set_floor(watched && floor < policy_.stop_gap ? policy_.stop_gap : floor);
     fill_queue();
     aim();
@@ -120,6 +120,12 @@ class Simulation {
   // The start if there was no contact yet.
   T last_contact_time() const { return chain_.stamp(last_contact_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report; }
+
+  // All that is to come depends on (state.hpp), between calls of `advance`, beside what the run was made from.
+  static auto state(auto& self) {
+    return std::tie(self.chain_, self.last_contact_, self.counts_, self.pacing_, self.standstill_, self.watch_);
+  }
+  void loaded() { release_queue(); }
 
  private:
   void fill_queue() {
@@ -257,14 +263,9 @@ class Simulation {
   // Whether the gap that the last contact, at slot s, has left beside it ends the run.
   Status judge(Slot s) {
     const T gap = chain_.nearest_gap(s);
-    if (policy_.collapse == CollapsePolicy::stop) {
-      const bool settled = watch_.settled(chain_.body(s), chain_.stamp(last_contact_), last_contact_, gap,
-                                          chain_.time_resolution(s, last_contact_));
-      // Without a time that settles (irregular collapse of many bodies) the end of the type's range is the end too.
-      const T stop_gap = policy_.stop_gap > T(0) ? policy_.stop_gap : underflow_;
-      if ((settled && !(policy_.stop_gap > T(0))) || (is_positive(gap) && gap < stop_gap)) return Status::collapsed;
-    }
-    return gap > T(0) && gap < underflow_ ? Status::exhausted : Status::reached;
+    return policy_.after(gap, policy_.collapse == CollapsePolicy::stop &&
+                                  watch_.settled(chain_.body(s), chain_.stamp(last_contact_), last_contact_, gap,
+                                                 chain_.time_resolution(s, last_contact_)));
   }
 
   struct Target {
@@ -289,7 +290,6 @@ class Simulation {
   Target target_;
   std::function<void(const Contact<T>&)> observer_;  // of this advance only
   Status status_ = Status::reached;
-  T underflow_{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows no underflow
 };
 
 template <class Law, class Chain> Simulation(Law, Chain) -> Simulation<typename Chain::Scalar, Law, Chain>;

@@ -3,6 +3,7 @@
 // follow each other without any time passing, the scalar type cannot tell their times apart, or they have no end.
 
 #include <cstdint>
+#include <tuple>
 
 #include "cradle/core/real.hpp"
 
@@ -13,6 +14,7 @@ template <Real T> struct Standstill {
 
   T time;                       // local, at the last review
   std::uint64_t contacts_then;  // made when time was last seen to go on
+  static auto state(auto& self) { return std::tie(self.time, self.contacts_then); }
 
   // At a review: local time now, contacts made, bodies active.
   bool at(const T& now, std::uint64_t contacts, std::uint64_t active) {

@@ -22,7 +22,9 @@
 
 #include "cradle/core/account.hpp"
 #include "cradle/core/configuration.hpp"
+#include "cradle/core/ledger.hpp"
 #include "cradle/core/simulation.hpp"
+#include "cradle/core/state.hpp"
 
 namespace cradle {
 
@@ -95,11 +97,25 @@ template <Real T> class StickyGas {
     return c;
   }
 
+  static auto state(auto& self) { return std::tie(self.time_, self.elapsed_, self.held_, self.counts_, self.lost_); }
+  void loaded() const {
+    require_state(!held_.empty(), "no bodies");
+    for (const Lump& lump : held_)
+      require_state(is_positive(lump.mass) && lump.first >= 0 && lump.count > 0 && lump.count <= bodies_->count() &&
+                        lump.first < bodies_->count(),
+                    "clusters");
+  }
+
  private:
   struct Lump {                   // bodies that stick together
     T mass, moment, momentum, x;  // moment: at the start; x: at the time advanced to
     BodyIndex first, count, heaviest;
     T greatest;  // mass of the heaviest body
+
+    static auto state(auto& self) {
+      return std::tie(self.mass, self.moment, self.momentum, self.x, self.first, self.count, self.heaviest,
+                      self.greatest);
+    }
   };
 
   Lump single(BodyIndex b) const {

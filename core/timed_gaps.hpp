@@ -31,17 +31,10 @@
 #include "cradle/core/collision.hpp"
 #include "cradle/core/event_queue.hpp"
 #include "cradle/core/ledger.hpp"
+#include "cradle/core/state.hpp"
+#include "cradle/core/timed_gap.hpp"
 
 namespace cradle {
-
-// What a chain's cell begins with; `lost`: the energy lost in contacts here.
-template <Real T> struct TimedGap { T gap{1}, time{0}, lost{0}; };
-template <Real T>
-requires(Ledger<T>::in_any_order) struct TimedGap<T> {
-  T gap{1}, time{0};
-};
-// In double the time of the next contact is its own key: it is kept, which saves a division when it comes.
-template <> struct TimedGap<double> { double gap = 1, time = 0, due = EventQueue::never; };
 
 // `may_collapse`: gaps and times shrink without end, beyond the range of double where the type goes further.
 template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class TimedGaps {
@@ -97,8 +90,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     std::copy_n(&other.cells_[from], gaps, &cells_[to]);
     std::copy_n(&other.lag_[from], gaps, &lag_[to]);
   }
-  // To be given gaps in so many slots, and nothing else.
-  void resize(std::size_t slots) {
+  void resize(std::size_t slots) {  // to be given gaps in so many slots
     cells_.resize(slots);
     lag_.resize(slots);
   }
@@ -106,6 +98,11 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     cells_.swap(other.cells_);
     lag_.swap(other.lag_);
   }
+
+  static auto state(auto& self) {
+    return std::tie(self.cells_, self.lag_, self.clock_, self.floor_, self.shift_, self.account_, self.lost_);
+  }
+  void loaded() const { require_state(lag_.size() == cells_.size(), "lists"); }
 
   // ---- times
   const Clock<T>& clock() const { return clock_; }
@@ -170,7 +167,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       renew(s, time);
     }
   }
-  // Predicts the next contact of a gap touched just now, as a queue time. Wide types: a rounded time will do, the queue
+  // Predicts the next contact of a gap touched just now, as a queue time: rounded, in wide types, which the queue
   // knows.
   [[gnu::always_inline]] double predict(Slot s, const T& closing) {
     Cell& cell = cells_[s];
@@ -188,10 +185,9 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       if constexpr (beyond_double) {
         long of_gap = 0, of_closing = 0;
         const double gap = split(cell.gap, of_gap), speed = split(closing, of_closing);
-        return queue_time(cell.time) + scale(gap / speed, of_gap - of_closing + shift_);
+        return in_range(queue_time(cell.time) + scale(gap / speed, of_gap - of_closing + shift_), s, closing);
       } else {
-        const double rounded = to_double(cell.time) + to_double(cell.gap) / to_double(closing);
-        return std::isfinite(rounded) ? rounded : queue_due(s, closing);
+        return in_range(to_double(cell.time) + to_double(cell.gap) / to_double(closing), s, closing);
       }
     }
   }
@@ -262,6 +258,10 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
  private:
+  // A queue time, unless rounding on the way has made it infinite, which would be `never`.
+  [[gnu::always_inline]] double in_range(double rounded, Slot s, const T& closing) const {
+    return std::isfinite(rounded) ? rounded : queue_due(s, closing);
+  }
   T contact_time(Slot s, const T& closing) const {
     const Cell& cell = cells_[s];
     T time = cell.time + cell.gap / closing;

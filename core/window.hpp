@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "cradle/core/bodies.hpp"
@@ -93,6 +94,20 @@ class Window {
     if (last_ == gone) last_ = s;
     if (first_ == gone) first_ = next;
     if (front_right_ == gone) front_right_ = s;
+  }
+
+  static auto state(auto& self) {
+    return std::tie(self.extent_, self.first_, self.last_, self.front_left_, self.front_right_, self.unheld_left_,
+                    self.unheld_right_);
+  }
+  // Whether it can be that of a chain with so many slots, which hold all bodies of `count` but the unheld ones, or
+  // some.
+  bool fits(std::size_t slots, BodyIndex count) const {
+    const bool held = first_ >= spare_ && last_ + 1 >= first_ && last_ + 1 + spare_ <= slots;
+    const bool fronts =
+        !has_fronts() || (first_ <= front_left_ && front_left_ <= front_right_ && front_right_ <= last_);
+    return extent_ <= Extent::ring && held && fronts && unheld_left_ >= 0 && unheld_right_ >= 0 &&
+           unheld_left_ <= count && unheld_right_ <= count - unheld_left_;
   }
 
  private:

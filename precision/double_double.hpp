@@ -17,6 +17,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "cradle/precision/text.hpp"
 
@@ -35,6 +36,7 @@ class double_double {
   constexpr double high() const { return high_; }
   constexpr double low() const { return low_; }
   explicit constexpr operator double() const { return high_; }
+  static auto state(auto& self) { return std::tie(self.high_, self.low_); }
 
   friend constexpr double_double operator-(const double_double& x) { return {-x.high_, -x.low_}; }
 

@@ -118,3 +118,15 @@ template <> struct cradle::Text<cradle::float128> {
     return buffer;
   }
 };
+
+template <> struct cradle::SavedNumber<cradle::float128> {
+  static void save(auto& to, const float128& x) {
+    const float128::Value value = x.value();
+    to.put(&value, sizeof value);
+  }
+  static void load(auto& from, float128& x) {
+    float128::Value value = 0;
+    from.get(&value, sizeof value);
+    x = float128::from(value);
+  }
+};

@@ -10,6 +10,7 @@
 #include <bit>
 #include <compare>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -58,6 +59,39 @@ template <int Limbs> class Mpfr {
 
   explicit operator double() const { return mpfr_get_d(&v_, MPFR_RNDN); }
   mpfr_srcptr get() const { return &v_; }
+
+  // Sign and kind, and of numbers other than 0 exponent and limbs.
+  void save(auto& to) const {
+    const std::array<std::int32_t, 2> kind{mpfr_custom_get_kind(&v_), mpfr_signbit(&v_)};
+    to.put(kind.data(), sizeof kind);
+    if (!mpfr_regular_p(&v_)) return;
+    const std::int64_t exponent = v_._mpfr_exp;
+    to.put(&exponent, sizeof exponent);
+    to.put(limbs_.data(), static_cast<std::size_t>(MpfrPrecision::limbs()) * sizeof(mp_limb_t));
+  }
+  void load(auto& from) {
+    std::array<std::int32_t, 2> kind{};
+    from.get(kind.data(), sizeof kind);
+    mpfr_custom_init_set(&v_, MPFR_ZERO_KIND, 0, MpfrPrecision::bits(), limbs_.data());
+    const int sign = kind[1] != 0 ? -1 : 1;
+    if (const int of = std::abs(kind[0]); of == MPFR_REGULAR_KIND) {
+      std::int64_t exponent = 0;
+      from.get(&exponent, sizeof exponent);
+      from.get(limbs_.data(), static_cast<std::size_t>(MpfrPrecision::limbs()) * sizeof(mp_limb_t));
+      const auto leading = static_cast<std::size_t>(MpfrPrecision::limbs() - 1);
+      const auto unused = MpfrPrecision::limbs() * GMP_NUMB_BITS - MpfrPrecision::bits();
+      if (limbs_[leading] >> (GMP_NUMB_BITS - 1) == 0 || (limbs_[0] & ((mp_limb_t{1} << unused) - 1)) != 0 ||
+          exponent < mpfr_get_emin() || exponent > mpfr_get_emax())
+        throw std::invalid_argument("no number (limbs that none has): take the file from a copy");
+      mpfr_custom_init_set(&v_, MPFR_REGULAR_KIND * sign, exponent, MpfrPrecision::bits(), limbs_.data());
+    } else if (of == MPFR_ZERO_KIND) {
+      mpfr_set_zero(&v_, sign);
+    } else if (of == MPFR_INF_KIND) {
+      mpfr_set_inf(&v_, sign);
+    } else {
+      mpfr_set_nan(&v_);
+    }
+  }
 
   friend Mpfr operator-(const Mpfr& x) {
     Mpfr negative(x);
@@ -152,4 +186,9 @@ template <int Limbs> inline constexpr std::string_view cradle::scalar_name<cradl
 template <int Limbs> struct cradle::Text<cradle::Mpfr<Limbs>> {
   static Mpfr<Limbs> from(std::string_view literal) { return Mpfr<Limbs>(checked_literal(literal).c_str()); }
   static std::string to(const Mpfr<Limbs>& x) { return mpfr_text(x.get(), 0); }
+};
+
+template <int Limbs> struct cradle::SavedNumber<cradle::Mpfr<Limbs>> {
+  static void save(auto& to, const Mpfr<Limbs>& x) { x.save(to); }
+  static void load(auto& from, Mpfr<Limbs>& x) { x.load(from); }
 };

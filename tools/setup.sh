@@ -28,6 +28,7 @@ program | Python 3              | command python3              | python3
 program | Matplotlib            | python matplotlib            | python3-matplotlib
 program | h5py                  | python h5py                  | python3-h5py
 tests   | GoogleTest            | header gtest/gtest.h         | libgtest-dev
+tests   | rapidcheck            | header rapidcheck.h          | librapidcheck-dev
 tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev
 option  | MPI compiler          | command mpicc                | libopenmpi-dev
 option  | MPI launcher          | command mpirun               | openmpi-bin

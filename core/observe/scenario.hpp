@@ -20,6 +20,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "cradle/core/observe/clusters.hpp"
@@ -36,6 +37,12 @@ struct Scenario {
   Regime regime = Regime::none;
   double separation_exponent = std::numeric_limits<double>::quiet_NaN();
   double speed_exponent = std::numeric_limits<double>::quiet_NaN();
+
+  // What is known before the end.
+  static auto state(auto& self) {
+    return std::tie(self.established, self.first_meeting, self.first_passed, self.passes, self.sticks,
+                    self.role_changes, self.regime);
+  }
 };
 
 class ScenarioWatch {
@@ -77,10 +84,13 @@ class ScenarioWatch {
     return found_;
   }
 
+  static auto state(auto& self) { return std::tie(self.pair_, self.meeting_, self.largest_, self.found_); }
+
  private:
   struct Meeting {
     double time;
     std::uint64_t merges_before;
+    static auto state(auto& self) { return std::tie(self.time, self.merges_before); }
   };
 
   // A contact is told of before it is made: whether it was a merge shows in the count that comes with the next one.

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "cradle/core/observe/profile.hpp"
+#include "cradle/core/state.hpp"
 
 namespace cradle {
 
@@ -73,12 +74,24 @@ class ZoneAverage {
     return {middle, 1.253 * 1.483 * median(widths) / std::sqrt(n)};
   }
 
+  static auto state(auto& self) { return std::tie(self.taken_, self.part_); }
+  void loaded() const {
+    require_state(part_.size() == parts && taken_ <= samples_, "samples");
+    for (const Part& part : part_)
+      for (const Bins* bins : {&part.mass, &part.right, &part.right_speed, &part.left, &part.left_speed})
+        require_state(bins->size() == bins_, "bins");
+  }
+
  private:
   using Bins = std::vector<double>;
   struct Part {  // sums over the samples of one part of the time
-    explicit Part(std::size_t bins) : mass(bins), right(bins), right_speed(bins), left(bins), left_speed(bins) {}
+    explicit Part(std::size_t bins = 0) : mass(bins), right(bins), right_speed(bins), left(bins), left_speed(bins) {}
     Bins mass, right, right_speed, left, left_speed;
     double samples = 0;
+
+    static auto state(auto& self) {
+      return std::tie(self.mass, self.right, self.right_speed, self.left, self.left_speed, self.samples);
+    }
   };
 
   double place(double bin) const { return reach_ * (2 * bin / static_cast<double>(bins_) - 1); }

@@ -1,0 +1,29 @@
+#pragma once
+// What a cell of a chain in gaps begins with (timed_gaps.hpp): a gap and the local time at which it was last brought up
+// to date.
+
+#include <tuple>
+
+#include "cradle/core/event_queue.hpp"
+#include "cradle/core/ledger.hpp"
+#include "cradle/core/real.hpp"
+
+namespace cradle {
+
+// `lost`: the energy lost in contacts here.
+template <Real T> struct TimedGap {
+  T gap{1}, time{0}, lost{0};
+  static auto state(auto& self) { return std::tie(self.gap, self.time, self.lost); }
+};
+template <Real T>
+requires(Ledger<T>::in_any_order) struct TimedGap<T> {
+  T gap{1}, time{0};
+  static auto state(auto& self) { return std::tie(self.gap, self.time); }
+};
+// In double the time of the next contact is its own key: it is kept, which saves a division when it comes.
+template <> struct TimedGap<double> {
+  double gap = 1, time = 0, due = EventQueue::never;
+  static auto state(auto& self) { return std::tie(self.gap, self.time, self.due); }
+};
+
+}  // namespace cradle

@@ -1,0 +1,136 @@
+// The state of a run as a value: saved anywhere and loaded into a run of the same scene, it goes on with the same bits;
+// what has been cut or does not fit together is refused, and takes no memory beforehand.
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/gap_chain.hpp"
+#include "cradle/core/list.hpp"
+#include "cradle/core/position_chain.hpp"
+#include "cradle/core/ring.hpp"
+#include "cradle/core/rows.hpp"
+#include "cradle/core/simulation.hpp"
+#include "cradle/core/state.hpp"
+#include "cradle/core/sticky_gas.hpp"
+
+namespace state_test {
+
+using namespace cradle;
+
+template <class X> X there_and_back(const X& x) {
+  SavedState state = SavedState::of(x);
+  X y{};
+  load(state, y);
+  EXPECT_EQ(state.left(), 0U);
+  return y;
+}
+
+TEST(State, NumbersComeBackAsTheyWere) {
+  const double never = std::numeric_limits<double>::infinity();
+  for (const double x : {0., -0., 1. / 3, 5e-324, -1e308, never, -never})
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(there_and_back(x)), std::bit_cast<std::uint64_t>(x)) << x;
+  EXPECT_TRUE(there_and_back(std::numeric_limits<double>::quiet_NaN()) != there_and_back(0.));
+  const long double x = 1.L / 3;
+  EXPECT_EQ(there_and_back(x), x);
+  EXPECT_EQ(there_and_back(1.f / 3), 1.f / 3);
+  for (const std::int64_t n : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(), std::int64_t{1} << 62})
+    EXPECT_EQ(there_and_back(n), n);
+  EXPECT_EQ(there_and_back(-7), -7);
+  EXPECT_TRUE(there_and_back(true));
+}
+
+TEST(State, ListsComeBackAsTheyWere) {
+  const std::map<int, std::pair<double, double>> map{{-3, {1, 2}}, {4, {3, 4}}};
+  EXPECT_EQ(there_and_back(map), map);
+  const std::optional<std::vector<double>> there{{1, 2, 3}}, none;
+  EXPECT_EQ(there_and_back(there), there);
+  EXPECT_EQ(there_and_back(none), none);
+  std::unordered_map<std::int64_t, double> one, other;  // the same, filled in another order
+  for (std::int64_t k = 0; k < 100; ++k) one[k] = 1, other[99 - k] = 1;
+  EXPECT_TRUE(SavedState::of(one) == SavedState::of(other));
+}
+
+TEST(State, ListsLongerThanTheFileAreRefusedBeforeTheyAreMade) {
+  SavedState state;
+  save(state, std::uint64_t{1} << 60);
+  std::vector<double> values;
+  EXPECT_THROW(load(state, values), std::invalid_argument);
+  EXPECT_LT(values.capacity(), 1000U);
+}
+
+template <class Run> void expect_same_from_anywhere(const std::function<Run()>& make) {
+  for (double cut = 0; cut < 40; cut += 3.7) {
+    Run whole = make();
+    whole.advance(cut);
+    SavedState state = SavedState::of(whole);
+    const SavedState then = state;
+    Run later = make();
+    load(state, later);
+    EXPECT_EQ(state.left(), 0U);
+    EXPECT_TRUE(SavedState::of(later) == then) << cut;
+    whole.advance(40);
+    later.advance(40);
+    const SavedState wanted = SavedState::of(whole);
+    EXPECT_TRUE(SavedState::of(later) == wanted) << cut;
+    EXPECT_EQ(later.energy_lost(), whole.energy_lost());
+    EXPECT_EQ(later.last_contact_time(), whole.last_contact_time());
+  }
+}
+
+std::shared_ptr<const Bodies<double>> rows(BodyIndex count) {
+  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, .5, 1, uniform_displacement(.05, 3, 0)));
+}
+std::shared_ptr<const Bodies<double>> ring(BodyIndex count) {
+  return std::make_shared<Ring<double>>(count, 20., 1., gaussian_velocity(3, 0), uniform_displacement(.05, 3, 0));
+}
+template <class Law, class Chain>
+void expect_same(const Law& law, const std::shared_ptr<const Bodies<double>>& bodies) {
+  expect_same_from_anywhere<Simulation<double, Law, Chain>>(
+      [&] { return Simulation<double, Law, Chain>(law, Chain(bodies, 0.)); });
+}
+
+using Dry = Inelastic<double>;
+
+TEST(State, RunsGoOnWithTheSameBits) {
+  expect_same<Dry, GapChain<double>>(Dry(.9, 1e-4), rows(60));
+  expect_same<Dry, GapChain<double>>(Dry(.9, 1e-4), ring(20));
+  expect_same<Dry, GapChain<double, IndividualMasses<double>>>(Dry(.9, 1e-4), rows(60));
+  expect_same<ContactTime<double>, GapChain<double, IndividualMasses<double>>>(ContactTime<double>(Dry(.9, 0.), 1e-3),
+                                                                               rows(60));
+  expect_same<Dry, PositionChain<double>>(Dry(.9, 1e-4), rows(60));
+  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(.01), rows(60));
+  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(.01), ring(20));
+  expect_same_from_anywhere<StickyGas<double>>([] { return StickyGas<double>(rows(60), 0.); });
+  expect_same<Dry, GapChain<double>>(Dry(.95, 1e-2), rows(1200));  // in epochs
+}
+
+// Every byte of a state changed: it is refused, or a run that can go on.
+TEST(State, WhatDoesNotFitTogetherIsRefused) {
+  using Run = Simulation<double, Wet<double>, ClusterChain<double>>;
+  const auto make = [] { return Run(Wet<double>(.01), ClusterChain<double>(ring(12), 0.)); };
+  Run run = make();
+  run.advance(3);
+  const std::string bytes = SavedState::of(run).bytes();
+  int refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0x40);
+    SavedState state(changed);
+    Run later = make();
+    try {
+      load(state, later);
+    } catch (const std::invalid_argument&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 200) << "lengths, links, numbers of bodies";
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    SavedState state(bytes.substr(0, size));
+    Run later = make();
+    EXPECT_THROW(load(state, later), std::invalid_argument) << size;
+  }
+}
+
+}  // namespace state_test

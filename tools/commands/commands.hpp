@@ -11,13 +11,18 @@
 
 namespace cradle::tools {
 
-/// Options that every command that computes accepts.
-struct CommonOptions {
+/// How a command computes.
+struct RunningOptions {
+  unsigned threads = 0;
+  bool quiet = false, progress = false;
+};
+void add_running_options(Command& command, RunningOptions& options);
+
+/// Options that every command that computes a scene accepts.
+struct CommonOptions : RunningOptions {
   std::string scene;
   std::vector<std::string> overrides;
   std::optional<std::string> seed;
-  unsigned threads = 0;
-  bool quiet = false, progress = false;
 
   /// What --set and --seed say.
   std::vector<std::string> all_overrides() const;
@@ -26,6 +31,7 @@ struct CommonOptions {
 void add_common_options(Command& command, CommonOptions& options);
 
 void add_run(CommandLine& program);
+void add_resume(CommandLine& program);
 void add_check(CommandLine& program);
 void add_info(CommandLine& program);
 void add_export(CommandLine& program);

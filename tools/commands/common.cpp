@@ -15,6 +15,10 @@ void add_common_options(Command& command, CommonOptions& options) {
   command.repeated("--set", options.overrides, "table.key=value instead of what the scene says; may be repeated",
                    "KEY=VALUE");
   command.option("--seed", options.seed, "instead of initial.seed");
+  add_running_options(command, options);
+}
+
+void add_running_options(Command& command, RunningOptions& options) {
   command.option(
       "--threads", options.threads,
       "threads to use at most, for replicas or for one run of many bodies; 0: all processors; never changes a result");

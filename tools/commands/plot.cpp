@@ -12,8 +12,11 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/plot/plot_files.hpp"
 #include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/journal.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/run/run_journal.hpp"
 #include "cradle/tools/theory/table.hpp"
 
 namespace cradle::tools {
@@ -89,14 +92,17 @@ std::string find_python() {
 }
 
 Exit plot(const PlotArguments& options) {
-  const Result result = read_result(options.file);
+  const bool on_its_way = JournalReader::kind(options.file) == JournalOf::run;
+  const Result result =
+      on_its_way ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   const Scene scene = scene_in(result.attributes, options.file);
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.output;
   file_behind(output);            // neither a folder nor a device
   const TemporaryFolder program;  // Python runs a folder by its __main__.py
   for (const EmbeddedFile& file : plot_files()) program.write(file.name, file.text);
-  std::vector<std::string> words{find_python(), "-B", program.path(), options.file, "-o", output};
+  const std::string file = on_its_way ? program.write("so_far.h5", file_image(result)) : options.file;
+  std::vector<std::string> words{find_python(), "-B", program.path(), file, "-o", output};
   if (const auto table = predictions(scene); !table.empty())
     words.insert(words.end(), {"--theory", program.write("theory.csv", predictions_csv(table))});
   const int status = execute(words, false);
@@ -112,7 +118,7 @@ void add_plot(CommandLine& program) {
   Command command = program.add("plot", "the pictures of a result file; PNG, PDF or SVG by extension",
                                 "cradle plot fig2.h5 -o fig2.pdf");
   const auto options = std::make_shared<PlotArguments>();
-  command.argument("FILE", options->file, "result file");
+  command.argument("FILE", options->file, "result file, or FILE.part of a run on its way");
   command.option("-o,--output", options->output, "picture (default: FILE with .png)");
   command.does([options] { return plot(*options); });
 }

@@ -5,9 +5,8 @@
 #include <chrono>
 #include <memory>
 
-#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/commands/run_command.hpp"
 #include "cradle/tools/result/atomic_file.hpp"
-#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/tell.hpp"
 #include "cradle/tools/support/threads.hpp"
@@ -20,11 +19,37 @@ struct RunArguments : CommonOptions {
   std::string output;
 };
 
-std::string summary(const RunOutcome& run, double seconds) {
+std::string summary(const RunOutcome& run, std::uint64_t contacts_before, double seconds) {
   return fmt::format("{}: t = {}, {} contacts, energy {:.10g}, {:.2f} s, {:.1f} million contacts/s\n",
                      end_text(run.end), run.time, run.contacts, run.energy, seconds,
-                     static_cast<double>(run.contacts) / seconds * 1e-6);
+                     static_cast<double>(run.contacts - contacts_before) / seconds * 1e-6);
 }
+
+}  // namespace
+
+Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt) {
+  const auto started = std::chrono::steady_clock::now();
+  const auto show = options.progress ? Progress::Show::always
+                    : options.quiet  ? Progress::Show::never
+                                     : Progress::Show::on_terminal;
+  const Threads threads(options.threads);
+  RunOutcome end = run_scene(files.scene(), {show, false, &interrupt, workers(threads), &files});
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const std::string told = summary(end, files.contacts_before(), seconds);
+  if (end.end == RunEnd::interrupted) {
+    tell(end.warning);
+    tell(fmt::format("interrupted: `cradle resume {}` goes on from there\n", output));
+    if (!options.quiet) fmt::print("{}", told);
+    return status_of_signal(interrupt.signal());
+  }
+  files.finish(std::move(end.result), end.end);
+  fmt::print("{}", end.report);
+  tell(end.warning);
+  if (!options.quiet) fmt::print("{}wrote {}\n", told, output);
+  return status_of_end(end.end);
+}
+
+namespace {
 
 Exit run(const RunArguments& options) {
   const Scene scene = options.read();
@@ -33,22 +58,8 @@ Exit run(const RunArguments& options) {
   const FileClaim claim(output);
   Interrupt interrupt;
   note_signals(interrupt);
-  const auto started = std::chrono::steady_clock::now();
-  const auto show = options.progress ? Progress::Show::always
-                    : options.quiet  ? Progress::Show::never
-                                     : Progress::Show::on_terminal;
-  const Threads threads(options.threads);
-  const RunOutcome end = run_scene(scene, {show, false, &interrupt, workers(threads)});
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  // An existing file is replaced only by a run that went its way; one cut short leaves what it has beside it.
-  const bool cut = end.end == RunEnd::interrupted;
-  const std::string written = cut ? output + ".part" : output;
-  write_or_keep(end.result, written);
-  fmt::print("{}", end.report);
-  tell(end.warning);
-  if (cut) tell(fmt::format("interrupted: what was computed is in {}\n", written));
-  if (!options.quiet) fmt::print("{}wrote {}\n", summary(end, seconds), written);
-  return cut ? status_of_signal(interrupt.signal()) : status_of_end(end.end);
+  RunFiles files(output, scene);
+  return run_command(files, output, options, interrupt);
 }
 
 }  // namespace

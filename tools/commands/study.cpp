@@ -10,7 +10,7 @@
 
 namespace cradle::tools {
 
-Exit run_study_command(const CommonOptions& options, const std::function<StudyPlan()>& make_plan) {
+Exit run_study_command(const RunningOptions& options, const std::function<StudyPlan()>& make_plan) {
   Interrupt interrupt;
   note_signals(interrupt);
   const std::unique_ptr<Crew> crew = make_crew(interrupt);
@@ -31,7 +31,9 @@ Exit run_study_command(const CommonOptions& options, const std::function<StudyPl
   if (!options.quiet) tell(end.account);
   tell(end.warning);
   if (end.status == Exit::interrupted || end.status == Exit::terminated) {
-    tell(fmt::format("interrupted: finished replicas are in {}.part; the same command goes on from there\n", output));
+    tell(fmt::format(
+        "interrupted: finished replicas are in {}.part; the same command goes on from there, or `cradle resume {}`\n",
+        output, output));
   } else if (!options.quiet) {
     fmt::print("{} replicas: {}\n", end.replicas, end.outcome);
     if (end.fresh > 0)

@@ -21,6 +21,6 @@ struct StudyPlan {
 
 /// Runs what the plan's output does not have yet. Under MPI every rank makes the plan; what is wrong with it is told
 /// once.
-Exit run_study_command(const CommonOptions& options, const std::function<StudyPlan()>& make_plan);
+Exit run_study_command(const RunningOptions& options, const std::function<StudyPlan()>& make_plan);
 
 }  // namespace cradle::tools

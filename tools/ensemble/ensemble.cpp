@@ -25,7 +25,7 @@ Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const 
   return {ensemble.layout().row(replica, run), ensemble.layout().values(run)};
 }
 
-std::vector<JobRange> missing(const EnsembleStore& store, ReplicaRange wanted) {
+std::vector<JobRange> jobs_left(const EnsembleStore& store, ReplicaRange wanted) {
   std::vector<JobRange> jobs;
   for (std::size_t point = 0; point < store.states().size(); ++point)
     for (const ReplicaRange& range : store.states()[point]->replicas().missing(wanted)) jobs.push_back({point, range});
@@ -96,9 +96,9 @@ EnsembleOutcome told(const EnsembleStore& store) {
 
 // Rank 0: knows the files.
 EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, Crew& crew) {
-  const std::vector<JobRange> jobs = missing(store, options.replicas);
+  const std::vector<JobRange> jobs = jobs_left(store, options.replicas);
   const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = count(jobs);
-  store.start_journal(0, options.journal_bytes);
+  if (fresh > 0) store.start_journal(0, options.replicas, options.journal_bytes);
   ReplicaProgress progress(options.progress, wanted - fresh, wanted);
   const int signal = crew.share(
       jobs, [&](const NextJob& next) { work(store, options, crew, next, [&] { progress.done(); }); },
@@ -117,7 +117,7 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, Crew&
 }
 
 EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Crew& crew) {
-  store.start_journal(crew.rank(), options.journal_bytes);
+  store.start_journal(crew.rank(), options.replicas, options.journal_bytes);
   const int signal = crew.share({}, [&](const NextJob& next) { work(store, options, crew, next, [] {}); }, {});
   if (signal == 0)
     crew.gather([&](const PutRecord& put) { store.put_records(put); }, [](std::string_view) {});

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "cradle/core/ensemble.hpp"
-#include "cradle/tools/ensemble/journal.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
+#include "cradle/tools/result/journal.hpp"
 #include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {

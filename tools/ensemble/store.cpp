@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cradle/tools/ensemble/journal_contents.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/version.hpp"
 
@@ -23,23 +24,24 @@ EnsembleStates EnsembleStore::empty_states() const {
 
 // ---- while replicas are being run
 
-std::string EnsembleStore::journal_header() const {
-  ByteWriter header;
-  header.put(identity_);
-  for (const auto& [group, scene] : study_.points) header.put(group).put(effective_toml(scene));
-  return header.bytes();
-}
+std::string EnsembleStore::journal_header() const { return header_of(study_, wanted_); }
 
-void EnsembleStore::start_journal(unsigned rank, std::uint64_t largest) {
+void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest) {
+  wanted_ = wanted;
   largest_ = std::max(largest, largest_);
   if (rank > 0) part_ += fmt::format(".{}", rank);
   journalling_ = true;
+  if (rank > 0) return;
+  if (journal_)
+    compact();  // whoever goes on from it takes what is wanted now
+  else
+    journal_.emplace(part_, JournalOf::replicas, journal_header());
 }
 
 void EnsembleStore::journal(std::string_view record) {
   if (!journalling_) return;
   const std::scoped_lock lock(appending_);
-  if (!journal_) journal_.emplace(part_, journal_header());
+  if (!journal_) journal_.emplace(part_, JournalOf::replicas, journal_header());
   journal_->append(record);
 }
 
@@ -83,7 +85,8 @@ void EnsembleStore::sync() {
 }
 
 void EnsembleStore::compact() {
-  JournalWriter anew(part_, journal_header(), [this](const JournalWriter::Put& put) { put_records(put); });
+  JournalWriter anew(part_, JournalOf::replicas, journal_header(),
+                     [this](const JournalWriter::Put& put) { put_records(put); });
   journal_ = std::move(anew);
   largest_ = std::max(largest_, 4 * journal_->bytes());
 }

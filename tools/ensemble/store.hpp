@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/tools/ensemble/journal.hpp"
 #include "cradle/tools/ensemble/study.hpp"
+#include "cradle/tools/result/journal.hpp"
 
 namespace cradle::tools {
 
@@ -41,9 +41,9 @@ class EnsembleStore {
   EnsembleStates& states() { return states_; }
   bool result_there() const { return result_there_; }  // and holds all replicas that there are
 
-  /// From now on replicas are journalled: in FILE.part, or in that of a rank other than 0. It appears with the first,
-  /// and is written anew where it grows beyond so many bytes.
-  void start_journal(unsigned rank, std::uint64_t largest);
+  /// From now on replicas are journalled, those wanted: in FILE.part, which says so from the beginning, or in that of a
+  /// rank other than 0, which appears with the first. It is written anew where it grows beyond so many bytes.
+  void start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest);
   /// Both may be called from several threads.
   void add(std::size_t point, const ReplicaRow& row, std::vector<double> values);
   void fail(std::size_t point, ReplicaIndex replica, const std::string& message);
@@ -74,6 +74,7 @@ class EnsembleStore {
   Study study_;
   std::string file_, part_;
   std::uint64_t identity_;
+  ReplicaRange wanted_ = {};
   EnsembleStates states_;
   bool result_there_ = false;
 

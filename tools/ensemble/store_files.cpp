@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cradle/tools/ensemble/journal_contents.hpp"
 #include "cradle/tools/ensemble/store.hpp"
 #include "cradle/tools/result/reader.hpp"
 
@@ -68,12 +69,11 @@ std::string EnsembleStore::load() {
 }
 
 std::string EnsembleStore::read_journal(const std::string& path, std::uint64_t& whole_bytes) {
-  JournalReader reader(path);
-  ByteReader header(reader.header());
-  const std::uint64_t identity = header.integer();
+  JournalReader reader(path, JournalOf::replicas);
+  const JournalContents header = header_in(reader.header());
   std::vector<std::string> scenes;
-  while (!header.empty()) header.text(), scenes.push_back(header.text());
-  check_identity(identity, scenes, path);
+  for (const auto& [group, scene] : header.scenes) scenes.push_back(scene);
+  check_identity(header.identity, scenes, path);
   EnsembleStates states = empty_states();
   for (std::string record; reader.next(record);) {
     const std::uint64_t point = EnsembleState::point(record);

@@ -38,15 +38,20 @@ Study sweep_of(const std::string& scene, const std::vector<std::string>& overrid
   });
 }
 
-Study sweep_in(const Result& result, const std::string& file) {
-  const Scene scene = scene_in(result.attributes, file);
+Study sweep_at(const Scene& scene, const std::function<Scene(const std::string& group)>& scene_at) {
   return study_of(scene, [&](const SweepPoint&, const std::string& group) {
+    Scene at = scene_at(group);
+    at.name = scene.name;
+    return at;
+  });
+}
+
+Study sweep_in(const Result& result, const std::string& file) {
+  return sweep_at(scene_in(result.attributes, file), [&](const std::string& group) {
     const Group* ensemble = result.find(group + "/ensemble");
     if (ensemble == nullptr)
       throw Error({file, 0, ""}, "a sweep without one of its points", group, "make the file anew", Exit::io);
-    Scene at = scene_in(ensemble->attributes, file);
-    at.name = scene.name;
-    return at;
+    return scene_in(ensemble->attributes, file);
   });
 }
 

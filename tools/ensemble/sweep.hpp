@@ -2,6 +2,7 @@
 // what the points have come to.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ namespace cradle::tools {
 /// set it), `label`s as attributes, and for every number of the replicas (contacts, energy, ...) its mean over them and
 /// the standard error of that (`_error`); `/points/0000` and so on, the ensembles.
 Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep);
+
+/// That of a scene which names its points, with the scenes that they are, by their groups in the file.
+Study sweep_at(const Scene& scene, const std::function<Scene(const std::string& group)>& scene_at);
 
 /// The sweep that a file holds, its points as they stand there. Throws Error (Exit::io) for a damaged one.
 Study sweep_in(const Result& result, const std::string& file);

@@ -157,6 +157,11 @@ NewFile::~NewFile() {
   if (!name_.empty()) ::unlink(name_.c_str());
 }
 
+void NewFile::append(std::string_view part) {
+  if (::lseek(file_, 0, SEEK_END) < 0) fail(path_, "could not be written");
+  write({part});
+}
+
 void NewFile::take_name(Sync sync) {
   if (::rename(name_.c_str(), target_.c_str()) != 0) fail(path_, "could not be put in place");
   name_.clear();
@@ -170,9 +175,9 @@ void NewFile::put_in_place(Sync sync) {
   take_name(sync);
 }
 
-Descriptor NewFile::put_in_place_open() {
-  sync_file(file_, path_);
-  take_name(Sync::yes);
+Descriptor NewFile::put_in_place_open(Sync sync) {
+  if (sync == Sync::yes) sync_file(file_, path_);
+  take_name(sync);
   return std::move(file_);
 }
 

@@ -74,10 +74,14 @@ class NewFile {
 
   void write(std::array<std::string_view, 3> parts) { write_all(file_, parts, path_); }
   int descriptor() const { return file_; }
+  /// Under which it is written.
+  const std::string& name() const { return name_; }
+  /// Behind what others have written to that name.
+  void append(std::string_view part);
   /// To the disk, then under its name.
   void put_in_place(Sync sync = Sync::yes);
   /// The same, still open: to be written on.
-  Descriptor put_in_place_open();
+  Descriptor put_in_place_open(Sync sync = Sync::yes);
 
  private:
   void take_name(Sync sync);

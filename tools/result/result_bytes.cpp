@@ -49,6 +49,9 @@ Column column_in(ByteReader& bytes) {
     column.values = bytes.numbers<double>();
   else
     column.values = bytes.numbers<std::uint64_t>();
+  const std::size_t numbers = std::visit([](const auto& values) { return values.size(); }, column.values);
+  if (column.width == 0 || numbers % column.width != 0)
+    throw Error({{}, 0, column.name}, "rows that are not whole", "", "use the program that wrote them", Exit::io);
   return column;
 }
 

@@ -37,10 +37,22 @@ std::uint64_t checksum(std::ifstream& file, std::uint64_t size, const std::strin
 
 }  // namespace
 
-std::string seal_of(std::string_view bytes) {
+namespace {
+
+std::string seal_with(std::uint64_t size, std::uint64_t crc) {
   std::string seal(seal_begin);
-  seal += ByteWriter().put(std::uint64_t{bytes.size()}).bytes();
-  return seal + ByteWriter().put(crc64(seal, crc64(bytes))).bytes();
+  seal += ByteWriter().put(size).bytes();
+  return seal + ByteWriter().put(crc64(seal, crc)).bytes();
+}
+
+}  // namespace
+
+std::string seal_of(std::string_view bytes) { return seal_with(bytes.size(), crc64(bytes)); }
+
+std::string seal_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::uint64_t size = std::filesystem::file_size(path);
+  return seal_with(size, checksum(file, size, path));
 }
 
 Seal check_seal(const std::string& path) {

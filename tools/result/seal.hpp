@@ -16,6 +16,9 @@ inline constexpr std::size_t seal_size = 24;
 /// Of the bytes that HDF5 wrote.
 std::string seal_of(std::string_view bytes);
 
+/// Of a file that HDF5 wrote.
+std::string seal_of_file(const std::string& path);
+
 enum class Seal { none, intact };
 /// Reads the file once. Throws Error (Exit::io) for one that is damaged, cannot be read, or is no file at all.
 Seal check_seal(const std::string& path);

@@ -4,8 +4,11 @@
 
 #include <exception>
 #include <filesystem>
+#include <limits>
+#include <map>
 
 #include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/guarded.hpp"
 #include "cradle/tools/result/hdf5.hpp"
 #include "cradle/tools/result/seal.hpp"
 
@@ -46,18 +49,33 @@ void write_attribute(hid_t object, const Attribute& attribute) {
   }
 }
 
-void write_column(hid_t group, const Column& column) {
-  const hsize_t shape[2] = {column.rows(), column.width};
+// A column with room for so many rows.
+Handle make_column(hid_t group, const Column& column, std::uint64_t rows) {
+  const hsize_t shape[2] = {rows, column.width};
   const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, no_room);
   const bool real = std::holds_alternative<std::vector<double>>(column.values);
-  const Handle data(H5Dcreate2(group, column.name.c_str(), real ? H5T_IEEE_F64LE : H5T_STD_U64LE, space, H5P_DEFAULT,
-                               properties(H5P_DATASET_CREATE), H5P_DEFAULT),
-                    H5Dclose, no_room);
-  const auto put = [&](const auto& values) {
-    check(H5Dwrite(data, real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-          no_room);
-  };
-  if (shape[0] > 0) std::visit(put, column.values);
+  return {H5Dcreate2(group, column.name.c_str(), real ? H5T_IEEE_F64LE : H5T_STD_U64LE, space, H5P_DEFAULT,
+                     properties(H5P_DATASET_CREATE), H5P_DEFAULT),
+          H5Dclose, no_room};
+}
+
+// The column's rows, from the given one of the dataset on.
+void write_rows(hid_t data, const Column& column, std::uint64_t from) {
+  if (column.rows() == 0) return;
+  const hsize_t start[2] = {from, 0}, shape[2] = {column.rows(), column.width};
+  const int rank = column.width > 1 ? 2 : 1;
+  const Handle in_file(H5Dget_space(data), H5Sclose, no_room),
+      in_memory(H5Screate_simple(rank, shape, nullptr), H5Sclose, no_room);
+  check(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, nullptr, shape, nullptr), no_room);
+  const hid_t type = std::holds_alternative<std::vector<double>>(column.values) ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT64;
+  std::visit(
+      [&](const auto& values) { check(H5Dwrite(data, type, in_memory, in_file, H5P_DEFAULT, values.data()), no_room); },
+      column.values);
+}
+
+void write_column(hid_t group, const Column& column) {
+  const Handle data = make_column(group, column, column.rows());
+  write_rows(data, column, 0);
   write_attribute(data, {"unit", column.unit});
   write_attribute(data, {"description", column.description});
 }
@@ -69,11 +87,8 @@ Handle file_in_memory() {
   return {H5Fcreate("cradle", H5F_ACC_TRUNC, properties(H5P_FILE_CREATE), access), H5Fclose, no_room};
 }
 
-}  // namespace
-
-std::string file_image(const Result& result) {
-  hdf5::silence();
-  const Handle file = file_in_memory();
+// Calls each(group, table) with every group, made and with its attributes.
+template <class Each> void write_groups(hid_t file, const Result& result, const Each& each) {
   for (const auto& attribute : result.attributes) write_attribute(file, attribute);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, no_room);
   check(H5Pset_create_intermediate_group(links, 1), no_room);
@@ -81,8 +96,18 @@ std::string file_image(const Result& result) {
   for (const auto& table : result.groups) {
     const Handle group(H5Gcreate2(file, table.name.c_str(), links, of_groups, H5P_DEFAULT), H5Gclose, no_room);
     for (const auto& attribute : table.attributes) write_attribute(group, attribute);
-    for (const auto& column : table.columns) write_column(group, column);
+    each(group, table);
   }
+}
+
+}  // namespace
+
+std::string file_image(const Result& result) {
+  hdf5::silence();
+  const Handle file = file_in_memory();
+  write_groups(file, result, [](hid_t group, const Group& table) {
+    for (const auto& column : table.columns) write_column(group, column);
+  });
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   if (size <= 0) throw hdf5::failure(no_room);
@@ -92,6 +117,47 @@ std::string file_image(const Result& result) {
   if (H5Fget_file_image(file, image.data(), image.size()) != size) throw hdf5::failure(no_room);
   image += seal_of(image);
   return image;
+}
+
+void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string& path) {
+  hdf5::silence();
+  NewFile whole(path);
+  // HDF5 writes to the disk here, and crashes where that is full.
+  const auto written = in_another_process(
+      [&] {
+        const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_room);
+        check(H5Pset_file_locking(access, false, true), no_room);
+        const Handle file(H5Fcreate(whole.name().c_str(), H5F_ACC_TRUNC, properties(H5P_FILE_CREATE), access), H5Fclose,
+                          no_room);
+        struct Open {
+          std::vector<Handle> columns;
+          std::uint64_t rows = 0;
+        };
+        std::map<std::string, Open> open;
+        write_groups(file, ends, [&](hid_t group, const Group& table) {
+          Open& here = open[table.name];
+          for (const Column& column : table.columns) {
+            here.columns.push_back(make_column(group, column, column.rows()));
+            write_attribute(here.columns.back(), {"unit", column.unit});
+            write_attribute(here.columns.back(), {"description", column.description});
+          }
+        });
+        pieces([&](const Group& piece) {
+          Open& here = open.at(piece.name);
+          if (piece.columns.empty()) return;
+          for (std::size_t k = 0; k < piece.columns.size(); ++k)
+            write_rows(here.columns.at(k), piece.columns[k], here.rows);
+          here.rows += piece.columns.front().rows();
+        });
+        open.clear();
+        check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
+        return std::string();
+      },
+      std::numeric_limits<unsigned>::max() - 1);
+  if (!written)
+    throw Error({path, 0, ""}, "could not be written", "HDF5 fails on it", "make room on its disk", Exit::io);
+  whole.append(seal_of_file(whole.name()));
+  whole.put_in_place();
 }
 
 void write_result(const Result& result, const std::string& path) { replace_file(path, file_image(result)); }

@@ -2,6 +2,7 @@
 // a full one it would crash at exit, flushing again what it could not write.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "cradle/tools/result/result.hpp"
@@ -10,6 +11,12 @@ namespace cradle::tools {
 
 /// The whole file, its seal included (seal.hpp). Two equal results give the same bytes.
 std::string file_image(const Result& result);
+
+/// What is too large for memory, row after row: `ends` has every group, with as many rows as there are (those between
+/// the first and the last one left out), and `pieces` calls what it is given with all of them, in order. Other bytes
+/// than those of file_image, the same contents. Throws Error (Exit::io).
+using Pieces = std::function<void(const std::function<void(const Group& rows)>& put)>;
+void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string& path);
 
 /// Puts the file at `path`, whole or not at all. Throws Error (Exit::io).
 void write_result(const Result& result, const std::string& path);

@@ -4,11 +4,13 @@
 
 #include <concepts>
 #include <functional>
-#include <optional>
+#include <string>
 #include <utility>
 
 #include "cradle/core/segments.hpp"
 #include "cradle/core/simulation.hpp"
+#include "cradle/core/state.hpp"
+#include "cradle/tools/result/state_file.hpp"
 
 namespace cradle::tools {
 
@@ -39,6 +41,11 @@ template <Real T> class Engine {
   virtual T front_left(const T& time) const = 0;
   virtual T front_right(const T& time) const = 0;
   virtual Configuration<T> configuration(const T& time) const = 0;
+
+  /// The state (core/state.hpp), and what its fields are.
+  virtual void save(StateWriter& to) const = 0;
+  virtual void load(StateReader& from) = 0;
+  virtual std::string shape() const = 0;
 };
 
 // What takes a run through windows in segments; nothing for runs that cannot be cut.
@@ -86,6 +93,10 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   T front_left(const T& time) const override { return run_.front_left(time); }
   T front_right(const T& time) const override { return run_.front_right(time); }
   Configuration<T> configuration(const T& time) const override { return run_.configuration(time); }
+
+  void save(StateWriter& to) const override { cradle::save(to, run_); }
+  void load(StateReader& from) override { cradle::load(from, run_); }
+  std::string shape() const override { return state_shape<Run>(); }
 
  private:
   using RunSegments = typename SegmentsFor<Run>::Type;

@@ -15,6 +15,9 @@
 
 namespace cradle::tools {
 
+/// What was in it, which is empty afterwards.
+template <class Numbers> Numbers taken(Numbers& numbers) { return std::exchange(numbers, Numbers()); }
+
 /// The time series. Numbers are rounded to float64 here, at the last moment.
 template <Real T> class SeriesRecorder {
  public:
@@ -31,15 +34,16 @@ template <Real T> class SeriesRecorder {
     right_.push_back(s.front_right ? to_double(*s.front_right) : none);
   }
 
-  /// With the numbers of the clouds, where a scene has them.
-  Group table() && {
-    return filled(series_table(false), std::move(time_), std::move(energy_), std::move(lost_), std::move(contacts_),
-                  std::move(below_), std::move(merges_), std::move(bodies_), std::move(left_), std::move(right_));
+  std::size_t rows() const { return time_.size(); }
+  /// The rows since it was called last; with the numbers of the clouds, where a scene has them.
+  Group take() {
+    return filled(series_table(false), taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_),
+                  taken(merges_), taken(bodies_), taken(left_), taken(right_));
   }
-  Group table(std::vector<double> cloud_mass, std::vector<double> cloud_width) && {
-    return filled(series_table(true), std::move(time_), std::move(energy_), std::move(lost_), std::move(contacts_),
-                  std::move(below_), std::move(merges_), std::move(bodies_), std::move(left_), std::move(right_),
-                  std::move(cloud_mass), std::move(cloud_width));
+  Group take(std::vector<double> cloud_mass, std::vector<double> cloud_width) {
+    return filled(series_table(true), taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_),
+                  taken(merges_), taken(bodies_), taken(left_), taken(right_), std::move(cloud_mass),
+                  std::move(cloud_width));
   }
 
  private:
@@ -61,11 +65,11 @@ template <Real T> class CloudRecorder {
     cloud_width_.push_back(to_double(cloud.width));
   }
 
-  /// The series, with what belongs to it, and the table below it.
-  std::vector<Group> tables(SeriesRecorder<T>&& series) && {
+  /// The rows of the series since it was called last, with what belongs to it, and those of the table below it.
+  std::vector<Group> take(SeriesRecorder<T>& series) {
     std::vector<Group> tables;
-    tables.push_back(std::move(series).table(std::move(cloud_mass_), std::move(cloud_width_)));
-    tables.push_back(filled(heaviest_table(), std::move(mass_), std::move(x_), std::move(v_), std::move(index_)));
+    tables.push_back(series.take(taken(cloud_mass_), taken(cloud_width_)));
+    tables.push_back(filled(heaviest_table(), taken(mass_), taken(x_), taken(v_), taken(index_)));
     return tables;
   }
 
@@ -130,9 +134,11 @@ template <Real T> class EventRecorder {
     speed_.push_back(to_double(c.closing_speed));
   }
 
-  Group table() && {
-    return filled(events_table(), std::move(left_), std::move(right_), std::move(high_), std::move(low_),
-                  std::move(interval_), std::move(speed_));
+  std::size_t rows() const { return left_.size(); }
+  /// The rows since it was called last.
+  Group take() {
+    return filled(events_table(), taken(left_), taken(right_), taken(high_), taken(low_), taken(interval_),
+                  taken(speed_));
   }
 
  private:

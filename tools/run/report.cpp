@@ -67,6 +67,31 @@ std::string account_warning(const ToldAccount& account, const Run& run) {
   return text;
 }
 
+std::string guard_message(const ToldGuard& g) {
+  const char* what = "";
+  switch (g.guard) {
+  case Guard::order:
+    what = "order: two bodies have changed places, the gap is less than rounding can make it";
+    break;
+  case Guard::past:
+    what = "past: the last contact is not between the one before and the time looked at";
+    break;
+  case Guard::energy:
+    what = "energy: the sum over all bodies is not what the ledger of losses leaves";
+    break;
+  case Guard::momentum:
+    what = "momentum: not what it was at the start";
+    break;
+  case Guard::closure:
+    what = "closure: gaps or closing speeds do not add up to what the ends of the line tell";
+    break;
+  }
+  return fmt::format(
+      "stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): the machine or the program is at fault. "
+      "`cradle resume` goes on from the last checkpoint, made before; if it stops here again, please report the scene",
+      what, g.found, g.bound, g.time, g.body < 0 ? "" : ", " + place(g.body));
+}
+
 std::string exhausted_warning(const std::string& time, std::uint64_t contacts, const Run& run) {
   return fmt::format("resolution exhausted (t = {}, {} contacts): time or a gap can get no smaller in {}; use {}a "
                      "law.cutoff, or collapse = \"stop\"\n",

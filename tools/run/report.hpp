@@ -7,6 +7,7 @@
 
 #include "cradle/core/account.hpp"
 #include "cradle/core/collapse.hpp"
+#include "cradle/core/observe/guards.hpp"
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
@@ -54,6 +55,18 @@ template <Real T> ToldAccount told(const Account<T>& account) {
   return {account.simultaneous, account.order_lost, account.unresolved, incident(account.first_order_lost),
           incident(account.first_unresolved)};
 }
+struct ToldGuard {
+  Guard guard = Guard::order;
+  double found = 0, bound = 0;
+  BodyIndex body = -1;
+  std::string time;
+};
+template <Real T> ToldGuard told(const GuardReport<T>& r, const T& time) {
+  return {r.guard, to_double(r.found), to_double(r.bound), r.body, to_text(time)};
+}
+/// Of a guard that stops a run.
+std::string guard_message(const ToldGuard& guard);
+
 /// For standard error; empty where all was resolved.
 std::string account_warning(const ToldAccount& account, const Run& run);
 /// Where time or a gap can get no smaller.

@@ -8,6 +8,7 @@
 
 #include "cradle/core/workers.hpp"
 #include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/keeper.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/errors.hpp"
 #include "cradle/tools/support/interrupt.hpp"
@@ -35,10 +36,11 @@ struct RunOptions {
   bool trace = false;              // take trace samples at the times of the series
   Interrupt* interrupt = nullptr;  // asked now and then whether to stop; heeded once there is something to keep
   Workers workers = {};            // for a run that is cut into segments
+  RunKeeper* keeper = nullptr;     // puts what is recorded where it is safe; without one it comes back in the result
 };
 
 struct RunOutcome {
-  Result result;
+  Result result;  // without the rows that a keeper has
   RunEnd end = RunEnd::reached;
   std::string report;   // of a collapse, for standard output; else empty
   std::string warning;  // what was not resolved, for standard error; else empty

@@ -24,10 +24,12 @@ template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& opti
       scene.law.restitution < Decimal("1"))
     policy.collapse = cradle::CollapsePolicy::stop;
   if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
-  if (options.interrupt != nullptr)
-    policy.interrupt = [interrupt = options.interrupt] { return interrupt->signal() != 0; };
-  policy.progress = [&progress](const T& time, const Counts& counts) {
+  policy.interrupt = [interrupt = options.interrupt, keeper = options.keeper] {
+    return (interrupt != nullptr && interrupt->signal() != 0) || (keeper != nullptr && keeper->due());
+  };
+  policy.progress = [&progress, keeper = options.keeper](const T& time, const Counts& counts) {
     progress.tell(to_double(time), counts.contacts);
+    if (keeper != nullptr) keeper->tell(counts.contacts);
   };
   return policy;
 }

@@ -2,6 +2,7 @@
 // is recorded, and in the end it becomes tables and texts.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <functional>
@@ -12,70 +13,164 @@
 
 #include <fmt/format.h>
 
+#include "cradle/core/observe/guards.hpp"
 #include "cradle/core/observe/trace.hpp"
 #include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/recorder.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/run/run_journal.hpp"
 #include "cradle/tools/run/schedule.hpp"
 
 namespace cradle::tools {
 
 template <Real T> class SceneRun {
+  static constexpr std::size_t most_rows = 1 << 14;              // that wait for a keeper
+  static constexpr std::uint64_t contacts_between_guards = 256;  // of each body; half as many before the end
+  static constexpr std::uint64_t most_guarded = 1 << 22;         // bodies: beyond, a look would double the memory
+
  public:
   SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Engine<T>& engine,
            const RunOptions& options, Progress& progress)
       : scene_(scene), options_(options), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
-        engine_(engine), progress_(progress), plan_(schedule<T>(scene)) {
+        engine_(engine), progress_(progress), plan_(schedule<T>(scene)), contact_before_(number<T>(scene.run.start)) {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
   }
 
   RunOutcome operator()() {
     if (options_.interrupt != nullptr) options_.interrupt->heed();
-    if (scene_.output.events) observer_ = [this](const Contact<T>& c) { events_(c); };
+    if (scene_.output.events) observer_ = [this](const Contact<T>& c) { record_contact(c); };
     if (scene_.output.scenario)
       observer_ = [this, record = std::move(observer_)](const Contact<T>& c) {
         if (record) record(c);
         scenario_.contact(c.left, c.right, to_double(T(c.time.value())), engine_.counts().merges);
       };
     if (options_.trace) observer_ = [this](const Contact<T>& c) { trace_.contact(c.left, c.right); };
+    if (options_.keeper != nullptr && options_.keeper->loaded_from() != nullptr) load(*options_.keeper->loaded_from());
     Status status = Status::reached;
     for (const T& stop : plan_.stops) {
+      if (looked_ && !(*looked_ < stop)) continue;
       status = advance(stop);
       if (status != Status::reached) break;
       look(stop);
       progress_.tell(to_double(stop), engine_.counts().contacts);
     }
-    if (status == Status::reached) return finish(status, plan_.stops.back());
-    const T end = engine_.last_contact_time();
-    record_end(end);
+    const T end = status == Status::reached ? plan_.stops.back() : engine_.last_contact_time();
+    const bool can_go_on = status == Status::reached || status == Status::interrupted;
+    if (options_.keeper != nullptr && can_go_on) keep(end, true);
+    if (!can_go_on || (options_.keeper == nullptr && status == Status::interrupted)) record_end(end);
     return finish(status, end);
   }
 
+  // Beside the engine's state: what of the plan is done, and what observers have gathered.
+  static auto state(auto& self) {
+    return std::tie(self.looked_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
+                    self.guarded_at_, self.contact_before_);
+  }
+
  private:
-  static bool take(const std::vector<T>& times, std::size_t& next, const T& time) {
-    if (next >= times.size() || times[next] != time) return false;
-    ++next;
-    return true;
+  static bool holds(const std::vector<T>& times, const T& time) {
+    return std::binary_search(times.begin(), times.end(), time);
+  }
+
+  // ---- what is kept while the run goes on
+
+  void load(StateReader& from) {
+    if (from.text() != shape() || from.text() != precision_name(scene_.run))
+      throw Error({}, "a checkpoint of another build or precision", "", "go on with the program that wrote it",
+                  Exit::io);
+    try {
+      engine_.load(from);
+      cradle::load(from, *this);
+    } catch (const std::invalid_argument& error) {
+      throw Error(std::string("the checkpoint cannot be gone on with: ") + error.what(), Exit::io);
+    }
+    from.end();
+  }
+  std::string shape() const { return engine_.shape() + state_shape<SceneRun>(); }
+
+  // Rows that have been recorded go to the keeper, and now and then the state, which then follows from nothing else.
+  void keep(const T& time, bool state_too) {
+    put_rows();
+    RunStatus now = seen_;
+    now.time = to_double(time);
+    now.contacts = engine_.counts().contacts;
+    options_.keeper->keep(
+        now,
+        [this](StateWriter& to) {
+          to.put(shape());
+          to.put(precision_name(scene_.run));
+          engine_.save(to);
+          cradle::save(to, *this);
+        },
+        state_too);
+  }
+  void put_rows() {
+    if (has_clouds(scene_))
+      for (Group& rows : cloud_.take(series_)) put(std::move(rows));
+    else
+      put(series_.take());
+    if (scene_.output.events) put(events_.take());
+  }
+  void put(Group&& rows) {
+    if (options_.keeper != nullptr)
+      options_.keeper->add(std::move(rows));
+    else
+      tables_.add(std::move(rows));
   }
 
   Status advance(const T& until) {
-    const Status status = engine_.advance(until, observer_);
-    if (engine_.makes_contacts()) return status;  // these ask for signals themselves
-    return options_.interrupt != nullptr && options_.interrupt->signal() != 0 ? Status::interrupted : status;
+    const auto stopped = [this] { return options_.interrupt != nullptr && options_.interrupt->signal() != 0; };
+    if (stopped()) return Status::interrupted;
+    for (;;) {
+      const Status status = engine_.advance(until, observer_);
+      if (status != Status::interrupted || stopped()) return status;
+      keep(engine_.last_contact_time(), false);
+    }
   }
 
+  // ---- what is recorded
+
   void look(const T& time) {
-    if (take(plan_.series, next_series_, time)) record_sample(time);
-    const bool snapshot = take(plan_.snapshots, next_snapshot_, time),
-               profiled = take(plan_.profiles, next_profile_, time), masses = take(plan_.masses, next_masses_, time),
-               zone = take(plan_.zone, next_zone_, time);
-    if (!snapshot && !profiled && !masses && !zone) return;
-    const Configuration<T> now = engine_.configuration(time);
-    if (snapshot) snapshots_.push_back(snapshot_table(now, numbered("snapshots", snapshots_.size())));
-    if (profiled) record_profile(now, time);
-    if (masses) masses_.push_back(masses_table(now, bodies_->least_mass(), numbered("masses", masses_.size())));
-    if (zone) zone_->add(now, *bodies_, T(time - number<T>(scene_.run.start)));
+    if (holds(plan_.series, time)) record_sample(time);
+    const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
+               masses = holds(plan_.masses, time), zone = holds(plan_.zone, time);
+    if (snapshot || profiled || masses || zone) {
+      const Configuration<T> now = engine_.configuration(time);
+      if (snapshot) put(snapshot_table(now, numbered("snapshots", snapshots_)));
+      if (profiled) record_profile(now, time);
+      if (masses) put(masses_table(now, bodies_->least_mass(), numbered("masses", masses_)));
+      if (zone) zone_->add(now, *bodies_, T(time - number<T>(scene_.run.start)));
+    }
+    guard(time);
+    looked_ = time;
+    if (options_.keeper == nullptr) return;
+    options_.keeper->look();
+    if (options_.keeper->due() || series_.rows() >= most_rows) keep(time, false);
+  }
+  // Looks at all bodies once in so many contacts of each, a hundredth of what these take, by the count of contacts and
+  // not by the clock, so that a run that stops here does so always. Throws Error (Exit::lost).
+  void guard(const T& time) {
+    const std::uint64_t contacts = engine_.counts().contacts;
+    const auto active = static_cast<std::uint64_t>(std::max<BodyIndex>(engine_.collided_bodies(), 16));
+    const std::uint64_t between = contacts_between_guards / (time < plan_.stops.back() ? 1 : 2);
+    if (contacts < guarded_at_ + between * active || active > most_guarded) return;
+    const Account<T>& account = engine_.account();
+    const GuardLook<T> look =
+        guarded(engine_.configuration(time), *bodies_, contacts, T(energy_ - engine_.energy_lost()),
+                T(time - number<T>(scene_.run.start)), engine_.last_contact_time(), contact_before_,
+                account.order_lost + account.unresolved == 0);
+    if (look.broken) throw Error(guard_message(told(*look.broken, time)), Exit::lost);
+    guarded_at_ = contacts;
+    contact_before_ = engine_.last_contact_time();
+    seen_.gap_min = to_double(look.gap_min);
+    seen_.closure_gap = to_double(look.closure_gap);
+    seen_.closure_speed = to_double(look.closure_speed);
+  }
+
+  void record_contact(const Contact<T>& c) {
+    events_(c);
+    if (options_.keeper != nullptr && events_.rows() >= most_rows) put(events_.take());
   }
 
   void record_profile(const Configuration<T>& now, const T& time) {
@@ -87,8 +182,7 @@ template <Real T> class SceneRun {
     else if (engine_.collided_bodies() > 0 && !engine_.on_ring())
       range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
     if (!(range.from < range.to)) range.to = range.from + 1;  // all in one place: one length around it
-    profiles_.push_back(
-        profile_table(profile(now, *bodies_, elapsed, range, wanted.bins), numbered("profiles", profiles_.size())));
+    put(profile_table(profile(now, *bodies_, elapsed, range, wanted.bins), numbered("profiles", profiles_)));
   }
 
   void record_sample(const T& time) {
@@ -108,11 +202,11 @@ template <Real T> class SceneRun {
   // A run that ends early leaves its last state.
   void record_end(const T& time) {
     record_sample(time);
-    snapshots_.push_back(snapshot_table(engine_.configuration(time), numbered("snapshots", snapshots_.size())));
+    put(snapshot_table(engine_.configuration(time), numbered("snapshots", snapshots_)));
   }
 
-  static std::string numbered(const char* folder, std::size_t number) {
-    return fmt::format("{}/{:04}", folder, number);
+  static std::string numbered(const char* folder, std::uint64_t& number) {
+    return fmt::format("{}/{:04}", folder, number++);
   }
 
   RunOutcome finish(Status status, const T& time) {
@@ -157,13 +251,9 @@ template <Real T> class SceneRun {
   }
 
   void put_tables(RunOutcome& end) {
+    put_rows();
     std::vector<Group>& groups = end.result.groups;
-    if (has_clouds(scene_))
-      groups = std::move(cloud_).tables(std::move(series_));
-    else
-      groups.push_back(std::move(series_).table());
-    for (auto* tables : {&snapshots_, &profiles_, &masses_})
-      for (auto& table : *tables) groups.push_back(std::move(table));
+    groups = std::move(tables_).in_order();
     if (zone_) {
       const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single bodies
       const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);
@@ -175,7 +265,6 @@ template <Real T> class SceneRun {
       groups.push_back({"scenario", {numbers.begin(), numbers.end()}, {}});
       end.summary.insert(end.summary.end(), numbers.begin(), numbers.end());
     }
-    if (scene_.output.events) groups.push_back(std::move(events_).table());
   }
 
   const Scene& scene_;
@@ -185,7 +274,8 @@ template <Real T> class SceneRun {
   Engine<T>& engine_;
   Progress& progress_;
   Schedule<T> plan_;
-  std::size_t next_series_ = 0, next_snapshot_ = 0, next_profile_ = 0, next_masses_ = 0, next_zone_ = 0;
+  std::optional<T> looked_;                                  // the last time looked at
+  std::uint64_t snapshots_ = 0, profiles_ = 0, masses_ = 0;  // tables written
   SeriesRecorder<T> series_;
   CloudRecorder<T> cloud_;
   std::optional<ZoneAverage> zone_;
@@ -194,7 +284,10 @@ template <Real T> class SceneRun {
   Trace trace_;
   std::vector<TraceSample> trace_samples_;
   Observer<T> observer_;
-  std::vector<Group> snapshots_, profiles_, masses_;
+  std::uint64_t guarded_at_ = 0;  // contacts made, at the last look at all bodies, and the time of the last of them
+  T contact_before_;
+  RunStatus seen_;        // then
+  GrowingTables tables_;  // where there is no keeper
 };
 
 }  // namespace cradle::tools

@@ -23,7 +23,6 @@ inline constexpr double first_log_share = 1e-6;
 
 template <Real T> std::vector<T> series_times(const Series& series, const T& start, const T& until) {
   std::vector<T> times;
-  const T span = until - start;
   if (!series.times.empty()) {
     for (const auto& time : series.times) times.push_back(number<T>(time));
   } else if (series.every) {
@@ -35,16 +34,17 @@ template <Real T> std::vector<T> series_times(const Series& series, const T& sta
     }
   } else {
     const auto points = static_cast<std::int64_t>(*series.points);
-    if (series.spacing == Spacing::linear) {
-      for (std::int64_t k = 0; k + 1 < points; ++k) times.push_back(start + span * T(k) / T(points - 1));
-    } else {  // any numbers will do as times: shares of the span in double, the same in every precision
-      times.push_back(start);
-      for (std::int64_t k = 0; k + 2 < points; ++k) {
-        const double part = static_cast<double>(k) / static_cast<double>(std::max<std::int64_t>(points - 2, 1));
-        times.push_back(start + span * from_text<T>(fmt::format("{}", std::pow(first_log_share, 1 - part))));
-      }
-    }
-    if (times.empty() || times.back() < until) times.push_back(until);
+    const T end = series.over ? number<T>(*series.over) : until, span = end - start;
+    const auto at = [&](std::int64_t k) {
+      if (k + 1 == points) return end;
+      if (series.spacing == Spacing::linear) return T(start + span * T(k) / T(points - 1));
+      if (k == 0) return start;
+      // Any numbers will do as times: shares of the span in double, the same in every precision.
+      const double part = static_cast<double>(k - 1) / static_cast<double>(std::max<std::int64_t>(points - 2, 1));
+      return T(start + span * from_text<T>(fmt::format("{}", std::pow(first_log_share, 1 - part))));
+    };
+    for (std::int64_t k = 0; k < points || at(k) < until; ++k) times.push_back(at(k));
+    if (times.back() < until) times.push_back(until);
   }
   // Times that the type cannot tell apart are one.
   times.erase(std::unique(times.begin(), times.end()), times.end());

@@ -124,15 +124,20 @@ class Checks {
   // Before memory for them is taken.
   void samples_can_be_kept() const {
     constexpr double most = 1e7;  // as the table of keys has it for points
-    const auto& every = scene_.output.series.every;
-    if (!every) return;
+    const Series& series = scene_.output.series;
     const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };  // beyond double's range too
-    const auto samples =
-        static_cast<double>(bin_float((number(scene_.run.until) - number(scene_.run.start)) / number(*every)));
-    if (!(samples <= most))
-      throw Error(place("output.series.every"), "too many samples",
-                  fmt::format("{}, which makes {:.3g} of them until run.until", every->text, samples),
-                  fmt::format("give a longer time, {:.0g} samples at most", most));
+    const bin_float start = number(scene_.run.start), span = number(scene_.run.until) - start;
+    const auto check = [&](const char* key, const Decimal& given, const bin_float& step) {
+      const auto samples = static_cast<double>(bin_float(span / step));
+      if (!(samples <= most))
+        throw Error(place(key), "too many samples",
+                    fmt::format("{}, which makes {:.3g} of them until run.until", given.text, samples),
+                    fmt::format("give a longer time, {:.0g} samples at most", most));
+    };
+    if (series.every) return check("output.series.every", *series.every, number(*series.every));
+    if (series.over && series.spacing == Spacing::linear)
+      check("output.series.over", *series.over,
+            (number(*series.over) - start) / bin_float(static_cast<std::int64_t>(*series.points - 1)));
   }
 
  private:

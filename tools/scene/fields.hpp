@@ -40,6 +40,7 @@ struct Field {
   const When* when;
   std::string_view doc;
   std::string (*computed)(const Scene&) = nullptr;
+  bool recorded = true;  // in the effective scene; what cannot change a result is not
 };
 
 /// In an order in which every key stands after those that decide on its use, default or range.

@@ -8,9 +8,6 @@
 
 namespace cradle::tools {
 
-/// Keys that results of earlier versions carry although they did nothing.
-inline constexpr std::string_view withdrawn_keys[] = {"output.checkpoint.every_seconds"};
-
 /// Throws Error for the first key that is none, with the one most like it.
 void refuse_unknown_keys(const Entries& entries, const Scene& scene);
 

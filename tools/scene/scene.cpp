@@ -85,12 +85,6 @@ Scene parse_scene(std::string_view text, const std::string& source_name, const s
   return scene_of(entries, source_name);
 }
 
-Scene parse_recorded_scene(std::string_view text, const std::string& file) {
-  Entries entries = read_entries(text, file);
-  for (const std::string_view key : withdrawn_keys) entries.erase(std::string(key));
-  return scene_of(entries, file);
-}
-
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
   std::error_code unreadable;
   const bool exists = std::filesystem::exists(path_or_name, unreadable);

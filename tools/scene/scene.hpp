@@ -91,6 +91,7 @@ struct Run {
 struct Series {
   std::optional<std::uint64_t> points;
   Spacing spacing = Spacing::linear;  // of points
+  std::optional<Decimal> over;        // of points: up to when these are spread, if not up to the end
   std::optional<Decimal> every;
   std::vector<Decimal> times;
   bool operator==(const Series&) const = default;
@@ -112,6 +113,11 @@ struct Zone {
   bool operator==(const Zone&) const = default;
 };
 
+struct Checkpoint {
+  Decimal every_seconds;  // of computing; 0: none while the run goes on
+  bool operator==(const Checkpoint&) const = default;
+};
+
 /// All lists of times are increasing and without repetition, within [run.start, run.until].
 struct Output {
   Series series;
@@ -121,6 +127,7 @@ struct Output {
   Zone zone;
   bool scenario = false;  // wet rows: which of the two scenarios of Fig. 9
   bool events = false;
+  Checkpoint checkpoint;
   bool operator==(const Output&) const = default;
 };
 
@@ -156,15 +163,12 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
 Scene parse_scene(std::string_view text, const std::string& source_name,
                   const std::vector<std::string>& overrides = {});
 
-/// The same from the effective scene that a result carries; what is no key any more is passed over.
-Scene parse_recorded_scene(std::string_view text, const std::string& file);
-
-/// The whole scene with every default filled in, listed bodies included; the same text for the same scene, reads back
-/// as an equal scene wherever that is done.
+/// The whole scene with every default filled in, listed bodies included, without what cannot change a result; the same
+/// text for the same scene, reads back as an equal scene wherever that is done.
 std::string effective_toml(const Scene& scene);
 
 /// Keys and values (TOML syntax) that apply to this scene, in the table's order: those that differ from their defaults,
-/// or all.
+/// or all. Without what cannot change a result.
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool all);
 
 /// A value as people want to see it: lists of very many numbers by their ends.

@@ -23,7 +23,7 @@ bool is_default(const Field& field, const Scene& scene) {
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool all) {
   std::vector<std::pair<std::string, std::string>> result;
   for (const Field& field : scene_fields()) {
-    if (!field.when->holds(scene)) continue;
+    if (!field.when->holds(scene) || !field.recorded) continue;
     const auto text = value_text(field, scene);
     if (text && (all || !is_default(field, scene))) result.emplace_back(field.key, *text);
   }

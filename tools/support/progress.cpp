@@ -10,15 +10,11 @@
 
 namespace cradle::tools {
 
-namespace {
-
 std::string duration(double seconds) {
   if (!(seconds < 360000)) return "more than 100 h";
   const auto s = static_cast<long>(seconds + 0.5);
   return s >= 3600 ? fmt::format("{} h {:02} min", s / 3600, s / 60 % 60) : fmt::format("{}:{:02} min", s / 60, s % 60);
 }
-
-}  // namespace
 
 ProgressLine::ProgressLine(Show show)
     : terminal_(::isatty(STDERR_FILENO) != 0),

@@ -10,6 +10,9 @@
 
 namespace cradle::tools {
 
+/// "3:20 min", "2 h 05 min".
+std::string duration(double seconds);
+
 /// One line, drawn over itself on a terminal and gone at the end.
 class ProgressLine {
  public:

@@ -131,7 +131,7 @@ TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
   run("ensemble shock.toml --replicas 100 -o whole.h5");
   {
     tools::EnsembleStore store(study, path("anew.h5"));
-    store.start_journal(0, 1);  // as soon as it is larger than a byte, and then when it has grown fourfold
+    store.start_journal(0, {0, 64}, 1);  // as soon as it is larger than a byte, and then when it has grown fourfold
     const auto& layout = store.states()[0]->layout();
     for (std::uint64_t k = 0; k < 64; ++k) {
       const tools::RunOutcome end =

@@ -88,9 +88,13 @@ TEST_F(Signals, KeepWhatARunHas) {
     const Printed run = signalled(long_run, 30, std::string("kill -") + signal + " $pid; wait $pid");
     EXPECT_EQ(run.status, status) << signal << run.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "long.h5"));
-    const auto part = tools::read_result((folder / "long.h5.part").string());
-    EXPECT_EQ(tools::attribute<std::string>(part.attributes, "outcome", ""), "interrupted") << signal;
+    EXPECT_NE(run.err.find("`cradle resume long.h5` goes on from there"), std::string::npos) << run.err;
+    const Printed state = shell("cradle info long.h5.checkpoint");
+    EXPECT_EQ(state.status, 0) << state.err;
+    EXPECT_EQ(state.out.find(" 0 contacts"), std::string::npos) << state.out;
+    EXPECT_EQ(shell("cradle info long.h5.part").status, 0);
     std::filesystem::remove(folder / "long.h5.part");
+    std::filesystem::remove(folder / "long.h5.checkpoint");
   }
 }
 
@@ -109,7 +113,7 @@ TEST_F(Signals, EndAProgramThatIsStillSettingUp) {
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_LT(std::stol(run.out), 2000) << "milliseconds";
   EXPECT_NE(run.err.find("before there was anything to keep"), std::string::npos) << run.err;
-  EXPECT_FALSE(std::filesystem::exists(folder / "ring.h5.part"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "ring.h5.checkpoint"));
 }
 
 // In a process of its own that has asked for signals and gets some.

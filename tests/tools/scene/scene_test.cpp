@@ -341,16 +341,24 @@ TEST(Scene, SamplesAreCountedBeforeMemoryForThemIsTaken) {
                      "--set output.zone.samples: out of range (found 1e8): "));
 }
 
-TEST(Scene, KeysThatDoNothingAreNone) {
-  EXPECT_TRUE(begins(message(good + "[output]\ncheckpoint = { every_seconds = 60 }"),
-                     "s.toml:10: output.checkpoint.every_seconds: unknown key (found 60): "));
-  EXPECT_EQ(effective_toml(parse(good)).find("checkpoint"), std::string::npos);
+// How often a run is checkpointed cannot change its result, nor stand in it.
+TEST(Scene, CheckpointsAreNoPartOfTheEffectiveScene) {
+  const Scene often = parse(good + "[output]\ncheckpoint = { every_seconds = 0.5 }");
+  EXPECT_EQ(often.output.checkpoint.every_seconds, tools::Decimal("0.5"));
+  EXPECT_EQ(effective_toml(often), effective_toml(parse(good)));
+  EXPECT_TRUE(begins(message(good + "[output]\ncheckpoint = { every_seconds = -1 }"),
+                     "s.toml:10: output.checkpoint.every_seconds: out of range (found -1): "));
 }
 
-TEST(Scene, OfAnEarlierResultIsReadWithoutWhatIsNoKeyAnyMore) {
-  const std::string recorded = effective_toml(parse(good)) + "\n[output.checkpoint]\nevery_seconds = 60\n";
-  EXPECT_EQ(tools::parse_recorded_scene(recorded, "old.h5"), parse(good));
-  EXPECT_THROW(tools::parse_recorded_scene(recorded + "hourly = true\n", "old.h5"), tools::Error);
+TEST(Scene, PointsAreSpreadOverATimeAndGoOnBehindIt) {
+  const Scene scene = parse(good + "[output]\nseries = { points = 11, over = 100 }");
+  EXPECT_EQ(scene.output.series.over, tools::Decimal("100"));
+  EXPECT_TRUE(begins(message(good + "[output]\nseries = { points = 11, over = 1e9 }"),
+                     "s.toml:10: output.series.over: out of range (found 1e9): "));
+  EXPECT_TRUE(begins(message(good + "[output]\nseries = { points = 11, over = 1e-9 }"),
+                     "s.toml:10: output.series.over: too many samples (found 1e-9, "));
+  EXPECT_TRUE(begins(message(good + "[output]\nseries = { every = 1, over = 100 }"),
+                     "s.toml:10: output.series.over: second way to say when the series is sampled"));
 }
 
 TEST(ReadScene, ResultsAreNoScenes) {

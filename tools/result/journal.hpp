@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,10 +14,13 @@
 
 namespace cradle::tools {
 
-/// Reads record after record. Throws Error (Exit::io) for what is no journal.
+/// What its records are of: the replicas of an ensemble, or one run.
+enum class JournalOf { replicas, run };
+
+/// Reads record after record. Throws Error (Exit::io) for what is no such journal.
 class JournalReader {
  public:
-  explicit JournalReader(const std::string& path);
+  JournalReader(const std::string& path, JournalOf kind);
 
   const std::string& header() const { return header_; }
   /// False at the end, or at the first record that is not whole.
@@ -25,8 +29,8 @@ class JournalReader {
   std::uint64_t whole_bytes() const { return whole_; }         // up to where records were read
   std::uint64_t torn_bytes() const { return size_ - whole_; }  // what is left when next() has said false
 
-  /// Whether a file begins like a journal.
-  static bool is_journal(const std::string& path);
+  /// What a file is a journal of, by how it begins; nothing for other files.
+  static std::optional<JournalOf> kind(const std::string& path);
 
  private:
   std::string path_, header_;
@@ -40,8 +44,9 @@ class JournalWriter {
   using Put = std::function<void(std::string_view record)>;
 
   /// A new journal in place of what is there. It appears under its name only when it is whole: with the header, and
-  /// the records that `records` puts, on the disk.
-  JournalWriter(const std::string& path, std::string_view header, const std::function<void(const Put&)>& records = {});
+  /// the records that `records` puts, on the disk if that is to be waited for.
+  JournalWriter(const std::string& path, JournalOf kind, std::string_view header,
+                const std::function<void(const Put&)>& records = {}, Sync sync = Sync::yes);
   /// The journal that is there: nobody else may write it from now on.
   explicit JournalWriter(const std::string& path);
   /// Cuts off what is behind the first `whole_bytes` and goes on there.

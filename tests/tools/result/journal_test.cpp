@@ -1,7 +1,7 @@
 // Journals after every way of ending: whatever is on the disk, a reader gives the records before the damage, whole and
 // nothing else.
 
-#include "cradle/tools/ensemble/journal.hpp"
+#include "cradle/tools/result/journal.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -13,6 +13,7 @@
 namespace cradle::tests {
 namespace journal_test {
 
+using tools::JournalOf;
 using tools::JournalReader;
 using tools::JournalWriter;
 
@@ -20,11 +21,11 @@ class Journal : public ProgramTest {
  protected:
   std::string path() const { return (folder / "journal").string(); }
   void write_three() const {
-    JournalWriter writer(path(), "header");
+    JournalWriter writer(path(), JournalOf::replicas, "header");
     for (const auto* record : {"first", "", "the third one"}) writer.append(record);
   }
   std::vector<std::string> records() const {
-    JournalReader reader(path());
+    JournalReader reader(path(), JournalOf::replicas);
     std::vector<std::string> all;
     for (std::string record; reader.next(record);) all.push_back(record);
     return all;
@@ -35,7 +36,7 @@ const std::vector<std::string> three{"first", "", "the third one"};
 
 TEST_F(Journal, GivesBackWhatWasAppended) {
   write_three();
-  EXPECT_EQ(JournalReader(path()).header(), "header");
+  EXPECT_EQ(JournalReader(path(), JournalOf::replicas).header(), "header");
   EXPECT_EQ(records(), three);
   JournalWriter again(path());
   again.go_on_after(std::filesystem::file_size(path()));
@@ -50,10 +51,10 @@ TEST_F(Journal, CutAnywhereGivesTheWholeRecordsBeforeTheCut) {
   for (std::size_t size = 0; size < whole.size(); ++size) {
     write("journal", whole.substr(0, size));
     if (size < 8 + 16 + 6) {  // magic, and the header's frame
-      EXPECT_THROW(JournalReader{path()}, tools::Error) << size;
+      EXPECT_THROW(JournalReader(path(), JournalOf::replicas), tools::Error) << size;
       continue;
     }
-    JournalReader reader(path());
+    JournalReader reader(path(), JournalOf::replicas);
     std::vector<std::string> found;
     for (std::string record; reader.next(record);) found.push_back(record);
     ASSERT_LE(found.size(), 2U) << size;
@@ -81,7 +82,7 @@ TEST_F(Journal, AnyChangedByteIsSeen) {
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
     write("journal", changed);
     if (at < 8 + 16 + 6) {
-      EXPECT_THROW(JournalReader{path()}, tools::Error) << at;
+      EXPECT_THROW(JournalReader(path(), JournalOf::replicas), tools::Error) << at;
       continue;
     }
     const auto found = records();
@@ -92,19 +93,19 @@ TEST_F(Journal, AnyChangedByteIsSeen) {
 
 TEST_F(Journal, WrittenAnewAppearsOnlyWhole) {
   write_three();
-  EXPECT_THROW(JournalWriter(path(), "header",
+  EXPECT_THROW(JournalWriter(path(), JournalOf::replicas, "header",
                              [](const JournalWriter::Put& put) {
                                put("half of it");
                                throw std::runtime_error("disk full");
                              }),
                std::runtime_error);
   EXPECT_EQ(records(), three) << "the old one stays";
-  const JournalWriter anew(path(), "header", [](const JournalWriter::Put& put) { put("all"); });
+  const JournalWriter anew(path(), JournalOf::replicas, "header", [](const JournalWriter::Put& put) { put("all"); });
   EXPECT_EQ(records(), std::vector<std::string>{"all"});
 }
 
 TEST_F(Journal, HalfARecordIsTakenBackWhereTheDiskIsFull) {
-  JournalWriter writer(path(), "header");
+  JournalWriter writer(path(), JournalOf::replicas, "header");
   writer.append("first");
   {
     const SmallFiles full;

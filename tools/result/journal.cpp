@@ -1,9 +1,11 @@
-#include "cradle/tools/ensemble/journal.hpp"
+#include "cradle/tools/result/journal.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -15,7 +17,10 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::string_view journal_begin = "CRADLEJ1";
+constexpr std::array<std::string_view, 2> begins{"CRADLEJ2", "CRADLER1"};  // by JournalOf
+constexpr std::size_t begin_size = 8;
+
+std::string_view begin_of(JournalOf kind) { return begins[static_cast<std::size_t>(kind)]; }
 constexpr std::uint64_t frame = 16;  // bytes of a record beside itself
 
 [[noreturn]] void fail_journal(const std::string& path, const char* what) {
@@ -39,21 +44,25 @@ std::uint64_t write_record(int file, std::string_view record, const std::string&
 
 // ---- reading
 
-bool JournalReader::is_journal(const std::string& path) {
+std::optional<JournalOf> JournalReader::kind(const std::string& path) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return false;  // a FIFO would make us wait for ever
+  if (!std::filesystem::is_regular_file(path, none)) return {};  // a FIFO would make us wait for ever
   std::ifstream file(path, std::ios::binary);
-  std::string begin(journal_begin.size(), '\0');
-  return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == journal_begin;
+  std::string begin(begin_size, '\0');
+  if (!file.read(begin.data(), begin_size)) return {};
+  const auto found = std::find(begins.begin(), begins.end(), begin);
+  if (found == begins.end()) return {};
+  return static_cast<JournalOf>(found - begins.begin());
 }
 
-JournalReader::JournalReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+JournalReader::JournalReader(const std::string& path, JournalOf kind) : path_(path), file_(path, std::ios::binary) {
   if (!file_) fail_journal(path, "the journal could not be read");
   size_ = std::filesystem::file_size(path);
-  file_.seekg(static_cast<std::streamoff>(journal_begin.size()));
-  whole_ = journal_begin.size();
-  if (!is_journal(path) || !next(header_))
-    throw Error({path, 0, ""}, "not a journal of this program, or its beginning is damaged", "", "remove it", Exit::io);
+  file_.seekg(begin_size);
+  whole_ = begin_size;
+  if (JournalReader::kind(path) != kind || !next(header_))
+    throw Error({path, 0, ""}, "not a journal of this version of the program, or its beginning is damaged", "",
+                "remove it", Exit::io);
 }
 
 bool JournalReader::next(std::string& record) {
@@ -72,17 +81,17 @@ bool JournalReader::next(std::string& record) {
 
 // ---- writing
 
-JournalWriter::JournalWriter(const std::string& path, std::string_view header,
-                             const std::function<void(const Put&)>& records)
+JournalWriter::JournalWriter(const std::string& path, JournalOf kind, std::string_view header,
+                             const std::function<void(const Put&)>& records, Sync sync)
     : path_(path) {
   NewFile file(path);
   claim(file.descriptor());
   const auto put = [&](std::string_view record) { bytes_ += write_record(file.descriptor(), record, path); };
-  file.write({journal_begin});
-  bytes_ = journal_begin.size();
+  file.write({begin_of(kind)});
+  bytes_ = begin_size;
   put(header);
   if (records) records(put);
-  file_ = file.put_in_place_open();
+  file_ = file.put_in_place_open(sync);
 }
 
 JournalWriter::JournalWriter(const std::string& path)

@@ -1,0 +1,192 @@
+#!/usr/bin/env bash
+# What goes wrong on machines, done to the program on purpose: kills, full disks, folders that cannot be written, two
+# writers, damaged files, too little memory, clocks that jump. Prints one table: tried, failed. Failed is 0.
+#
+#   tests/faults.sh [PROGRAM] [KILLS]     program: build/release/tools/cradle; kills of runs, and as many of ensembles: 50
+#
+# Needs to mount a small tmpfs for the full disk (a user namespace of its own) and faketime for the clock; says where
+# there is none. SEED=n draws other moments.
+set -u
+program=$(readlink -f "${1:-build/release/tools/cradle}") kills=${2:-50}
+RANDOM=${SEED:-1}
+cradle() { "$program" "$@"; }
+folder=$(mktemp -d) && trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT && cd "$folder" || exit 1
+export LC_ALL=C.UTF-8
+
+declare -A tried failed
+order=()
+counted() { # counted WHAT: the status of the command before says whether it went well
+  local status=$? what=$1
+  [ -n "${tried[$what]:-}" ] || { order+=("$what"); tried[$what]=0 failed[$what]=0; }
+  tried[$what]=$((tried[$what] + 1))
+  [ $status -eq 0 ] || { failed[$what]=$((failed[$what] + 1)); echo "FAILED: $what${2:+: $2}"; }
+}
+left_out() { order+=("$1"); tried[$1]=0 failed[$1]="not tried: $2"; }
+
+# ---- kills: whatever is left, `resume` makes the bytes of the run that was left alone
+dry='fig2 --set run.until=6000 --set output.snapshots=[1000,5500]'
+none='--set output.profiles.times=[] --set output.snapshots=[]'
+runs=(
+  "$dry"
+  'fig2 --set initial.particles=2000 --set run.until=1300 --set output.events=true'
+  'fig6 --set initial.particles=8000 --set run.until=2500 --set output.snapshots=[] --set output.masses=[]'
+  'cooling --set law.type=inelastic --set law.restitution=0.99 --set law.cutoff=0.01 --set initial.particles=20000 --set run.until=200'
+  "fig2 --set initial.particles=1000 --set run.until=700 --set run.precision=mpfr $none"
+  'fig2 --set run.until=3000 --set run.coordinates=absolute'
+  'cooling --set initial.particles=200000'
+)
+often='--quiet --set output.checkpoint.every_seconds=0.1'
+for k in "${!runs[@]}"; do
+  from=$(date +%s%N)
+  cradle run ${runs[k]} $often -o whole$k.h5
+  took[k]=$((($(date +%s%N) - from) / 1000000))
+done
+for ((n = 0; n < kills; ++n)); do
+  k=$((n % ${#runs[@]})) file=killed.h5
+  rm -f $file*
+  "$program" run ${runs[k]} $often -o $file & pid=$!
+  sleep "$(awk -v t="${took[k]}" -v r=$RANDOM 'BEGIN { print t / 1000 * r / 32768 }')"
+  kill -9 $pid 2>/dev/null; wait $pid 2>/dev/null
+  if [ ! -e $file ] && [ ! -e $file.part ]; then cradle run ${runs[k]} $often -o $file; fi # before it had begun
+  cradle resume $file --quiet >/dev/null && cradle diff $file whole$k.h5 >/dev/null && cmp -s $file whole$k.h5 &&
+    [ ! -e $file.part ]
+  counted 'kill -9 of a run, then resume' "${runs[k]}"
+done
+ensembles=(
+  "ensemble fig2 --replicas 600 --set initial.particles=300 --set run.until=200 $none"
+  'ensemble fig11 --replicas 150 --set initial.particles=2000 --set run.until=1000 --set output.masses=[]'
+  "sweep fig2 --vary law.restitution=0.99:0.999:4 --replicas 150 --set initial.particles=300 --set run.until=200 $none"
+)
+for k in "${!ensembles[@]}"; do
+  from=$(date +%s%N)
+  cradle ${ensembles[k]} --quiet -o ensemble$k.h5
+  took[k]=$((($(date +%s%N) - from) / 1000000))
+done
+for ((n = 0; n < kills; ++n)); do
+  k=$((n % ${#ensembles[@]})) file=killed.h5
+  rm -f $file*
+  "$program" ${ensembles[k]} --quiet -o $file & pid=$!
+  sleep "$(awk -v t="${took[k]}" -v r=$RANDOM 'BEGIN { print t / 1000 * r / 32768 }')"
+  kill -9 $pid 2>/dev/null; wait $pid 2>/dev/null
+  if [ ! -e $file ] && [ ! -e $file.part ]; then cradle ${ensembles[k]} --quiet -o $file; fi
+  cradle resume $file --quiet >/dev/null && cradle diff $file ensemble$k.h5 >/dev/null && cmp -s $file ensemble$k.h5 &&
+    [ ! -e $file.part ]
+  counted 'kill -9 of an ensemble, then resume' "${ensembles[k]}"
+done
+
+# ---- signals
+for signal in INT TERM HUP USR1; do
+  rm -f stopped.h5*
+  "$program" run $dry $often -o stopped.h5 2>/dev/null & pid=$!
+  while [ ! -e stopped.h5.checkpoint ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done
+  kill -$signal $pid; wait $pid; status=$?
+  { [ $status = 130 ] || [ $status = 143 ]; } && cradle resume stopped.h5 --quiet && cmp -s stopped.h5 whole0.h5
+  counted 'signals, then resume' "$signal, status $status"
+done
+
+# ---- full disk: of some kilobytes, so that it fills during the journal, a checkpoint, the result
+if unshare --user --map-root-user --mount true 2>/dev/null; then
+  for size in 16k 40k 100k 180k 300k 600k 800k 1200k; do
+    mkdir -p small elsewhere
+    export -f cradle; export program often dry size
+    unshare --user --map-root-user --mount bash -c '
+      mount -t tmpfs -o size=$size tmpfs small && export TMPDIR=$PWD/elsewhere
+      cradle run $dry $often -o small/a.h5 2>small.err; status=$?
+      if [ $status = 0 ]; then cmp -s small/a.h5 whole0.h5; exit; fi
+      [ $status = 4 ] || exit 1
+      grep -q "what to do\|space\|room\|resume\|move it" small.err || exit 1
+      mount -o remount,size=8m small
+      if [ -e small/a.h5.part ]; then cradle resume small/a.h5 --quiet && cmp -s small/a.h5 whole0.h5; exit; fi
+      found=$(find elsewhere -name a.h5); if [ -n "$found" ]; then cmp -s "$found" whole0.h5; exit; fi
+      [ ! -e small/a.h5 ]'
+    counted 'full disk, then room' "$size: $(head -c 300 small.err)"
+    rm -rf elsewhere small
+  done
+else
+  left_out 'full disk, then room' 'no user namespaces here'
+fi
+
+# ---- a folder that cannot be written (root may: as somebody else)
+mkdir closed && chmod 555 closed
+if [ "$(id -u)" = 0 ]; then as() { setpriv --reuid=65534 --clear-groups "$@"; }; else as() { "$@"; }; fi
+chmod 755 "$folder"
+as "$program" run fig2 --quiet --set run.until=10 -o closed/a.h5 2>closed.err
+[ $? = 4 ] && [ -s closed.err ] && [ -z "$(ls closed)" ]
+counted 'read-only folder' "$(cat closed.err)"
+
+# ---- two writers
+"$program" run $dry $often -o two.h5 & pid=$!
+while [ ! -e two.h5.part ]; do sleep 0.01; done
+for command in "run $dry" 'resume two.h5' "ensemble fig4 --replicas 3"; do
+  output=$([[ $command = resume* ]] || echo "-o two.h5")
+  cradle $command --quiet $output 2>two.err
+  status=$?
+  { [ $status = 4 ] || [ $status = 2 ]; } && [ -s two.err ]
+  counted 'two writers' "$command: status $status"
+done
+wait $pid && cmp -s two.h5 whole0.h5
+counted 'two writers' 'the first one'
+
+# ---- truncated and flipped files
+rm -f kept*
+"$program" run $dry $often -o kept.h5 2>/dev/null & pid=$!
+while [ ! -e kept.h5.checkpoint ]; do sleep 0.02; done; sleep 0.1
+kill -9 $pid; wait $pid 2>/dev/null
+mkdir kept && mv kept.h5.part kept.h5.checkpoint kept
+damage() { # damage FILE: cuts it, or flips a bit
+  local size at; size=$(stat -c %s "$1") at=$((RANDOM * 32768 + RANDOM)); at=$((at % size))
+  if [ $((RANDOM % 2)) = 0 ]; then truncate -s $at "$1"; else
+    printf "$(printf '\\x%02x' $((0x$(xxd -s $at -l 1 -p "$1") ^ (1 << RANDOM % 8))))" |
+      dd of="$1" bs=1 seek=$at conv=notrunc status=none
+  fi
+}
+for ((n = 0; n < 100; ++n)); do
+  for which in part checkpoint; do
+    rm -f kept.h5*; cp kept/kept.h5.* .
+    damage kept.h5.$which
+    before=$(cat kept.h5.checkpoint kept.h5.part | cksum)
+    timeout 20 "$program" resume kept.h5 --quiet >/dev/null 2>damaged.err; status=$?
+    case $status in
+    0) cmp -s kept.h5 whole0.h5 ;; # what was damaged came after the checkpoint
+    4) [ -s damaged.err ] && [ ! -e kept.h5 ] && [ "$before" = "$(cat kept.h5.checkpoint kept.h5.part | cksum)" ] ;;
+    *) false ;;
+    esac
+    counted "damaged $which" "status $status: $(head -c 200 damaged.err)"
+    timeout 2 "$program" info kept.h5.$which >/dev/null 2>&1; [ $? -le 4 ]
+    counted 'info of a damaged file'
+  done
+done
+
+# ---- too little memory
+for megabytes in 60 100 200 400; do
+  (ulimit -v $((megabytes * 1024)); cradle run cooling --quiet --threads 1 --set initial.particles=2e6 --set run.until=0.01 -o memory.h5 2>memory.err)
+  status=$?
+  [ $status = 0 ] || { [ $status -lt 6 ] && [ -s memory.err ] && [ ! -e memory.h5 ]; }
+  counted 'too little memory' "$megabytes MB: status $status, $(head -c 200 memory.err)"
+  rm -f memory.h5*
+done
+
+# ---- a clock that jumps
+library=$(ls /usr/lib/*/faketime/libfaketimeMT.so.1 2>/dev/null | head -1)
+if [ -n "$library" ]; then
+  for jump in +10d -10d; do
+    rm -f clock*; echo '+0' >clock
+    LD_PRELOAD=$library FAKETIME_TIMESTAMP_FILE=$PWD/clock FAKETIME_NO_CACHE=1 FAKETIME_DONT_FAKE_MONOTONIC=1 \
+      "$program" run $dry $often -o clock.h5 & pid=$!
+    sleep 0.4; echo $jump >clock
+    wait $pid && cmp -s clock.h5 whole0.h5
+    counted 'the clock jumps' "$jump"
+  done
+else
+  left_out 'the clock jumps' 'faketime is not installed'
+fi
+
+# ---- the table
+echo
+printf '| what | tried | failed |\n|---|---|---|\n'
+all=0
+for what in "${order[@]}"; do
+  printf '| %s | %s | %s |\n' "$what" "${tried[$what]}" "${failed[$what]}"
+  [[ ${failed[$what]} = not* ]] || all=$((all + failed[$what]))
+done
+[ $all = 0 ]

@@ -1,0 +1,21 @@
+#pragma once
+// What the targets have in common: an Error is what malformed input is answered with; anything else that leaves a
+// target is a finding, as are crashes, sanitizer reports, leaks and more than two seconds for one input (-timeout=2).
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "cradle/tools/support/errors.hpp"
+
+namespace cradle::fuzz {
+
+template <class Work> int refused_or_read(const std::uint8_t* data, std::size_t size, Work work) {
+  try {
+    work(std::string(reinterpret_cast<const char*>(data), size));
+  } catch (const tools::Error&) {
+  }
+  return 0;
+}
+
+}  // namespace cradle::fuzz

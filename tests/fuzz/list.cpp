@@ -1,0 +1,13 @@
+// A CSV list of bodies.
+#include <sstream>
+
+#include "cradle/tests/fuzz/fuzz.hpp"
+#include "cradle/tools/scene/list_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace cradle;
+  return fuzz::refused_or_read(data, size, [](const std::string& text) {
+    std::istringstream csv(text);
+    tools::parse_list(csv, "bodies.csv", tools::Run());
+  });
+}

@@ -1,0 +1,231 @@
+// Runs that are stopped anywhere and gone on with end in the bytes of the run that was left alone: law x scalar type x
+// coordinates x initial state x policy x threads x where it is cut.
+#include <csignal>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/precision/scalars.hpp"
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/run/run_files.hpp"
+
+namespace resume_test {
+
+using namespace cradle::tools;
+using cradle::tests::contents;
+
+// Hands on to the files, and stops the run where it is told to.
+class Stopping final : public RunKeeper {
+ public:
+  struct At {
+    std::uint64_t contacts = ~std::uint64_t{0}, looks = ~std::uint64_t{0};
+  };
+  Stopping(RunFiles& files, Interrupt& interrupt, At at) : files_(files), interrupt_(interrupt), at_(at) {}
+
+  void add(Group&& rows) override { files_.add(std::move(rows)); }
+  void tell(std::uint64_t contacts) override {
+    files_.tell(contacts);
+    if (contacts >= at_.contacts) interrupt_.note(SIGTERM);
+  }
+  void look() override {
+    files_.look();
+    if (++looks_ >= at_.looks) interrupt_.note(SIGTERM);
+  }
+  bool due() const override { return files_.due(); }
+  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) override {
+    files_.keep(status, save, state_too);
+  }
+  StateReader* loaded_from() override { return files_.loaded_from(); }
+
+ private:
+  RunFiles& files_;
+  Interrupt& interrupt_;
+  At at_;
+  std::uint64_t looks_ = 0;
+};
+
+struct Case {
+  const char* name;
+  const char* scene;
+  std::vector<std::string> precisions = {"double", "long double", "double-double", "cpp_bin_float", "float128", "mpfr"};
+  std::size_t threads = 1, threads_later = 1;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+constexpr const char* looked_at =
+    "output = { series.points = 20, snapshots = [40, 60], profiles = { times = [50], bins = 8 }, events = true }\n";
+
+std::string dry(const std::string& initial, const std::string& run, const std::string& law = "") {
+  return "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-4 }\n" + initial + looked_at + law +
+         "[run]\nuntil = 100\n" + run;
+}
+
+const std::string rows = "initial = { type = 'rows', particles = 80, perturbation = 0.05 }\n";
+const std::string ring = "initial = { type = 'ring', particles = 30, perturbation = 0.1 }\n";
+const std::string list = "initial = { type = 'list', x = [0, 1, 3, 4, 7, 8.5], v = [1, 0.5, -1, 2, -1, -2], "
+                         "m = [1, 2, 1, 3, 1, 0.5] }\n";
+const std::string general =
+    "initial = { type = 'rows', left = { particles = 40, speed = 1 }, right = { particles = 30, "
+    "speed = -0.5, density = 2 }, centre = { mass = 5, speed = 0.1 }, perturbation = 0.1 }\n";
+const std::string wet = "law = { type = 'wet', loss = 0.01 }\n", sticky = "law.type = 'sticky'\n";
+const std::string watched =
+    "output = { series = { points = 300, spacing = 'log' }, masses = [10, 100], scenario = true, "
+    "zone = { from = 20, samples = 32 } }\n";
+const std::string to_100 = "[run]\nuntil = 100\n";
+
+const std::string scenes[] = {
+    dry(rows, ""),
+    dry(rows, "coordinates = 'absolute'"),
+    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3"),
+    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3\ncoordinates = 'absolute'"),
+    dry(rows, "collapse = 'merge'\nmerge_speed = 0.01"),
+    dry(ring, ""),
+    dry(ring, "collapse = 'merge'\nmerge_speed = 0.01"),
+    dry(list, ""),
+    dry(list, "collapse = 'contact-time'\ncontact_time = 1e-3"),
+    dry(general, "start = -3.5"),
+    wet + rows + watched + to_100,
+    wet + ring + looked_at + to_100,
+    wet + general + looked_at + to_100,
+    sticky + rows + looked_at + to_100,
+    sticky + rows + "output.series.points = 40\noutput.masses = [30]\n" +
+        to_100,  // from time to time, without contacts
+    sticky + ring + "output.series.points = 40\n" + to_100,
+    "law = { type = 'inelastic', restitution = 0.05 }\ninitial = { type = 'list', x = [0, 1, 3, 10], v = [1, 0, -1, 5] "
+    "}\n"
+    "output.series.points = 30\n[run]\nuntil = 100\ncollapse = 'stop'\n",
+};
+
+Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }
+
+const std::string large = "output = { series.points = 12, profiles = { times = [5], bins = 8 } }\n[run]\nuntil = 8\n";
+const std::string large_dry = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\ninitial = { type = "
+                              "'ring', particles = 2500, perturbation = 0.1 }\n" +
+                              large;
+const std::string large_wet = "law = { type = 'wet', loss = 0.01 }\ninitial = { type = 'ring', particles = 2500, "
+                              "perturbation = 0.1 }\n" +
+                              large;
+
+class Resuming : public testing::Test {
+ protected:
+  Resuming() {
+    std::string name = (std::filesystem::temp_directory_path() / "cradle-test-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) folder_ = name;
+  }
+  ~Resuming() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  std::string file(const char* name) const { return (folder_ / name).string(); }
+
+  // Returns how it ended; FILE is there if it did.
+  static RunOutcome run(RunFiles& files, Stopping::At at, std::size_t threads) {
+    Interrupt interrupt;
+    Stopping keeper(files, interrupt, at);
+    cradle::Workers workers;  // one after the other, as many as asked for
+    workers.count = threads;
+    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, false, &interrupt, workers, &keeper});
+    if (end.end != RunEnd::interrupted) files.finish(std::move(end.result), end.end);
+    return end;
+  }
+
+  RunOutcome begin(const char* name, const Scene& scene, Stopping::At at, std::size_t threads) const {
+    RunFiles files(file(name), scene);
+    return run(files, at, threads);
+  }
+  RunOutcome go_on(const char* name, const std::optional<std::string>& until, Stopping::At at,
+                   std::size_t threads) const {
+    RunFiles files(file(name), until);
+    return run(files, at, threads);
+  }
+
+  std::filesystem::path folder_;
+};
+
+class Resume : public Resuming, public testing::WithParamInterface<Case> {};
+
+TEST_P(Resume, EndsInTheSameBytesWhereverItIsCut) {
+  const Case& of = GetParam();
+  for (const std::string& precision : of.precisions) {
+    SCOPED_TRACE(precision);
+    std::vector<std::string> set{"run.precision=" + precision};
+    if (precision == "mpfr") set.push_back("run.digits=60");
+    const Scene scene = parse_scene(of.scene, "scene.toml", set);
+    try {
+      check_built(scene);
+    } catch (const Error&) {
+      continue;
+    }
+    const RunOutcome whole = begin("alone.h5", scene, {}, of.threads_later);
+    const std::string wanted = contents(file("alone.h5"));
+    ASSERT_GT(whole.contacts, 4U);
+    for (const Stopping::At at : {Stopping::At{.contacts = 1},
+                                  {.contacts = whole.contacts / 3},
+                                  {.contacts = 4 * whole.contacts / 5},
+                                  {.looks = 7}}) {
+      SCOPED_TRACE(testing::Message() << "contacts " << at.contacts << ", looks " << at.looks);
+      const RunOutcome cut = begin("cut.h5", scene, at, of.threads);
+      if (cut.end == RunEnd::interrupted) {
+        EXPECT_FALSE(std::filesystem::exists(file("cut.h5")));
+        const Stopping::At half{.contacts = cut.contacts + (whole.contacts - cut.contacts) / 2};
+        if (go_on("cut.h5", std::nullopt, half, of.threads_later).end == RunEnd::interrupted) {
+          EXPECT_EQ(go_on("cut.h5", std::nullopt, {}, of.threads_later).end, whole.end);
+        }
+      }
+      EXPECT_TRUE(contents(file("cut.h5")) == wanted) << "other bytes";
+      EXPECT_FALSE(std::filesystem::exists(file("cut.h5.part")));
+      std::filesystem::remove(file("cut.h5"));
+    }
+  }
+}
+
+// 17 scenes, six types, four cuts each with another one behind it.
+INSTANTIATE_TEST_SUITE_P(
+    Runs, Resume,
+    testing::Values(case_of("DryRows", 0), case_of("DryRowsPositions", 1), case_of("ContactTime", 2),
+                    case_of("ContactTimePositions", 3), case_of("Merging", 4), case_of("DryRing", 5),
+                    case_of("MergingRing", 6), case_of("DryList", 7), case_of("ContactTimeList", 8),
+                    case_of("GeneralRows", 9), case_of("WetRows", 10), case_of("WetRing", 11),
+                    case_of("WetGeneralRows", 12), case_of("StickyContacts", 13), case_of("Sticky", 14),
+                    case_of("StickyRing", 15), case_of("Collapse", 16),
+                    Case{"LargeDry", large_dry.c_str(), {"double", "double-double"}, 1, 1},
+                    Case{"LargeDryFromTwoThreadsToOne", large_dry.c_str(), {"double", "long double", "mpfr"}, 2, 1},
+                    Case{"LargeDryFromOneThreadToThree", large_dry.c_str(), {"double", "float128"}, 1, 3},
+                    Case{"LargeWetFromThreeThreadsToTwo", large_wet.c_str(), {"double", "double-double"}, 3, 2}),
+    [](const auto& of) { return std::string(of.param.name); });
+
+// ---- extended
+
+TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
+  for (const char* series : {"every = 3", "points = 21", "points = 60, spacing = 'log'", "times = [10, 20, 90]"}) {
+    for (const std::string& law : {wet, sticky,
+                                   std::string("law = { type = 'inelastic', restitution = 0.9, cutoff = "
+                                               "1e-3 }\n")}) {
+      SCOPED_TRACE(law + series);
+      const Scene scene =
+          parse_scene(law + rows + "output = { series = { " + series +
+                          " }, snapshots = [50], events = " + (law == sticky ? "false" : "true") + " }\n" + to_100,
+                      "scene.toml");
+      ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);
+      // Which is gone on with as any other.
+      if (go_on("later.h5", "130.5", {.looks = 2}, 1).end == RunEnd::interrupted) {
+        ASSERT_EQ(go_on("later.h5", std::nullopt, {}, 1).end, RunEnd::reached);
+      }
+      ASSERT_EQ(go_on("later.h5", "160", {}, 1).end, RunEnd::reached);
+
+      const Result later = read_result(file("later.h5"));
+      const Scene as_written = scene_in(later.attributes, file("later.h5"));
+      EXPECT_EQ(as_written.run.until, Decimal("160"));
+      begin("alone.h5", as_written, {}, 1);
+      EXPECT_TRUE(contents(file("alone.h5")) == contents(file("later.h5"))) << "other bytes";
+      std::filesystem::remove(file("later.h5"));
+    }
+  }
+}
+
+}  // namespace resume_test

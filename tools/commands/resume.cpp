@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cradle/tools/commands/run_command.hpp"
+#include "cradle/tools/commands/study.hpp"
+#include "cradle/tools/ensemble/journal_contents.hpp"
+#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/journal.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct ResumeArguments : RunningOptions {
+  std::string file;
+  std::optional<std::string> until;
+};
+
+Exit resume(const ResumeArguments& options) {
+  std::string file = options.file;
+  for (const std::string_view ending : {".part", ".checkpoint"})
+    if (file.ends_with(ending)) file.resize(file.size() - ending.size());
+  if (options.until && !canonical_decimal(*options.until))
+    throw Error({"--until", 0, ""}, "not a number", *options.until, "give a time");
+  if (JournalReader::kind(RunFiles::journal_of(file)) == JournalOf::replicas) {
+    if (options.until)
+      throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
+    return run_study_command(options, [&] {
+      const std::string path = RunFiles::journal_of(file);
+      const JournalContents journal = read_journal_contents(path);
+      return StudyPlan{study_in(journal, path), journal.wanted, file};
+    });
+  }
+  const FileClaim claim(file);
+  Interrupt interrupt;
+  note_signals(interrupt);
+  RunFiles files(file, options.until);
+  if (!files.over().empty()) {
+    if (!options.quiet) fmt::print("{}\n", files.over());
+    return files.over_status();
+  }
+  if (!options.quiet) fmt::print("{}: going on from {}\n", file, files.goes_on_from());
+  return run_command(files, file, options, interrupt);
+}
+
+}  // namespace
+
+void add_resume(CommandLine& program) {
+  Command command = program.add("resume", "go on with a run or an ensemble that was stopped, to the same bytes",
+                                "cradle resume fig2.h5 --until 8000");
+  const auto options = std::make_shared<ResumeArguments>();
+  command.argument("FILE", options->file,
+                   "its result file, there or not yet; FILE.part and FILE.checkpoint are beside it");
+  command.option("--until", options->until,
+                 "a later end, also of a run that is finished; samples go on with the spacing that they have");
+  add_running_options(command, *options);
+  command.does([options] { return resume(*options); });
+}
+
+}  // namespace cradle::tools

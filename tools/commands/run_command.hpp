@@ -1,0 +1,15 @@
+// What `run` and `resume` have in common: computes, tells how it went, gives the exit status.
+#pragma once
+
+#include <string>
+
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/run/run_files.hpp"
+#include "cradle/tools/support/interrupt.hpp"
+
+namespace cradle::tools {
+
+/// Runs what the files are of, into `output`, which the caller has claimed.
+Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt);
+
+}  // namespace cradle::tools

@@ -1,0 +1,191 @@
+// What a run that was stopped goes on from: its journal and its checkpoint, or its result and the checkpoint of its end.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/run/run_files.hpp"
+#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/version.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+bool exists(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::exists(path, none);
+}
+
+// Where the journal ends that has so many records; nothing where it has fewer of them whole.
+std::optional<std::uint64_t> end_of_records(const std::string& path, std::uint64_t records, std::uint64_t& check,
+                                            const JournalWriter::Put& put = {}) {
+  JournalReader reader(path, JournalOf::run);
+  check = crc64(reader.header());
+  std::string record;
+  for (std::uint64_t k = 0; k < records; ++k) {
+    if (!reader.next(record)) return {};
+    check = crc64(record);
+    if (put) put(record);
+  }
+  return reader.whole_bytes();
+}
+
+// The same run up to a later time, its samples spaced as before.
+Scene extended(Scene scene, const std::string& until, const std::string& file) {
+  const Decimal later(until);
+  if (later < scene.run.until)
+    throw Error({"--until", 0, ""}, "before the end of the run that is there", until,
+                fmt::format("give a time after {}", scene.run.until.text));
+  if (scene.output.zone.from)
+    throw Error({file, 0, "output.zone.from"}, "an average up to run.until cannot be gone on with",
+                scene.run.until.text, "run the scene anew with a later run.until");
+  Series& series = scene.output.series;
+  if (series.points && !series.over) series.over = scene.run.until;
+  scene.run.until = later;
+  return parse_scene(effective_toml(scene), file);  // as a scene with that end would be read
+}
+
+// What a result file holds of the run itself: rows, not what is said of the whole.
+std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
+  std::erase_if(groups, [](const Group& g) { return g.name == "zone" || g.name == "scenario" || g.name == "collapse"; });
+  // Attributes come back from the file in another order than that in which they are written.
+  const auto rank = [](const Attribute& attribute) {
+    constexpr std::array<std::string_view, 3> first{"time", "gap_min", "gap_median"};
+    return std::find(first.begin(), first.end(), attribute.first) - first.begin();
+  };
+  for (Group& table : groups)
+    std::stable_sort(table.attributes.begin(), table.attributes.end(),
+                     [&](const Attribute& a, const Attribute& b) { return rank(a) < rank(b); });
+  // A sample at the end that the spacing does not ask for is one of that end only.
+  const std::vector<double> planned = planned_times(scene).series;
+  const auto one_too_many = [&](const Group& table) {
+    if (table.name != "series" || table.columns.empty()) return false;
+    const auto* taken = std::get_if<std::vector<double>>(&table.columns.front().values);
+    return taken != nullptr && !taken->empty() && !std::binary_search(planned.begin(), planned.end(), taken->back());
+  };
+  if (std::any_of(groups.begin(), groups.end(), one_too_many))
+    for (Group& table : groups)
+      for (Column& column : table.columns)
+        if (table.name.starts_with("series"))
+          std::visit([&](auto& v) { v.resize(v.size() - std::min(v.size(), column.width)); }, column.values);
+  return groups;
+}
+
+}  // namespace
+
+CheckpointHeader read_checkpoint(StateReader& reader, const std::string& path) {
+  if (const std::uint64_t format = reader.integer(); format != CheckpointHeader::format)
+    throw Error({path, 0, ""}, "a checkpoint of another format", fmt::format("{}, here {}", format, CheckpointHeader::format),
+                "go on with the version of cradle that wrote it, or remove it: the run then starts anew", Exit::io);
+  CheckpointHeader header;
+  header.run = RunHeader::of(reader.text());
+  header.records = reader.integer();
+  header.check = reader.integer();
+  reader.get(&header.seconds, sizeof header.seconds);
+  reader.get(&header.time, sizeof header.time);
+  header.contacts = reader.integer();
+  return header;
+}
+
+RunFiles::RunFiles(std::string file, const std::optional<std::string>& until) : file_(std::move(file)) {
+  if (exists(journal_of(file_)))
+    go_on(until);
+  else
+    go_on_from_result(until);
+  started_ = told_ = saved_ = Clock::now();
+}
+
+// ---- going on
+
+void RunFiles::go_on(const std::optional<std::string>& until) {
+  const std::string path = journal_of(file_), state = checkpoint_of(file_);
+  header_ = RunHeader::of(JournalReader(path, JournalOf::run).header());
+  if (header_.version != version)
+    throw Error({path, 0, ""}, "a run of another version", fmt::format("{}, here {}", header_.version, version),
+                "go on with that one, or remove the file: the run then starts anew", Exit::io);
+  scene_ = scene_of(header_, path);
+  CheckpointHeader found;
+  if (exists(state)) {
+    state_ = std::make_unique<StateReader>(state);
+    found = read_checkpoint(*state_, state);
+    if (found.run.number != header_.number) state_.reset();  // of a run before
+  }
+  const std::uint64_t before = header_.first_stands_for - 1;
+  records_ = state_ ? found.records : 0;
+  if (state_ && records_ < header_.first_stands_for && header_.first_stands_for > 1)
+    throw Error({state, 0, ""}, "older than the journal", "", "take both from a copy, or remove them", Exit::io);
+  if (!state_ && header_.first_stands_for > 1)
+    throw Error({state, 0, ""}, "missing", "", "take it from a copy, or remove the journal", Exit::io);
+  const bool later = until && Decimal(*until) != scene_.run.until;
+  if (later) {
+    scene_ = extended(scene_, *until, path);
+    scene_.name = header_.name;
+    header_.scene = effective_toml(scene_);
+  }
+  const std::uint64_t there = records_ - std::min(records_, before);
+  const auto torn = [&] {
+    return Error({path, 0, ""}, "damaged before its checkpoint", fmt::format("fewer than {} records", there),
+                 "take it from a copy, or remove it: the run then starts anew", Exit::io);
+  };
+  const auto check = [&] {
+    if (state_ && records_ > header_.first_stands_for && check_ != found.check) throw torn();
+  };
+  if (later) {
+    JournalWriter anew(path, JournalOf::run, header_.bytes(), [&](const JournalWriter::Put& put) {
+      if (!end_of_records(path, there, check_, put)) throw torn();
+      check();
+    });
+    journal_ = std::move(anew);
+  } else {
+    const auto end = end_of_records(path, there, check_);
+    if (!end) throw torn();
+    check();
+    journal_.emplace(path);
+    journal_->go_on_after(*end);
+  }
+  if (state_) from(found);
+}
+
+void RunFiles::go_on_from_result(const std::optional<std::string>& until) {
+  if (!exists(file_))
+    throw Error({file_, 0, ""}, "nothing to go on from", "neither a result nor a journal", "run the scene", Exit::io);
+  Result result = read_result(file_);
+  scene_ = scene_in(result.attributes, file_);
+  const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
+  const std::string state = checkpoint_of(file_);
+  if (!until || Decimal(*until) == scene_.run.until || outcome != end_text(RunEnd::reached)) {
+    over_ = fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
+    for (const RunEnd end : {RunEnd::reached, RunEnd::collapsed, RunEnd::order_lost, RunEnd::exhausted})
+      if (outcome == end_text(end)) over_status_ = status_of_end(end);
+    return;
+  }
+  if (!exists(state))
+    throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);
+  state_ = std::make_unique<StateReader>(state);
+  const CheckpointHeader found = read_checkpoint(*state_, state);
+  if (found.run.version != version || found.run.scene != effective_toml(scene_) ||
+      found.time != scene_.run.until.value)
+    throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
+                "run the scene with a later run.until", Exit::io);
+  const std::string name = scene_.name;
+  scene_ = extended(scene_, *until, file_);
+  scene_.name = name;
+  header_ = {std::string(version), effective_toml(scene_), name, found.run.every_seconds, found.run.number,
+             std::max<std::uint64_t>(found.records, 2)};
+  records_ = header_.first_stands_for;
+  journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(), [&](const JournalWriter::Put& put) {
+    put(record_of(recorded(std::move(result.groups), scene_)));
+  });
+  from(found);
+}
+
+void RunFiles::from(const CheckpointHeader& found) {
+  from_ = fmt::format("t = {:.10g}, {} contacts", found.time, found.contacts);
+  seconds_before_ = found.seconds;
+  contacts_before_ = found.contacts;
+}
+
+}  // namespace cradle::tools

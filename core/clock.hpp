@@ -4,6 +4,7 @@
 // sum, good to the square of the type's precision. All times are in units of the scene.
 
 #include "cradle/core/real.hpp"
+#include "cradle/core/state.hpp"
 
 namespace cradle {
 
@@ -23,6 +24,7 @@ template <Real T> class Clock {
 
   void move_origin(const T& by) { origin_ = origin_ + by; }
   static auto state(auto& self) { return std::tie(self.origin_); }
+  void loaded() const { require_state(is_finite(origin_.high) && is_finite(origin_.low), "times"); }
 
  private:
   T start_;

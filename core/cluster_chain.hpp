@@ -134,13 +134,20 @@ template <Real T> class ClusterChain {
   void loaded() const {
     const auto& cells = line_.gaps;
     require_state(window_.fits(slots(), bodies_->count()) && window_.on_ring() == bodies_->on_ring(), "slots");
-    require_state(beyond_ < slots() && active_ >= 0 && active_ <= bodies_->count(), "counts");
+    require_state(beyond_ < slots() && active_ >= 0 && active_ <= bodies_->count() && vacated_ <= slots(), "counts");
     for (Slot s = 0; s < slots(); ++s)
       require_state(cells[s].left < slots() && cells[s].right < slots() && cells[s].body >= 0 &&
                         cells[s].body < bodies_->count() && is_positive(cells[s].mass),
                     "cells");
-    for (Slot s = first(); s != last(); s = right(s))
+    // From the first to the last by their links, with vacant ones between them only.
+    int fronts = window_.has_fronts() ? 0 : 2;
+    for (Slot s = first();; s = right(s)) {
+      fronts += window_.has_fronts() ? (s == window_.front_left()) + (s == window_.front_right()) : 0;
+      if (s == last()) break;
       require_state(right(s) > s && right(s) <= last() && left(right(s)) == s, "links");
+      for (Slot v = s + 1; v < right(s); ++v) require_state(line_.vacant(v), "vacant cells");
+    }
+    require_state(fronts == 2, "fronts");
     require_state(!on_ring() || (right(last()) == first() && left(first()) == last()), "links");
   }
 

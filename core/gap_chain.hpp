@@ -134,8 +134,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   void loaded() const {
     const BodyIndex count = bodies_->count();
     require_state(window_.fits(slots(), count) && window_.on_ring() == bodies_->on_ring(), "slots");
-    require_state(on_ring() ||
-                      (body(first()) == window_.unheld_left() && body(last()) + 2 == count - window_.unheld_right()),
+    require_state(on_ring()
+                      ? body(first()) == 0 && body(last()) + 1 == count
+                      : body(first()) == window_.unheld_left() && body(last()) + 2 == count - window_.unheld_right(),
                   "bodies");
     require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
     for (const Anchor<T>* anchor : {&left_, &right_})

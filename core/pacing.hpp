@@ -89,6 +89,12 @@ template <Real T> struct Pacing {
     passed(contacts, active);
   }
 
+  // Whether it can be that of a run which has made so many contacts.
+  bool follows(std::uint64_t contacts) const {
+    constexpr std::uint64_t most = std::uint64_t{1} << 62;
+    return contacts < most && contacts_before <= contacts && contacts_at_move <= contacts && expected < most &&
+           is_finite(time_before) && is_finite(epoch) && is_finite(epoch_end) && !is_negative(epoch);
+  }
   static auto state(auto& self) {
     return std::tie(self.next_review, self.contacts_at_move, self.contacts_before, self.time_before, self.in_epochs,
                     self.epoch, self.epoch_end, self.expected, self.next_poll, self.most_contacts);

@@ -26,7 +26,8 @@ template <Real T> class PositionChain {
 
   // Throws std::invalid_argument for bodies on a ring.
   PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start)
-      : start_(start), origin_(start), lost_(bodies->energy_to_lose()) {
+      : count_(static_cast<std::size_t>(bodies->count())), start_(start), origin_(start),
+        lost_(bodies->energy_to_lose()) {
     require_bodies(*bodies, start);
     if (bodies->on_ring())
       throw std::invalid_argument("a ring in absolute positions (circumference " + in_message(bodies->circumference()) +
@@ -105,7 +106,7 @@ template <Real T> class PositionChain {
                     self.front_right_, self.account_, self.lost_);
   }
   void loaded() const {
-    require_state(due_.size() == slots() && closing_.size() == slots(), "lists");
+    require_state(bodies_.size() == count_ && due_.size() == slots() && closing_.size() == slots(), "lists");
     const bool none = front_right_ < front_left_;
     require_state(none || (front_left_ >= first() && front_right_ <= last()), "fronts");
   }
@@ -179,6 +180,7 @@ template <Real T> class PositionChain {
     return gap < floor_ ? Notice::gap_below_floor : Notice::none;
   }
 
+  std::size_t count_;
   std::vector<Particle> bodies_;
   std::vector<T> due_, closing_;
   T floor_{0};

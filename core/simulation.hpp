@@ -125,7 +125,9 @@ class Simulation {
   static auto state(auto& self) {
     return std::tie(self.chain_, self.last_contact_, self.counts_, self.pacing_, self.standstill_, self.watch_);
   }
-  void loaded() { release_queue(); }
+  void loaded() {
+    require_state(is_finite(last_contact_) && pacing_.follows(counts_.contacts), "times and counts"), release_queue();
+  }
 
  private:
   void fill_queue() {

@@ -11,7 +11,6 @@
 // of their own or a specialisation of SavedNumber. `To` says put(const void*, size_t), `From` get(void*, size_t), which
 // throws at its end, and left(), the bytes to come.
 
-#include <array>
 #include <bit>
 #include <concepts>
 #include <cstdint>

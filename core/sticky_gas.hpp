@@ -100,10 +100,14 @@ template <Real T> class StickyGas {
   static auto state(auto& self) { return std::tie(self.time_, self.elapsed_, self.held_, self.counts_, self.lost_); }
   void loaded() const {
     require_state(!held_.empty(), "no bodies");
+    const BodyIndex count = bodies_->count();
     for (const Lump& lump : held_)
-      require_state(is_positive(lump.mass) && lump.first >= 0 && lump.count > 0 && lump.count <= bodies_->count() &&
-                        lump.first < bodies_->count(),
+      require_state(is_positive(lump.mass) && lump.first >= 0 && lump.first < count && lump.count > 0 &&
+                        lump.count <= (ring_ ? count : count - lump.first),
                     "clusters");
+    for (std::size_t k = 0; !ring_ && k + 1 < held_.size(); ++k)
+      require_state(held_[k].first + held_[k].count == held_[k + 1].first, "clusters");
+    require_state(is_finite(time_) && is_finite(elapsed_), "times");
   }
 
  private:

@@ -103,7 +103,7 @@ class Window {
   // Whether it can be that of a chain with so many slots, which hold all bodies of `count` but the unheld ones, or
   // some.
   bool fits(std::size_t slots, BodyIndex count) const {
-    const bool held = first_ >= spare_ && last_ + 1 >= first_ && last_ + 1 + spare_ <= slots;
+    const bool held = last_ < slots && slots - 1 - last_ >= spare_ && first_ >= spare_ && last_ + 1 >= first_;
     const bool fronts =
         !has_fronts() || (first_ <= front_left_ && front_left_ <= front_right_ && front_right_ <= last_);
     return extent_ <= Extent::ring && held && fronts && unheld_left_ >= 0 && unheld_right_ >= 0 &&

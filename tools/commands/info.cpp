@@ -101,7 +101,11 @@ Exit follow(const InfoArguments& options) {
   if (!JournalReader::kind(options.file)) return info(options);
   for (;;) {
     fmt::print("{}", ::isatty(STDOUT_FILENO) != 0 ? "\033[H\033[2J" : "");
-    info(options);
+    try {
+      info(options);
+    } catch (const Error&) {
+      if (JournalReader::kind(options.file)) throw;  // else the run has ended meanwhile
+    }
     std::fflush(stdout);
     std::this_thread::sleep_for(2s);
     if (JournalReader::kind(options.file)) continue;

@@ -28,7 +28,7 @@ Exit resume(const ResumeArguments& options) {
       throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
     return run_study_command(options, [&] {
       const std::string path = RunFiles::journal_of(file);
-      const JournalContents journal = read_journal_contents(path);
+      const JournalContents journal = header_in(JournalReader(path, JournalOf::replicas).header());
       return StudyPlan{study_in(journal, path), journal.wanted, file};
     });
   }

@@ -37,8 +37,13 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const std::string told = summary(end, files.contacts_before(), seconds);
   if (end.end == RunEnd::interrupted) {
-    tell(end.warning);
-    tell(fmt::format("interrupted: `cradle resume {}` goes on from there\n", output));
+    tools::tell(end.warning);
+    tools::tell(
+        files.up_to_date()
+            ? fmt::format("interrupted: `cradle resume {}` goes on from there\n", output)
+            : fmt::format("interrupted: `cradle resume {}` goes on from the checkpoint before, if there is one, "
+                          "else it starts anew\n",
+                          output));
     if (!options.quiet) fmt::print("{}", told);
     return status_of_signal(interrupt.signal());
   }

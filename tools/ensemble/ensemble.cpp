@@ -106,7 +106,10 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, Crew&
   EnsembleOutcome end;
   if (signal == 0) {
     crew.gather([](const PutRecord&) {}, [&](std::string_view record) { store.apply(record); });
-    if (fresh > 0 || !store.result_there()) store.finish();
+    if (fresh > 0 || !store.result_there())
+      store.finish();
+    else
+      store.drop_journals();
     end = told(store);
   } else {
     store.sync();

@@ -34,10 +34,15 @@ JournalContents header_in(std::string_view bytes) {
     spread.bins.from = header.number<double>();
     spread.bins.to = header.number<double>();
     spread.bins.bins = header.integer();
+    if (!(spread.bins.from < spread.bins.to) || spread.bins.bins < 1 || spread.bins.bins > 1'000'000)
+      throw Error({}, "a journal of no bins", fmt::format("{}", spread.bins.bins), "take it from a copy", Exit::io);
     contents.spreads.push_back(std::move(spread));
   }
   contents.wanted.first = header.integer();
   contents.wanted.count = header.integer();
+  constexpr std::uint64_t most = std::uint64_t{1} << 53;
+  if (contents.wanted.first > most || contents.wanted.count > most)
+    throw Error({}, "a journal of too many replicas", "", "take it from a copy", Exit::io);
   while (!header.empty()) {
     const std::string group = header.text();
     contents.scenes.emplace_back(group, header.text());

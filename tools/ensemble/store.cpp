@@ -141,6 +141,10 @@ void EnsembleStore::finish() {
                     ", the same command goes on from there",
                 error.status);
   }
+  drop_journals();
+}
+
+void EnsembleStore::drop_journals() {
   journal_.reset();
   ::unlink(part_.c_str());
   for (const std::string& path : rank_journals()) ::unlink(path.c_str());

@@ -56,6 +56,8 @@ class EnsembleStore {
 
   /// Writes FILE, then removes the journals.
   void finish();
+  /// Where FILE holds all that they do.
+  void drop_journals();
   Result result() const;
   std::uint64_t replicas() const;  // of all points
   std::string outcome() const;     // how they ended: "990 reached the end, 10 inelastic collapse"

@@ -74,6 +74,7 @@ std::string EnsembleStore::read_journal(const std::string& path, std::uint64_t& 
   std::vector<std::string> scenes;
   for (const auto& [group, scene] : header.scenes) scenes.push_back(scene);
   check_identity(header.identity, scenes, path);
+  if (wanted_.count == 0) wanted_ = header.wanted;
   EnsembleStates states = empty_states();
   for (std::string record; reader.next(record);) {
     const std::uint64_t point = EnsembleState::point(record);

@@ -55,14 +55,21 @@ std::optional<JournalOf> JournalReader::kind(const std::string& path) {
   return static_cast<JournalOf>(found - begins.begin());
 }
 
-JournalReader::JournalReader(const std::string& path, JournalOf kind) : path_(path), file_(path, std::ios::binary) {
-  if (!file_) fail_journal(path, "the journal could not be read");
-  size_ = std::filesystem::file_size(path);
-  file_.seekg(begin_size);
-  whole_ = begin_size;
-  if (JournalReader::kind(path) != kind || !next(header_))
+JournalReader::JournalReader(const std::string& path, JournalOf kind) : path_(path) {
+  const auto found = JournalReader::kind(path);
+  if (found && found != kind)
+    throw Error({path, 0, ""}, "another kind of journal", *found == JournalOf::run ? "of a run" : "of an ensemble",
+                "go on with it by `cradle resume`, or give another -o FILE", Exit::io);
+  if (found) file_.open(path, std::ios::binary);
+  if (found && !file_) fail_journal(path, "the journal could not be read");
+  if (found) {
+    size_ = std::filesystem::file_size(path);
+    file_.seekg(begin_size);
+    whole_ = begin_size;
+  }
+  if (!found || !next(header_))
     throw Error({path, 0, ""}, "not a journal of this version of the program, or its beginning is damaged", "",
-                "remove it", Exit::io);
+                "take it from a copy, or remove it", Exit::io);
 }
 
 bool JournalReader::next(std::string& record) {

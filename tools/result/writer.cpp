@@ -49,13 +49,19 @@ void write_attribute(hid_t object, const Attribute& attribute) {
   }
 }
 
+// When a column's place in the file is chosen: with its first rows, or, where these come in an order that differs from
+// run to run, at once.
+enum class Placed { when_written, at_once };
+
 // A column with room for so many rows.
-Handle make_column(hid_t group, const Column& column, std::uint64_t rows) {
+Handle make_column(hid_t group, const Column& column, std::uint64_t rows, Placed placed = Placed::when_written) {
   const hsize_t shape[2] = {rows, column.width};
   const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, no_room);
+  const Handle list = properties(H5P_DATASET_CREATE);
+  if (placed == Placed::at_once) check(H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY), no_room);
   const bool real = std::holds_alternative<std::vector<double>>(column.values);
-  return {H5Dcreate2(group, column.name.c_str(), real ? H5T_IEEE_F64LE : H5T_STD_U64LE, space, H5P_DEFAULT,
-                     properties(H5P_DATASET_CREATE), H5P_DEFAULT),
+  return {H5Dcreate2(group, column.name.c_str(), real ? H5T_IEEE_F64LE : H5T_STD_U64LE, space, H5P_DEFAULT, list,
+                     H5P_DEFAULT),
           H5Dclose, no_room};
 }
 
@@ -137,7 +143,7 @@ void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string
         write_groups(file, ends, [&](hid_t group, const Group& table) {
           Open& here = open[table.name];
           for (const Column& column : table.columns) {
-            here.columns.push_back(make_column(group, column, column.rows()));
+            here.columns.push_back(make_column(group, column, column.rows(), Placed::at_once));
             write_attribute(here.columns.back(), {"unit", column.unit});
             write_attribute(here.columns.back(), {"description", column.description});
           }

@@ -1,4 +1,5 @@
-// What a run that was stopped goes on from: its journal and its checkpoint, or its result and the checkpoint of its end.
+// What a run that was stopped goes on from: its journal and its checkpoint, or its result and the checkpoint of its
+// end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,14 +44,19 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
     throw Error({file, 0, "output.zone.from"}, "an average up to run.until cannot be gone on with",
                 scene.run.until.text, "run the scene anew with a later run.until");
   Series& series = scene.output.series;
-  if (series.points && !series.over) series.over = scene.run.until;
+  if (series.points && !series.over && scene.run.start < scene.run.until) series.over = scene.run.until;
   scene.run.until = later;
   return parse_scene(effective_toml(scene), file);  // as a scene with that end would be read
 }
 
+// Where nobody asks for contacts the sticky gas goes from time to time, and rounds by these: with other times it is
+// begun again, which takes it no time.
+bool begins_again(const Scene& scene) { return scene.law.type == LawType::sticky && !scene.output.events; }
+
 // What a result file holds of the run itself: rows, not what is said of the whole.
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
-  std::erase_if(groups, [](const Group& g) { return g.name == "zone" || g.name == "scenario" || g.name == "collapse"; });
+  std::erase_if(groups,
+                [](const Group& g) { return g.name == "zone" || g.name == "scenario" || g.name == "collapse"; });
   // Attributes come back from the file in another order than that in which they are written.
   const auto rank = [](const Attribute& attribute) {
     constexpr std::array<std::string_view, 3> first{"time", "gap_min", "gap_median"};
@@ -78,7 +84,8 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
 
 CheckpointHeader read_checkpoint(StateReader& reader, const std::string& path) {
   if (const std::uint64_t format = reader.integer(); format != CheckpointHeader::format)
-    throw Error({path, 0, ""}, "a checkpoint of another format", fmt::format("{}, here {}", format, CheckpointHeader::format),
+    throw Error({path, 0, ""}, "a checkpoint of another format",
+                fmt::format("{}, here {}", format, CheckpointHeader::format),
                 "go on with the version of cradle that wrote it, or remove it: the run then starts anew", Exit::io);
   CheckpointHeader header;
   header.run = RunHeader::of(reader.text());
@@ -120,6 +127,15 @@ void RunFiles::go_on(const std::optional<std::string>& until) {
   if (!state_ && header_.first_stands_for > 1)
     throw Error({state, 0, ""}, "missing", "", "take it from a copy, or remove the journal", Exit::io);
   const bool later = until && Decimal(*until) != scene_.run.until;
+  if (later && state_ && !(found.time < scene_.run.until.value))
+    throw Error({file_, 0, ""}, "not written yet", "the run has reached its end",
+                fmt::format("finish it first: `cradle resume {}`", file_));
+  if (later && begins_again(scene_)) {
+    state_.reset();
+    records_ = 0;
+    header_.first_stands_for = 1;
+    ++header_.number;  // the checkpoint does not belong to it
+  }
   if (later) {
     scene_ = extended(scene_, *until, path);
     scene_.name = header_.name;
@@ -152,33 +168,54 @@ void RunFiles::go_on(const std::optional<std::string>& until) {
 void RunFiles::go_on_from_result(const std::optional<std::string>& until) {
   if (!exists(file_))
     throw Error({file_, 0, ""}, "nothing to go on from", "neither a result nor a journal", "run the scene", Exit::io);
-  Result result = read_result(file_);
+  Result result = read_result(file_, Reading::ends);
   scene_ = scene_in(result.attributes, file_);
+  const bool ensemble = std::any_of(result.attributes.begin(), result.attributes.end(),
+                                    [](const Attribute& attribute) { return attribute.first == "kind"; });
+  if (ensemble && until)
+    throw Error({"--until", 0, ""}, "an ensemble has no later end", *until, "give it a file of its own");
   const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
   const std::string state = checkpoint_of(file_);
   if (!until || Decimal(*until) == scene_.run.until || outcome != end_text(RunEnd::reached)) {
-    over_ = fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
+    over_ =
+        fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
     for (const RunEnd end : {RunEnd::reached, RunEnd::collapsed, RunEnd::order_lost, RunEnd::exhausted})
       if (outcome == end_text(end)) over_status_ = status_of_end(end);
     return;
   }
-  if (!exists(state))
-    throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);
+  if (!exists(state)) throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);
   state_ = std::make_unique<StateReader>(state);
   const CheckpointHeader found = read_checkpoint(*state_, state);
-  if (found.run.version != version || found.run.scene != effective_toml(scene_) ||
-      found.time != scene_.run.until.value)
+  if (found.run.version != version || found.run.scene != effective_toml(scene_) || found.time != scene_.run.until.value)
     throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
                 "run the scene with a later run.until", Exit::io);
+  if (begins_again(scene_)) {
+    state_.reset();
+  } else {
+    std::uint64_t numbers = 0;
+    for (const Group& table : result.groups)
+      for (const Column& column : table.columns) numbers += column.rows() * column.width;
+    if (numbers > most_in_memory)
+      throw Error({file_, 0, ""}, "too large to be gone on with", fmt::format("{} numbers", numbers),
+                  "run the scene with a later run.until", Exit::io);
+    result = read_result(file_);
+  }
   const std::string name = scene_.name;
   scene_ = extended(scene_, *until, file_);
   scene_.name = name;
-  header_ = {std::string(version), effective_toml(scene_), name, found.run.every_seconds, found.run.number,
-             std::max<std::uint64_t>(found.records, 2)};
+  header_ = {std::string(version),
+             effective_toml(scene_),
+             name,
+             found.run.every_seconds,
+             found.run.number + (state_ ? 0 : 1),  // its own, which the checkpoint does not belong to
+             state_ ? std::max<std::uint64_t>(found.records, 2) : 1};
+  if (!state_) {
+    journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(), nullptr, Sync::no);
+    return;
+  }
   records_ = header_.first_stands_for;
-  journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(), [&](const JournalWriter::Put& put) {
-    put(record_of(recorded(std::move(result.groups), scene_)));
-  });
+  journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(),
+                   [&](const JournalWriter::Put& put) { put(record_of(recorded(std::move(result.groups), scene_))); });
   from(found);
 }
 

@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::uint64_t contacts_between_looks = 1 << 13;  // at the clock
 constexpr double status_seconds = 2;
-constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;  // numbers of a result
 constexpr double worth_keeping = 60;  // seconds of computing that nobody throws away unasked
 
 std::uint64_t drawn_number() {
@@ -53,13 +52,13 @@ double RunFiles::seconds() const {
 
 void RunFiles::complain(const Error& error) {
   if (!std::exchange(complained_, true))
-    tools::tell(fmt::format("{}; the run goes on, and tries again\n", error.what()));
+    tools::tell(fmt::format("{}; what could not be written is kept in memory\n", error.what()));
 }
 
 void RunFiles::append(std::string_view record) {
   unwritten_.emplace_back(record);
   try {
-    for (; !unwritten_.empty(); unwritten_.erase(unwritten_.begin())) {
+    for (; !unwritten_.empty(); unwritten_.pop_front()) {
       journal_->append(unwritten_.front());
       check_ = crc64(unwritten_.front());
       ++records_;
@@ -91,6 +90,7 @@ void RunFiles::look() {
 }
 
 void RunFiles::keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) {
+  state_.reset();  // has been loaded
   due_ = false;
   told_ = Clock::now();
   RunStatus now = status;
@@ -99,9 +99,11 @@ void RunFiles::keep(const RunStatus& status, const std::function<void(StateWrite
   const double every = header_.every_seconds;
   if (!state_too && !(every > 0 && std::chrono::duration<double>(told_ - saved_).count() > every)) return;
   saved_ = told_;
+  up_to_date_ = false;
   if (!unwritten_.empty()) return;
   try {
     write_checkpoint(now, save);
+    up_to_date_ = saved_here_ = true;
   } catch (const Error& error) {
     complain(error);
   }
@@ -119,7 +121,6 @@ void RunFiles::write_checkpoint(const RunStatus& status, const std::function<voi
   writer.put(status.contacts);
   save(writer);
   writer.finish();
-  saved_here_ = true;
 }
 
 // ---- the end
@@ -127,7 +128,9 @@ void RunFiles::write_checkpoint(const RunStatus& status, const std::function<voi
 void RunFiles::finish(Result&& end, RunEnd how) {
   const std::string path = journal_of(file_);
   const auto pieces = [&](const std::function<void(Group &&)>& each) {
-    for_each_piece(path, each);
+    if (for_each_piece(path, each) != records_ - (header_.first_stands_for - 1))
+      throw Error({path, 0, ""}, "not what was written", "records are missing",
+                  "check the disk; `cradle resume` goes on from the last checkpoint", Exit::io);
     for (const std::string& record : unwritten_)
       for (Group& rows : rows_in(record)) each(std::move(rows));
     for (const Group& table : end.groups) each(Group(table));
@@ -148,9 +151,9 @@ void RunFiles::finish(Result&& end, RunEnd how) {
     write_or_keep({end.attributes, std::move(tables).in_order()}, file_);
   }
   journal_.reset();
+  ::unlink(path.c_str());
   // What ended otherwise is over, and another run's is of no use here.
   if (how != RunEnd::reached || !saved_here_) ::unlink(checkpoint_of(file_).c_str());
-  ::unlink(path.c_str());
 }
 
 }  // namespace cradle::tools

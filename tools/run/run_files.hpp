@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -22,6 +23,9 @@
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
+
+/// Numbers of a result, beyond which it is not held in memory as a whole.
+inline constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;
 
 /// How far a checkpoint is, without the state itself.
 struct CheckpointHeader {
@@ -54,6 +58,8 @@ class RunFiles final : public RunKeeper {
   /// "t = 1200, 3.4e7 contacts" that it goes on from; "the start".
   const std::string& goes_on_from() const { return from_; }
   std::uint64_t contacts_before() const { return contacts_before_; }
+  /// Whether all that was computed up to the end of the run is in its files.
+  bool up_to_date() const { return up_to_date_; }
 
   void add(Group&& rows) override;
   void tell(std::uint64_t contacts) override;
@@ -81,13 +87,14 @@ class RunFiles final : public RunKeeper {
   RunHeader header_;
   std::optional<JournalWriter> journal_;
   std::uint64_t records_ = 0, check_ = 0;
-  std::vector<std::string> unwritten_;  // records for which there was no room
+  std::deque<std::string> unwritten_;  // records for which there was no room
   std::unique_ptr<StateReader> state_;
   std::string over_, from_ = "the start";
   Exit over_status_ = Exit::done;
   std::uint64_t contacts_before_ = 0;  // made in earlier calls
 
   bool due_ = false, saved_here_ = false, complained_ = false;
+  bool up_to_date_ = false;      // the checkpoint, as of the last `keep` that was to write one
   std::uint64_t next_look_ = 0;  // contacts, when the clock is looked at again
   double seconds_before_ = 0;    // of computing, in earlier calls
   Clock::time_point started_ = Clock::now(), told_ = started_, saved_ = started_;

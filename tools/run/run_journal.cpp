@@ -7,7 +7,6 @@
 #include "cradle/tools/result/result_bytes.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/support/bytes.hpp"
-#include "cradle/tools/support/checksum.hpp"
 
 namespace cradle::tools {
 
@@ -81,7 +80,10 @@ void GrowingTables::add(Group&& rows) {
   std::vector<Column>& columns = tables_[at->second].columns;
   if (columns.size() != rows.columns.size()) refuse();
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (columns[k].values.index() != rows.columns[k].values.index()) refuse();
+    const Column &column = columns[k], &more_rows = rows.columns[k];
+    if (column.values.index() != more_rows.values.index() || column.width != more_rows.width ||
+        column.name != more_rows.name || more_rows.left_out != 0)
+      refuse();
     std::visit(
         [&]<class Values>(Values& values) {
           const Values& more = std::get<Values>(rows.columns[k].values);
@@ -112,9 +114,7 @@ RunJournal read_run_journal(const std::string& path, Reading reading) {
   GrowingTables tables(reading);
   try {
     journal.header = RunHeader::of(records.header());
-    journal.check = crc64(records.header());
-    for (std::string record; records.next(record); ++journal.records) {
-      journal.check = crc64(record);
+    for (std::string record; records.next(record);) {
       ByteReader bytes(record);
       if (bytes.integer() != status_kind) {
         for (Group& rows : rows_in(record)) tables.add(std::move(rows));
@@ -132,16 +132,17 @@ RunJournal read_run_journal(const std::string& path, Reading reading) {
   } catch (const Error& error) {
     throw Error(path + ": " + error.what(), Exit::io);
   }
-  journal.bytes = records.whole_bytes();
   journal.torn_bytes = records.torn_bytes();
   journal.tables = std::move(tables).in_order();
   return journal;
 }
 
-void for_each_piece(const std::string& path, const std::function<void(Group&& rows)>& each) {
+std::uint64_t for_each_piece(const std::string& path, const std::function<void(Group&& rows)>& each) {
   JournalReader records(path, JournalOf::run);
-  for (std::string record; records.next(record);)
+  std::uint64_t count = 0;
+  for (std::string record; records.next(record); ++count)
     for (Group& rows : rows_in(record)) each(std::move(rows));
+  return count;
 }
 
 Scene scene_of(const RunHeader& header, const std::string& path) {

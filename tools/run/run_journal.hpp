@@ -55,15 +55,13 @@ struct RunJournal {
   RunHeader header;
   std::vector<Group> tables;        // as far as they are recorded
   std::vector<RunStatus> statuses;  // one now and then, the latest at the end
-  std::uint64_t records = 0;        // after the header
-  std::uint64_t bytes = 0, torn_bytes = 0;
-  std::uint64_t check = 0;  // of the last record that was read
+  std::uint64_t torn_bytes = 0;     // at the end: not whole
 };
 
 /// Throws Error (Exit::io).
 RunJournal read_run_journal(const std::string& path, Reading reading = Reading::everything);
-/// Calls `each` with all rows, piece by piece.
-void for_each_piece(const std::string& path, const std::function<void(Group&& rows)>& each);
+/// Calls `each` with all rows, piece by piece. Returns how many records there are behind the header.
+std::uint64_t for_each_piece(const std::string& path, const std::function<void(Group&& rows)>& each);
 
 /// The scene that it is of. Throws Error naming the journal.
 Scene scene_of(const RunHeader& header, const std::string& path);

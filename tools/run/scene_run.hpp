@@ -68,6 +68,8 @@ template <Real T> class SceneRun {
                     self.guarded_at_, self.contact_before_);
   }
 
+  void loaded() const { require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone"); }
+
  private:
   static bool holds(const std::vector<T>& times, const T& time) {
     return std::binary_search(times.begin(), times.end(), time);
@@ -86,6 +88,7 @@ template <Real T> class SceneRun {
       throw Error(std::string("the checkpoint cannot be gone on with: ") + error.what(), Exit::io);
     }
     from.end();
+    progress_.go_on_from(to_double(engine_.last_contact_time()), engine_.counts().contacts);
   }
   std::string shape() const { return engine_.shape() + state_shape<SceneRun>(); }
 
@@ -254,6 +257,7 @@ template <Real T> class SceneRun {
     put_rows();
     std::vector<Group>& groups = end.result.groups;
     groups = std::move(tables_).in_order();
+    if (scene_.output.events) groups.push_back(events_.take());  // there also where there was no contact
     if (zone_) {
       const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single bodies
       const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);

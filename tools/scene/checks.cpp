@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -135,9 +136,12 @@ class Checks {
                     fmt::format("give a longer time, {:.0g} samples at most", most));
     };
     if (series.every) return check("output.series.every", *series.every, number(*series.every));
-    if (series.over && series.spacing == Spacing::linear)
-      check("output.series.over", *series.over,
-            (number(*series.over) - start) / bin_float(static_cast<std::int64_t>(*series.points - 1)));
+    if (!series.over) return;
+    const bin_float over = number(*series.over) - start, points(static_cast<std::int64_t>(*series.points - 1));
+    if (series.spacing == Spacing::linear) return check("output.series.over", *series.over, over / points);
+    // A six decades' share of them for each decade more.
+    const double decades = std::log10(static_cast<double>(bin_float(span / over)));
+    check("output.series.over", *series.over, span / (points * bin_float(1 + decades / 6)));
   }
 
  private:

@@ -41,6 +41,8 @@ class Progress {
 
   Progress(Show show, double start, double until);
 
+  /// The run has been there already.
+  void go_on_from(double time, std::uint64_t contacts) { last_time_ = time, last_contacts_ = contacts; }
   /// Cheap to call often: prints at most a few times a second on a terminal, every ten seconds elsewhere.
   void tell(double time, std::uint64_t contacts);
 

@@ -202,30 +202,44 @@ INSTANTIATE_TEST_SUITE_P(
 // ---- extended
 
 TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
-  for (const char* series : {"every = 3", "points = 21", "points = 60, spacing = 'log'", "times = [10, 20, 90]"}) {
-    for (const std::string& law : {wet, sticky,
-                                   std::string("law = { type = 'inelastic', restitution = 0.9, cutoff = "
-                                               "1e-3 }\n")}) {
-      SCOPED_TRACE(law + series);
-      const Scene scene =
-          parse_scene(law + rows + "output = { series = { " + series +
-                          " }, snapshots = [50], events = " + (law == sticky ? "false" : "true") + " }\n" + to_100,
-                      "scene.toml");
-      ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);
-      // Which is gone on with as any other.
-      if (go_on("later.h5", "130.5", {.looks = 2}, 1).end == RunEnd::interrupted) {
-        ASSERT_EQ(go_on("later.h5", std::nullopt, {}, 1).end, RunEnd::reached);
-      }
-      ASSERT_EQ(go_on("later.h5", "160", {}, 1).end, RunEnd::reached);
+  const std::string inelastic = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n";
+  const char* every[] = {"every = 0.7", "points = 21", "points = 60, spacing = 'log'", "times = [1, 2, 9]"};
+  for (const char* series : every) {
+    for (const std::string& law : {wet, sticky, inelastic}) {
+      for (const std::string& initial : {rows, general}) {
+        SCOPED_TRACE(law + initial + series);
+        const Scene scene = parse_scene(law + initial + "output = { series = { " + series + " }, snapshots = [5], " +
+                                            "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
+                                        "scene.toml");
+        ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);
+        // Which is gone on with as any other.
+        if (go_on("later.h5", "13.05", {.looks = 2}, 1).end == RunEnd::interrupted) {
+          ASSERT_EQ(go_on("later.h5", std::nullopt, {}, 1).end, RunEnd::reached);
+        }
+        ASSERT_EQ(go_on("later.h5", "60", {}, 1).end, RunEnd::reached);
 
-      const Result later = read_result(file("later.h5"));
-      const Scene as_written = scene_in(later.attributes, file("later.h5"));
-      EXPECT_EQ(as_written.run.until, Decimal("160"));
-      begin("alone.h5", as_written, {}, 1);
-      EXPECT_TRUE(contents(file("alone.h5")) == contents(file("later.h5"))) << "other bytes";
-      std::filesystem::remove(file("later.h5"));
+        const Result later = read_result(file("later.h5"));
+        const Scene as_written = scene_in(later.attributes, file("later.h5"));
+        EXPECT_EQ(as_written.run.until, Decimal("60"));
+        begin("alone.h5", as_written, {}, 1);
+        EXPECT_TRUE(contents(file("alone.h5")) == contents(file("later.h5"))) << "other bytes";
+        std::filesystem::remove(file("later.h5"));
+      }
     }
   }
+}
+
+// A run whose result could not be written is finished before it is extended: its last sample belongs to its end.
+TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
+  const Scene scene = parse_scene(dry(rows, ""), "scene.toml");
+  {
+    RunFiles files(file("a.h5"), scene);
+    Interrupt interrupt;
+    run_scene(scene, {Progress::Show::never, false, &interrupt, {}, &files});  // and then the machine stops
+  }
+  EXPECT_THROW(RunFiles(file("a.h5"), "200"), Error);
+  EXPECT_EQ(go_on("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);
+  EXPECT_EQ(go_on("a.h5", "120", {}, 1).end, RunEnd::reached);
 }
 
 }  // namespace resume_test

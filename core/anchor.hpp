@@ -2,6 +2,8 @@
 // Bodies whose flight is known, from which positions and velocities of the others are told: one that has not collided,
 // or the one at an end of a line, which is followed from contact to contact.
 
+#include <tuple>
+
 #include "cradle/core/bodies.hpp"
 #include "cradle/core/clock.hpp"
 

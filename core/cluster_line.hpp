@@ -6,6 +6,7 @@
 // When two bodies merge they go on in the left one's cell, and the right one's is vacated: links pass over it until the
 // chain is laid out anew. Bodies that pass exchange cells, so that cells stay in the order of the line.
 
+#include <tuple>
 #include <utility>
 
 #include "cradle/core/collision.hpp"

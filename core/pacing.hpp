@@ -89,11 +89,14 @@ template <Real T> struct Pacing {
     passed(contacts, active);
   }
 
-  // Whether it can be that of a run which has made so many contacts.
-  bool follows(std::uint64_t contacts) const {
+  // Whether it can be that of a run which has made so many contacts, the last one at the given local time and so long
+  // after the start, but for rounding.
+  bool follows(std::uint64_t contacts, const T& last_contact, const T& since_start) const {
     constexpr std::uint64_t most = std::uint64_t{1} << 62;
     return contacts < most && contacts_before <= contacts && contacts_at_move <= contacts && expected < most &&
-           is_finite(time_before) && is_finite(epoch) && is_finite(epoch_end) && !is_negative(epoch);
+           is_finite(since_start) && since_start > T(-1) && is_finite(last_contact) && is_finite(time_before) &&
+           is_finite(epoch) && is_finite(epoch_end) &&
+           (!in_epochs || (is_positive(epoch) && !(epoch_end < last_contact)));
   }
   static auto state(auto& self) {
     return std::tie(self.next_review, self.contacts_at_move, self.contacts_before, self.time_before, self.in_epochs,

@@ -22,6 +22,7 @@
 #include "cradle/core/pacing.hpp"
 #include "cradle/core/run.hpp"
 #include "cradle/core/standstill.hpp"
+#include "cradle/core/state.hpp"
 #include "cradle/core/ties.hpp"
 
 namespace cradle {
@@ -104,7 +105,6 @@ class Simulation {
     return true;
   }
   Status status() const { return status_; }
-
   const Chain& chain() const { return chain_; }
   const Account<T>& account() const { return chain_.account(); }
 
@@ -114,7 +114,6 @@ class Simulation {
   BodyIndex collided_bodies() const { return chain_.collided_bodies(); }
   T front_left(const T& time) const { return chain_.front_left(chain_.local_time(time)); }
   T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
-
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return chain_.energy_lost(); }
   // The start if there was no contact yet.
@@ -126,7 +125,8 @@ class Simulation {
     return std::tie(self.chain_, self.last_contact_, self.counts_, self.pacing_, self.standstill_, self.watch_);
   }
   void loaded() {
-    require_state(is_finite(last_contact_) && pacing_.follows(counts_.contacts), "times and counts"), release_queue();
+    const T since = last_contact_time() - chain_.start();
+    require_state(pacing_.follows(counts_.contacts, last_contact_, since), "times and counts"), release_queue();
   }
 
  private:
@@ -294,7 +294,7 @@ class Simulation {
   Status status_ = Status::reached;
 };
 
-template <class Law, class Chain> Simulation(Law, Chain) -> Simulation<typename Chain::Scalar, Law, Chain>;
-template <class Law, class Chain, Real T> Simulation(Law, Chain, Policy<T>) -> Simulation<T, Law, Chain>;
+template <class L, class C> Simulation(L, C) -> Simulation<typename C::Scalar, L, C>;
+template <class L, class C, Real T> Simulation(L, C, Policy<T>) -> Simulation<T, L, C>;
 
 }  // namespace cradle

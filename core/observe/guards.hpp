@@ -4,7 +4,7 @@
 //
 //   order      no two bodies have changed places (unless the run's account tells of it)
 //   past       the last contact is not later than the time looked at, nor earlier than the one before it
-//   energy     the sum over all bodies is what the ledger of losses leaves
+//   energy     the sum over all bodies is what the ledger of losses leaves, and no body has more than there was
 //   momentum   is what it was at the start
 //   closure    gaps and closing speeds add up to what the bodies at the ends of the line tell, or to the ring
 //
@@ -72,12 +72,15 @@ GuardLook<T> guarded(const Configuration<T>& c, const Bodies<T>& bodies, std::ui
   }
   const T start_energy = bodies.kinetic_energy(), mass = bodies.total_mass();
   const T rest = all ? T(0) : T(start_energy - twice_before.value() / T(2));
-  // Bodies all at rest by now were not.
-  if (fastest * fastest * mass < start_energy) fastest = fastest + T(1) + start_energy / mass;
   const T delta = T(8) * T(std::numeric_limits<T>::epsilon()) *
                   (T(static_cast<std::int64_t>(contacts)) + T(bodies.count()) + T(64));
-  const T of_speed = delta * fastest;
+  // No body has more than there was.
+  const T most = T(2) * start_energy * (T(1) + delta) / bodies.least_mass();
+  if (!(fastest * fastest <= most)) report(Guard::energy, T(fastest * fastest), most);
 
+  // Bodies all at rest by now were not.
+  if (fastest * fastest * mass < start_energy) fastest = fastest + T(1) + start_energy / mass;
+  const T of_speed = delta * fastest;
   const T off_energy = magnitude(T(rest + twice.value() / T(2) - energy)), of_energy = mass * of_speed * fastest;
   if (!(off_energy <= of_energy)) report(Guard::energy, off_energy, of_energy);
   const T off_momentum = magnitude(T(momentum.value() - (all ? bodies.momentum() : momentum_before.value())));

@@ -74,7 +74,6 @@ template <Real T> class SceneRun {
   static bool holds(const std::vector<T>& times, const T& time) {
     return std::binary_search(times.begin(), times.end(), time);
   }
-
   // ---- what is kept while the run goes on
 
   void load(StateReader& from) {
@@ -88,6 +87,11 @@ template <Real T> class SceneRun {
       throw Error(std::string("the checkpoint cannot be gone on with: ") + error.what(), Exit::io);
     }
     from.end();
+    // A state that is well formed may still be of no run, and would go on for ever.
+    const auto [guarded_at, last] = std::pair(guarded_at_, engine_.last_contact_time());
+    if (static_cast<std::uint64_t>(engine_.collided_bodies()) <= most_guarded)
+      look_at_all(looked_ && last < *looked_ ? *looked_ : last);
+    guarded_at_ = guarded_at;
     progress_.go_on_from(to_double(engine_.last_contact_time()), engine_.counts().contacts);
   }
   std::string shape() const { return engine_.shape() + state_shape<SceneRun>(); }
@@ -133,7 +137,6 @@ template <Real T> class SceneRun {
   }
 
   // ---- what is recorded
-
   void look(const T& time) {
     if (holds(plan_.series, time)) record_sample(time);
     const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
@@ -157,7 +160,10 @@ template <Real T> class SceneRun {
     const std::uint64_t contacts = engine_.counts().contacts;
     const auto active = static_cast<std::uint64_t>(std::max<BodyIndex>(engine_.collided_bodies(), 16));
     const std::uint64_t between = contacts_between_guards / (time < plan_.stops.back() ? 1 : 2);
-    if (contacts < guarded_at_ + between * active || active > most_guarded) return;
+    if (contacts >= guarded_at_ + between * active && active <= most_guarded) look_at_all(time);
+  }
+  void look_at_all(const T& time) {
+    const std::uint64_t contacts = engine_.counts().contacts;
     const Account<T>& account = engine_.account();
     const GuardLook<T> look =
         guarded(engine_.configuration(time), *bodies_, contacts, T(energy_ - engine_.energy_lost()),
@@ -175,7 +181,6 @@ template <Real T> class SceneRun {
     events_(c);
     if (options_.keeper != nullptr && events_.rows() >= most_rows) put(events_.take());
   }
-
   void record_profile(const Configuration<T>& now, const T& time) {
     const auto& wanted = scene_.output.profiles;
     const T elapsed = time - number<T>(scene_.run.start);
@@ -208,9 +213,7 @@ template <Real T> class SceneRun {
     put(snapshot_table(engine_.configuration(time), numbered("snapshots", snapshots_)));
   }
 
-  static std::string numbered(const char* folder, std::uint64_t& number) {
-    return fmt::format("{}/{:04}", folder, number++);
-  }
+  static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
 
   RunOutcome finish(Status status, const T& time) {
     const Counts& counts = engine_.counts();

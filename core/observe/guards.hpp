@@ -49,7 +49,9 @@ GuardLook<T> guarded(const Configuration<T>& c, const Bodies<T>& bodies, std::ui
   const auto report = [&](Guard guard, const T& found, const T& bound, BodyIndex body = -1) {
     if (!look.broken) look.broken = GuardReport<T>{guard, found, bound, body};
   };
-  if (!(last_contact <= c.time) || last_contact < contact_before)
+  // A time is stamped from an origin that moves, and rounded anew.
+  const T of_time = T(8) * T(std::numeric_limits<T>::epsilon()) * (magnitude(c.time) + magnitude(contact_before));
+  if (!(last_contact <= c.time + of_time) || last_contact < contact_before - of_time)
     report(Guard::past, last_contact, last_contact < contact_before ? contact_before : c.time);
 
   CompensatedSum<T> twice, momentum;

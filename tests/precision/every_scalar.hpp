@@ -46,6 +46,18 @@ using WidePrecision = testing::Types<Precision<double_double>
 #endif
                                      >;
 
+// One type of each kind of arithmetic, where EveryPrecision would take too long.
+using EachKindOfPrecision = testing::Types<Precision<double>, Precision<long double>, Precision<double_double>
+#ifdef CRADLE_WITH_FLOAT128
+                                           ,
+                                           Precision<float128>
+#endif
+#ifdef CRADLE_WITH_MPFR
+                                           ,
+                                           Precision<Mpfr<4>, 50>
+#endif
+                                           >;
+
 struct PrecisionName {
   template <class P> static std::string GetName(int) {
     std::string name(scalar_name<typename P::Scalar>);

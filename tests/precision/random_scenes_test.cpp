@@ -112,17 +112,7 @@ void check(const Law& law, const std::shared_ptr<const Bodies<T>>& bodies, const
 }
 
 template <class P> class RandomScenes : public InPrecision<P> {};
-using Types = testing::Types<Precision<double>, Precision<long double>, Precision<double_double>
-#ifdef CRADLE_WITH_FLOAT128
-                             ,
-                             Precision<float128>
-#endif
-#ifdef CRADLE_WITH_MPFR
-                             ,
-                             Precision<Mpfr<4>, 50>
-#endif
-                             >;
-TYPED_TEST_SUITE(RandomScenes, Types, PrecisionName);
+TYPED_TEST_SUITE(RandomScenes, EachKindOfPrecision, PrecisionName);
 
 TYPED_TEST(RandomScenes, InelasticInGaps) {
   using T = typename TestFixture::Scalar;

@@ -111,17 +111,9 @@ const std::string large_wet = "law = { type = 'wet', loss = 0.01 }\ninitial = { 
                               "perturbation = 0.1 }\n" +
                               large;
 
-class Resuming : public testing::Test {
+class Resuming : public cradle::tests::ProgramTest {
  protected:
-  Resuming() {
-    std::string name = (std::filesystem::temp_directory_path() / "cradle-test-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) folder_ = name;
-  }
-  ~Resuming() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  std::string file(const char* name) const { return (folder_ / name).string(); }
+  std::string file(const char* name) const { return (folder / name).string(); }
 
   // Returns how it ended; FILE is there if it did.
   static RunOutcome run(RunFiles& files, Stopping::At at, std::size_t threads) {
@@ -143,8 +135,6 @@ class Resuming : public testing::Test {
     RunFiles files(file(name), until);
     return run(files, at, threads);
   }
-
-  std::filesystem::path folder_;
 };
 
 class Resume : public Resuming, public testing::WithParamInterface<Case> {};

@@ -40,6 +40,7 @@ void add_theory(CommandLine& program);
 void add_scenes(CommandLine& program);
 void add_plot(CommandLine& program);
 void add_trust(CommandLine& program);
+void add_certify(CommandLine& program);
 void add_ensemble(CommandLine& program);
 void add_sweep(CommandLine& program);
 void add_merge(CommandLine& program);

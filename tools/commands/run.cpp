@@ -33,7 +33,7 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
                     : options.quiet  ? Progress::Show::never
                                      : Progress::Show::on_terminal;
   const Threads threads(options.threads);
-  RunOutcome end = run_scene(files.scene(), {show, false, &interrupt, workers(threads), &files});
+  RunOutcome end = run_scene(files.scene(), {show, nullptr, &interrupt, workers(threads), &files});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const std::string told = summary(end, files.contacts_before(), seconds);
   if (end.end == RunEnd::interrupted) {

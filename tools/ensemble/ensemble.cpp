@@ -20,7 +20,7 @@ struct Finished {
 Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options,
                      Interrupt& interrupt) {
   const RunOutcome run =
-      options.runner(replica_scene(ensemble.scene(), replica), {ProgressLine::Show::never, false, &interrupt});
+      options.runner(replica_scene(ensemble.scene(), replica), {ProgressLine::Show::never, nullptr, &interrupt});
   if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
   return {ensemble.layout().row(replica, run), ensemble.layout().values(run)};
 }

@@ -27,7 +27,8 @@ const Column& get(const Result& result, const std::string& group, const std::str
 }
 
 double at(const Numbers& values, std::size_t i) {
-  return std::visit([i](const auto& v) { return static_cast<double>(v[i]); }, values);
+  if (const auto* whole = std::get_if<std::vector<std::uint64_t>>(&values)) return static_cast<double>((*whole)[i]);
+  return std::get<std::vector<double>>(values)[i];
 }
 
 // How many samples a run took at planned times: all, unless it ended early; its last one is then where it ended.

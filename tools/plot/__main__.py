@@ -13,6 +13,7 @@ What is drawn follows from what the file holds, never from its name:
   scenarios  whether two clusters pass or stick; when shocks collapse: replicas of a sweep
   sweep      what depends on the parameter that was varied (Fig. 8)
   ensemble   means with their standard errors and extremes
+  certificate  of a proof: smallest gap, and how well places and gaps are known
   bodies     paths of a few bodies, and how their gaps or intervals shrink
 The first that applies goes to OUT (.png, .pdf or .svg; default FILE with .png), the others to OUT with -structure,
 -energy and so on before the extension.

@@ -4,6 +4,7 @@ import contextlib
 import os
 
 import bodies
+import certificate
 import clusters
 import cooling
 import energy
@@ -24,11 +25,12 @@ TOGETHER = (sticky, cooling, zone, clusters, shock, structure, energy)
 
 
 def pictures_of(result, theory, units):
-    """The main picture first."""
+    """The main picture first; a proof comes last."""
+    proof = certificate.pictures(result, theory, units)
     for kind in ALONE:
         if found := kind.pictures(result, theory, units):
-            return found
-    return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)]
+            return found + proof
+    return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + proof
 
 
 def make(file, base, extension, theory_file):

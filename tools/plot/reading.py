@@ -59,6 +59,7 @@ class Result:
     meetings: dict = field(default_factory=dict)
     events: dict = field(default_factory=dict)
     trust: list = field(default_factory=list)
+    certificate: dict = field(default_factory=dict)
     statistics: dict = field(default_factory=dict)
     profile_statistics: list = field(default_factory=list)
     replicas: dict = field(default_factory=dict)
@@ -119,6 +120,10 @@ def read_tree(root):
         result.zone = arrays(root["zone"]) | attributes(root["zone"])
     result.force, result.meetings = arrays(root.get("force", {})), arrays(root.get("meetings", {}))
     result.events = arrays(root.get("events", {}))
+    if "certificate" in root:
+        about = attributes(root["certificate"])
+        about["contacts_of_run"] = about.pop("contacts", 0)
+        result.certificate = about | arrays(root["certificate"])
     if ensemble is not None:
         result.statistics = statistics(ensemble.get("series", {}))
         result.profile_statistics = timed(ensemble, "profiles", statistics)

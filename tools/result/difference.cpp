@@ -19,6 +19,8 @@ bool same(double a, double b) {
 }
 bool same(std::uint64_t a, std::uint64_t b) { return a == b; }
 
+bool same(const std::string& a, const std::string& b) { return a == b; }
+
 // |a - b| against the larger of both; of infinities and of what is no number infinite.
 double relative(double a, double b) {
   if (a == b) return 0;
@@ -29,6 +31,10 @@ double relative(std::uint64_t a, std::uint64_t b) {
   return static_cast<double>(std::max(a, b) - std::min(a, b)) / static_cast<double>(std::max(a, b));
 }
 
+// Decimals of many digits are the same, or they are not.
+double relative(const std::string&, const std::string&) { return std::numeric_limits<double>::infinity(); }
+
+std::string size_of(const std::string&, const std::string&) { return ""; }
 std::string size_of(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return "";
   return fmt::format(" ({} ULPs, {:.2g} relative)", ulps_between(a, b), relative(a, b));
@@ -39,6 +45,7 @@ std::string size_of(std::uint64_t a, std::uint64_t b) {
 
 std::string shown(double value) { return fmt::format("{}", value); }
 std::string shown(std::uint64_t value) { return fmt::format("{}", value); }
+std::string shown(const std::string& value) { return value; }
 
 // The first line in which two texts differ.
 std::string first_line(std::string_view a, std::string_view b) {
@@ -82,7 +89,8 @@ class Comparison {
   void column(const std::string& where, const Column& a, const Column& b) {
     if (a.unit != b.unit) tell(where, fmt::format("unit \"{}\" against \"{}\"", a.unit, b.unit));
     if (a.description != b.description) tell(where, "description " + first_line(a.description, b.description));
-    if (a.values.index() != b.values.index()) return tell(where, "real numbers against whole ones");
+    if (a.values.index() != b.values.index())
+      return tell(where, "real numbers, whole ones or text against another of these");
     if (a.width != b.width) tell(where, fmt::format("{} numbers a row against {}", a.width, b.width));
     if (a.rows() != b.rows()) tell(where, fmt::format("{} rows against {}", a.rows(), b.rows()));
     if (a.width != b.width) return;
@@ -95,7 +103,7 @@ class Comparison {
  private:
   void tell(const std::string& where, const std::string& what) { found_.lines.push_back(where + ": " + what); }
 
-  template <class Number> bool differ(Number a, Number b) {
+  template <class Number> bool differ(const Number& a, const Number& b) {
     ++found_.numbers;
     if (same(a, b)) return false;
     if (rtol_ > 0 && relative(a, b) <= rtol_) {
@@ -135,7 +143,8 @@ class Comparison {
     if (!first) return;
     std::string line = fmt::format("first in row {}: {} against {}{}", *first / width, shown(a[*first]),
                                    shown(b[*first]), size_of(a[*first], b[*first]));
-    if (count > 1) line += fmt::format("; {} of {} numbers differ, by up to {:.2g} relative", count, both, largest);
+    if (count > 1) line += fmt::format("; {} of {} numbers differ", count, both);
+    if (count > 1 && std::isfinite(largest)) line += fmt::format(", by up to {:.2g} relative", largest);
     tell(where, line);
   }
 

@@ -45,6 +45,15 @@ inline Handle text_type(const std::string& path) {
   return type;
 }
 
+/// UTF-8 of so many bytes or less.
+inline Handle text_type(std::size_t bytes, const std::string& path) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, path + ": no text type");
+  check(H5Tset_size(type, bytes), path + ": no text type");
+  check(H5Tset_strpad(type, H5T_STR_NULLPAD), path + ": no text type");
+  check(H5Tset_cset(type, H5T_CSET_UTF8), path + ": no text type");
+  return type;
+}
+
 /// HDF5 prints a stack of its own messages; ours name the file and what to do.
 inline void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 

@@ -78,12 +78,14 @@ void check_size(const Source& source, hid_t data, hid_t type, hsize_t rows, hsiz
     throw source.wrong(where, "more numbers than the file can hold", fmt::format("{} x {}", rows, width));
 }
 
-template <class Number>
-std::vector<Number> numbers(const Source& source, hid_t data, hid_t memory, hsize_t rows, Column& column) {
+// All of it, or its first and last row; `per_value`: of what it is read into.
+template <class Values>
+Values values_of(const Source& source, hid_t data, hid_t memory, hsize_t rows, Column& column,
+                 std::size_t per_value = 1) {
   const std::string what = source.unreadable(column.name);
   const bool all = source.reading == Reading::everything || rows <= 2;
   const hsize_t size = (all ? rows : 2) * column.width;
-  std::vector<Number> values(size);
+  Values values(size * per_value, typename Values::value_type{});
   if (size == 0) return values;
   const Handle space(H5Dget_space(data), H5Sclose, what), flat(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
   if (!all) {
@@ -93,6 +95,22 @@ std::vector<Number> numbers(const Source& source, hid_t data, hid_t memory, hsiz
   }
   check(H5Dread(data, memory, flat, space, H5P_DEFAULT, values.data()), what);
   return values;
+}
+
+template <class Number>
+std::vector<Number> numbers(const Source& source, hid_t data, hid_t memory, hsize_t rows, Column& column) {
+  return values_of<std::vector<Number>>(source, data, memory, rows, column);
+}
+
+std::vector<std::string> texts(const Source& source, hid_t data, hid_t type, hsize_t rows, Column& column) {
+  const std::size_t bytes = H5Tget_size(type);
+  const auto all = values_of<std::string>(source, data, type, rows, column, bytes);
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < all.size(); at += bytes) {
+    const std::string text = all.substr(at, bytes);
+    texts.push_back(text.substr(0, text.find('\0')));
+  }
+  return texts;
 }
 
 }  // namespace
@@ -128,12 +146,14 @@ Column column(const Source& source, hid_t data, const std::string& name, const s
   }
   const Handle type(H5Dget_type(data), H5Tclose, source.unreadable(where));
   const H5T_class_t kind = H5Tget_class(type);
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT)
-    throw source.wrong(where, "a column is made of numbers", "another type");
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT && (kind != H5T_STRING || H5Tis_variable_str(type) != 0))
+    throw source.wrong(where, "a column is made of numbers or of texts as long as each other", "another type");
   const hsize_t rows = shape(source, data, where, column);
   check_size(source, data, type, rows, column.width, where);
   if (kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_NONE)
     column.values = numbers<std::uint64_t>(source, data, H5T_NATIVE_UINT64, rows, column);
+  else if (kind == H5T_STRING)
+    column.values = texts(source, data, type, rows, column);
   else
     column.values = numbers<double>(source, data, H5T_NATIVE_DOUBLE, rows, column);
   return column;

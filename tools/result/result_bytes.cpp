@@ -6,8 +6,9 @@ namespace cradle::tools {
 
 namespace {
 
-// Of values, as bytes name them.
+// Of values, as bytes name them; those of columns in the order of Numbers.
 constexpr std::uint64_t text_kind = 0, real_kind = 1, whole_kind = 2;
+constexpr std::uint64_t kinds_of_columns[] = {real_kind, whole_kind, text_kind};
 
 void put(ByteWriter& bytes, const std::vector<Attribute>& attributes) {
   bytes.put(std::uint64_t{attributes.size()});
@@ -37,7 +38,7 @@ std::vector<Attribute> attributes_in(ByteReader& bytes) {
 
 void put(ByteWriter& bytes, const Column& column) {
   bytes.put(column.name).put(column.unit).put(column.description);
-  bytes.put(std::uint64_t{column.width}).put(column.left_out).put(column.values.index() == 0 ? real_kind : whole_kind);
+  bytes.put(std::uint64_t{column.width}).put(column.left_out).put(kinds_of_columns[column.values.index()]);
   std::visit([&](const auto& values) { bytes.put(values); }, column.values);
 }
 
@@ -45,10 +46,16 @@ Column column_in(ByteReader& bytes) {
   Column column{bytes.text(), bytes.text(), bytes.text(), {}};
   column.width = bytes.integer();
   column.left_out = bytes.integer();
-  if (bytes.integer() == real_kind)
+  switch (bytes.integer()) {
+  case text_kind:
+    column.values = bytes.texts();
+    break;
+  case real_kind:
     column.values = bytes.numbers<double>();
-  else
+    break;
+  default:
     column.values = bytes.numbers<std::uint64_t>();
+  }
   const std::size_t numbers = std::visit([](const auto& values) { return values.size(); }, column.values);
   if (column.width == 0 || numbers % column.width != 0)
     throw Error({{}, 0, column.name}, "rows that are not whole", "", "use the program that wrote them", Exit::io);

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -49,6 +50,19 @@ void write_attribute(hid_t object, const Attribute& attribute) {
   }
 }
 
+// Of text, all as long as the longest: what is laid out in the file does not depend on what else is in it.
+using Texts = std::vector<std::string>;
+std::size_t longest(const Texts& texts) {
+  std::size_t bytes = 1;
+  for (const std::string& text : texts) bytes = std::max(bytes, text.size());
+  return bytes;
+}
+std::string padded(const Texts& texts, std::size_t bytes) {
+  std::string all;
+  for (const std::string& text : texts) (all += text).append(bytes - text.size(), '\0');
+  return all;
+}
+
 // When a column's place in the file is chosen: with its first rows, or, where these come in an order that differs from
 // run to run, at once.
 enum class Placed { when_written, at_once };
@@ -59,10 +73,13 @@ Handle make_column(hid_t group, const Column& column, std::uint64_t rows, Placed
   const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, no_room);
   const Handle list = properties(H5P_DATASET_CREATE);
   if (placed == Placed::at_once) check(H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY), no_room);
-  const bool real = std::holds_alternative<std::vector<double>>(column.values);
-  return {H5Dcreate2(group, column.name.c_str(), real ? H5T_IEEE_F64LE : H5T_STD_U64LE, space, H5P_DEFAULT, list,
-                     H5P_DEFAULT),
-          H5Dclose, no_room};
+  const auto make = [&](hid_t type) {
+    return Handle(H5Dcreate2(group, column.name.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose,
+                  no_room);
+  };
+  if (const auto* texts = std::get_if<Texts>(&column.values))
+    return make(hdf5::text_type(longest(*texts), column.name));
+  return make(std::holds_alternative<std::vector<double>>(column.values) ? H5T_IEEE_F64LE : H5T_STD_U64LE);
 }
 
 // The column's rows, from the given one of the dataset on.
@@ -73,10 +90,17 @@ void write_rows(hid_t data, const Column& column, std::uint64_t from) {
   const Handle in_file(H5Dget_space(data), H5Sclose, no_room),
       in_memory(H5Screate_simple(rank, shape, nullptr), H5Sclose, no_room);
   check(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, nullptr, shape, nullptr), no_room);
-  const hid_t type = std::holds_alternative<std::vector<double>>(column.values) ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT64;
-  std::visit(
-      [&](const auto& values) { check(H5Dwrite(data, type, in_memory, in_file, H5P_DEFAULT, values.data()), no_room); },
-      column.values);
+  const auto write = [&](hid_t type, const void* values) {
+    check(H5Dwrite(data, type, in_memory, in_file, H5P_DEFAULT, values), no_room);
+  };
+  if (const auto* texts = std::get_if<Texts>(&column.values)) {
+    const std::size_t bytes = longest(*texts);
+    write(hdf5::text_type(bytes, column.name), padded(*texts, bytes).data());
+  } else if (const auto* reals = std::get_if<std::vector<double>>(&column.values)) {
+    write(H5T_NATIVE_DOUBLE, reals->data());
+  } else {
+    write(H5T_NATIVE_UINT64, std::get<std::vector<std::uint64_t>>(column.values).data());
+  }
 }
 
 void write_column(hid_t group, const Column& column) {

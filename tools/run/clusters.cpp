@@ -131,7 +131,7 @@ Group meetings_table(const std::vector<theory::ClusterMeeting>& meetings) {
 }  // namespace
 
 RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
-  if (options.trace)
+  if (options.witness != nullptr)
     throw Error({"", 0, "initial.type"}, "no contacts to compare", "clusters, a model", "give a scene of bodies");
   const auto zone = zone_of(scene);
   Motion motion = motion_of(scene, zone);

@@ -22,6 +22,20 @@ namespace {
 
 }  // namespace
 
+RunEnd end_of(Status status, bool order_lost) {
+  switch (status) {
+  case Status::reached:
+    break;
+  case Status::collapsed:
+    return RunEnd::collapsed;
+  case Status::exhausted:
+    return RunEnd::exhausted;
+  case Status::interrupted:
+    return RunEnd::interrupted;
+  }
+  return order_lost ? RunEnd::order_lost : RunEnd::reached;
+}
+
 std::string end_text(RunEnd end) {
   switch (end) {
   case RunEnd::reached:

@@ -9,6 +9,7 @@
 #include "cradle/core/workers.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/keeper.hpp"
+#include "cradle/tools/run/witness.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/errors.hpp"
 #include "cradle/tools/support/interrupt.hpp"
@@ -18,22 +19,16 @@ namespace cradle::tools {
 
 /// How a run ended.
 enum class RunEnd { reached, collapsed, order_lost, exhausted, interrupted };
+/// Of a run that the engine has ended so; `order_lost`: by its account.
+RunEnd end_of(Status status, bool order_lost);
 /// As results say it: "reached the end".
 std::string end_text(RunEnd end);
 /// With which status a program ends whose run ended so.
 Exit status_of_end(RunEnd end);
 
-/// One sample of a run that is compared with others: what they must agree in, numbers with all their digits.
-struct TraceSample {
-  double time = 0;
-  std::uint64_t digest = 0;  // of the contacts so far, see core/observe/trace.hpp
-  std::uint64_t contacts = 0, merges = 0;
-  std::string energy, front;  // front: the right one, empty before the first contact
-};
-
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
-  bool trace = false;              // take trace samples at the times of the series
+  Witness* witness = nullptr;      // is told of every contact
   Interrupt* interrupt = nullptr;  // asked now and then whether to stop; heeded once there is something to keep
   Workers workers = {};            // for a run that is cut into segments
   RunKeeper* keeper = nullptr;     // puts what is recorded where it is safe; without one it comes back in the result
@@ -44,7 +39,6 @@ struct RunOutcome {
   RunEnd end = RunEnd::reached;
   std::string report;   // of a collapse, for standard output; else empty
   std::string warning;  // what was not resolved, for standard error; else empty
-  std::vector<TraceSample> trace;
   std::string collapse_time;               // where the run stopped at a collapse
   std::uint64_t contacts = 0, merges = 0;  // at the end, as are time and energy
   double time = 0, energy = 0;

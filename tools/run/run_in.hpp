@@ -68,7 +68,7 @@ template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& optio
   const auto bodies = initial_bodies<T>(scene);
   Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
   const auto engine = engine_of<T>(scene, bodies, policy_of<T>(scene, options, progress), options.workers,
-                                   scene.output.events || options.trace);
+                                   scene.output.events || options.witness != nullptr);
   return SceneRun<T>(scene, bodies, *engine, options, progress)();
 }
 

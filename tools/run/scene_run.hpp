@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "cradle/core/observe/guards.hpp"
-#include "cradle/core/observe/trace.hpp"
 #include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/recorder.hpp"
 #include "cradle/tools/run/report.hpp"
@@ -45,7 +44,11 @@ template <Real T> class SceneRun {
         if (record) record(c);
         scenario_.contact(c.left, c.right, to_double(T(c.time.value())), engine_.counts().merges);
       };
-    if (options_.trace) observer_ = [this](const Contact<T>& c) { trace_.contact(c.left, c.right); };
+    if (options_.witness != nullptr)
+      observer_ = [this, record = std::move(observer_)](const Contact<T>& c) {
+        if (record) record(c);
+        options_.witness->contact(c.left, c.right, to_double(T(c.time.value())));
+      };
     if (options_.keeper != nullptr && options_.keeper->loaded_from() != nullptr) load(*options_.keeper->loaded_from());
     Status status = Status::reached;
     for (const T& stop : plan_.stops) {
@@ -150,6 +153,7 @@ template <Real T> class SceneRun {
     }
     guard(time);
     looked_ = time;
+    if (options_.witness != nullptr) tell_witness(time, false);
     if (options_.keeper == nullptr) return;
     options_.keeper->look();
     if (options_.keeper->due() || series_.rows() >= most_rows) keep(time, false);
@@ -202,13 +206,17 @@ template <Real T> class SceneRun {
       if (scene_.output.scenario)
         scenario_.look(seen, to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
     }
-    if (options_.trace)
-      trace_samples_.push_back({to_double(time), trace_.digest(), now.counts.contacts, now.counts.merges,
-                                to_text(now.energy), now.front_right ? to_text(*now.front_right) : std::string()});
   }
 
+  void tell_witness(const T& time, bool at_contact) {
+    const Sample<T> now = sample(engine_, energy_, time);
+    options_.witness->look({to_double(time), to_text(time), holds(plan_.series, time), holds(plan_.snapshots, time),
+                            at_contact, now.counts, to_text(now.energy),
+                            now.front_right ? to_text(*now.front_right) : std::string()});
+  }
   // A run that ends early leaves its last state.
   void record_end(const T& time) {
+    if (options_.witness != nullptr) tell_witness(time, true);
     record_sample(time);
     put(snapshot_table(engine_.configuration(time), numbered("snapshots", snapshots_)));
   }
@@ -218,7 +226,7 @@ template <Real T> class SceneRun {
   RunOutcome finish(Status status, const T& time) {
     const Counts& counts = engine_.counts();
     RunOutcome end;
-    end.end = end_of(status);
+    end.end = end_of(status, engine_.account().order_lost > 0);
     end.contacts = counts.contacts;
     end.merges = counts.merges;
     end.time = to_double(time);
@@ -238,29 +246,15 @@ template <Real T> class SceneRun {
       end.collapse_time = collapse.time.digits;
       end.result.groups.push_back(collapse_table(collapse));
     }
-    end.trace = std::move(trace_samples_);
     return end;
-  }
-
-  RunEnd end_of(Status status) const {
-    switch (status) {
-    case Status::reached:
-      break;
-    case Status::collapsed:
-      return RunEnd::collapsed;
-    case Status::exhausted:
-      return RunEnd::exhausted;
-    case Status::interrupted:
-      return RunEnd::interrupted;
-    }
-    return engine_.account().order_lost > 0 ? RunEnd::order_lost : RunEnd::reached;
   }
 
   void put_tables(RunOutcome& end) {
     put_rows();
     std::vector<Group>& groups = end.result.groups;
     groups = std::move(tables_).in_order();
-    if (scene_.output.events) groups.push_back(events_.take());  // there also where there was no contact
+    // There also where there was no contact.
+    if (scene_.output.events && options_.keeper != nullptr) groups.push_back(events_.take());
     if (zone_) {
       const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single bodies
       const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);
@@ -288,8 +282,6 @@ template <Real T> class SceneRun {
   std::optional<ZoneAverage> zone_;
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
-  Trace trace_;
-  std::vector<TraceSample> trace_samples_;
   Observer<T> observer_;
   std::uint64_t guarded_at_ = 0;  // contacts made, at the last look at all bodies, and the time of the last of them
   T contact_before_;

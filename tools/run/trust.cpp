@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "cradle/core/observe/trace.hpp"
 #include "cradle/core/real.hpp"
 #include "cradle/precision/bin_float.hpp"
+#include "cradle/tools/certify/certify.hpp"
 
 namespace cradle::tools {
 
@@ -15,9 +17,32 @@ namespace {
 
 constexpr double most_digits = 100;  // to which numbers are compared
 
+// One sample of a run that is compared with others: what they must agree in.
+struct TraceSample {
+  double time = 0;
+  std::uint64_t digest = 0;  // of the contacts so far, see core/observe/trace.hpp
+  std::uint64_t contacts = 0, merges = 0;
+  std::string energy, front;
+};
+
+class TraceWitness final : public Witness {
+ public:
+  void contact(BodyIndex left, BodyIndex right, double) override { trace_.contact(left, right); }
+  void look(const RunLook& look) override {
+    if (look.of_series || look.at_contact)
+      samples.push_back(
+          {look.time, trace_.digest(), look.counts.contacts, look.counts.merges, look.energy, look.front_right});
+  }
+  std::vector<TraceSample> samples;
+
+ private:
+  Trace trace_;
+};
+
 struct Traced {
   Scene scene;
   RunOutcome outcome;
+  std::vector<TraceSample> trace;
   double seconds;
 };
 
@@ -31,13 +56,17 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
   return scene;
 }
 
+unsigned digits_of(const Run& run) { return run.precision == Precision::mpfr ? static_cast<unsigned>(run.digits) : 31; }
+
 Traced traced(const Scene& scene, const TrustOptions& options) {
   const auto started = std::chrono::steady_clock::now();
-  RunOutcome outcome = run_scene(scene, {options.progress, true, options.interrupt});
+  TraceWitness witness;
+  RunOutcome outcome = run_scene(scene, {options.progress, &witness, options.interrupt});
   if (outcome.end == RunEnd::interrupted)
     throw Error({}, "interrupted", "", "run it again; nothing is kept of comparisons that did not finish",
                 status_of_signal(options.interrupt->signal()));
-  return {scene, std::move(outcome), std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
+  return {scene, std::move(outcome), std::move(witness.samples),
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
 }
 
 // Decimal digits that two numbers share: -log10 of their difference against their size or, where that is given,
@@ -61,7 +90,7 @@ template <class Same> std::size_t agreeing(std::size_t samples, Same same) {
 }
 
 Trusted compare(const Traced& run, const Traced& reference) {
-  const auto &a = run.outcome.trace, &b = reference.outcome.trace;
+  const auto &a = run.trace, &b = reference.trace;
   Trusted trusted;
   trusted.precision = precision_name(run.scene.run);
   trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
@@ -89,6 +118,57 @@ bool agree(const Traced& a, const Traced& b) {
   return t.to_end && *std::min_element(t.energy_digits.begin(), t.energy_digits.end()) >= 15;
 }
 
+// The sequence of contacts that is proved, as far as it is.
+struct ProvedTrace {
+  std::vector<TraceSample> samples;
+  bool to_end = false;
+};
+
+class TracedCertifier final : public Certifier {
+ public:
+  TracedCertifier(std::unique_ptr<Certifier> proof, std::vector<TraceSample>& samples)
+      : proof_(std::move(proof)), samples_(samples) {
+    samples_.clear();
+  }
+  void contact(BodyIndex left, BodyIndex right, double time) override {
+    proof_->contact(left, right, time);
+    trace_.contact(left, right, time);
+  }
+  void look(const RunLook& look) override {
+    proof_->look(look);
+    trace_.look(look);
+    if (samples_.size() < trace_.samples.size()) samples_.push_back(trace_.samples.back());
+  }
+  Certificate certificate() const override { return proof_->certificate(); }
+
+ private:
+  std::unique_ptr<Certifier> proof_;
+  TraceWitness trace_;
+  std::vector<TraceSample>& samples_;
+};
+
+// In long runs with no more digits than the reference has: more would take longer than all the others together.
+ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const TrustOptions& options) {
+  constexpr std::uint64_t few = 1'000'000;
+  const unsigned most = reference.outcome.contacts < few ? 1000 : digits_of(reference.scene.run);
+  ProvedTrace proof;
+  CertifyOptions how{rising_digits(), options.progress, options.interrupt, {}};
+  std::erase_if(how.digits, [&](unsigned digits) { return digits > std::max(most, 31U); });
+  how.make = [&](const Scene& of, unsigned digits) {
+    return std::make_unique<TracedCertifier>(certifier(of, digits), proof.samples);
+  };
+  proof.to_end = certify(at_digits(scene, 16, Coordinates::gaps), how).proved();
+  return proof;
+}
+
+void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& proof) {
+  const std::size_t samples = std::min(run.trace.size(), proof.samples.size());
+  std::size_t same = 0;
+  while (same < samples && run.trace[same].digest == proof.samples[same].digest) ++same;
+  if (same > 0) trusted.proved_time = run.trace[same - 1].time;
+  trusted.proved_to_end = proof.to_end && same == run.trace.size() && same == proof.samples.size();
+}
+
 }  // namespace
 
 std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
@@ -107,30 +187,39 @@ std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
       if (runs.size() > 2 * step && agree(runs[runs.size() - 1 - step], runs.back())) break;
     }
   }
+  const ProvedTrace proof = proved_trace(scene, runs.back(), options);
   std::vector<Trusted> table;
-  for (const auto& run : runs) table.push_back(compare(run, runs.back()));
+  for (const auto& run : runs) {
+    table.push_back(compare(run, runs.back()));
+    compare_with_proof(table.back(), run, proof);
+  }
   return table;
 }
 
 std::string trust_table(const std::vector<Trusted>& runs) {
   const auto digits = [](double d) { return d >= most_digits ? std::string("all") : fmt::format("{:.1f}", d); };
   std::string text =
-      fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13}{:>10}{:>10}{:>9}{:>9}\n", "precision", "in", "contacts right until t",
-                  "contact", "counts until", "energy", "front", "t_c", "seconds");
+      fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13}{:>10}{:>10}{:>9}{:>9}{:>16}\n", "precision", "in",
+                  "contacts right until t", "contact", "counts until", "energy", "front", "t_c", "seconds", "proved");
   for (const auto& run : runs) {
     const bool reference = &run == &runs.back();
     const auto last = [&](const std::vector<double>& d) { return d.empty() ? std::string("-") : digits(d.back()); };
+    const auto proved = run.proved_to_end     ? std::string("to the end")
+                        : run.proved_time > 0 ? fmt::format("until {:.8g}", run.proved_time)
+                                              : "-";
     const auto upto = reference    ? std::string("(reference)")
                       : run.to_end ? fmt::format("{:.8g} (end)", run.time)
                                    : fmt::format("{:.8g}", run.time);
-    text += fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13.8g}{:>10}{:>10}{:>9}{:>9.2f}\n", run.precision, run.coordinates,
-                        upto, run.contacts, run.counts_time, last(run.energy_digits), last(run.front_digits),
-                        run.collapse_digits < 0 ? "-" : digits(run.collapse_digits), run.seconds);
+    text += fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13.8g}{:>10}{:>10}{:>9}{:>9.2f}{:>16}\n", run.precision,
+                        run.coordinates, upto, run.contacts, run.counts_time, last(run.energy_digits),
+                        last(run.front_digits), run.collapse_digits < 0 ? "-" : digits(run.collapse_digits),
+                        run.seconds, proved);
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of contacts at every body as the "
           "reference.\n"
           "energy (against that at the start), front: digits shared with the reference at the last sample; t_c: of the "
-          "collapse time.\n";
+          "collapse time.\nproved: until when these contacts are proved to be those of the exact system (cradle "
+          "certify).\n";
   return text;
 }
 
@@ -145,7 +234,9 @@ Result trust_result(const Scene& scene, const std::vector<Trusted>& runs) {
                         {"contacts_right_until", run.time},
                         {"contacts_right", run.contacts},
                         {"counts_right_until", run.counts_time},
-                        {"right_to_end", std::uint64_t{run.to_end}}};
+                        {"right_to_end", std::uint64_t{run.to_end}},
+                        {"proved_until", run.proved_time},
+                        {"proved_to_end", std::uint64_t{run.proved_to_end}}};
     group.columns = {{"time", "t", "of the sample", run.times},
                      {"energy_digits", "1",
                       "decimal digits shared with the reference, the last run here, against the energy at the start",

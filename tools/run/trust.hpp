@@ -19,6 +19,9 @@ struct Trusted {
   double time = 0;
   std::uint64_t contacts = 0;
   bool to_end = false;
+  /// Up to this sample that sequence is proved (certify), in a scene of which a proof exists; -1: nowhere.
+  double proved_time = -1;
+  bool proved_to_end = false;
   /// Counts (contacts, merges) right up to this time.
   double counts_time = 0;
   /// Per sample: decimal digits to which energy and right front agree with the reference.

@@ -43,6 +43,11 @@ class ByteWriter {
     bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T));
     return *this;
   }
+  ByteWriter& put(const std::vector<std::string>& texts) {
+    put(std::uint64_t{texts.size()});
+    for (const std::string& text : texts) put(text);
+    return *this;
+  }
   const std::string& bytes() const& { return bytes_; }
   std::string bytes() && { return std::move(bytes_); }
 
@@ -68,6 +73,11 @@ class ByteReader {
     const std::string_view bytes = take(size * sizeof(T));
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
     return values;
+  }
+  std::vector<std::string> texts() {
+    std::vector<std::string> texts;
+    for (std::uint64_t left = integer(); left > 0; --left) texts.push_back(text());
+    return texts;
   }
   bool empty() const { return bytes_.empty(); }
 

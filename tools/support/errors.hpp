@@ -17,7 +17,7 @@ enum class Exit : int {
   bad_input = 2,      // the scene or the command line
   collapse = 3,       // stopped at inelastic collapse (policy `stop`)
   io = 4,             // a file could not be read or written
-  lost = 5,           // resolution or order lost, or a replica failed
+  lost = 5,           // resolution or order lost, a replica failed, or a proof is undecided
   interrupted = 130,  // SIGINT
   terminated = 143,   // SIGTERM, SIGUSR1, SIGHUP
 };

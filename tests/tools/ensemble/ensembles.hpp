@@ -101,8 +101,14 @@ class Ensembles : public ProgramTest {
     throw std::out_of_range(std::string(group).append("/").append(name));
   }
   static std::vector<double> numbers(const Result& result, std::string_view group, std::string_view name) {
-    return std::visit([](const auto& v) { return std::vector<double>(v.begin(), v.end()); },
-                      column(result, group, name).values);
+    return std::visit(
+        [](const auto& v) -> std::vector<double> {
+          if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::vector<std::string>>)
+            return {};
+          else
+            return {v.begin(), v.end()};
+        },
+        column(result, group, name).values);
   }
 };
 

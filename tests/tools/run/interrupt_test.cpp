@@ -31,7 +31,7 @@ TEST(Interrupts, EndARunWithItsLastState) {
     std::string text = shock;
     if (*law) text.replace(0, text.find('\n') + 1, law);
     const auto scene = tools::parse_scene(text, "s.toml");
-    const auto run = tools::run_scene(scene, {tools::Progress::Show::never, false, &interrupt});
+    const auto run = tools::run_scene(scene, {tools::Progress::Show::never, nullptr, &interrupt});
     EXPECT_EQ(run.end, RunEnd::interrupted) << law;
     EXPECT_TRUE(interrupt.heeded());
     EXPECT_LE(run.time, 400);
@@ -44,7 +44,7 @@ TEST(Interrupts, EndARunWithItsLastState) {
 TEST(Interrupts, OnesThatDoNotComeChangeNothing) {
   Interrupt interrupt;
   const auto scene = tools::parse_scene(shock, "s.toml");
-  const auto asked = tools::run_scene(scene, {tools::Progress::Show::never, false, &interrupt});
+  const auto asked = tools::run_scene(scene, {tools::Progress::Show::never, nullptr, &interrupt});
   const auto alone = tools::run_scene(scene, {tools::Progress::Show::never});
   EXPECT_EQ(asked.result.find("series")->columns[1].values, alone.result.find("series")->columns[1].values);
   EXPECT_EQ(asked.result.attributes, alone.result.attributes);

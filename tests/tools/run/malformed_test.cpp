@@ -128,12 +128,12 @@ class MalformedFiles : public ProgramTest {
       Interrupt& interrupt_;
       int looks_ = 0;
     } keeper(files, interrupt);
-    ASSERT_EQ(run_scene(scene, {Progress::Show::never, false, &interrupt, {}, &keeper}).end, RunEnd::interrupted);
+    ASSERT_EQ(run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &keeper}).end, RunEnd::interrupted);
   }
   static void go_on(const std::string& file) {
     RunFiles files(file, std::nullopt);
     Interrupt interrupt;
-    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, false, &interrupt, {}, &files});
+    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, {}, &files});
     files.finish(std::move(end.result), end.end);
   }
 

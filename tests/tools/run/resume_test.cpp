@@ -121,7 +121,7 @@ class Resuming : public cradle::tests::ProgramTest {
     Stopping keeper(files, interrupt, at);
     cradle::Workers workers;  // one after the other, as many as asked for
     workers.count = threads;
-    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, false, &interrupt, workers, &keeper});
+    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, workers, &keeper});
     if (end.end != RunEnd::interrupted) files.finish(std::move(end.result), end.end);
     return end;
   }
@@ -225,7 +225,7 @@ TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
   {
     RunFiles files(file("a.h5"), scene);
     Interrupt interrupt;
-    run_scene(scene, {Progress::Show::never, false, &interrupt, {}, &files});  // and then the machine stops
+    run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &files});  // and then the machine stops
   }
   EXPECT_THROW(RunFiles(file("a.h5"), "200"), Error);
   EXPECT_EQ(go_on("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);

@@ -1,0 +1,260 @@
+#pragma once
+// A proof that a run is right. Given the contacts of a run one by one, as pairs of neighbours, the checker computes the
+// world lines of all bodies from the scene's own decimals, every number enclosed (precision/ball.hpp), and checks what
+// makes them the motion of the exact system. It shares no arithmetic with the engine that proposes the contacts.
+//
+// World lines. Body k flies along x = a_k + v_k t, t since the start, until its next contact. Two bodies l, r meet at
+// T = (a_r - a_l)/w, w = v_l - v_r, and whatever impulse J they exchange,
+//
+//   (a, v)_l' = (a, v)_l - c_l ((a, v)_l - (a, v)_r),   (a, v)_r' = (a, v)_r + c_r ((a, v)_l - (a, v)_r),
+//
+// c_l = J/(m_l w), c_r = J/(m_r w): one linear map for places and velocities, since both lines go through the same
+// point. The time T does not enter. For identical bodies c = (1 + eps)/2: the matrix is doubly stochastic, radii are
+// averaged and only roundings add to them. Merging is an average too.
+//
+// Checked at the start: every gap is certainly positive. At each contact of l and r:
+//   1. they are neighbours;
+//   2. w > 0 certainly;
+//   3. T is certainly later than the last contact of either of them;
+//   4. w is certainly on one side of every threshold of the law.
+// At a time t to which the run is to be proved: every gap is certainly positive then, and the last contact of every
+// body certainly earlier.
+//
+// Theorem. If all of this holds, these world lines are the motion of the exact system up to t, it has made exactly
+// these contacts, and every place and velocity lies in its ball. Proof. By 3 the contacts of each body are in the order
+// of their true times, so its world line is a continuous, piecewise linear function of time. Impulses push apart (J >=
+// 0, with 2): a contact on the left of body k makes it faster, one on its right slower. So between two contacts of a
+// gap with itself, the place of the body on its left is a convex function of time and that of the body on its right a
+// concave one, and the gap is concave. It is 0 at its own contacts and positive at the start and at t. A concave
+// function that is 0 or positive at both ends of an interval is positive within, unless it is 0 throughout; and that it
+// is not: after a contact it opens at the speed w' > 0. So no gap is ever negative, and each is 0 at its contacts
+// alone: no contact is missing, none invented, each obeyed the law (2, 4). Three bodies never meet at one time (3), so
+// the motion is unique. Contacts that share no body may come in any order.
+//
+// With a restitution of 0, w' = 0: bodies stay together until one of them is hit, and the next contact fails 2. Bodies
+// that merge have no gap any more. Bodies that pass change places, and their gap is one of cells in the order of the
+// line, as it is in the engine. On a ring the argument holds for the images. Bodies of a row that no contact has
+// reached fly in order, by how they were placed (rows.hpp).
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "cradle/core/certify/certain_law.hpp"
+#include "cradle/core/certify/world_lines.hpp"
+
+namespace cradle {
+
+enum class Check { at_start, neighbours, closing, later, side, gap, before, counts };
+
+// Where a proof ends: two quantities of which the first should be less, or on one side of the second.
+template <Enclosing N> struct Doubt {
+  Check check = Check::at_start;
+  bool refuted = false;  // it is certain that it is not so; else it is open
+  BodyIndex left = -1, right = -1;
+  N first{0}, second{0};
+};
+
+// What is certain at a time.
+template <Enclosing N> struct CertainState {
+  std::optional<Doubt<N>> doubt;
+  N energy{0};
+  std::optional<N> front_left, front_right;  // places of the outermost bodies that have collided, on a line
+  // In powers of ten: the largest radius of a place, the smallest gap, the largest radius of one against itself.
+  double widest = nothing, least_gap = -nothing, widest_of_gap = nothing;
+  static constexpr double nothing = -std::numeric_limits<double>::infinity();
+};
+
+template <Enclosing N> class Checker {
+ public:
+  using Share = typename N::Share;
+  using Line = WorldLine<N>;
+
+  Checker(std::shared_ptr<const Bodies<N>> bodies, const CertainLaw<N>& law)
+      : laws_(law), lines_(std::move(bodies), !law.bounces_only()), length_(lines_.bodies().circumference()),
+        half_(N(1) / N(2)), of_contacts_(law.kind == CertainLaw<N>::Kind::wet) {}
+
+  // The bodies at the start.
+  std::optional<Doubt<N>> begin() const { return state_at(N(0)).doubt; }
+
+  // The next contact of the run. Where it is in doubt, nothing is changed.
+  std::optional<Doubt<N>> contact(BodyIndex left, BodyIndex right) {
+    if (!lines_.holds(left) || !lines_.holds(right)) return Doubt<N>{Check::neighbours, true, left, right};
+    const BodyIndex l = lines_.cluster(left), r = lines_.cluster(right);
+    if (lines_.right(l) != r || l == r) return Doubt<N>{Check::neighbours, true, left, right};
+    lines_.reach(l, r);
+    auto doubt = strike(l, r);
+    if (doubt) doubt->left = left, doubt->right = right;
+    return doubt;
+  }
+
+  // All that is certain at a time since the start, up to which the run has made all contacts.
+  CertainState<N> state_at(const N& time) const { return state_at(time, {}); }
+  // At the last contact, of a run that ends with it: the two that have met are in one place.
+  CertainState<N> state_now() const { return state_at(last_.time, last_); }
+  // f(index, mass, place, velocity) for every body or cluster held, by index.
+  template <class F> void for_each(const N& time, F f) const {
+    for (BodyIndex b = lines_.first(); b <= lines_.last(); ++b)
+      if (lines_.is_cluster(b)) f(b, lines_.mass(b), place_at(b, time), lines_[b].velocity);
+  }
+
+  // Contacts proved, those of them that were below a threshold, those that merged, and those of which all was told by
+  // plain doubles.
+  struct Proved {
+    std::uint64_t contacts = 0, below_cutoff = 0, merges = 0, in_doubles = 0;
+  };
+  const Proved& proved() const { return proved_; }
+
+ private:
+  struct Meeting {
+    BodyIndex l = -1, r = -1;  // clusters; the same after a merger
+    N time{0};
+  };
+
+  CertainState<N> state_at(const N& time, const Meeting& now) const {
+    CertainState<N> state;
+    const auto meets = [&](BodyIndex b) { return b == now.l || b == now.r; };
+    N before{0}, present{0};
+    for (BodyIndex b = lines_.first(); b <= lines_.last(); ++b) {
+      before += lines_.bodies().mass(b) * squared(lines_.bodies().velocity(b));
+      if (!lines_.is_cluster(b)) continue;
+      const Line& line = lines_[b];
+      present += lines_.mass(b) * squared(line.velocity);
+      const N x = place_at(b, time);
+      state.widest = std::max(state.widest, power_of_ten(x.radius()));
+      if (line.touched && !meets(b))
+        if (const Order told = tell(line.changed, time); told != Order::less && !state.doubt)
+          state.doubt = Doubt<N>{Check::before, told == Order::greater, b, b, line.changed, time};
+      const BodyIndex next = lines_.right(b);
+      if (next != lines_.none && next != b && !(meets(b) && meets(next))) look_at_gap(b, next, x, time, state);
+      if (lines_.on_ring() || !line.touched) continue;
+      if (lines_.left(b) == lines_.none || !lines_[lines_.left(b)].touched) state.front_left = x;
+      if (next == lines_.none || !lines_[next].touched) state.front_right = x;
+    }
+    const bool all = lines_.first() == 0 && lines_.last() + 1 == lines_.count();
+    const N twice = all ? present : lines_.bodies().kinetic_energy() * N(2) - before + present;
+    state.energy = twice * half_;
+    return state;
+  }
+  static N squared(const N& x) { return x * x; }
+  static double power_of_ten(auto radius) { return static_cast<double>(std::log10(radius)); }
+  N place_at(BodyIndex b, const N& time) const {
+    const Line& line = lines_[b];
+    return line.place + line.velocity * (of_contacts_ ? time - origin(line) : time);
+  }
+
+  Order tell(const N& x, const N& y) const {
+    const Order told = order_in_doubles(x, y);
+    if (told != Order::open) return told;
+    needed_balls_ = true;
+    return order_in_balls(x, y);
+  }
+
+  void look_at_gap(BodyIndex b, BodyIndex next, const N& x, const N& time, CertainState<N>& state) const {
+    N gap = place_at(next, time) - x;
+    if (b == lines_.seam()) gap += length_;
+    if (const Order told = tell(N(0), gap); told != Order::less && !state.doubt)
+      state.doubt = Doubt<N>{Check::gap, told == Order::greater, b, next, N(0), gap};
+    const double size = power_of_ten(gap.size());
+    state.least_gap = std::min(state.least_gap, size);
+    state.widest_of_gap = std::max(state.widest_of_gap, power_of_ten(gap.radius()) - size);
+  }
+
+  // Places of both at one time, in the image of the one on the right.
+  struct Places {
+    N left, right, time{0};
+  };
+  // Errors of wet bodies act on places from one contact to the next, and would from the start if that were the time
+  // that places are of: these are of a time near the contact. The other laws are linear, and know no time.
+  Places places_of(const Line& l, const Line& r, const N& closing, bool over_seam) const {
+    Places at{l.place, r.place};
+    if (over_seam) at.left -= length_;
+    if (!of_contacts_) return at;
+    const N &of_l = origin(l), &of_r = origin(r);
+    const N then = to_double(of_l) < to_double(of_r) ? of_r : of_l;
+    at.left += l.velocity * (then - of_l), at.right += r.velocity * (then - of_r);
+    const N near = N((then - (at.left - at.right) / closing).middle(), 0), on = near - then;
+    return {at.left + l.velocity * on, at.right + r.velocity * on, near};
+  }
+  // The time that a line's place is of.
+  N origin(const Line& line) const { return of_contacts_ && line.touched ? N(line.changed.middle(), 0) : zero_; }
+
+  [[gnu::flatten]] std::optional<Doubt<N>> strike(BodyIndex at_l, BodyIndex at_r) {
+    needed_balls_ = false;
+    Line &l = lines_[at_l], &r = lines_[at_r];
+    const N closing = l.velocity - r.velocity;
+    if (const Order told = tell(zero_, closing); told != Order::less)
+      return Doubt<N>{Check::closing, told == Order::greater, -1, -1, zero_, closing};
+    const bool over_seam = at_l == lines_.seam();
+    Places at = places_of(l, r, closing, over_seam);
+    const N apart = at.left - at.right, after = -(apart / closing), time = of_contacts_ ? at.time + after : after;
+    for (const Line* line : {&l, &r}) {
+      if (!line->touched) continue;
+      if (const Order told = tell(line->changed, time); told != Order::less)
+        return Doubt<N>{Check::later, told == Order::greater, -1, -1, line->changed, time};
+    }
+    CertainOutcome<N> outcome;
+    if (const auto open = outcome_of(at_l, at_r, closing, time, outcome))
+      return Doubt<N>{Check::side, false, -1, -1, open->first, open->second};
+    apply(outcome, at, apart, closing, l, r);
+    if (over_seam) (outcome.event == Event::pass ? r : l).place += length_;
+    l.changed = r.changed = of_contacts_ ? N::widened(at.time, after.size()) : time;
+    l.touched = r.touched = true;
+    last_ = {at_l, outcome.event == Event::merge ? at_l : at_r, time};
+    ++proved_.contacts;
+    proved_.in_doubles += !needed_balls_;
+    proved_.below_cutoff += outcome.below_cutoff;
+    proved_.merges += outcome.event == Event::merge;
+    if (outcome.event == Event::merge) lines_.merge(at_l, at_r);
+    if (outcome.event == Event::pass) lines_.pass(at_l, at_r);
+    return std::nullopt;
+  }
+
+  typename CertainLaws<N>::Open outcome_of(BodyIndex at_l, BodyIndex at_r, const N& closing, const N& time,
+                                           CertainOutcome<N>& outcome) const {
+    const Line &l = lines_[at_l], &r = lines_[at_r];
+    CertainContact<N> contact{closing, {}, {}, &l.velocity, &r.velocity};
+    if (laws_.law.contact_time) {
+      if (l.touched) contact.left_rest = time - l.changed;
+      if (r.touched) contact.right_rest = time - r.changed;
+    }
+    const auto order = [this](const N& x, const N& y) { return tell(x, y); };
+    if (lines_.identical_masses()) return laws_(contact, zero_, zero_, true, order, outcome);
+    return laws_(contact, lines_.mass(at_l), lines_.mass(at_r), false, order, outcome);
+  }
+
+  void apply(const CertainOutcome<N>& outcome, const Places& at, const N& apart, const N& closing, Line& l,
+             Line& r) const {
+    if (outcome.exchange) {
+      l.place = at.right, r.place = at.left;
+      std::swap(l.velocity, r.velocity);
+      return;
+    }
+    const Share &of_l = outcome.left ? *outcome.left : laws_.bouncing,
+                &of_r = outcome.right ? *outcome.right : laws_.bouncing;
+    const auto places = N::combined(at.left, at.right, apart, of_l, of_r);
+    const auto velocities = N::combined(l.velocity, r.velocity, closing, of_l, of_r);
+    if (outcome.right_heavier) {  // told from the heavier one, what is not known of the share acts on a small one
+      l.place = places.right, l.velocity = velocities.right;
+      return;
+    }
+    l.place = places.left, r.place = places.right;
+    l.velocity = outcome.left_velocity ? *outcome.left_velocity : velocities.left;
+    r.velocity = outcome.right_velocity ? *outcome.right_velocity : velocities.right;
+  }
+
+  CertainLaws<N> laws_;
+  WorldLines<N> lines_;
+  N length_, zero_{0};
+  N half_;
+  bool of_contacts_;  // places are of the time of a body's last contact, not of the start
+  Proved proved_;
+  Meeting last_;
+  mutable bool needed_balls_ = false;
+};
+
+}  // namespace cradle

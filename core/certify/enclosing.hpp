@@ -1,0 +1,28 @@
+#pragma once
+// Numbers that are known to lie somewhere (precision/ball.hpp has them), as the checker asks of them: the operations of
+// a Real, whose results enclose all that the operands may be, comparisons that are certain, and combinations that do
+// not widen what they combine.
+
+#include <concepts>
+
+#include "cradle/core/real.hpp"
+
+namespace cradle {
+
+enum class Order { less, greater, open };
+
+template <class N>
+concept Enclosing = Real<N> && requires(const N x, const N y, const typename N::Share c) {
+  // In plain doubles if these tell it; else in the numbers themselves, open where they overlap.
+  { order_in_doubles(x, y) } -> std::same_as<Order>;
+  { order_in_balls(x, y) } -> std::same_as<Order>;
+  typename N::Share;
+  // The number in its middle, how far it may be from that, and the same with more room.
+  N(x.middle(), 0);
+  { N::widened(x, x.radius()) } -> std::same_as<N>;
+  // (1 - c) x + c y and (1 - d) y + d x, given x - y, with shares c and d.
+  { N::combined(x, y, x, c, c).left } -> std::convertible_to<N>;
+  { N::combined(x, y, x, c, c).right } -> std::convertible_to<N>;
+};
+
+}  // namespace cradle

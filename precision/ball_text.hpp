@@ -1,0 +1,84 @@
+#pragma once
+// Balls as intervals to be read: decimals and doubles, rounded outwards, so that what a ball encloses they enclose.
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <ios>
+#include <limits>
+#include <string>
+
+#include "cradle/precision/ball.hpp"
+
+namespace cradle {
+
+template <class Number> struct Enclosure { Number low, high; };
+
+namespace detail {
+
+// Room for the sum of any two doubles and a radius.
+using Wide =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<3300, boost::multiprecision::digit_base_2>,
+                                  boost::multiprecision::et_off>;
+
+// The decimal of so many digits next to x on one side of it, or the one after that.
+inline std::string decimal_beside(const Wide& x, int digits, bool below) {
+  const auto text = [&](const Wide& number) { return number.str(digits - 1, std::ios_base::scientific); };
+  std::string nearest = text(x);
+  const Wide read(nearest);
+  if (below ? read < x : read > x) return nearest;
+  const Wide unit = pow(Wide(10), std::stoi(nearest.substr(nearest.find('e') + 1)) - digits + 1);
+  return text(below ? Wide(x - unit) : Wide(x + unit));
+}
+
+inline Enclosure<std::string> decimals(const double_double& middle, double radius, int digits) {
+  const Wide x = Wide(middle.high()) + middle.low();
+  return {decimal_beside(x - radius, digits, true), decimal_beside(x + radius, digits, false)};
+}
+
+#ifdef CRADLE_WITH_MPFR
+template <int Limbs> Enclosure<std::string> decimals(const Mpfr<Limbs>& middle, long double radius, int digits) {
+  const auto text = [&](mpfr_rnd_t rounding) {
+    mpfr_t end, off;
+    mpfr_inits2(mpfr_get_prec(middle.get()) + 64, end, off, static_cast<mpfr_ptr>(nullptr));
+    mpfr_set_ld(off, rounding == MPFR_RNDD ? -radius : radius, rounding);
+    mpfr_add(end, middle.get(), off, rounding);
+    char* written = nullptr;
+    mpfr_asprintf(&written, rounding == MPFR_RNDD ? "%.*RDe" : "%.*RUe", digits - 1, end);
+    std::string result(written);
+    mpfr_free_str(written);
+    mpfr_clears(end, off, static_cast<mpfr_ptr>(nullptr));
+    return result;
+  };
+  return {text(MPFR_RNDD), text(MPFR_RNDU)};
+}
+#endif
+
+}  // namespace detail
+
+// Decimal digits that the two ends share, or may: log10 of the size against the radius; 0 where nothing is known.
+template <class M> int digits_known(const Ball<M>& x) {
+  if (!is_finite(x)) return 0;
+  const auto size = static_cast<long double>(Midpoint<M>::size(x.middle()));
+  const long double digits = x.radius() > 0 && size > 0 ? std::log10(size / x.radius()) : size > 0 ? 40 : 0;
+  return digits > 0 ? static_cast<int>(digits) : 0;
+}
+
+// Both ends with the digits that are known and two more.
+template <class M> Enclosure<std::string> in_decimals(const Ball<M>& x) {
+  if (!is_finite(x)) return {"-inf", "inf"};
+  return detail::decimals(x.middle(), x.radius(), digits_known(x) + 3);
+}
+
+// The doubles next to it on either side; infinite where there are none.
+template <class M> Enclosure<double> in_doubles(const Ball<M>& x) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  if (!is_finite(x)) return {-none, none};
+  Enclosure<double> ends{to_double(x.middle()), to_double(x.middle())};
+  const auto radius = static_cast<double>(x.radius());
+  ends.low -= radius, ends.high += radius;
+  while (ends.low > -none && !(Ball<M>(ends.low) < x)) ends.low = std::nextafter(ends.low, -none);
+  while (ends.high < none && !(x < Ball<M>(ends.high))) ends.high = std::nextafter(ends.high, none);
+  return ends;
+}
+
+}  // namespace cradle

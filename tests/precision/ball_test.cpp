@@ -1,0 +1,220 @@
+// Balls enclose: every operation on random balls holds the exact result of every number in them, at their ends above
+// all; comparisons are certain or open; decimals and doubles are rounded outwards.
+#include <array>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/counter_rng.hpp"
+#include "cradle/precision/ball.hpp"
+#include "cradle/precision/ball_text.hpp"
+#include "cradle/tests/core/rational.hpp"
+
+namespace ball_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+Rational exact(double x) { return exactly(x); }
+Rational exact(long double x) {
+  const auto high = static_cast<double>(x);
+  return exactly(high) + exactly(static_cast<double>(x - high));
+}
+Rational exact(const double_double& x) { return exactly(x.high()) + exactly(x.low()); }
+Rational size_of(const Rational& x) { return x < 0 ? Rational(-x) : x; }
+
+#ifdef CRADLE_WITH_MPFR
+template <int Limbs> Rational exact(const Mpfr<Limbs>& x) {
+  mpz_t whole;
+  mpz_init(whole);
+  if (mpfr_zero_p(x.get())) return Rational(0);
+  const mpfr_exp_t exponent = mpfr_get_z_2exp(whole, x.get());
+  char* digits = mpz_get_str(nullptr, 10, whole);
+  Rational value{std::string(digits)};
+  void (*release)(void*, std::size_t) = nullptr;
+  mp_get_memory_functions(nullptr, nullptr, &release);
+  release(digits, std::string(digits).size() + 1);
+  mpz_clear(whole);
+  using Whole = boost::multiprecision::cpp_int;
+  const Rational power(Whole(1) << static_cast<unsigned>(std::abs(exponent)));
+  return exponent < 0 ? Rational(value / power) : Rational(value * power);
+}
+#endif
+
+template <class M> class Balls : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+#ifdef CRADLE_WITH_MPFR
+    MpfrPrecision::set_bits(MpfrPrecision::bits_for(50));
+#endif
+  }
+};
+using Midpoints = testing::Types<double_double
+#ifdef CRADLE_WITH_MPFR
+                                 ,
+                                 Mpfr<4>
+#endif
+                                 >;
+TYPED_TEST_SUITE(Balls, Midpoints);
+
+template <class M> struct Draws {
+  using B = Ball<M>;
+  std::uint64_t next = 0;
+
+  std::uint64_t bits() { return random_bits(17, 0, next++); }
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+  // Of any size between 2^-40 and 2^40, to the last digit of the midpoint.
+  M number() {
+    const auto scale = static_cast<int>(bits() % 81) - 40;
+    const M x = M(std::ldexp(uniform() + 0.5, scale)) + M(std::ldexp(uniform() - 0.5, scale - 53));
+    return bits() % 2 == 0 ? x : M(-x);
+  }
+  B ball() {
+    const M middle = number();
+    const double size = std::abs(to_double(middle));
+    constexpr std::array<double, 5> widths{0, 0x1p-110, 0x1p-60, 0x1p-10, 0.75};
+    return {middle, static_cast<typename B::Radius>(size * widths[bits() % widths.size()])};
+  }
+  // Numbers in it: the middle and both ends.
+  static std::vector<Rational> numbers(const B& x) {
+    return {exact(x.middle()), exact(x.middle()) - exact(x.radius()), exact(x.middle()) + exact(x.radius())};
+  }
+};
+
+template <class M> void expect_holds(const Ball<M>& x, const Rational& number) {
+  ASSERT_LE(size_of(exact(x.middle()) - number), exact(x.radius()));
+}
+
+TYPED_TEST(Balls, HoldWhatTheOperationsGive) {
+  using B = Ball<TypeParam>;
+  Draws<TypeParam> draws;
+  std::size_t useful = 0;
+  for (int k = 0; k < 1500; ++k) {
+    const B x = draws.ball(), y = draws.ball();
+    const B sum = x + y, difference = x - y, product = x * y, quotient = x / y;
+    for (const Rational& a : draws.numbers(x))
+      for (const Rational& b : draws.numbers(y)) {
+        expect_holds(sum, a + b);
+        expect_holds(difference, a - b);
+        expect_holds(product, a * b);
+        if (is_finite(quotient)) expect_holds(quotient, Rational(a / b));
+      }
+    useful += is_finite(quotient);
+    // Not wider than they must be: a sum's radius is those of its terms and a rounding.
+    EXPECT_LE(exact(sum.radius()), (exact(x.radius()) + exact(y.radius())) * (1 + exact(0x1p-40)) +
+                                       size_of(exact(sum.middle())) * exact(0x1p-100));
+  }
+  EXPECT_GT(useful, 1000U);
+}
+
+TYPED_TEST(Balls, HoldRoots) {
+  using B = Ball<TypeParam>;
+  Draws<TypeParam> draws;
+  for (int k = 0; k < 3000; ++k) {
+    const B x = draws.ball();
+    const B root = sqrt(x);
+    if (!is_positive(x)) {
+      EXPECT_FALSE(is_finite(root));
+      continue;
+    }
+    const Rational low = exact(root.middle()) - exact(root.radius()),
+                   high = exact(root.middle()) + exact(root.radius());
+    for (const Rational& a : draws.numbers(x)) {
+      ASSERT_TRUE(low < 0 || low * low <= a);
+      ASSERT_LE(a, Rational(high * high));
+    }
+  }
+}
+
+TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
+  using B = Ball<TypeParam>;
+  Draws<TypeParam> draws;
+  for (int k = 0; k < 500; ++k) {
+    const B x = draws.ball(), y = draws.ball();
+    const B c(TypeParam(draws.uniform()), static_cast<typename B::Radius>(k % 2 == 0 ? 0 : 0x1p-70));
+    const typename B::Share share(c);
+    const auto [l, r] = B::combined(x, y, x - y, share, k % 4 < 2 ? share : typename B::Share(c));
+    for (const Rational& a : draws.numbers(x))
+      for (const Rational& b : draws.numbers(y))
+        for (const Rational& of : draws.numbers(c)) {
+          expect_holds(l, Rational(a - of * (a - b)));
+          expect_holds(r, Rational(b + of * (a - b)));
+        }
+    if (k % 2 != 0) continue;
+    // What doubly stochastic contacts rely on: together they are no wider than before, but for roundings.
+    const Rational roundings = (size_of(exact(x.middle())) + size_of(exact(y.middle()))) * exact(0x1p-98);
+    EXPECT_LE(exact(l.radius()) + exact(r.radius()),
+              (exact(x.radius()) + exact(y.radius())) * (1 + exact(0x1p-40)) + roundings);
+  }
+}
+
+TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
+  using B = Ball<TypeParam>;
+  Draws<TypeParam> draws;
+  std::array<int, 3> told{};
+  for (int k = 0; k < 5000; ++k) {
+    const B x = draws.ball();
+    // Near it, so that all cases occur.
+    const B y(x.middle() + TypeParam(to_double(x.middle()) * (draws.uniform() - 0.5) * std::ldexp(1., -(k % 60) * 2)),
+              x.radius());
+    const bool less = exact(x.middle()) + exact(x.radius()) < exact(y.middle()) - exact(y.radius());
+    const bool greater = exact(x.middle()) - exact(x.radius()) > exact(y.middle()) + exact(y.radius());
+    const Order order_of_both = order(x, y);
+    ++told[static_cast<std::size_t>(order_of_both)];
+    EXPECT_TRUE(order_of_both != Order::less || less);
+    EXPECT_TRUE(order_of_both != Order::greater || greater);
+    EXPECT_TRUE(order_in_doubles(x, y) == Order::open || order_in_doubles(x, y) == order_of_both);
+    EXPECT_FALSE(x < y && x >= y);
+  }
+  for (const int count : told) EXPECT_GT(count, 300);
+}
+
+TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
+  using B = Ball<TypeParam>;
+  Draws<TypeParam> draws;
+  const auto decimal = [](const std::string& text) {
+    const auto e = text.find('e');
+    const auto point = text.find('.');
+    const bool whole = point == text.npos || point > e;
+    const std::string digits =
+        whole ? text.substr(0, e) : text.substr(0, point) + text.substr(point + 1, e - point - 1);
+    int exponent = std::stoi(text.substr(e + 1)) - (whole ? 0 : static_cast<int>(e - point - 1));
+    Rational value(digits), ten(10);
+    for (; exponent > 0; --exponent) value *= ten;
+    for (; exponent < 0; ++exponent) value /= ten;
+    return value;
+  };
+  for (int k = 0; k < 500; ++k) {
+    const B x = draws.ball();
+    const auto text = in_decimals(x);
+    const auto doubles = in_doubles(x);
+    const Rational low = exact(x.middle()) - exact(x.radius()), high = exact(x.middle()) + exact(x.radius());
+    EXPECT_LE(decimal(text.low), low) << text.low;
+    EXPECT_GE(decimal(text.high), high) << text.high;
+    EXPECT_LE(exact(doubles.low), low);
+    EXPECT_GE(exact(doubles.high), high);
+    // And not by much.
+    if (x.radius() > 0) {
+      EXPECT_LE(decimal(text.high) - decimal(text.low), Rational((high - low) * 2)) << text.low << " " << text.high;
+    }
+  }
+}
+
+TYPED_TEST(Balls, LiteralsAreEnclosed) {
+  using B = Ball<TypeParam>;
+  for (const auto& [text, numerator, denominator] :
+       {std::tuple{"0.999", 999, 1000}, {"1e-5", 1, 100000}, {"0.3333333", 3333333, 10000000}, {"-7", -7, 1}}) {
+    const B x = from_text<B>(text);
+    expect_holds(x, Rational(numerator) / denominator);
+    EXPECT_LT(x.radius(), 1e-29);
+  }
+}
+
+TYPED_TEST(Balls, WhatMayBeZeroDividesNothing) {
+  using B = Ball<TypeParam>;
+  EXPECT_FALSE(is_finite(B(1) / B(TypeParam(1), 2)));
+  EXPECT_EQ(order(B(1) / B(0), B(5)), Order::open);
+  EXPECT_FALSE(is_positive(B(TypeParam(1), 1)));
+}
+
+}  // namespace ball_test

@@ -1,0 +1,307 @@
+// The checker, checked: what it calls proved is what exact rational arithmetic gives, its bounds hold the exact
+// numbers, and a run of which one contact is dropped, exchanged with a neighbour's, invented or made on the wrong side
+// of the cut-off is never proved.
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/certify/checker.hpp"
+#include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/counter_rng.hpp"
+#include "cradle/core/gap_chain.hpp"
+#include "cradle/core/list.hpp"
+#include "cradle/core/observe/trace.hpp"
+#include "cradle/core/simulation.hpp"
+#include "cradle/precision/ball.hpp"
+#include "cradle/precision/ball_text.hpp"
+#include "cradle/tests/precision/exact_gas.hpp"
+
+namespace certify_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+using B = Ball<double_double>;
+using Contacts = std::vector<std::pair<BodyIndex, BodyIndex>>;
+
+Rational exact(const B& x) { return exactly(x.middle().high()) + exactly(x.middle().low()); }
+bool holds(const B& x, const Rational& number) {
+  const Rational off = exact(x) - number;
+  return (off < 0 ? -off : off) <= exactly(x.radius());
+}
+
+// Whole numbers of 1/64, so that everybody has the same bodies; coefficients as decimals.
+struct Drawn {
+  std::vector<int> gaps, velocities, masses;
+  const char* restitution = "1";
+  int cutoff = 0, length = 0;
+  bool sticky = false;
+};
+
+Drawn draw(std::uint64_t number, bool sticky) {
+  std::uint64_t index = 0;
+  const auto below = [&](int bound) {
+    return static_cast<int>(random_bits(11, number, index++) % static_cast<std::uint64_t>(bound));
+  };
+  Drawn d;
+  d.sticky = sticky;
+  const int bodies = 3 + below(5);
+  const bool equal = below(2) == 0, small = below(8) == 0;  // few numbers to choose from: ties, cut-offs hit exactly
+  for (int b = 0; b < bodies; ++b) {
+    d.gaps.push_back(small ? 64 : 1 + below(200));
+    d.velocities.push_back(small ? 64 * (below(5) - 2) : below(512) - 256);
+    d.masses.push_back(equal ? 64 : 16 + below(200));
+  }
+  constexpr const char* coefficients[] = {"1", "0.999", "0.999999", "0.5", "0.9", "0.1", "0.95"};
+  d.restitution = coefficients[below(7)];
+  d.cutoff = below(3) == 0 ? 0 : small ? 64 : 1 + below(40);
+  if (below(3) == 0) {
+    d.length = 50;
+    for (const int gap : d.gaps) d.length += gap;
+  }
+  return d;
+}
+
+Rational rational(const char* decimal) {
+  const std::string text(decimal);
+  const auto point = text.find('.');
+  if (point == text.npos) return Rational(text);
+  Rational value(std::stoi(text.substr(0, point) + text.substr(point + 1)));
+  for (auto k = text.size() - point - 1; k > 0; --k) value /= 10;
+  return value;
+}
+
+ExactGas gas_of(const Drawn& d) {
+  ExactGas gas;
+  Rational place(0);
+  for (std::size_t b = 0; b < d.gaps.size(); ++b) {
+    gas.x.push_back(place);
+    gas.v.push_back(Rational(d.velocities[b]) / 64);
+    gas.m.push_back(Rational(d.masses[b]) / 64);
+    place += Rational(d.gaps[b]) / 64;
+  }
+  gas.restitution = rational(d.restitution);
+  gas.cutoff = Rational(d.cutoff) / 64;
+  gas.length = Rational(d.length) / 64;
+  gas.law = d.sticky ? ExactLaw::sticky : ExactLaw::inelastic;
+  gas.begin();
+  return gas;
+}
+
+template <class T> std::shared_ptr<const Bodies<T>> bodies_of(const Drawn& d) {
+  std::vector<T> x, v, m;
+  const auto unit = [](int n) { return T(T(n) / T(64)); };
+  int place = 0;
+  for (std::size_t b = 0; b < d.gaps.size(); ++b) {
+    x.push_back(unit(place)), v.push_back(unit(d.velocities[b])), m.push_back(unit(d.masses[b]));
+    place += d.gaps[b];
+  }
+  return std::make_shared<List<T>>(x, v, m, unit(d.length));
+}
+
+CertainLaw<B> law_of(const Drawn& d) {
+  CertainLaw<B> law;
+  if (d.sticky) law.kind = CertainLaw<B>::Kind::sticky;
+  law.restitution = from_text<B>(d.restitution);
+  law.elastic = std::string(d.restitution) == "1";
+  if (d.cutoff > 0) law.cutoff = B(d.cutoff) / B(64);
+  return law;
+}
+
+constexpr int until = 4;
+constexpr std::size_t most_contacts = 60;
+
+// What a run says of itself beside its contacts. One on the wrong side of the cut-off may leave their sequence as it
+// is.
+struct Said {
+  std::uint64_t below;
+  Rational energy;
+};
+
+// Whether these are proved to be the contacts of the scene; `checker` is left where they end.
+bool proved(Checker<B>& checker, const Contacts& contacts, const std::optional<Said>& said = {}) {
+  if (checker.begin()) return false;
+  for (const auto& [left, right] : contacts)
+    if (checker.contact(left, right)) return false;
+  const auto end = checker.state_at(B(until));
+  return !end.doubt && (!said || (checker.proved().below_cutoff == said->below && holds(end.energy, said->energy)));
+}
+
+// All of them, in the exact gas; `wrong`: that one on the wrong side of the cut-off.
+struct ExactRun {
+  Contacts contacts;
+  std::uint64_t digest = 0, below = 0;
+  bool tied = false, ended = false;
+  ExactGas gas;
+};
+ExactRun exact_run(const Drawn& d, std::size_t wrong = most_contacts) {
+  ExactRun run;
+  run.gas = gas_of(d);
+  Trace trace;
+  while (run.contacts.size() < most_contacts) {
+    const auto contact = run.gas.next(until, run.contacts.size() == wrong);
+    if (!contact) break;
+    run.contacts.push_back(*contact);
+    trace.contact(contact->first, contact->second);
+  }
+  run.ended = run.contacts.size() < most_contacts;
+  if (run.ended) run.gas.fly(until);
+  run.digest = trace.digest();
+  run.tied = run.gas.tied;
+  run.below = run.gas.below_cutoff;
+  return run;
+}
+
+// The contacts that the engine makes in doubles.
+template <class Run> Contacts made(Run&& run) {
+  Contacts contacts;
+  run.advance(until, [&](const Contact<double>& c) { contacts.emplace_back(c.left, c.right); });
+  return contacts;
+}
+Contacts made(const Drawn& d) {
+  const auto bodies = bodies_of<double>(d);
+  const Inelastic<double> law(std::stod(d.restitution), d.cutoff / 64.);
+  if (d.sticky) {
+    const InelasticMerging<double> merging(Inelastic<double>(0.), std::numeric_limits<double>::max());
+    return made(Simulation(merging, ClusterChain<double>(bodies, 0.)));
+  }
+  return made(Simulation(law, GapChain<double, IndividualMasses<double>>(bodies, 0.)));
+}
+
+std::uint64_t digest_of(const Contacts& contacts) {
+  Trace trace;
+  for (const auto& [left, right] : contacts) trace.contact(left, right);
+  return trace.digest();
+}
+
+void compare_with_the_exact_gas(bool sticky, std::uint64_t scenes, std::uint64_t least_proved) {
+  std::uint64_t counted = 0;
+  for (std::uint64_t number = 0; number < scenes; ++number) {
+    SCOPED_TRACE(number);
+    const Drawn d = draw(number, sticky);
+    const ExactRun run = exact_run(d);
+    if (!run.ended) continue;
+    Checker<B> checker(bodies_of<B>(d), law_of(d));
+    const Contacts contacts = made(d);
+    if (!proved(checker, contacts)) continue;
+    EXPECT_TRUE(sticky || law_of(d).elastic || checker.proved().below_cutoff == run.below);
+    ++counted;
+    ASSERT_FALSE(run.tied);
+    ASSERT_EQ(contacts.size(), run.contacts.size());
+    ASSERT_TRUE(sticky || digest_of(contacts) == run.digest);  // clusters go by other names there
+    ASSERT_TRUE(holds(checker.state_at(B(until)).energy, run.gas.energy()));
+    std::size_t k = 0;
+    checker.for_each(B(until), [&](BodyIndex body, const B&, const B& x, const B& v) {
+      const auto b = static_cast<std::size_t>(body);
+      if (sticky) {  // by any of its bodies
+        ++k;
+        return;
+      }
+      EXPECT_TRUE(holds(x, run.gas.x[b])) << body;
+      EXPECT_TRUE(holds(v, run.gas.v[b])) << body;
+    });
+    EXPECT_EQ(k, sticky ? run.gas.clusters.size() : 0U);
+  }
+  EXPECT_GE(counted, least_proved);
+}
+
+TEST(Certify, WhatIsProvedOfInelasticBodiesIsWhatRationalsGive) { compare_with_the_exact_gas(false, 800, 500); }
+TEST(Certify, WhatIsProvedOfStickyBodiesIsWhatRationalsGive) { compare_with_the_exact_gas(true, 400, 300); }
+
+TEST(Certify, ContactsOfTheExactGasAreProved) {
+  std::uint64_t counted = 0;
+  for (std::uint64_t number = 0; number < 500; ++number) {
+    const Drawn d = draw(number, false);
+    const ExactRun run = exact_run(d);
+    if (!run.ended || run.tied) continue;
+    Checker<B> checker(bodies_of<B>(d), law_of(d));
+    if (proved(checker, run.contacts)) ++counted;
+  }
+  EXPECT_GE(counted, 400U);
+}
+
+bool shares_a_body(const std::pair<BodyIndex, BodyIndex>& a, const std::pair<BodyIndex, BodyIndex>& b) {
+  return a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second;
+}
+
+TEST(Certify, ARunThatIsWrongInOneContactIsNeverProved) {
+  std::uint64_t mutants = 0, of_side = 0;
+  for (std::uint64_t number = 0; number < 500; ++number) {
+    SCOPED_TRACE(number);
+    const Drawn d = draw(number, number % 4 == 3);
+    const ExactRun run = exact_run(d);
+    if (!run.ended || run.tied || run.contacts.empty()) continue;
+    const auto refuse = [&](const Contacts& contacts, const std::optional<Said>& said = {}) {
+      Checker<B> checker(bodies_of<B>(d), law_of(d));
+      ++mutants;
+      ASSERT_FALSE(proved(checker, contacts, said));
+    };
+    const auto pick = [&](std::uint64_t salt, std::size_t of) { return random_bits(5, number, salt) % of; };
+    for (std::uint64_t salt = 0; salt < 2; ++salt) {
+      Contacts dropped = run.contacts;
+      dropped.erase(dropped.begin() + static_cast<std::ptrdiff_t>(pick(salt, dropped.size())));
+      refuse(dropped);
+
+      Contacts invented = run.contacts;
+      const auto left = static_cast<BodyIndex>(pick(salt + 10, d.gaps.size() - (d.length > 0 ? 0 : 1)));
+      const auto right = (left + 1) % static_cast<BodyIndex>(d.gaps.size());
+      invented.insert(invented.begin() + static_cast<std::ptrdiff_t>(pick(salt + 20, invented.size() + 1)),
+                      {left, right});
+      refuse(invented);
+
+      // Later than the one after it, which shares a body with it.
+      Contacts late = run.contacts;
+      for (std::size_t k = pick(salt + 30, late.size()); k + 1 < late.size(); ++k)
+        if (late[k] != late[k + 1] && shares_a_body(late[k], late[k + 1])) {
+          std::swap(late[k], late[k + 1]);
+          refuse(late);
+          break;
+        }
+
+      const bool has_sides = !d.sticky && d.cutoff > 0 && std::string(d.restitution) != "1";
+      const ExactRun wrong = exact_run(d, pick(salt + 40, run.contacts.size()));
+      if (has_sides && wrong.ended) refuse(wrong.contacts, Said{wrong.below, wrong.gas.energy()}), ++of_side;
+    }
+  }
+  EXPECT_GE(mutants, 2000U);
+  EXPECT_GE(of_side, 300U);
+}
+
+TEST(Certify, ATieIsOpenAndNamesTheBodies) {
+  // The middle one is hit from both sides at once.
+  const auto bodies = std::make_shared<List<B>>(std::vector<B>{B(-1), B(0), B(1)}, std::vector<B>{B(1), B(0), B(-1)});
+  CertainLaw<B> law;
+  law.restitution = from_text<B>("0.9");
+  Checker<B> checker(bodies, law);
+  EXPECT_FALSE(checker.begin());
+  EXPECT_FALSE(checker.contact(0, 1));
+  const auto doubt = checker.contact(1, 2);
+  ASSERT_TRUE(doubt);
+  EXPECT_EQ(doubt->check, Check::later);
+  EXPECT_FALSE(doubt->refuted);
+  EXPECT_EQ(doubt->left, 1);
+  EXPECT_EQ(doubt->right, 2);
+}
+
+TEST(Certify, ContactsThatShareNoBodyMayComeInAnyOrder) {
+  // Two pairs that meet at one moment, far from each other.
+  const auto bodies =
+      std::make_shared<List<B>>(std::vector<B>{B(-11), B(-9), B(9), B(11)}, std::vector<B>{B(1), B(-1), B(1), B(-1)});
+  CertainLaw<B> law;
+  law.restitution = from_text<B>("0.9");
+  for (const Contacts& contacts : {Contacts{{0, 1}, {2, 3}}, Contacts{{2, 3}, {0, 1}}}) {
+    Checker<B> checker(bodies, law);
+    EXPECT_TRUE(proved(checker, contacts));
+    EXPECT_EQ(checker.proved().in_doubles, 2U);
+  }
+}
+
+TEST(Certify, BodiesThatAreNotInOrderForSureAreNoStart) {
+  const auto bodies = std::make_shared<List<B>>(std::vector<B>{B(0), B(1)}, std::vector<B>{B(0), B(0)});
+  CertainLaw<B> law;
+  EXPECT_FALSE(Checker<B>(bodies, law).begin());
+  EXPECT_THROW(List<B>({B(double_double(0), 1), B(double_double(1), 1)}, {B(0), B(0)}), std::invalid_argument);
+}
+
+}  // namespace certify_test

@@ -1,0 +1,143 @@
+// Proofs of whole runs by the program: every law it can prove, what it says where it cannot, and files that hold it.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/reader.hpp"
+
+namespace certify_program_test {
+
+using namespace cradle::tools;
+using cradle::tests::Printed;
+using cradle::tests::ProgramTest;
+
+class Certified : public ProgramTest {
+ protected:
+  Result result(const char* name = "a.h5") const { return read_result((folder / name).string()); }
+  template <class T> static T of_certificate(const Result& r, const char* name) {
+    const Group* group = r.find("certificate");
+    return group == nullptr ? T() : attribute<T>(group->attributes, name, "certificate");
+  }
+  template <class T> static std::vector<T> column(const Result& r, const char* group, const char* name) {
+    if (const Group* of = r.find(group))
+      for (const Column& column : of->columns)
+        if (column.name == name) return std::get<std::vector<T>>(column.values);
+    ADD_FAILURE() << "no " << group << "/" << name;
+    return {};
+  }
+  Printed certify(const std::string& what, const char* name = "a.h5") const {
+    return shell("cradle certify " + what + " -o " + name);
+  }
+};
+
+const std::string small_shock = "fig2 --set initial.particles=120 --set law.restitution=0.97 --set run.until=100 --set "
+                                "output.snapshots=[50,100] --set output.profiles.times=[] --set output.series.points=5";
+
+TEST_F(Certified, AShockIsProvedWithBoundsOfItsResults) {
+  const Printed told = certify(small_shock);
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("proved: "), std::string::npos) << told.out;
+  const Result r = result();
+  EXPECT_EQ(of_certificate<std::string>(r, "verdict"), "proved");
+  EXPECT_EQ(of_certificate<std::uint64_t>(r, "contacts"), column<std::uint64_t>(r, "series", "contacts").back());
+  EXPECT_EQ(of_certificate<std::uint64_t>(r, "digits"), 31U);
+  const auto energy = column<double>(r, "series", "energy"), low = column<double>(r, "series", "energy_low"),
+             high = column<double>(r, "series", "energy_high");
+  const auto text = column<std::string>(r, "exact/series", "energy_low");
+  ASSERT_EQ(low.size(), 5U);
+  for (std::size_t k = 0; k < low.size(); ++k) {
+    EXPECT_LE(low[k], high[k]);
+    EXPECT_LE(high[k] - low[k], 3e-16 * energy[k]);
+    EXPECT_NEAR(energy[k], low[k], 1e-12 * energy[k]) << "the run's own energy";
+    EXPECT_GT(text[k].size(), 26U) << text[k];
+    EXPECT_NEAR(std::stod(text[k]), low[k], 3e-16 * energy[k]);
+  }
+  // Every body of the snapshot is where the run has it.
+  const auto x = column<double>(r, "snapshots/0001", "x"),
+             from = column<double>(r, "certificate/snapshots/0001", "x_low"),
+             to = column<double>(r, "certificate/snapshots/0001", "x_high");
+  ASSERT_EQ(x.size(), from.size());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    EXPECT_NEAR(x[k], from[k], 1e-11);
+    EXPECT_LE(to[k] - from[k], 1e-12);
+  }
+}
+
+TEST_F(Certified, TwiceTheSameBytesThatAreReadExportedAndDrawn) {
+  ASSERT_EQ(certify(small_shock).status, 0);
+  ASSERT_EQ(certify(small_shock, "b.h5").status, 0);
+  EXPECT_EQ(shell("cmp a.h5 b.h5").status, 0);
+  EXPECT_EQ(shell("cradle diff a.h5 b.h5").status, 0);
+  ASSERT_EQ(certify(small_shock + " --set initial.seed=2", "b.h5").status, 0);
+  EXPECT_NE(shell("cradle diff a.h5 b.h5").out.find("exact/series/energy_low: first in row"), std::string::npos);
+  EXPECT_EQ(shell("cradle export a.h5 --to csv").status, 0);
+  EXPECT_NE(cradle::tests::contents(folder / "csv/exact/series.csv").find("e+0"), std::string::npos);
+  const Printed told = shell("cradle info a.h5");
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("verdict = proved"), std::string::npos);
+}
+
+TEST_F(Certified, ACollapseIsProvedToTheEndOfTheRangeOfDoubles) {
+  const Printed told = certify("collapse3");
+#ifdef CRADLE_WITH_MPFR
+  EXPECT_EQ(told.status, 0) << told.out << told.err;
+  const Result r = result();
+  EXPECT_EQ(of_certificate<std::uint64_t>(r, "contacts"), 322U);
+  EXPECT_LT(column<double>(r, "certificate", "gap").back(), -290);
+  // The ledger of a double ends at 1e-16 of what there was; the proof does not.
+  EXPECT_LT(column<double>(r, "series", "energy_high").back(), 1e-250);
+#else
+  EXPECT_EQ(told.status, 5);
+#endif
+  const Printed with_31 = certify("collapse3 --digits 31", "b.h5");
+  EXPECT_EQ(with_31.status, 5);
+  EXPECT_NE(with_31.out.find("undecided at t = 1.71428571428571"), std::string::npos) << with_31.out;
+  EXPECT_EQ(of_certificate<std::string>(result("b.h5"), "verdict"), "undecided");
+}
+
+TEST_F(Certified, EveryLawThatCanBe) {
+  const std::string few = " --set output.series.points=3 --set output.snapshots=[] --set output.profiles.times=[] ";
+  const auto list = [&](const char* file) { return std::string("list.toml --set initial.file=") + file + few; };
+  write("equal.csv", "x,v\n0,1.1\n1.3,0.2\n3.1,-0.7\n4,-1\n");
+  write("unequal.csv", "x,v,m\n0,1.1,1\n1.3,0.2,2.5\n3.1,-0.7,0.3\n4,-1,1\n");
+  write("list.toml", "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\n"
+                     "initial = {type = \"list\", file = \"equal.csv\"}\nrun.until = 30\n");
+  std::vector<std::string> scenes{
+      list("equal.csv"),
+      list("equal.csv") + "--set law.restitution=1",
+      list("equal.csv") + "--set run.collapse=contact-time --set run.contact_time=0.3 --set law.cutoff=0",
+      list("equal.csv") + "--set run.collapse=merge --set run.merge_speed=0.05 --set law.cutoff=0",
+      list("unequal.csv"),
+      "cooling --set initial.particles=40 --set run.until=10 --set output.masses=[]" + few,
+      "cooling --set law.type=sticky --set law.restitution= --set law.cutoff= --set initial.particles=40 --set "
+      "run.until=10 --set output.masses=[]" +
+          few,
+      "fig1 --set initial.left.particles=30 --set initial.right.particles=30 --set run.until=40 --set "
+      "output.profiles.range=[-50,50] --set initial.perturbation=0.1" +
+          few,
+      "fig6 --set initial.particles=60 --set law.loss=0.01 --set run.until=30 --set initial.perturbation=0.1" + few};
+  for (const std::string& scene : scenes) {
+    const Printed told = certify(scene);
+    EXPECT_EQ(told.status, 0) << scene << "\n" << told.out << told.err;
+  }
+}
+
+TEST_F(Certified, ThreeThatMeetAtOneTimeAreUndecidedAndNamed) {
+  write("bodies.csv", "x,v\n-1,1\n0,0\n1,-1\n");
+  write("list.toml", "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\n"
+                     "initial = {type = \"list\", file = \"bodies.csv\"}\nrun.until = 30\n");
+  const Printed told = certify("list.toml");
+  EXPECT_EQ(told.status, 5);
+  EXPECT_NE(told.out.find("undecided at t = 1, after 1 contacts, bodies 1 and 2: open whether they meet after the last "
+                          "contact of either"),
+            std::string::npos)
+      << told.out;
+  EXPECT_EQ(of_certificate<std::uint64_t>(result(), "contacts"), 1U);
+  EXPECT_NE(certify("fig10").err.find("no contacts to prove"), std::string::npos);
+  EXPECT_EQ(certify("fig2 --digits 5").status, 2);
+}
+
+}  // namespace certify_program_test

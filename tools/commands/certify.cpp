@@ -1,0 +1,73 @@
+#include "cradle/tools/certify/certify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "cradle/tools/certify/replicas.hpp"
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/support/interrupt.hpp"
+#include "cradle/tools/support/tell.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+struct CertifyArguments : CommonOptions {
+  std::vector<unsigned> digits;
+  std::string output;
+  std::uint64_t replicas = 0;
+};
+
+Exit run_certify(const CertifyArguments& options) {
+  const Scene scene = options.read();
+  check_certifiable(scene);
+  const std::string output = options.output.empty() ? scene.name + "-certified.h5" : options.output;
+  const FileClaim claim(output);
+  Interrupt interrupt;
+  note_signals(interrupt);
+  CertifyOptions how{{},
+                     options.progress ? Progress::Show::always
+                     : options.quiet  ? Progress::Show::never
+                                      : Progress::Show::on_terminal,
+                     &interrupt};
+  how.digits = options.digits.empty() ? rising_digits() : options.digits;
+  if (options.replicas > 0) {
+    const CertifiedReplicas run = certify_replicas(scene, options.replicas, options.threads, how);
+    write_or_keep(replicas_result(run), output);
+    fmt::print("{}", replicas_text(run));
+    if (!options.quiet) fmt::print("wrote {}\n", output);
+    const bool all = std::all_of(run.replicas.begin(), run.replicas.end(), [](const auto& r) { return r.proved; });
+    return all ? Exit::done : Exit::lost;
+  }
+  Certified run = certify(scene, how);
+  const std::string text = certificate_text(run), report = run.outcome.report, warning = run.outcome.warning;
+  const bool proved = run.proved();
+  write_or_keep(certified_result(std::move(run)), output);
+  fmt::print("{}{}", report, text);
+  tell(warning);
+  if (!options.quiet) fmt::print("wrote {}\n", output);
+  return proved ? Exit::done : Exit::lost;
+}
+
+}  // namespace
+
+void add_certify(CommandLine& program) {
+  Command command = program.add("certify", "the run with a proof of its contacts, and bounds of its results",
+                                "cradle certify fig2 --set run.until=2000 -o fig2.h5");
+  const auto options = std::make_shared<CertifyArguments>();
+  add_common_options(command, *options);
+  command.list("--digits", options->digits, {31, 1000},
+               "digits of the proof, tried one after the other, 31 to 1000; 31 is double-double, others mpfr (default: "
+               "31,50,100,200,400,800)");
+  command.option("--replicas", options->replicas, {1, 1'000'000},
+                 "prove so many replicas with different perturbations, and give statistics of those that are");
+  command.option("-o,--output", options->output, "result file (default: the scene's name with -certified.h5)");
+  command.note("exit status: 0 proved, 5 undecided");
+  command.does([options] { return run_certify(*options); });
+}
+
+}  // namespace cradle::tools

@@ -21,7 +21,7 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_alw
 // started is read before theirs is run, and in the plainest way, since nothing is set up yet.
 bool hang_ups_ignored = false;
 #ifdef __linux__
-[[gnu::no_sanitize("address"), gnu::no_sanitize("undefined"), gnu::no_sanitize("thread")]] void look_at_hang_ups() {
+__attribute__((no_sanitize("address"), no_sanitize("undefined"), no_sanitize("thread"))) void look_at_hang_ups() {
   unsigned long action[4] = {};  // the handler first
   if (::syscall(SYS_rt_sigaction, SIGHUP, nullptr, action, sizeof action[3]) == 0)
     hang_ups_ignored = action[0] == reinterpret_cast<unsigned long>(SIG_IGN);

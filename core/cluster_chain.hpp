@@ -60,6 +60,7 @@ template <Real T> class ClusterChain {
   Slot left(Slot s) const { return line_.left(s); }
   Slot right(Slot s) const { return line_.right(s); }
   BodyIndex body(Slot s) const { return line_.gaps[s].body; }
+  BodyIndex count() const { return bodies_->count(); }
   BodyIndex collided_bodies() const { return active_; }
   bool on_ring() const { return window_.on_ring(); }
 
@@ -135,6 +136,7 @@ template <Real T> class ClusterChain {
     const auto& cells = line_.gaps;
     require_state(window_.fits(slots(), bodies_->count()) && window_.on_ring() == bodies_->on_ring(), "slots");
     require_state(beyond_ < slots() && active_ >= 0 && active_ <= bodies_->count() && vacated_ <= slots(), "counts");
+    const T heaviest = T(2) * bodies_->total_mass();
     for (Slot s = 0; s < slots(); ++s)
       require_state(cells[s].left < slots() && cells[s].right < slots() && cells[s].body >= 0 &&
                         cells[s].body < bodies_->count() && is_positive(cells[s].mass),
@@ -142,13 +144,16 @@ template <Real T> class ClusterChain {
     // From the first to the last by their links, with vacant ones between them only.
     int fronts = window_.has_fronts() ? 0 : 2;
     for (Slot s = first();; s = right(s)) {
+      require_state(line_.fits(s, !on_ring() && s == last()) && cells[s].mass < heaviest, "numbers");
       fronts += window_.has_fronts() ? (s == window_.front_left()) + (s == window_.front_right()) : 0;
       if (s == last()) break;
       require_state(right(s) > s && right(s) <= last() && left(right(s)) == s, "links");
       for (Slot v = s + 1; v < right(s); ++v) require_state(line_.vacant(v), "vacant cells");
     }
     require_state(fronts == 2, "fronts");
-    require_state(!on_ring() || (right(last()) == first() && left(first()) == last()), "links");
+    require_state(on_ring() ? right(last()) == first() && left(first()) == last() && !window_.front_right()
+                            : line_.ends_beside(first(), last()),
+                  "ends");
   }
 
   // ---- for segments (segments.hpp), of a ring

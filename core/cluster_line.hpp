@@ -56,6 +56,16 @@ template <Real T> class ClusterLine {
     gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), on_left ? s : beside, on_left ? beside : s, 0});
     (on_left ? gaps[beside].left : gaps[beside].right) = s;
   }
+  // Whether what is held can be a body and the gap behind it, none where it is the last one of a line; whether beyond
+  // both ends there is what runs away.
+  bool fits(Slot s, bool last) const {
+    const T speed = magnitude(gaps[s].velocity);
+    return speed + speed <= runaway_ && (last || (gaps[s].fits(closing(s)) && is_finite(gaps.lag(s))));
+  }
+  bool ends_beside(Slot first, Slot last) const {
+    const Slot p = left(first), n = right(last);
+    return p < first && right(p) == first && gaps[p].velocity == -runaway_ && n > last && gaps[n].velocity == runaway_;
+  }
 
   T closing(Slot s) const { return gaps[s].velocity - gaps[gaps[s].right].velocity; }
   TwoMasses<T> masses(Slot s) const { return {gaps[s].mass, gaps[gaps[s].right].mass}; }

@@ -31,10 +31,12 @@ template <Real T> struct Configuration {
 };
 
 // Folds positions on a ring, increasing and spanning less than its circumference, to 0 <= x < circumference, the
-// smallest first.
+// smallest first. Places so many turns away that they have no digits within one stay where they are.
 template <Real T> void fold(Configuration<T>& c, const T& circumference) {
   if (c.x.empty()) return;
-  const T turns = T(static_cast<std::int64_t>(std::floor(to_double(T(c.x.front() / circumference)))));
+  const double whole = std::floor(to_double(T(c.x.front() / circumference)));
+  if (!(std::abs(whole) < 0x1p62)) return;
+  const T turns = T(static_cast<std::int64_t>(whole));
   for (T& x : c.x) x -= turns * circumference;
   std::size_t first = 0;
   const auto rotate = [&](auto& values) {

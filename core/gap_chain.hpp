@@ -66,6 +66,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Slot right(Slot s) const { return on_ring() && s == last() ? first() : s + 1; }
   bool on_ring() const { return window_.on_ring(); }
   BodyIndex body(Slot s) const { return line_.body(s); }
+  BodyIndex count() const { return bodies_->count(); }
   BodyIndex collided_bodies() const {
     if (on_ring()) return bodies_->count();
     return window_.has_fronts() ? body(window_.front_right()) - body(window_.front_left()) + 2 : 0;
@@ -139,6 +140,17 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
                       : body(first()) == window_.unheld_left() && body(last()) + 2 == count - window_.unheld_right(),
                   "bodies");
     require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
+    require_state(!on_ring() || (window_.front_left() == first() && window_.front_right() == last()), "seam");
+    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Beyond the gaps held nothing closes: there is no contact.
+    const T fastest = T(2) + T(4) * bodies_->energy_over_least_mass();
+    for (Slot s = 0; s < slots(); ++s) {
+      const T& w = closing(s);
+      require_state(s < first() || s > last() ? is_finite(w) && !is_positive(w)
+                                              : line_.gaps[s].fits(w) && is_finite(line_.gaps.lag(s)) &&
+                                                    !(fastest < magnitude(w)) && line_.has_mass(s, *bodies_),
+                    "gaps");
+    }
+    require_state(line_.has_mass(last() + 1, *bodies_), "masses");
     for (const Anchor<T>* anchor : {&left_, &right_})
       require_state(on_ring() || (anchor->body() >= 0 && anchor->body() < count), "anchors");
   }

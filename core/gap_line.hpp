@@ -66,6 +66,9 @@ template <Real T, class MassesOf> class GapLine {
   void load_mass(Slot s, const Bodies<T>& bodies) {
     masses.set(s, bodies.mass(body(s) < bodies.count() ? body(s) : 0));
   }
+  bool has_mass(Slot s, const Bodies<T>& bodies) const {
+    return masses[s] == bodies.mass(body(s) < bodies.count() ? body(s) : 0);
+  }
 
   // What a contact at the gap s does to it and to its neighbours p and n. Inlined by force: as a call this passes all
   // results through memory, a fifth of the time per contact.

@@ -41,7 +41,7 @@ template <Real T> class Ledger {
     if constexpr (in_any_order) {
       const T coarse = (loss + rounder_) - rounder_;
       sum_ += coarse;
-      rest_ += std::llrint((loss - coarse) * per_fine_);  // an instruction
+      add_rest(std::llrint((loss - coarse) * per_fine_));  // an instruction
     } else {
       sum_ += loss;
     }
@@ -49,7 +49,7 @@ template <Real T> class Ledger {
   // What another one of the same energy has taken in.
   void add(const Ledger& other) {
     sum_ += other.sum_;
-    rest_ += other.rest_;
+    add_rest(other.rest_);
   }
   void clear() {
     sum_ = T(0);
@@ -65,6 +65,11 @@ template <Real T> class Ledger {
   static auto state(auto& self) { return std::tie(self.sum_, self.rest_); }
 
  private:
+  // Wraps around where bodies lose far more than there is: so they may by a state from a damaged file.
+  [[gnu::always_inline]] void add_rest(std::int64_t more) {
+    rest_ = static_cast<std::int64_t>(static_cast<std::uint64_t>(rest_) + static_cast<std::uint64_t>(more));
+  }
+
   T rounder_{0};             // what is added to it and taken off again is rounded to the grid
   T fine_{1}, per_fine_{1};  // the grid of the rest
   T sum_{0};

@@ -89,11 +89,12 @@ template <Real T> struct Pacing {
     passed(contacts, active);
   }
 
-  // Whether it can be that of a run which has made so many contacts, the last one at the given local time and so long
-  // after the start, but for rounding.
-  bool follows(std::uint64_t contacts, const T& last_contact, const T& since_start) const {
-    constexpr std::uint64_t most = std::uint64_t{1} << 62;
+  // Whether it can be that of a run of so many bodies which has made so many contacts, the last one at the given local
+  // time and so long after the start, but for rounding. Who waits for a review too long could not be interrupted.
+  bool follows(std::uint64_t contacts, const T& last_contact, const T& since_start, std::int64_t bodies) const {
+    constexpr std::uint64_t most = std::uint64_t{1} << 50;  // in a year; 4096 times as many are an integer too
     return contacts < most && contacts_before <= contacts && contacts_at_move <= contacts && expected < most &&
+           next_review <= contacts + 4 * per_body_ * static_cast<std::uint64_t>(bodies) + 16 &&
            is_finite(since_start) && since_start > T(-1) && is_finite(last_contact) && is_finite(time_before) &&
            is_finite(epoch) && is_finite(epoch_end) &&
            (!in_epochs || (is_positive(epoch) && !(epoch_end < last_contact)));

@@ -53,6 +53,7 @@ template <Real T> class PositionChain {
   Slot right(Slot s) const { return s + 1; }
   bool on_ring() const { return false; }
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) - 2; }
+  BodyIndex count() const { return static_cast<BodyIndex>(count_); }
   BodyIndex collided_bodies() const {
     return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;
   }
@@ -107,8 +108,14 @@ template <Real T> class PositionChain {
   }
   void loaded() const {
     require_state(bodies_.size() == count_ && due_.size() == slots() && closing_.size() == slots(), "lists");
-    const bool none = front_right_ < front_left_;
-    require_state(none || (front_left_ >= first() && front_right_ <= last()), "fronts");
+    const bool none = front_left_ == std::numeric_limits<Slot>::max() && front_right_ == 0;
+    require_state(none || (front_left_ >= first() && front_left_ <= front_right_ && front_right_ <= last()), "fronts");
+    bool right = is_finite(origin_);
+    for (const Particle& p : bodies_) right = right && p.holds_numbers();
+    for (Slot s = 0; s < slots(); ++s)  // where there is no gap none closes
+      right = right && is_finite(due_[s]) && is_finite(closing_[s]) &&
+              !(is_positive(closing_[s]) && (s < first() || s > last()));
+    require_state(right, "numbers");
   }
 
   T gap_at(Slot s, const T& time) const { return place(at(s + 1), time) - place(at(s), time); }
@@ -142,6 +149,7 @@ template <Real T> class PositionChain {
     T x, v, time, m;  // time: of the last contact, or the start
     bool collided = false;
     static auto state(auto& self) { return std::tie(self.x, self.v, self.time, self.m, self.collided); }
+    bool holds_numbers() const { return is_finite(x) && is_finite(v) && is_finite(time) && is_positive(m); }
     bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
   };
 

@@ -126,7 +126,7 @@ class Simulation {
   }
   void loaded() {
     const T since = last_contact_time() - chain_.start();
-    require_state(pacing_.follows(counts_.contacts, last_contact_, since), "times and counts"), release_queue();
+    require_state(pacing_.follows(counts_.contacts, last_contact_, since, chain_.count()), "pacing"), release_queue();
   }
 
  private:
@@ -166,7 +166,7 @@ class Simulation {
       if (!window) continue;
       counts_ += window->counts;
       if (window->counts.contacts > 0) last_contact_ = window->last_contact;
-      if (end == target_.horizon) return status_;
+      if (!(end < target_.horizon)) return status_;
       from = end == target_.stop ? end_epoch() : end;
       pacing_.passed(counts_.contacts, active());
       status_ = policy_.ask(last_contact_time(), counts_);
@@ -189,7 +189,7 @@ class Simulation {
       first = queue_.slot(queue_.next());
     }
     while (!first_by(target_.stop, first)) {
-      if (target_.stop == target_.horizon) return false;
+      if (!(target_.stop < target_.horizon)) return false;
       end_epoch();
       first = queue_.slot(queue_.next());
     }

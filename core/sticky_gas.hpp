@@ -101,10 +101,15 @@ template <Real T> class StickyGas {
   void loaded() const {
     require_state(!held_.empty(), "no bodies");
     const BodyIndex count = bodies_->count();
-    for (const Lump& lump : held_)
-      require_state(is_positive(lump.mass) && lump.first >= 0 && lump.first < count && lump.count > 0 &&
-                        lump.count <= (ring_ ? count : count - lump.first),
+    BodyIndex in_all = 0;
+    for (const Lump& lump : held_) {
+      require_state(lump.holds_numbers() && lump.first >= 0 && lump.first < count && lump.count > 0 &&
+                        lump.count <= (ring_ ? count - in_all : count - lump.first) && lump.heaviest >= 0 &&
+                        lump.heaviest < count,
                     "clusters");
+      in_all += lump.count;
+    }
+    require_state(!ring_ || in_all == count, "clusters");
     for (std::size_t k = 0; !ring_ && k + 1 < held_.size(); ++k)
       require_state(held_[k].first + held_[k].count == held_[k + 1].first, "clusters");
     require_state(is_finite(time_) && is_finite(elapsed_), "times");
@@ -119,6 +124,10 @@ template <Real T> class StickyGas {
     static auto state(auto& self) {
       return std::tie(self.mass, self.moment, self.momentum, self.x, self.first, self.count, self.heaviest,
                       self.greatest);
+    }
+    bool holds_numbers() const {
+      return is_positive(mass) && is_positive(greatest) && is_finite(T(mass + greatest)) && is_finite(moment) &&
+             is_finite(momentum) && is_finite(x);
     }
   };
 

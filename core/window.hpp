@@ -104,8 +104,8 @@ class Window {
   // some.
   bool fits(std::size_t slots, BodyIndex count) const {
     const bool held = last_ < slots && slots - 1 - last_ >= spare_ && first_ >= spare_ && last_ + 1 >= first_;
-    const bool fronts =
-        !has_fronts() || (first_ <= front_left_ && front_left_ <= front_right_ && front_right_ <= last_);
+    const bool fronts = has_fronts() ? first_ <= front_left_ && front_left_ <= front_right_ && front_right_ <= last_
+                                     : on_ring() || (front_left_ == 0 && front_right_ == 0);
     return extent_ <= Extent::ring && held && fronts && unheld_left_ >= 0 && unheld_right_ >= 0 &&
            unheld_left_ <= count && unheld_right_ <= count - unheld_left_;
   }

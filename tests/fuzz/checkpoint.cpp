@@ -39,7 +39,7 @@ template <class Chain, class Law>
 void go_on(const Law& law, const std::shared_ptr<const Bodies<double>>& bodies, const std::string& bytes) {
   int asked = 0;
   Policy<double> policy;
-  policy.interrupt = [&] { return ++asked > 200; };
+  policy.interrupt = [&] { return ++asked > 40; };
   go_on(Simulation<double, Law, Chain>(law, Chain(bodies, 0.), policy), bytes);
 }
 

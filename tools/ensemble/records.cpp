@@ -1,6 +1,8 @@
 // An ensemble as records. Each begins with the point that it belongs to and what it is.
 #include "cradle/tools/ensemble/state.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace cradle::tools {
@@ -19,9 +21,19 @@ void put(ByteWriter& bytes, const ReplicaRow& row) {
   bytes.put(row.index).put(static_cast<std::uint64_t>(row.outcome)).put(row.contacts).put(row.merges).put(row.numbers);
 }
 
+Error damaged(const std::string& found) {
+  return Error({"a journal", 0, ""}, "a damaged ensemble", found, "take it from a copy, or run it again", Exit::io);
+}
+
+ReplicaIndex read_index(ByteReader& bytes) {
+  const ReplicaIndex index = bytes.integer();
+  if (index >> 63) throw damaged(fmt::format("replica {}", index));  // the tree ends there
+  return index;
+}
+
 ReplicaRow read_row(ByteReader& bytes) {
   ReplicaRow row;
-  row.index = bytes.integer();
+  row.index = read_index(bytes);
   row.outcome = static_cast<ReplicaOutcome>(std::min<std::uint64_t>(bytes.integer(), outcome_count - 1));
   row.contacts = bytes.integer();
   row.merges = bytes.integer();
@@ -98,7 +110,7 @@ void EnsembleState::apply(std::string_view record) {
     return;
   }
   case Kind::failed: {
-    const ReplicaIndex replica = bytes.integer();
+    const ReplicaIndex replica = read_index(bytes);
     if (!tree_.contains(replica)) fail(replica, bytes.text());
     return;
   }
@@ -111,10 +123,13 @@ void EnsembleState::apply(std::string_view record) {
     }
     return;
   case Kind::spread: {
-    Histograms& spread = spreads_.at(bytes.integer());
-    Histograms other(spread.bins(), spread.entries());
-    other.set_all_counts(bytes.numbers<std::uint64_t>());
-    spread.add(other);
+    const std::uint64_t k = bytes.integer();
+    std::vector<std::uint64_t> counts = bytes.numbers<std::uint64_t>();
+    if (k >= spreads_.size() || counts.size() != spreads_[k].all_counts().size())
+      throw damaged(fmt::format("{} counts for the spread {}", counts.size(), k));
+    Histograms other(spreads_[k].bins(), spreads_[k].entries());
+    other.set_all_counts(std::move(counts));
+    spreads_[k].add(other);
     return;
   }
   case Kind::node: {

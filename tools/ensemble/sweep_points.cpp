@@ -10,8 +10,6 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr double most_points = 1e6;
-
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text)
@@ -27,7 +25,7 @@ struct Varied {
   std::vector<std::string> values;
 };
 
-Varied varied(const std::string& text) {
+Varied varied(const std::string& text, double most) {
   const auto wrong = [&](const std::string& what) {
     return Error({"", 0, "--vary"}, what, text, "give KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=VALUE,VALUE,...");
   };
@@ -43,7 +41,7 @@ Varied varied(const std::string& text) {
   const bool logarithmic = parts.size() == 4 && parts[3] == "log";
   if (parts.size() != 3 && !logarithmic) throw wrong("not a range of values");
   const auto from = to_number(parts[0]), to = to_number(parts[1]), count = to_number(parts[2]);
-  if (!from || !to || !count || *count < 2 || *count > most_points || *count != std::floor(*count))
+  if (!from || !to || !count || *count < 2 || *count > most || *count != std::floor(*count))
     throw wrong("not a range of 2 values or more");
   if (logarithmic && !(*from > 0 && *to > 0)) throw wrong("no logarithms of these ends");
   const auto last = static_cast<int>(*count) - 1;
@@ -68,16 +66,16 @@ SweepPoint given_point(const std::string& text) {
   return point;
 }
 
-// Before memory for them is taken.
-void check_count(const std::vector<Varied>& keys, bool cuts) {
+// Before memory for them is taken. A point of a grid has a value for every key.
+void check_count(const std::vector<Varied>& keys, bool cuts, double most) {
   double points = cuts ? 0 : 1;
   for (const Varied& one : keys) {
     const auto values = static_cast<double>(one.values.size());
     points = cuts ? points + values : points * values;
   }
-  if (points > most_points)
+  if (points > most || (!cuts && points * static_cast<double>(keys.size()) > 8 * most))
     throw Error({"", 0, "--vary"}, "too many points", fmt::format("{:.3g}", points),
-                fmt::format("vary fewer keys or give fewer values, {:.0g} points at most", most_points));
+                fmt::format("vary fewer keys or give fewer values, {:.0g} points at most", most));
 }
 
 }  // namespace
@@ -95,12 +93,14 @@ std::string point_label(const SweepPoint& point) {
   return text;
 }
 
-std::vector<SweepPoint> sweep_points(const Sweep& sweep) {
+std::vector<SweepPoint> sweep_points(const Sweep& sweep, double most) {
   std::vector<SweepPoint> points;
   for (const std::string& text : sweep.points) points.push_back(given_point(text));
   std::vector<Varied> keys;
-  for (const std::string& text : sweep.vary) keys.push_back(varied(text));
-  check_count(keys, sweep.cuts);
+  for (const std::string& text : sweep.vary) {
+    keys.push_back(varied(text, most));
+    check_count(keys, sweep.cuts, most);
+  }
   if (sweep.cuts) {
     for (const Varied& one : keys)
       for (const std::string& value : one.values) points.push_back({{one.key, value}});

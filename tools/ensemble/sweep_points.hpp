@@ -17,9 +17,8 @@ using SweepPoint = std::vector<std::pair<std::string, std::string>>;
 /// The points of a sweep, in order: those given one by one, then all combinations of the varied keys, the last one
 /// varying fastest, or (cuts) one key after the other. A key is varied by KEY=FROM:TO:COUNT, evenly, both ends
 /// included, KEY=FROM:TO:COUNT:log, evenly in the logarithm, or KEY=VALUE,VALUE,... Throws Error naming what cannot be
-/// read, and for more points
-/// than 1e6.
-std::vector<SweepPoint> sweep_points(const Sweep& sweep);
+/// read, and for more points than `most`, before it takes memory for them.
+std::vector<SweepPoint> sweep_points(const Sweep& sweep, double most = 1e6);
 
 /// Keys and values as one text: "law.loss=0.1 initial.seed=2".
 std::string point_label(const SweepPoint& point);

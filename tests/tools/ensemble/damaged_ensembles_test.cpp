@@ -5,6 +5,7 @@
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/merge.hpp"
+#include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/errors.hpp"
 
@@ -41,6 +42,35 @@ class DamagedEnsembles : public Ensembles {
       if (key == name) old = value;
   }
 };
+
+// Found by fuzzing behind the checksums of journals: each of these was an exception that names no file.
+TEST(DamagedRecords, AreRefused) {
+  const tools::Scene scene = tools::parse_scene(
+      "law.type = 'sticky'\ninitial = { type = 'rows', particles = 8 }\nrun.until = 9\noutput.series.points = 3\n",
+      "records.toml");
+  const auto refused = [&](const tools::ByteWriter& record) -> std::string {
+    tools::EnsembleState state("", scene, {});
+    try {
+      state.apply(record.bytes());
+    } catch (const tools::Error& error) {
+      EXPECT_EQ(error.status, Exit::io) << error.what();
+      return error.what();
+    }
+    return "applied";
+  };
+  constexpr std::uint64_t beyond = std::uint64_t{1} << 63, point = 0, replica = 1, failed = 2, spread = 4;
+  const tools::EnsembleState state("", scene, {});
+  tools::ReplicaRow row;
+  row.index = beyond;
+  const std::vector<double> values(state.layout().entries, 1.);
+  const std::string damaged = "a journal: a damaged ensemble (found replica 9223372036854775808)";
+  EXPECT_EQ(refused(tools::ByteWriter().put(point).put(replica).put(beyond)).rfind(damaged, 0), 0U);
+  EXPECT_EQ(refused(tools::ByteWriter().put(point).put(failed).put(beyond).put("lost")).rfind(damaged, 0), 0U);
+  EXPECT_THROW(tools::EnsembleState("", scene, {}).apply(tools::EnsembleState::record(0, row, values)), tools::Error);
+  EXPECT_NE(refused(tools::ByteWriter().put(point).put(spread).put(std::uint64_t{0}).put(std::vector<std::uint64_t>(3)))
+                .find("3 counts for the spread 0"),
+            std::string::npos);
+}
 
 TEST_F(DamagedEnsembles, AreRefused) {
   const std::string damaged = path("b.h5") + ": a damaged ensemble (found ", node = "ensemble/nodes/0000";

@@ -135,9 +135,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   void loaded() const {
     const BodyIndex count = bodies_->count();
     require_state(window_.fits(slots(), count) && window_.on_ring() == bodies_->on_ring(), "slots");
-    require_state(on_ring()
-                      ? body(first()) == 0 && body(last()) + 1 == count
-                      : body(first()) == window_.unheld_left() && body(last()) + 2 == count - window_.unheld_right(),
+    require_state(line_.body_of_slot_0 == window_.unheld_left() - static_cast<BodyIndex>(first()), "bodies");
+    require_state(on_ring() ? body(first()) == 0 && body(last()) + 1 == count
+                            : body(last()) + 2 == count - window_.unheld_right(),
                   "bodies");
     require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
     require_state(!on_ring() || (window_.front_left() == first() && window_.front_right() == last()), "seam");

@@ -193,6 +193,10 @@ template <class Chain> void expect_gaps_refused(const std::shared_ptr<const Bodi
 TEST(State, GapsThatNoRunHasAreRefused) {
   expect_gaps_refused<GapChain<double>>(rows(60));
   expect_gaps_refused<GapChain<double>>(ring(20));
+  const Contradicted<Made<GapChain<double>, Dry>> on_ring(
+      [] { return Made<GapChain<double>, Dry>(Dry(.9, 1e-4), GapChain<double>(ring(20), 0.)); });
+  for (const BodyIndex wrong : {std::numeric_limits<BodyIndex>::max(), std::numeric_limits<BodyIndex>::min()})
+    EXPECT_EQ(on_ring.by([&](auto& run) { field<2>(field<0>(field<0>(run))) = wrong; }), cannot_be("bodies"));
   using Heavy = GapChain<double, IndividualMasses<double>>;
   expect_gaps_refused<Heavy>(rows(60));
   const Contradicted<Made<Heavy, Dry>> loading([] { return Made<Heavy, Dry>(Dry(.9, 1e-4), Heavy(rows(60), 0.)); });

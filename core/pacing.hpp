@@ -94,7 +94,8 @@ template <Real T> struct Pacing {
   bool follows(std::uint64_t contacts, const T& last_contact, const T& since_start, std::int64_t bodies) const {
     constexpr std::uint64_t most = std::uint64_t{1} << 50;  // in a year; 4096 times as many are an integer too
     return contacts < most && contacts_before <= contacts && contacts_at_move <= contacts && expected < most &&
-           next_review <= contacts + 4 * per_body_ * static_cast<std::uint64_t>(bodies) + 16 &&
+           std::max({next_review, next_poll, most_contacts}) <=
+               contacts + 4 * per_body_ * static_cast<std::uint64_t>(bodies) + 16 &&
            is_finite(since_start) && since_start > T(-1) && is_finite(last_contact) && is_finite(time_before) &&
            is_finite(epoch) && is_finite(epoch_end) &&
            (!in_epochs || (is_positive(epoch) && !(epoch_end < last_contact)));

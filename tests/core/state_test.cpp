@@ -274,6 +274,8 @@ TEST(State, ReviewsThatNeverComeAreRefused) {
   using Run = Made<GapChain<double>, Dry>;
   const Contradicted<Run> loading([] { return Run(Dry(.9, 1e-4), GapChain<double>(ring(20), 0.)); });
   EXPECT_EQ(loading.by([](Run& run) { field<3>(run).next_review = std::uint64_t{1} << 60; }), cannot_be("pacing"));
+  EXPECT_EQ(loading.by([](Run& run) { field<3>(run).next_poll = std::uint64_t{1} << 60; }), cannot_be("pacing"));
+  EXPECT_EQ(loading.by([](Run& run) { field<3>(run).most_contacts = std::uint64_t{1} << 60; }), cannot_be("pacing"));
   EXPECT_EQ(loading.by([](Run& run) { field<2>(run).contacts = std::uint64_t{1} << 61; }), cannot_be("pacing"))
       << "times a number of epochs they are no integer";
 }

@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
       "seed.toml");
   const tools::RunOutcome run = tools::run_scene(scene, {tools::Progress::Show::never});
   put("result", "run", tools::file_image(run.result).substr(0, tools::file_image(run.result).size() - 24));
+  put("result", "bytes", tools::to_bytes(run.result));
   put("journal", "header", '\0' + tools::RunHeader{"0.1.0", effective_toml(scene), "seed", 60, 7}.bytes());
   for (const tools::Group& group : run.result.groups) {
     std::string name = group.name;

@@ -98,8 +98,10 @@ template <Real T> class ClusterChain {
     kept.reserve(last() + 1 - first());
     kept.push_back(first());
     while (kept.back() != last()) kept.push_back(right(kept.back()));
+    const auto beyond = std::lower_bound(kept.begin(), kept.end(), beyond_) - kept.begin();
     lay_out(kept, kept.size());
     link();
+    beyond_ = first() + static_cast<Slot>(beyond);
   }
 
   void set_floor(const T& floor) { line_.gaps.set_floor(floor); }

@@ -106,6 +106,21 @@ TEST(State, RunsGoOnWithTheSameBits) {
   expect_same<Dry, GapChain<double>>(Dry(.95, 1e-2), rows(1200));  // in epochs
 }
 
+// After a contact by which cells are laid out anew, fewer than before, nothing points beyond them.
+TEST(State, OfCellsLaidOutAnewIsTaken) {
+  using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
+  const auto bodies =
+      std::make_shared<Ring<double>>(60, 60., 1., gaussian_velocity(3, 0), uniform_displacement(.05, 3, 0));
+  const auto make = [&] { return Run(Sticky<double>(), ClusterChain<double>(bodies, 0.)); };
+  Run run = make();
+  for (double time = 0; time <= 300; time += 5) {
+    run.advance(time);
+    SavedState state = SavedState::of(run);
+    Run later = make();
+    EXPECT_NO_THROW(load(state, later)) << time;
+  }
+}
+
 // Every byte of a state changed: it is refused, or a run that can go on.
 TEST(State, WhatDoesNotFitTogetherIsRefused) {
   using Run = Simulation<double, Wet<double>, ClusterChain<double>>;

@@ -227,11 +227,14 @@ template <class M> struct CompensatedSum<Ball<M>> {
   Ball<M> value() const { return sum; }
 };
 
-// A decimal literal, enclosed.
+// A decimal literal, enclosed; integers that every midpoint holds are exact.
 template <class M> struct Text<Ball<M>> {
   static Ball<M> from(std::string_view literal) {
     const M middle = from_text<M>(literal);
     using Of = Midpoint<M>;
+    const std::size_t sign = literal.starts_with('-') || literal.starts_with('+');
+    if (literal.size() <= sign + 15 && literal.find_first_not_of("0123456789", sign) == literal.npos)
+      return {middle, 0};
     return {middle, (Of::literal_error() * Of::size(middle) + Of::lost()) * (1 + 0x1p-48)};
   }
 };

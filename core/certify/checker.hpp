@@ -111,7 +111,7 @@ template <Enclosing N> class Checker {
 
  private:
   struct Meeting {
-    BodyIndex l = -1, r = -1;  // clusters; the same after a merger
+    BodyIndex l = -1, r = -1;  // clusters, as they are after it: the same after a merger
     N time{0};
   };
 
@@ -130,7 +130,7 @@ template <Enclosing N> class Checker {
         if (const Order told = tell(line.changed, time); told != Order::less && !state.doubt)
           state.doubt = Doubt<N>{Check::before, told == Order::greater, b, b, line.changed, time};
       const BodyIndex next = lines_.right(b);
-      if (next != lines_.none && next != b && !(meets(b) && meets(next))) look_at_gap(b, next, x, time, state);
+      if (next != lines_.none && next != b && !(b == now.l && next == now.r)) look_at_gap(b, next, x, time, state);
       if (lines_.on_ring() || !line.touched) continue;
       if (lines_.left(b) == lines_.none || !lines_[lines_.left(b)].touched) state.front_left = x;
       if (next == lines_.none || !lines_[next].touched) state.front_right = x;
@@ -205,6 +205,7 @@ template <Enclosing N> class Checker {
     l.changed = r.changed = of_contacts_ ? N::widened(at.time, after.size()) : time;
     l.touched = r.touched = true;
     last_ = {at_l, outcome.event == Event::merge ? at_l : at_r, time};
+    if (outcome.event == Event::pass) std::swap(last_.l, last_.r);
     ++proved_.contacts;
     proved_.in_doubles += !needed_balls_;
     proved_.below_cutoff += outcome.below_cutoff;

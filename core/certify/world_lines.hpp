@@ -34,9 +34,9 @@ template <class T> class TwoEnded {
   }
 
  private:
-  // A quarter of what is used, free on either side.
+  // A sixteenth of what is used, free on either side.
   void make_room() {
-    const std::size_t room = used_ / 4 + 4;
+    const std::size_t room = used_ / 16 + 4;
     std::vector<T> items(used_ + 2 * room);
     for (std::size_t i = 0; i < used_; ++i) items[room + i] = std::move(items_[from_ + i]);
     items_ = std::move(items);

@@ -268,6 +268,53 @@ TEST(Certify, ARunThatIsWrongInOneContactIsNeverProved) {
   EXPECT_GE(of_side, 300U);
 }
 
+#ifdef CRADLE_WITH_MPFR
+// The wet law has roots, which rationals have not: the engine itself with 50 digits is the reference.
+TEST(Certify, WhatIsProvedOfWetBodiesIsWhatFiftyDigitsGive) {
+  using Wide = Mpfr<4>;
+  MpfrPrecision::set_bits(MpfrPrecision::bits_for(50));
+  std::uint64_t counted = 0, merged = 0;
+  for (std::uint64_t number = 0; number < 300; ++number) {
+    SCOPED_TRACE(number);
+    const Drawn d = draw(number, false);
+    CertainLaw<B> law;
+    law.kind = CertainLaw<B>::Kind::wet;
+    law.loss = B(1 + static_cast<int>(number % 7)) / B(8);
+    Contacts contacts;
+    Simulation run(Wet<double>((1 + static_cast<int>(number % 7)) / 8.),
+                   ClusterChain<double>(bodies_of<double>(d), 0.));
+    run.advance(until, [&](const Contact<double>& c) { contacts.emplace_back(c.left, c.right); });
+    Checker<B> checker(bodies_of<B>(d), law);
+    if (!proved(checker, contacts)) continue;
+    ++counted;
+    const auto wide_bodies = bodies_of<Wide>(d);
+    Simulation wide(Wet<Wide>(Wide(1 + static_cast<int>(number % 7)) / Wide(8)),
+                    ClusterChain<Wide>(wide_bodies, Wide(0)));
+    wide.advance(Wide(until));
+    ASSERT_EQ(wide.counts().contacts, contacts.size());
+    ASSERT_EQ(wide.counts().merges, checker.proved().merges);
+    merged += checker.proved().merges;
+    const auto holds_wide = [](const B& x, const Wide& value) {
+      const auto high = to_double(value), low = to_double(Wide(value - Wide(high)));
+      const Rational off = exact(x) - exactly(high) - exactly(low);
+      return (off < 0 ? -off : off) <= exactly(x.radius()) + exactly(std::abs(high) * 0x1p-100);
+    };
+    EXPECT_TRUE(holds_wide(checker.state_at(B(until)).energy, wide_bodies->kinetic_energy() - wide.energy_lost()));
+    if (d.length > 0) continue;  // places of a ring are told from another one
+    const auto now = wide.configuration(Wide(until));
+    checker.for_each(B(until), [&](BodyIndex body, const B&, const B& x, const B& v) {
+      for (std::size_t j = 0; j < now.index.size(); ++j) {
+        if (now.index[j] != body) continue;
+        EXPECT_TRUE(holds_wide(x, now.x[j])) << body;
+        EXPECT_TRUE(holds_wide(v, now.v[j])) << body;
+      }
+    });
+  }
+  EXPECT_GE(counted, 200U);
+  EXPECT_GE(merged, 100U);
+}
+#endif
+
 TEST(Certify, ATieIsOpenAndNamesTheBodies) {
   // The middle one is hit from both sides at once.
   const auto bodies = std::make_shared<List<B>>(std::vector<B>{B(-1), B(0), B(1)}, std::vector<B>{B(1), B(0), B(-1)});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tools/support/checksum.hpp"
@@ -166,9 +167,11 @@ std::string certificate_text(const Certified& run) {
     text += fmt::format("  energy    {} at t = {}\n", shown(last.energy), last.time_text);
     if (last.front_left) text += fmt::format("  fronts    {}\n", shown(*last.front_left));
     if (last.front_right) text += fmt::format("            {}\n", shown(*last.front_right));
-    text += fmt::format(
-        "  margins   places known to 1e{:.1f}, smallest gap 1e{:.1f}, gaps known to 1e{:.1f} of themselves\n",
-        last.widest, last.least_gap, last.widest_of_gap);
+    text += fmt::format("  margins   places known to 1e{:.1f}", last.widest);
+    if (std::isfinite(last.least_gap))
+      text += fmt::format(", smallest gap 1e{:.1f}, gaps known to 1e{:.1f} of themselves", last.least_gap,
+                          last.widest_of_gap);
+    text += '\n';
   }
   for (const Attempt& a : run.attempts)
     text += fmt::format("  {:.1f} s in {} and {}: {}\n", a.seconds, a.precision, a.digits,

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
@@ -9,6 +10,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -78,6 +80,22 @@ void sync_folder(const std::string& path) {
   sync_file(folder, path);
 }
 
+// New contents of this file, its journal or its checkpoint, whose writer was killed.
+void remove_leftovers(const std::string& target) {
+  const std::string folder = folder_of(target), name = fs::path(target).filename().string();
+  std::error_code none;
+  for (fs::directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none)) {
+    const std::string found = entry->path().filename().string();
+    for (const char* kind : {"", ".part", ".checkpoint"}) {
+      const std::string begin = fmt::format(".{}{}.cradle-", name, kind);
+      if (!found.starts_with(begin)) continue;
+      const long owner = std::atol(found.c_str() + begin.size());
+      std::error_code ignored;
+      if (owner > 0 && ::kill(static_cast<pid_t>(owner), 0) != 0 && errno == ESRCH) fs::remove(entry->path(), ignored);
+    }
+  }
+}
+
 }  // namespace
 
 Descriptor::~Descriptor() {
@@ -134,6 +152,7 @@ FileClaim::FileClaim(const std::string& path) : lock_(hidden_beside(file_behind(
     if (!same_file(file, lock_)) continue;  // its owner of before has just removed it
     tell_owner(file);
     held_ = std::move(file);
+    remove_leftovers(file_behind(path));
     return;
   }
 }

@@ -82,6 +82,10 @@ INSTANTIATE_TEST_SUITE_P(
              {"scaling", "energy"}},
         Kind{"ClusterModel", "cradle run fig10 --set run.until=500", {"scaling", "energy"}},
         Kind{"Bodies", "cradle run collapse3", {}, 3},
+        Kind{"Certificate",
+             "cradle certify fig2 --set initial.particles=100 --set law.restitution=0.97 --set run.until=60 "
+             "--set output.snapshots=[60] --set output.profiles.times=[] --set output.series.points=20",
+             {"energy", "certificate"}},
         Kind{"Cooling",
              "cradle run cooling --set initial.particles=500 --set run.until=100 --set output.series.points=20 "
              "--set output.snapshots=[10,100] --set output.masses=[10,100]",

@@ -4,10 +4,13 @@
 #include "cradle/tools/result/atomic_file.hpp"
 
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <iterator>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tests/tools/result/small_files.hpp"
@@ -116,6 +119,22 @@ TEST_F(AtomicFile, HasOneWriterAtATime) {
   const FileClaim other(path("b"));
   first.reset();
   const FileClaim second(path("a"));
+}
+
+TEST_F(AtomicFile, ClaimTakesAwayWhatAWriterThatWasKilledHasLeft) {
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);  // nobody has its number now
+  const std::string dead = ".cradle-" + std::to_string(child) + "-0",
+                    living = ".cradle-" + std::to_string(getpid()) + "-7";
+  const std::vector<std::string> left{".a.h5" + dead, ".a.h5.checkpoint" + dead, ".a.h5.part" + dead},
+      others{".a.h5" + living, ".b.h5" + dead, "a.h5" + dead, ".a.h5.cradle-x"};
+  for (const auto& name : left) write(name, "half");
+  for (const auto& name : others) write(name, "theirs");
+  { const FileClaim claim(path("a.h5")); }
+  for (const auto& name : left) EXPECT_FALSE(fs::exists(folder / name)) << name;
+  for (const auto& name : others) EXPECT_TRUE(fs::exists(folder / name)) << name;
 }
 
 TEST_F(AtomicFile, ClaimLeavesNothingBehindAndOutlivesNoCrash) {

@@ -83,8 +83,17 @@ const std::vector<Damage>& damages() {
          H5Dclose(data);
        },
        "a.h5: series/time@unit: is to be text (found a number): "},
-      {"a column of texts", [](hid_t file) { H5Dclose(put_dataset(file, "series/texts", H5T_C_S1, {4})); },
-       "a.h5: series/texts: a column is made of numbers (found another type): "},
+      {"a column of texts of any length",
+       [](hid_t file) {
+         const hid_t type = H5Tcopy(H5T_C_S1);
+         H5Tset_size(type, H5T_VARIABLE);
+         H5Dclose(put_dataset(file, "series/texts", type, {4}));
+         H5Tclose(type);
+       },
+       "a.h5: series/texts: a column is made of numbers or of texts as long as each other (found another type): "},
+      {"a column of texts that are not there",
+       [](hid_t file) { H5Dclose(put_dataset(file, "series/texts", H5T_C_S1, {4})); },
+       "a.h5: series/texts: more numbers than the file can hold (found 4 x 1): "},
       {"three dimensions",
        [](hid_t file) {
          H5Dclose(put_dataset(file, "series/cube", H5T_IEEE_F64LE, {2, 2, 2}));

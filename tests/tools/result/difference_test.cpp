@@ -80,7 +80,7 @@ TEST(Difference, OfEachKindIsToldWhereItIs) {
       {[](Result& r) {
          r.groups[0].columns[0].values = std::vector<std::uint64_t>{0, 1, 2};
        },
-       "series/time: real numbers against whole ones"},
+       "series/time: real numbers, whole ones or text against another of these"},
       {[](Result& r) { times(r)[1] = 1.5, times(r)[2] = 4; },
        "series/time: first in row 1: 1 against 1.5 (2251799813685248 ULPs, 0.33 relative); 2 of 3 numbers differ, by "
        "up to 0.5 relative"},

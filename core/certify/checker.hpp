@@ -187,8 +187,7 @@ template <Enclosing N> class Checker {
     needed_balls_ = false;
     Line &l = lines_[at_l], &r = lines_[at_r];
     const N closing = l.velocity - r.velocity;
-    if (const Order told = tell(zero_, closing); told != Order::less)
-      return Doubt<N>{Check::closing, told == Order::greater, -1, -1, zero_, closing};
+    if (!is_positive(closing)) return Doubt<N>{Check::closing, is_negative(closing), -1, -1, zero_, closing};
     const bool over_seam = at_l == lines_.seam();
     Places at = places_of(l, r, closing, over_seam);
     const N apart = at.left - at.right, after = -(apart / closing), time = of_contacts_ ? at.time + after : after;

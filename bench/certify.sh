@@ -59,3 +59,13 @@ for digits in 50 100 200 400 800; do
   line "wet rows of 2e4, E = .01, $digits digits" 1 $wet --set law.loss=0.01 --set run.precision=mpfr \
     --set run.digits=$digits -- --digits "$digits"
 done
+# Bodies of unequal masses: a heavy one between two rows. Here radii grow with the contacts of a body.
+cat >heavy.toml <<'END'
+law = {type = "inelastic", restitution = 0.95, cutoff = 1e-4}
+initial = {type = "rows", perturbation = 0.05, seed = 1, left = {particles = 500, speed = 0.5, density = 1}, right = {particles = 500, speed = -0.5, density = 1}, centre = {mass = 5}}
+run.until = 300
+output.series.points = 11
+END
+for digits in 31 50 100 200; do
+  line "rows with a heavy body between them, $digits digits" 1 heavy.toml -- --digits "$digits"
+done

@@ -50,8 +50,8 @@ template <Enclosing N> struct CertainOutcome {
   std::optional<N> left_velocity, right_velocity;
 };
 
-// Of two bodies of these masses, none where all have the same. `tell` is order(). Returns the two numbers whose order
-// is open, where the law needs it.
+// What a law does to two bodies of these masses, which are not read where all have the same (`identical`). `tell` is
+// order(). Returns the two numbers whose order the law needs and that is open; nothing where all is certain.
 template <Enclosing N> class CertainLaws {
  public:
   using Kind = typename CertainLaw<N>::Kind;

@@ -21,15 +21,17 @@
 // body certainly earlier.
 //
 // Theorem. If all of this holds, these world lines are the motion of the exact system up to t, it has made exactly
-// these contacts, and every place and velocity lies in its ball. Proof. By 3 the contacts of each body are in the order
-// of their true times, so its world line is a continuous, piecewise linear function of time. Impulses push apart (J >=
-// 0, with 2): a contact on the left of body k makes it faster, one on its right slower. So between two contacts of a
-// gap with itself, the place of the body on its left is a convex function of time and that of the body on its right a
-// concave one, and the gap is concave. It is 0 at its own contacts and positive at the start and at t. A concave
-// function that is 0 or positive at both ends of an interval is positive within, unless it is 0 throughout; and that it
-// is not: after a contact it opens at the speed w' > 0. So no gap is ever negative, and each is 0 at its contacts
-// alone: no contact is missing, none invented, each obeyed the law (2, 4). Three bodies never meet at one time (3), so
-// the motion is unique. Contacts that share no body may come in any order.
+// these contacts, and every place and velocity lies in its ball.
+//
+// Proof. By 3 the contacts of each body are in the order of their true times, so its world line is a continuous,
+// piecewise linear function of time. Impulses push apart (J >= 0, with 2): a contact on the left of body k makes it
+// faster, one on its right slower. So between two contacts of a gap with itself, the place of the body on its left is a
+// convex function of time and that of the body on its right a concave one, and the gap is concave. It is 0 at its own
+// contacts and positive at the start and at t. A concave function that is 0 or positive at both ends of an interval is
+// positive within, unless it is 0 throughout; and that it is not: after a contact it opens at the speed w' > 0. So no
+// gap is ever negative, and each is 0 at its contacts alone: no contact is missing, none invented, each obeyed the law
+// (2, 4). Three bodies never meet at one time (3), so the motion is unique. Contacts that share no body may come in any
+// order.
 //
 // With a restitution of 0, w' = 0: bodies stay together until one of them is hit, and the next contact fails 2. Bodies
 // that merge have no gap any more. Bodies that pass change places, and their gap is one of cells in the order of the

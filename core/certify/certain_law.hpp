@@ -48,6 +48,12 @@ template <Enclosing N> struct CertainOutcome {
   std::optional<typename N::Share> left, right;
   // Wet: after the contact, known better than by the shares.
   std::optional<N> left_velocity, right_velocity;
+
+  void clear() {
+    event = Event::bounce;
+    below_cutoff = exchange = right_heavier = false;
+    left.reset(), right.reset(), left_velocity.reset(), right_velocity.reset();
+  }
 };
 
 // What a law does to two bodies of these masses, which are not read where all have the same (`identical`). `tell` is

@@ -192,20 +192,25 @@ template <Enclosing N> class Checker {
     if (!is_positive(closing)) return Doubt<N>{Check::closing, is_negative(closing), -1, -1, zero_, closing};
     const bool over_seam = at_l == lines_.seam();
     Places at = places_of(l, r, closing, over_seam);
-    const N apart = at.left - at.right, after = -(apart / closing), time = of_contacts_ ? at.time + after : after;
+    const N apart = at.left - at.right, after = -(apart / closing);
+    N time = after;
+    if (of_contacts_) time += at.time;
     for (const Line* line : {&l, &r}) {
       if (!line->touched) continue;
       if (const Order told = tell(line->changed, time); told != Order::less)
         return Doubt<N>{Check::later, told == Order::greater, -1, -1, line->changed, time};
     }
-    CertainOutcome<N> outcome;
+    CertainOutcome<N>& outcome = outcome_;
+    outcome.clear();
     if (const auto open = outcome_of(at_l, at_r, closing, time, outcome))
       return Doubt<N>{Check::side, false, -1, -1, open->first, open->second};
     apply(outcome, at, apart, closing, l, r);
     if (over_seam) (outcome.event == Event::pass ? r : l).place += length_;
-    l.changed = r.changed = of_contacts_ ? N::widened(at.time, after.size()) : time;
+    l.changed = time;
+    if (of_contacts_) l.changed = N::widened(at.time, after.size());
+    r.changed = l.changed;
     l.touched = r.touched = true;
-    last_ = {at_l, outcome.event == Event::merge ? at_l : at_r, time};
+    last_.l = at_l, last_.r = outcome.event == Event::merge ? at_l : at_r, last_.time = time;
     if (outcome.event == Event::pass) std::swap(last_.l, last_.r);
     ++proved_.contacts;
     proved_.in_doubles += !needed_balls_;
@@ -256,6 +261,7 @@ template <Enclosing N> class Checker {
   bool of_contacts_;  // places are of the time of a body's last contact, not of the start
   Proved proved_;
   Meeting last_;
+  CertainOutcome<N> outcome_;  // of the contact at hand
   mutable bool needed_balls_ = false;
 };
 

@@ -141,15 +141,15 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
                   "bodies");
     require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
     require_state(!on_ring() || (window_.front_left() == first() && window_.front_right() == last()), "seam");
-    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Beyond the gaps held nothing closes: there is no contact.
+    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Slots beyond the gaps held are filled anew before they are used.
     const T fastest = T(2) + T(4) * bodies_->energy_over_least_mass();
-    for (Slot s = 0; s < slots(); ++s) {
+    for (Slot s = first(); s <= last(); ++s) {
       const T& w = closing(s);
-      require_state(s < first() || s > last() ? is_finite(w) && !is_positive(w)
-                                              : line_.gaps[s].fits(w) && is_finite(line_.gaps.lag(s)) &&
-                                                    !(fastest < magnitude(w)) && line_.has_mass(s, *bodies_),
+      require_state(line_.gaps[s].fits(w) && is_finite(line_.gaps.lag(s)) && !(fastest < magnitude(w)) &&
+                        line_.has_mass(s, *bodies_),
                     "gaps");
     }
+    for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
     require_state(line_.has_mass(last() + 1, *bodies_), "masses");
     for (const Anchor<T>* anchor : {&left_, &right_})
       require_state(on_ring() || (anchor->body() >= 0 && anchor->body() < count), "anchors");

@@ -79,7 +79,7 @@ template <class Chain> void expect_gaps_refused(const std::shared_ptr<const Bodi
   EXPECT_EQ(loading.by([&](Run& run) { gap(run, 1).closing = 1, gap(run, 1).due = nan; }), cannot_be("gaps"));
   EXPECT_EQ(loading.by([&](Run& run) { gap(run, 1).closing = -1, gap(run, 1).due = 4; }), cannot_be("gaps"))
       << "a contact of a gap that opens";
-  EXPECT_EQ(loading.by([&](Run& run) { gap(run, -1).closing = 1; }), cannot_be("gaps")) << "beyond the ends";
+  EXPECT_EQ(loading.by([&](Run& run) { gap(run, -1).closing = infinity; }), cannot_be("gaps")) << "beyond the ends";
 }
 
 TEST(DamagedStates, GapsThatNoRunHasAreRefused) {

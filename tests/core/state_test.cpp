@@ -11,6 +11,7 @@
 #include "cradle/core/position_chain.hpp"
 #include "cradle/core/ring.hpp"
 #include "cradle/core/rows.hpp"
+#include "cradle/core/segments.hpp"
 #include "cradle/core/simulation.hpp"
 #include "cradle/core/state.hpp"
 #include "cradle/core/sticky_gas.hpp"
@@ -145,6 +146,25 @@ TEST(State, WhatDoesNotFitTogetherIsRefused) {
     SavedState state(bytes.substr(0, size));
     Run later = make();
     EXPECT_THROW(load(state, later), std::invalid_argument) << size;
+  }
+}
+
+// Slots beyond the gaps that are held keep what a window of segments has left there.
+TEST(State, OfRowsThatWereRunInSegmentsIsTaken) {
+  using Run = Simulation<double, Inelastic<double>, GapChain<double>>;
+  const auto rows =
+      std::make_shared<Rows<double>>(symmetric_rows<double>(4000, .5, 1., uniform_displacement(.05, 1, 0)));
+  const auto begun = [&] { return Run(Inelastic<double>(.999, 1e-5), GapChain<double>(rows, 0.)); };
+  Run run = begun();
+  Workers workers;
+  workers.count = 1;
+  Segments<Inelastic<double>, GapChain<double>> segments(workers);
+  for (int k = 1; k <= 30; ++k) {
+    run.advance(37.3 * k, segments);
+    SavedState state;
+    save(state, run);
+    Run other = begun();
+    EXPECT_NO_THROW(load(state, other)) << k;
   }
 }
 

@@ -15,7 +15,8 @@ namespace cradle::tools {
 /// Text: numbers of more digits than a float64 has, as decimals.
 using Numbers = std::variant<std::vector<double>, std::vector<std::uint64_t>, std::vector<std::string>>;
 
-/// One dataset: float64, uint64 or text, with unit and a line of description. A dataset of width 2 has two numbers a row.
+/// One dataset: float64, uint64 or text, with unit and a line of description. A dataset of width 2 has two numbers a
+/// row.
 struct Column {
   std::string name;
   std::string unit;

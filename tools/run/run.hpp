@@ -37,8 +37,8 @@ struct RunOptions {
 struct RunOutcome {
   Result result;  // without the rows that a keeper has
   RunEnd end = RunEnd::reached;
-  std::string report;   // of a collapse, for standard output; else empty
-  std::string warning;  // what was not resolved, for standard error; else empty
+  std::string report;                      // of a collapse, for standard output; else empty
+  std::string warning;                     // what was not resolved, for standard error; else empty
   std::string collapse_time;               // where the run stopped at a collapse
   std::uint64_t contacts = 0, merges = 0;  // at the end, as are time and energy
   double time = 0, energy = 0;

@@ -243,8 +243,8 @@ TEST_F(Commands, BadCommandLinesSayWhatIsWrongAndWhoseHelpToRead) {
 }
 
 TEST_F(Commands, EveryHelpEndsWithAnExampleAndTheExitStatuses) {
-  for (const std::string command :
-       {"", "run", "check", "info", "export", "theory", "scenes", "plot", "trust", "certify", "ensemble", "sweep", "merge"}) {
+  for (const std::string command : {"", "run", "check", "info", "export", "theory", "scenes", "plot", "trust",
+                                    "certify", "ensemble", "sweep", "merge"}) {
     const Printed help = shell("cradle " + command + " --help");
     EXPECT_EQ(help.status, 0) << help.err;
     EXPECT_NE(help.out.find("\nExample: cradle " + command), std::string::npos) << help.out;

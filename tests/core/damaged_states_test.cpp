@@ -11,23 +11,17 @@
 #include "cradle/core/cluster_chain.hpp"
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/position_chain.hpp"
-#include "cradle/core/ring.hpp"
-#include "cradle/core/rows.hpp"
 #include "cradle/core/simulation.hpp"
 #include "cradle/core/state.hpp"
 #include "cradle/core/sticky_gas.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 
 namespace damaged_states_test {
 
 using namespace cradle;
+using cradle::test::gaussian_ring;
+using cradle::test::uniform_rows;
 using Dry = Inelastic<double>;
-
-std::shared_ptr<const Bodies<double>> rows(BodyIndex count) {
-  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, .5, 1, uniform_displacement(.05, 3, 0)));
-}
-std::shared_ptr<const Bodies<double>> ring(BodyIndex count) {
-  return std::make_shared<Ring<double>>(count, 20., 1., gaussian_velocity(3, 0), uniform_displacement(.05, 3, 0));
-}
 
 template <class Run> class Contradicted {
  public:
@@ -83,15 +77,16 @@ template <class Chain> void expect_gaps_refused(const std::shared_ptr<const Bodi
 }
 
 TEST(DamagedStates, GapsThatNoRunHasAreRefused) {
-  expect_gaps_refused<GapChain<double>>(rows(60));
-  expect_gaps_refused<GapChain<double>>(ring(20));
+  expect_gaps_refused<GapChain<double>>(uniform_rows(60));
+  expect_gaps_refused<GapChain<double>>(gaussian_ring(20, 20));
   const Contradicted<Made<GapChain<double>, Dry>> on_ring(
-      [] { return Made<GapChain<double>, Dry>(Dry(.9, 1e-4), GapChain<double>(ring(20), 0.)); });
+      [] { return Made<GapChain<double>, Dry>(Dry(.9, 1e-4), GapChain<double>(gaussian_ring(20, 20), 0.)); });
   for (const BodyIndex wrong : {std::numeric_limits<BodyIndex>::max(), std::numeric_limits<BodyIndex>::min()})
     EXPECT_EQ(on_ring.by([&](auto& run) { field<2>(field<0>(field<0>(run))) = wrong; }), cannot_be("bodies"));
   using Heavy = GapChain<double, IndividualMasses<double>>;
-  expect_gaps_refused<Heavy>(rows(60));
-  const Contradicted<Made<Heavy, Dry>> loading([] { return Made<Heavy, Dry>(Dry(.9, 1e-4), Heavy(rows(60), 0.)); });
+  expect_gaps_refused<Heavy>(uniform_rows(60));
+  const Contradicted<Made<Heavy, Dry>> loading(
+      [] { return Made<Heavy, Dry>(Dry(.9, 1e-4), Heavy(uniform_rows(60), 0.)); });
   EXPECT_EQ(loading.by([](auto& run) { field<0>(field<0>(run)).masses.set(field<0>(run).first(), 0); }),
             cannot_be("gaps"));
 }
@@ -99,19 +94,20 @@ TEST(DamagedStates, GapsThatNoRunHasAreRefused) {
 TEST(DamagedStates, FrontsThatNoRunHasAreRefused) {
   using Run = Made<GapChain<double>, Dry>;
   const auto window = [](Run& run) -> Window& { return field<1>(field<0>(run)); };
-  const Contradicted<Run> on_ring([] { return Run(Dry(.9, 1e-4), GapChain<double>(ring(20), 0.)); });
+  const Contradicted<Run> on_ring([] { return Run(Dry(.9, 1e-4), GapChain<double>(gaussian_ring(20, 20), 0.)); });
   EXPECT_EQ(on_ring.by([&](Run& run) { field<3>(window(run)) = 0; }), cannot_be("seam"));
-  const Contradicted<Run> on_line([] { return Run(Dry(.9, 1e-4), GapChain<double>(rows(60), 0.)); });
+  const Contradicted<Run> on_line([] { return Run(Dry(.9, 1e-4), GapChain<double>(uniform_rows(60), 0.)); });
   EXPECT_EQ(on_line.by([&](Run& run) { field<0>(window(run)) = Window::Extent::nowhere; }), cannot_be("slots"))
       << "fronts without contacts";
   using Positions = Made<PositionChain<double>, Dry>;
-  const Contradicted<Positions> positions([] { return Positions(Dry(.9, 1e-4), PositionChain<double>(rows(60), 0.)); });
+  const Contradicted<Positions> positions(
+      [] { return Positions(Dry(.9, 1e-4), PositionChain<double>(uniform_rows(60), 0.)); });
   EXPECT_EQ(positions.by([](Positions& run) { field<6>(field<0>(run)) = 0; }), cannot_be("fronts"));
 }
 
 TEST(DamagedStates, PositionsThatNoRunHasAreRefused) {
   using Run = Made<PositionChain<double>, Dry>;
-  const Contradicted<Run> loading([] { return Run(Dry(.9, 1e-4), PositionChain<double>(rows(60), 0.)); });
+  const Contradicted<Run> loading([] { return Run(Dry(.9, 1e-4), PositionChain<double>(uniform_rows(60), 0.)); });
   EXPECT_EQ(loading.by([](Run&) {}), "loaded");
   for (const double wrong : {infinity, nan}) {
     EXPECT_EQ(loading.by([&](Run& run) { field<0>(field<0>(run))[5].x = wrong; }), cannot_be("numbers"));
@@ -145,12 +141,12 @@ template <class Make> void expect_cells_refused(const Make& make, bool on_ring) 
 
 TEST(DamagedStates, CellsThatNoRunHasAreRefused) {
   using Run = Made<ClusterChain<double>, Wet<double>>;
-  expect_cells_refused([] { return Run(Wet<double>(.01), ClusterChain<double>(rows(60), 0.)); }, false);
-  expect_cells_refused([] { return Run(Wet<double>(.01), ClusterChain<double>(ring(12), 0.)); }, true);
+  expect_cells_refused([] { return Run(Wet<double>(.01), ClusterChain<double>(uniform_rows(60), 0.)); }, false);
+  expect_cells_refused([] { return Run(Wet<double>(.01), ClusterChain<double>(gaussian_ring(12, 20), 0.)); }, true);
 }
 
 TEST(DamagedStates, ClustersThatNoGasHasAreRefused) {
-  const Contradicted<StickyGas<double>> loading([] { return StickyGas<double>(ring(20), 0.); });
+  const Contradicted<StickyGas<double>> loading([] { return StickyGas<double>(gaussian_ring(20, 20), 0.); });
   const auto lump = [](StickyGas<double> & gas) -> auto& { return field<2>(gas).front(); };
   EXPECT_EQ(loading.by([](StickyGas<double>&) {}), "loaded");
   for (const double wrong : {infinity, nan}) {
@@ -164,7 +160,7 @@ TEST(DamagedStates, ClustersThatNoGasHasAreRefused) {
 
 TEST(DamagedStates, ReviewsThatNeverComeAreRefused) {
   using Run = Made<GapChain<double>, Dry>;
-  const Contradicted<Run> loading([] { return Run(Dry(.9, 1e-4), GapChain<double>(ring(20), 0.)); });
+  const Contradicted<Run> loading([] { return Run(Dry(.9, 1e-4), GapChain<double>(gaussian_ring(20, 20), 0.)); });
   EXPECT_EQ(loading.by([](Run& run) { field<3>(run).next_review = std::uint64_t{1} << 60; }), cannot_be("pacing"));
   EXPECT_EQ(loading.by([](Run& run) { field<3>(run).next_poll = std::uint64_t{1} << 60; }), cannot_be("pacing"));
   EXPECT_EQ(loading.by([](Run& run) { field<3>(run).most_contacts = std::uint64_t{1} << 60; }), cannot_be("pacing"));

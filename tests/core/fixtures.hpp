@@ -12,6 +12,7 @@
 #include "cradle/core/law.hpp"
 #include "cradle/core/list.hpp"
 #include "cradle/core/position_chain.hpp"
+#include "cradle/core/ring.hpp"
 #include "cradle/core/rows.hpp"
 #include "cradle/core/simulation.hpp"
 
@@ -53,6 +54,14 @@ template <class T> Scene<T> rshock(BodyIndex n, const T& speed) {
   return std::make_shared<Rows<T>>(symmetric_rows<T>(n, speed, T(1), rshock_displacement));
 }
 template <class T> Scene<T> rshock(BodyIndex n) { return rshock(n, T(T(1) / T(2))); }
+
+// Rows and rings as scenes have them, displaced by counters.
+inline Scene<double> uniform_rows(BodyIndex count) {
+  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, .5, 1, uniform_displacement(.05, 3, 0)));
+}
+inline Scene<double> gaussian_ring(BodyIndex count, double length) {
+  return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(3, 0), uniform_displacement(.05, 3, 0));
+}
 
 // The same bodies, held as a list without any knowledge of rows.
 template <class T> Scene<T> as_list(const Bodies<T>& bodies) {

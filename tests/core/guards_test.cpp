@@ -10,23 +10,17 @@
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/core/position_chain.hpp"
-#include "cradle/core/ring.hpp"
-#include "cradle/core/rows.hpp"
 #include "cradle/core/simulation.hpp"
 #include "cradle/core/sticky_gas.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 
 namespace guards_test {
 
 using namespace cradle;
+using cradle::test::gaussian_ring;
+using cradle::test::uniform_rows;
 
 using Dry = Inelastic<double>;
-
-std::shared_ptr<const Bodies<double>> rows(BodyIndex count) {
-  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, .5, 1, uniform_displacement(.05, 3, 0)));
-}
-std::shared_ptr<const Bodies<double>> ring(BodyIndex count) {
-  return std::make_shared<Ring<double>>(count, 200., 1., gaussian_velocity(3, 0), uniform_displacement(.05, 3, 0));
-}
 
 template <class Run>
 GuardLook<double> look_at(const Run& run, const Bodies<double>& bodies, const Configuration<double>& c) {
@@ -48,18 +42,18 @@ void expect_silent(const Law& law, const std::shared_ptr<const Bodies<double>>& 
 }
 
 TEST(Guards, AreSilentOnRunsThatAreRight) {
-  for (const auto& bodies : {rows(300), ring(200)}) {
+  for (const auto& bodies : {uniform_rows(300), gaussian_ring(200, 200)}) {
     expect_silent<GapChain<double>>(Dry(.99, 1e-3), bodies);
     expect_silent<GapChain<double>>(Dry(1., 0.), bodies);
     expect_silent<ClusterChain<double>>(Wet<double>(.01), bodies);
     expect_silent(StickyGas<double>(bodies, 0.), *bodies);
   }
-  expect_silent<PositionChain<double>>(Dry(.99, 1e-2), rows(300));
+  expect_silent<PositionChain<double>>(Dry(.99, 1e-2), uniform_rows(300));
 }
 
 class Broken : public testing::Test {
  protected:
-  Broken() : bodies_(rows(300)), run_(Dry(.99, 1e-3), GapChain<double>(bodies_, 0.)) {
+  Broken() : bodies_(uniform_rows(300)), run_(Dry(.99, 1e-3), GapChain<double>(bodies_, 0.)) {
     run_.advance(200);
     now_ = run_.configuration(200);
   }

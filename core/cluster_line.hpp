@@ -56,11 +56,11 @@ template <Real T> class ClusterLine {
     gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), on_left ? s : beside, on_left ? beside : s, 0});
     (on_left ? gaps[beside].left : gaps[beside].right) = s;
   }
-  // Whether what is held can be a body and the gap behind it, none where it is the last one of a line; whether beyond
-  // both ends there is what runs away.
+  // Whether what is held can be a body and the gap behind it, of the last one of a line a gap that never closes;
+  // whether beyond both ends there is what runs away.
   bool fits(Slot s, bool last) const {
     const T speed = magnitude(gaps[s].velocity);
-    return speed + speed <= runaway_ && (last || (gaps[s].fits(closing(s)) && is_finite(gaps.lag(s))));
+    return speed + speed <= runaway_ && gaps[s].fits(closing(s)) && (last || is_finite(gaps.lag(s)));
   }
   bool ends_beside(Slot first, Slot last) const {
     const Slot p = left(first), n = right(last);

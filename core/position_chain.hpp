@@ -112,8 +112,8 @@ template <Real T> class PositionChain {
     require_state(none || (front_left_ >= first() && front_left_ <= front_right_ && front_right_ <= last()), "fronts");
     bool right = is_finite(origin_);
     for (const Particle& p : bodies_) right = right && p.holds_numbers();
-    for (Slot s = 0; s < slots(); ++s)  // where there is no gap none closes
-      right = right && is_finite(due_[s]) && is_finite(closing_[s]) &&
+    for (Slot s = 0; s < slots(); ++s)  // where there is no gap none closes; contacts may be beyond the range
+      right = right && due_[s] == due_[s] && is_finite(closing_[s]) &&
               !(is_positive(closing_[s]) && (s < first() || s > last()));
     require_state(right, "numbers");
   }

@@ -101,7 +101,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     }
     cut(chain);
     if (!chain.fronts_are_within(own_.front().first + own_.front().gaps - 1, own_.back().first)) return give_up(chain);
-    if (!after_) after_.emplace(chain.start(), T(1));
+    // Anew where slots have become fewer: what is left in spare ones would name slots that there are no more.
+    if (!after_ || after_->slots() > chain.slots()) after_.emplace(chain.start(), T(1));
     after_->resize(chain.slots());
     std::vector<std::size_t> todo(own_.size());
     std::iota(todo.begin(), todo.end(), std::size_t{0});

@@ -111,9 +111,10 @@ TEST(DamagedStates, PositionsThatNoRunHasAreRefused) {
   EXPECT_EQ(loading.by([](Run&) {}), "loaded");
   for (const double wrong : {infinity, nan}) {
     EXPECT_EQ(loading.by([&](Run& run) { field<0>(field<0>(run))[5].x = wrong; }), cannot_be("numbers"));
-    EXPECT_EQ(loading.by([&](Run& run) { field<1>(field<0>(run))[5] = wrong; }), cannot_be("numbers"));
+    EXPECT_EQ(loading.by([&](Run& run) { field<2>(field<0>(run))[5] = wrong; }), cannot_be("numbers"));
     EXPECT_EQ(loading.by([&](Run& run) { field<4>(field<0>(run)) = wrong; }), cannot_be("numbers")) << "the origin";
   }
+  EXPECT_EQ(loading.by([](Run& run) { field<1>(field<0>(run))[5] = nan; }), cannot_be("numbers")) << "a contact";
   EXPECT_EQ(loading.by([](Run& run) { field<2>(field<0>(run)).back() = 1; }), cannot_be("numbers"))
       << "a gap beyond the end closes";
 }
@@ -130,6 +131,8 @@ template <class Make> void expect_cells_refused(const Make& make, bool on_ring) 
     EXPECT_EQ(loading.by([&](Run& run) { cell(run, field<0>(run).first()).mass = wrong; }), cannot_be("numbers"));
   EXPECT_EQ(loading.by([&](Run& run) { cell(run, field<0>(run).first()).gap = nan; }), cannot_be("numbers"));
   if (on_ring) return;
+  EXPECT_EQ(loading.by([&](Run& run) { cell(run, field<0>(run).last()).due = 4; }), cannot_be("numbers"))
+      << "the last one meets what runs away";
   for (const bool left : {true, false})
     EXPECT_EQ(loading.by([&](Run& run) {
       const Chain& chain = field<0>(run);

@@ -168,4 +168,41 @@ TEST(State, OfRowsThatWereRunInSegmentsIsTaken) {
   }
 }
 
+// A chain with fewer slots than before takes over none that name those it had.
+TEST(State, OfRingsThatWereRunInSegmentsIsTaken) {
+  using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const auto count = static_cast<BodyIndex>(600 + 37 * seed);
+    const auto ring = std::make_shared<Ring<double>>(count, static_cast<double>(count), 1., gaussian_velocity(seed, 0),
+                                                     uniform_displacement(.05, seed, 0));
+    const auto begun = [&] { return Run(Sticky<double>(), ClusterChain<double>(ring, 0.)); };
+    Run run = begun();
+    Workers workers;
+    workers.count = 1;
+    Segments<Sticky<double>, ClusterChain<double>> segments(workers, {60, 8, 0, true});
+    for (int k = 1; k <= 120; ++k) {
+      run.advance(.4 * k, segments);
+      SavedState state;
+      save(state, run);
+      Run other = begun();
+      ASSERT_NO_THROW(load(state, other)) << seed << ", " << k;
+    }
+  }
+}
+
+// In absolute positions a contact may be due beyond the range of the type.
+TEST(State, WithContactsThatNeverComeIsTaken) {
+  const auto begun = [] {
+    const auto bodies =
+        std::make_shared<List<double>>(std::vector<double>{0, 1, 3}, std::vector<double>{1e-310, 0, -1});
+    return Simulation<double, Inelastic<double>, PositionChain<double>>(Inelastic<double>(.9),
+                                                                        PositionChain<double>(bodies, 0.));
+  };
+  auto run = begun(), other = begun();
+  run.advance(1);
+  SavedState state;
+  save(state, run);
+  EXPECT_NO_THROW(load(state, other));
+}
+
 }  // namespace state_test

@@ -28,6 +28,7 @@ line() {
   run=$(seconds "$repeats" "$cradle" run "${scene[@]}" --threads 1 -o run.h5)
   proof=$(seconds "$repeats" "$cradle" certify "${scene[@]}" "${digits[@]}" -o proof.h5)
   local verdict contacts balls energy until
+  grep -qE '^(proved|undecided)' last || { echo "$name: no verdict" >&2; cat last >&2; exit 1; }
   verdict=$(grep -oE '^(proved|undecided)' last | head -1)
   contacts=$(grep -oE '[0-9]+ contacts' last | head -1)
   until=$(sed -nE 's/^(proved: .*up to|undecided at) t = ([^ ,]*).*/\2/p' last | head -1)

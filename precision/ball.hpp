@@ -47,8 +47,9 @@ template <> struct Midpoint<double_double> {
   static double product_error() { return 0x1p-103; }  // > 4 u^2
   static double quotient_error() { return 0x1p-102; }
   static double literal_error() { return 0x1p-105; }
-  // Error terms of products below 2^-969 are lost: less than this.
+  // Error terms of products below 2^-969 are lost: less than this. Sums lose nothing.
   static double lost() { return 0x1p-1000; }
+  static double lost_in_sum() { return 0; }
   // A double that differs by less than 2^-52 of itself or 2^-990.
   static double near(const double_double& x) { return x.high(); }
 };
@@ -65,7 +66,8 @@ template <int Limbs> struct Midpoint<Mpfr<Limbs>> {
   static long double product_error() { return sum_error(); }
   static long double quotient_error() { return sum_error(); }
   static long double literal_error() { return sum_error(); }
-  static long double lost() { return std::numeric_limits<long double>::min(); }
+  static long double lost() { return std::numeric_limits<long double>::min(); }  // of radii and sizes
+  static long double lost_in_sum() { return lost(); }
   static double near(const Mpfr<Limbs>& x) {
     long exponent = 0;
     const double mantissa = split(x, exponent);
@@ -95,11 +97,11 @@ template <class M> class Ball {
   friend Ball operator-(const Ball& x) { return {-x.middle_, x.radius_}; }
   friend Ball operator+(const Ball& x, const Ball& y) {
     const M middle = x.middle_ + y.middle_;
-    return {middle, up(x.radius_ + y.radius_ + Of::sum_error() * Of::size(middle))};
+    return {middle, up(x.radius_ + y.radius_ + Of::sum_error() * Of::size(middle) + Of::lost_in_sum())};
   }
   friend Ball operator-(const Ball& x, const Ball& y) {
     const M middle = x.middle_ - y.middle_;
-    return {middle, up(x.radius_ + y.radius_ + Of::sum_error() * Of::size(middle))};
+    return {middle, up(x.radius_ + y.radius_ + Of::sum_error() * Of::size(middle) + Of::lost_in_sum())};
   }
   friend Ball operator*(const Ball& x, const Ball& y) {
     const M middle = x.middle_ * y.middle_;
@@ -113,7 +115,7 @@ template <class M> class Ball {
     if (!(least > 0)) return {middle, std::numeric_limits<Radius>::infinity()};
     const Radius size = Of::size(middle);
     return {middle, up((x.radius_ + size * y.radius_) / least + Of::quotient_error() * size * (1 + y.radius_ / least) +
-                       Of::lost())};
+                       Of::lost() / least + Of::lost())};
   }
   Ball& operator+=(const Ball& y) { return *this = *this + y; }
   Ball& operator-=(const Ball& y) { return *this = *this - y; }
@@ -134,7 +136,7 @@ template <class M> class Ball {
 
   // Upper and lower bound of all sizes in it.
   Radius size() const { return up(Of::size(middle_) + radius_); }
-  Radius least_size() const { return (Of::size(middle_) * down - radius_) * down; }
+  Radius least_size() const { return (Of::size(middle_) * down - 2 * Of::lost() - radius_) * down; }
 
   // In plain doubles if these tell it; open if they do not.
   friend Order order_in_doubles(const Ball& x, const Ball& y) {

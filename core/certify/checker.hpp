@@ -31,7 +31,8 @@
 // positive within, unless it is 0 throughout; and that it is not: after a contact it opens at the speed w' > 0. So no
 // gap is ever negative, and each is 0 at its contacts alone: no contact is missing, none invented, each obeyed the law
 // (2, 4). Three bodies never meet at one time (3), so the motion is unique. Contacts that share no body may come in any
-// order.
+// order. Bodies that pass exchange their cells of the line: J <= mu w, so the left cell goes on at v_r + J/m_r <= v_l
+// and the right one at v_l - J/m_l >= v_r, slower and faster as after a bounce.
 //
 // With a restitution of 0, w' = 0: bodies stay together until one of them is hit, and the next contact fails 2. Bodies
 // that merge have no gap any more. Bodies that pass change places, and their gap is one of cells in the order of the
@@ -51,11 +52,11 @@
 
 namespace cradle {
 
-enum class Check { at_start, neighbours, closing, later, side, gap, before, counts };
+enum class Check { neighbours, closing, later, side, gap, before, counts };
 
 // Where a proof ends: two quantities of which the first should be less, or on one side of the second.
 template <Enclosing N> struct Doubt {
-  Check check = Check::at_start;
+  Check check = Check::gap;
   bool refuted = false;  // it is certain that it is not so; else it is open
   BodyIndex left = -1, right = -1;
   N first{0}, second{0};
@@ -83,7 +84,7 @@ template <Enclosing N> class Checker {
   // The bodies at the start.
   std::optional<Doubt<N>> begin() const { return state_at(N(0)).doubt; }
 
-  // The next contact of the run. Where it is in doubt, nothing is changed.
+  // The next contact of the run. Where it is in doubt, no world line is changed.
   std::optional<Doubt<N>> contact(BodyIndex left, BodyIndex right) {
     if (!lines_.holds(left) || !lines_.holds(right)) return Doubt<N>{Check::neighbours, true, left, right};
     const BodyIndex l = lines_.cluster(left), r = lines_.cluster(right);
@@ -104,8 +105,8 @@ template <Enclosing N> class Checker {
       if (lines_.is_cluster(b)) f(b, lines_.mass(b), place_at(b, time), lines_[b].velocity);
   }
 
-  // Contacts proved, those of them that were below a threshold, those that merged, and those of which all was told by
-  // plain doubles.
+  // Contacts proved, those of them that were below a threshold, those that merged, and those of which times and sides
+  // were told by plain doubles.
   struct Proved {
     std::uint64_t contacts = 0, below_cutoff = 0, merges = 0, in_doubles = 0;
   };

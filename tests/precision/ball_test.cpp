@@ -16,9 +16,15 @@ using namespace cradle;
 using namespace cradle::test;
 
 Rational exact(double x) { return exactly(x); }
-Rational exact(long double x) {
+Rational power_of_two(long exponent) {
+  const Rational power(boost::multiprecision::cpp_int(1) << static_cast<unsigned>(std::abs(exponent)));
+  return exponent < 0 ? Rational(1 / power) : power;
+}
+Rational exact(long double x) {  // also beyond the range of double
+  int exponent = 0;
+  x = std::frexp(x, &exponent);
   const auto high = static_cast<double>(x);
-  return exactly(high) + exactly(static_cast<double>(x - high));
+  return (exactly(high) + exactly(static_cast<double>(x - high))) * power_of_two(exponent);
 }
 Rational exact(const double_double& x) { return exactly(x.high()) + exactly(x.low()); }
 Rational size_of(const Rational& x) { return x < 0 ? Rational(-x) : x; }
@@ -35,9 +41,7 @@ template <int Limbs> Rational exact(const Mpfr<Limbs>& x) {
   mp_get_memory_functions(nullptr, nullptr, &release);
   release(digits, std::string(digits).size() + 1);
   mpz_clear(whole);
-  using Whole = boost::multiprecision::cpp_int;
-  const Rational power(Whole(1) << static_cast<unsigned>(std::abs(exponent)));
-  return exponent < 0 ? Rational(value / power) : Rational(value * power);
+  return value * power_of_two(exponent);
 }
 #endif
 
@@ -82,7 +86,8 @@ template <class M> struct Draws {
 };
 
 template <class M> void expect_holds(const Ball<M>& x, const Rational& number) {
-  ASSERT_LE(size_of(exact(x.middle()) - number), exact(x.radius()));
+  ASSERT_TRUE(size_of(exact(x.middle()) - number) <= exact(x.radius()))
+      << to_double(x.middle()) << ", radius " << x.radius();  // rationals may have thousands of digits
 }
 
 TYPED_TEST(Balls, HoldWhatTheOperationsGive) {
@@ -105,6 +110,34 @@ TYPED_TEST(Balls, HoldWhatTheOperationsGive) {
                                        size_of(exact(sum.middle())) * exact(0x1p-100));
   }
   EXPECT_GT(useful, 1000U);
+}
+
+double_double scaled(const double_double& x, int exponent) {
+  return double_double::sum(std::ldexp(x.high(), exponent), std::ldexp(x.low(), exponent));
+}
+#ifdef CRADLE_WITH_MPFR
+template <int Limbs> Mpfr<Limbs> scaled(const Mpfr<Limbs>& x, int exponent) { return ldexp(x, exponent); }
+#endif
+
+// At the lower end of the range, where terms underflow and are divided by numbers as small.
+TYPED_TEST(Balls, HoldQuotientsAndSumsOfTheLeastNumbers) {
+  using B = Ball<TypeParam>;
+  const int least = std::is_same_v<TypeParam, double_double> ? -1018 : -16390;
+  Draws<TypeParam> draws;
+  for (int k = 0; k < 2000; ++k) {
+    const auto exponent = [&] { return least + 41 + static_cast<int>(draws.bits() % 60); };
+    const TypeParam number = draws.number();
+    const int e = exponent();
+    const B x(scaled(number, e), 0), y(scaled(draws.number(), exponent()), 0), quotient = x / y;
+    if (is_finite(quotient)) expect_holds(quotient, Rational(exact(x.middle()) / exact(y.middle())));
+    expect_holds(x + y, exact(x.middle()) + exact(y.middle()));
+    expect_holds(x * y, exact(x.middle()) * exact(y.middle()));
+    const B around(x.middle(), std::ldexp(static_cast<typename B::Radius>(2 * std::abs(to_double(number))), e));
+    EXPECT_FALSE(is_positive(around));
+    EXPECT_EQ(order_in_balls(x, x), Order::open);
+  }
+  EXPECT_EQ(order(B(1), B(1)), Order::open);
+  EXPECT_EQ(order(B(0), B(0)), Order::open);
 }
 
 TYPED_TEST(Balls, HoldRoots) {

@@ -36,7 +36,7 @@ struct CertainSample {
 
 /// Where a proof ends (Doubt), as text.
 struct ToldDoubt {
-  Check check = Check::at_start;
+  Check check = Check::gap;
   bool refuted = false;
   BodyIndex left = -1, right = -1;
   double time = 0;             // of the run

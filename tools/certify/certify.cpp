@@ -45,8 +45,6 @@ namespace {
 
 const char* question(Check check) {
   switch (check) {
-  case Check::at_start:
-    return "the bodies are in order at the start";
   case Check::neighbours:
     return "those that meet are neighbours";
   case Check::closing:
@@ -131,6 +129,9 @@ Certified certify(const Scene& asked, const CertifyOptions& options) {
     try {
       outcome = run_scene(scene, {options.progress, witness.get(), options.interrupt});
     } catch (const ProofEnds&) {
+    } catch (const Error& error) {  // a guard of the run: it was wrong, as if a contact of it had been
+      if (error.status != Exit::lost || !raise(scene, of_balls)) throw;
+      continue;
     }
     if (outcome.end == RunEnd::interrupted)
       throw Error({}, "interrupted", "", "run it again; nothing is kept of a proof that did not finish",
@@ -204,7 +205,7 @@ struct Bounds {
 Result certified_result(Certified run) {
   const Certificate& c = run.certificate;
   Result result = std::move(run.outcome.result);
-  if (!run.proved()) result = {provenance(run.scene, precision_name(run.scene.run), "undecided"), {}};
+  if (!run.proved()) result = {provenance(run.scene, precision_name(run.scene.run), undecided_text), {}};
   Group certificate{"certificate",
                     {{"verdict", run.proved() ? "proved" : "undecided"},
                      {"contacts", c.contacts},

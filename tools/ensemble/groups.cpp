@@ -60,7 +60,7 @@ TreeNode read_node(const Group& group, const std::string& file) {
 
 }  // namespace
 
-Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& total) const {
+Group statistics_group(std::string name, const Quantity& quantity, const Moments& total) {
   std::vector<double> mean, sem, least, greatest;
   std::vector<std::uint64_t> counts;
   bool all_have_all = true;
@@ -74,13 +74,19 @@ Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& tot
     all_have_all = all_have_all && count == total.replicas;
   }
   const std::size_t width = quantity.width;
-  Group group{name("ensemble/" + quantity.group + "/" + quantity.name),
-              {{"offset", std::uint64_t{quantity.offset}}},
+  Group group{std::move(name),
+              {},
               {{"mean", quantity.unit, "mean over replicas: " + quantity.description, std::move(mean), width},
                {"sem", quantity.unit, "standard error of the mean", std::move(sem), width},
                {"min", quantity.unit, "least of all replicas", std::move(least), width},
                {"max", quantity.unit, "greatest of all replicas", std::move(greatest), width}}};
   if (!all_have_all) group.columns.push_back({"count", "1", "replicas that have it", std::move(counts), width});
+  return group;
+}
+
+Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& total) const {
+  Group group = statistics_group(name("ensemble/" + quantity.group + "/" + quantity.name), quantity, total);
+  group.attributes = {{"offset", std::uint64_t{quantity.offset}}};
   return group;
 }
 

@@ -47,6 +47,9 @@ class ReplicaTable {
 /// Of a node of the tree; what is too large for one stays so.
 inline unsigned level_of(std::uint64_t number) { return static_cast<unsigned>(std::min<std::uint64_t>(number, 64)); }
 
+/// Mean, standard error and extremes of a quantity; NaN where no replica has it, and how many do where not all.
+Group statistics_group(std::string name, const Quantity& quantity, const Moments& total);
+
 class EnsembleState {
  public:
   using Outcomes = std::array<std::uint64_t, outcome_count>;

@@ -73,9 +73,13 @@ void check_count(const std::vector<Varied>& keys, bool cuts, double most) {
     const auto values = static_cast<double>(one.values.size());
     points = cuts ? points + values : points * values;
   }
-  if (points > most || (!cuts && points * static_cast<double>(keys.size()) > 8 * most))
+  if (points > most)
     throw Error({"", 0, "--vary"}, "too many points", fmt::format("{:.3g}", points),
                 fmt::format("vary fewer keys or give fewer values, {:.0g} points at most", most));
+  const double values = points * static_cast<double>(cuts ? 1 : keys.size());
+  if (values > 8 * most)
+    throw Error({"", 0, "--vary"}, "too many values", fmt::format("{:.3g} in all points", values),
+                fmt::format("vary fewer keys or give fewer values, {:.0g} at most", 8 * most));
 }
 
 }  // namespace

@@ -181,6 +181,7 @@ void RunFiles::go_on_from_result(const std::optional<std::string>& until) {
         fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
     for (const RunEnd end : {RunEnd::reached, RunEnd::collapsed, RunEnd::order_lost, RunEnd::exhausted})
       if (outcome == end_text(end)) over_status_ = status_of_end(end);
+    if (outcome == undecided_text) over_status_ = Exit::lost;
     return;
   }
   if (!exists(state)) throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);

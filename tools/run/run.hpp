@@ -23,6 +23,8 @@ enum class RunEnd { reached, collapsed, order_lost, exhausted, interrupted };
 RunEnd end_of(Status status, bool order_lost);
 /// As results say it: "reached the end".
 std::string end_text(RunEnd end);
+/// What results of proofs say that are not proved to the end.
+inline constexpr const char* undecided_text = "undecided";
 /// With which status a program ends whose run ended so.
 Exit status_of_end(RunEnd end);
 

@@ -136,8 +136,40 @@ TEST_F(Certified, ThreeThatMeetAtOneTimeAreUndecidedAndNamed) {
             std::string::npos)
       << told.out;
   EXPECT_EQ(of_certificate<std::uint64_t>(result(), "contacts"), 1U);
+  EXPECT_EQ(shell("cradle resume a.h5").status, 5) << "as it ended";
   EXPECT_NE(certify("fig10").err.find("no contacts to prove"), std::string::npos);
   EXPECT_EQ(certify("fig2 --digits 5").status, 2);
+}
+
+// Runs end at their own collapses: each replica counts at the times that it has reached, as in an ensemble.
+TEST_F(Certified, ReplicasHaveTheStatisticsOfTheirEnsemble) {
+  const std::string scene = "collapse_times --set law.restitution=0.6 --set initial.particles=40 "
+                            "--set run.until=30 --set output.series.points=31 --replicas 4";
+  const Printed told = certify(scene);
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("proved: 4 of 4 replicas"), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("nan"), std::string::npos) << told.out;
+  ASSERT_EQ(shell("cradle ensemble " + scene + " -o ensemble.h5 --quiet").status, 0);
+  const Result proved = result(), ensemble = read_result((folder / "ensemble.h5").string());
+  const char* const energy = "ensemble/series/energy";
+  EXPECT_EQ(column<std::uint64_t>(proved, energy, "count"), column<std::uint64_t>(ensemble, energy, "count"));
+  const auto mean = column<double>(proved, energy, "mean"), expected = column<double>(ensemble, energy, "mean");
+  const auto sem = column<double>(proved, energy, "sem"), expected_sem = column<double>(ensemble, energy, "sem");
+  ASSERT_EQ(mean.size(), expected.size());
+  std::size_t reached = 0;
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    if (std::isnan(expected[k])) {
+      EXPECT_TRUE(std::isnan(mean[k]));
+      continue;
+    }
+    ++reached;
+    EXPECT_NEAR(mean[k], expected[k], 1e-12);
+    if (!std::isnan(expected_sem[k])) {
+      EXPECT_NEAR(sem[k], expected_sem[k], 1e-12);
+    }
+  }
+  EXPECT_GT(reached, 5U);
+  EXPECT_LT(reached, mean.size());
 }
 
 }  // namespace certify_program_test

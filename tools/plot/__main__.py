@@ -1,6 +1,9 @@
 """Pictures of a result file: plot FILE [-o OUT] [--theory CSV].
 
 What is drawn follows from what the file holds, never from its name:
+  beyond     past the collapse: energy beside the sticky gas, the dense core, contacts per time; of a sweep all points,
+             and rates: contacts against the cut-off; of a run distributions of velocities and gaps, and spacetime where
+             there are twenty snapshots
   sticky     the weak solution: step of velocity, rows and delta peak, mass of the cluster (paper, Fig. 1)
   shock      velocities, mean-velocity and density profiles at several times (Figs. 2 and 6)
   structure  four nested zooms into a core that positions cannot resolve (Fig. 3)

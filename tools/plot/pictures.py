@@ -3,6 +3,7 @@ a name and a function that draws it, none where the result does not hold what th
 import contextlib
 import os
 
+import beyond
 import bodies
 import certificate
 import clusters
@@ -21,7 +22,7 @@ from reading import BAD_FILE, PlotError, Theory, read_result
 from style import Units, plt, style
 
 ALONE = (trust, scenarios, sweep, ensemble, spacetime, bodies)  # the first that has something to show is all there is
-TOGETHER = (sticky, cooling, zone, clusters, shock, structure, energy)
+TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 
 
 def pictures_of(result, theory, units):

@@ -2,6 +2,7 @@
 to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). Else every number of the summary."""
 import numpy as np
 
+import beyond
 from cooling import ring_of, sticky_law
 from style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked
 from zone import model_width
@@ -11,10 +12,10 @@ BESIDE = ("_error", "_replicas")  # what goes with a number of the summary
 MOST = 9  # numbers in one picture
 
 
-def pictures(result, _theory, _units):
+def pictures(result, theory, units):
     if not result.sweep:
         return []
-    found = []
+    found = beyond.pictures(result, theory, units)
     keys = varied(result)
     if len(cooling_points(result)) > 1:
         found.append(("cooling", lambda: draw_cooling(result)))

@@ -2,18 +2,33 @@
 // into the tables of a result file (tables.hpp).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/dense_core.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/sample.hpp"
+#include "cradle/core/sticky_gas.hpp"
 #include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
+
+/// Columns of a table, or some of them.
+using Columns = std::vector<Numbers>;
+template <class... Values> Columns columns(Values&&... values) {
+  Columns all;
+  (all.emplace_back(std::forward<Values>(values)), ...);
+  return all;
+}
+
+inline void append(Columns& all, Columns&& more) { std::move(more.begin(), more.end(), std::back_inserter(all)); }
 
 /// What was in it, which is empty afterwards.
 template <class Numbers> Numbers taken(Numbers& numbers) { return std::exchange(numbers, Numbers()); }
@@ -35,15 +50,10 @@ template <Real T> class SeriesRecorder {
   }
 
   std::size_t rows() const { return time_.size(); }
-  /// The rows since it was called last; with the numbers of the clouds, where a scene has them.
-  Group take() {
-    return filled(series_table(false), taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_),
-                  taken(merges_), taken(bodies_), taken(left_), taken(right_));
-  }
-  Group take(std::vector<double> cloud_mass, std::vector<double> cloud_width) {
-    return filled(series_table(true), taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_),
-                  taken(merges_), taken(bodies_), taken(left_), taken(right_), std::move(cloud_mass),
-                  std::move(cloud_width));
+  /// The rows since it was called last, of the columns that every series has.
+  Columns take() {
+    return columns(taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_), taken(merges_),
+                   taken(bodies_), taken(left_), taken(right_));
   }
 
  private:
@@ -65,19 +75,39 @@ template <Real T> class CloudRecorder {
     cloud_width_.push_back(to_double(cloud.width));
   }
 
-  /// The rows of the series since it was called last, with what belongs to it, and those of the table below it.
-  std::vector<Group> take(SeriesRecorder<T>& series) {
-    std::vector<Group> tables;
-    tables.push_back(series.take(taken(cloud_mass_), taken(cloud_width_)));
-    tables.push_back(filled(heaviest_table(), taken(mass_), taken(x_), taken(v_), taken(index_)));
-    return tables;
-  }
+  /// Of the series, and the table below it, since they were called last.
+  Columns take() { return columns(taken(cloud_mass_), taken(cloud_width_)); }
+  Group take_heaviest() { return filled(heaviest_table(), taken(mass_), taken(x_), taken(v_), taken(index_)); }
 
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr std::uint64_t no_body = std::numeric_limits<std::uint64_t>::max();
   std::vector<double> mass_, x_, v_, cloud_mass_, cloud_width_;
   std::vector<std::uint64_t> index_;
+};
+
+/// The dense core, and the sticky gas that a shock is compared with, beside the series.
+template <Real T> class CoreRecorder {
+ public:
+  CoreRecorder(std::shared_ptr<const cradle::Bodies<T>> bodies, const T& start)
+      : bodies_(std::move(bodies)), start_(start) {}
+
+  void add(const Configuration<T>& c, const T& energy) {
+    const DenseCore core = dense_core(c);
+    mass_.push_back(core.mass);
+    width_.push_back(core.width);
+    window_.push_back(core.window);
+    gap_.push_back(core.gap);
+    StickyGas<T> sticky(bodies_, start_);  // anew: what it gives must not depend on when it was looked at before
+    sticky.advance(c.time);
+    excess_.push_back(to_double(T(energy - (bodies_->kinetic_energy() - sticky.energy_lost()))));
+  }
+  Columns take() { return columns(taken(mass_), taken(width_), taken(window_), taken(gap_), taken(excess_)); }
+
+ private:
+  std::shared_ptr<const cradle::Bodies<T>> bodies_;
+  T start_;
+  std::vector<double> mass_, width_, window_, gap_, excess_;
 };
 
 /// How many clusters there are of which mass.

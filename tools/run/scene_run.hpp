@@ -34,6 +34,7 @@ template <Real T> class SceneRun {
       : scene_(scene), options_(options), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
         engine_(engine), progress_(progress), plan_(schedule<T>(scene)), contact_before_(number<T>(scene.run.start)) {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
+    if (scene.output.core) core_.emplace(bodies_, number<T>(scene.run.start));
   }
 
   RunOutcome operator()() {
@@ -116,10 +117,11 @@ template <Real T> class SceneRun {
         state_too);
   }
   void put_rows() {
-    if (has_clouds(scene_))
-      for (Group& rows : cloud_.take(series_)) put(std::move(rows));
-    else
-      put(series_.take());
+    Columns series = series_.take();
+    if (has_clouds(scene_)) append(series, cloud_.take());
+    if (core_) append(series, core_->take());
+    put(filled(series_table(scene_), std::move(series)));
+    if (has_clouds(scene_)) put(cloud_.take_heaviest());
     if (scene_.output.events) put(events_.take());
   }
   void put(Group&& rows) {
@@ -200,12 +202,12 @@ template <Real T> class SceneRun {
   void record_sample(const T& time) {
     const Sample<T> now = sample(engine_, energy_, time);
     series_.add(now);
-    if (has_clouds(scene_)) {
-      const Cloud<T> seen = cloud(engine_.configuration(time));
-      cloud_.add(seen);
-      if (scene_.output.scenario)
-        scenario_.look(seen, to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
-    }
+    if (core_) core_->add(engine_.configuration(time), now.energy);
+    if (!has_clouds(scene_)) return;
+    const Cloud<T> seen = cloud(engine_.configuration(time));
+    cloud_.add(seen);
+    if (scene_.output.scenario)
+      scenario_.look(seen, to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
   }
 
   void tell_witness(const T& time, bool at_contact) {
@@ -280,6 +282,7 @@ template <Real T> class SceneRun {
   SeriesRecorder<T> series_;
   CloudRecorder<T> cloud_;
   std::optional<ZoneAverage> zone_;
+  std::optional<CoreRecorder<T>> core_;
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Observer<T> observer_;

@@ -15,7 +15,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Group series_table(bool clouds) {
+Group series_table(const Scene& scene) {
   Group table{"series",
               {},
               {{"time", "t", "a sample is the state after all contacts at times <= t", {}},
@@ -27,13 +27,22 @@ Group series_table(bool clouds) {
                {"bodies", "1", "bodies in the active zone, between the outermost that have collided", {}},
                {"front_left", "l", "position of the leftmost body that has collided", {}},
                {"front_right", "l", "position of the rightmost body that has collided", {}}}};
-  if (!clouds) return table;
-  table.columns.push_back({"cloud_mass", "m", "mass of all bodies that have collided", {}});
-  table.columns.push_back({"cloud_width",
-                           "l",
-                           "standard deviation of position, weighted by mass, of all that have collided but the two "
-                           "heaviest clusters",
-                           {}});
+  if (has_clouds(scene)) {
+    table.columns.push_back({"cloud_mass", "m", "mass of all bodies that have collided", {}});
+    table.columns.push_back({"cloud_width",
+                             "l",
+                             "standard deviation of position, weighted by mass, of all that have collided but the two "
+                             "heaviest clusters",
+                             {}});
+  }
+  if (scene.output.core) {
+    table.columns.push_back({"core_mass", "m", "mass within three core_width about the densest place", {}});
+    table.columns.push_back(
+        {"core_width", "l", "shortest length that holds more than half of the mass that has collided", {}});
+    table.columns.push_back({"core_window", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", {}});
+    table.columns.push_back({"core_gap", "l", "median gap within the core", {}});
+    table.columns.push_back({"sticky_excess", "m l^2/t^2", "energy minus that of the sticky gas that began alike", {}});
+  }
   return table;
 }
 
@@ -177,7 +186,7 @@ RunTables run_tables(const Scene& scene) {
     tables.series = cluster_series_tables();
     return tables;
   }
-  tables.series.push_back(series_table(has_clouds(scene)));
+  tables.series.push_back(series_table(scene));
   if (has_clouds(scene)) tables.series.push_back(heaviest_table());
   if (const Profiles& wanted = scene.output.profiles; !wanted.times.empty()) {
     tables.profile = profile_table("profiles");
@@ -194,12 +203,12 @@ RunTables run_tables(const Scene& scene) {
   return tables;
 }
 
-void put_values(Group& table, std::size_t column, Numbers values) { table.columns[column].values = std::move(values); }
-
-void check_filled(const Group& table, std::size_t columns) {
-  if (columns != table.columns.size())
+Group filled(Group table, std::vector<Numbers> columns) {
+  if (columns.size() != table.columns.size())
     throw std::logic_error(
-        fmt::format("a table /{} of {} columns, and numbers for {}", table.name, table.columns.size(), columns));
+        fmt::format("a table /{} of {} columns, and numbers for {}", table.name, table.columns.size(), columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) table.columns[k].values = std::move(columns[k]);
+  return table;
 }
 
 }  // namespace cradle::tools

@@ -26,11 +26,13 @@ RunTables run_tables(const Scene& scene);
 
 /// Puts the numbers into the columns of a table, in their order. Throws std::logic_error where there is another number
 /// of them.
+Group filled(Group table, std::vector<Numbers> columns);
 template <class... Values> Group filled(Group table, Values&&... values);
 
 // ---- each of them
 
-Group series_table(bool clouds);
+/// With the numbers of clouds and of the core, where a scene has them.
+Group series_table(const Scene& scene);
 Group heaviest_table();
 Group snapshot_table(const std::string& name);
 Group profile_table(const std::string& name);
@@ -52,14 +54,10 @@ std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& sce
 
 // ---- implementation
 
-void put_values(Group& table, std::size_t column, Numbers values);
-void check_filled(const Group& table, std::size_t columns);
-
 template <class... Values> Group filled(Group table, Values&&... values) {
-  check_filled(table, sizeof...(values));
-  std::size_t column = 0;
-  (put_values(table, column++, Numbers(std::forward<Values>(values))), ...);
-  return table;
+  std::vector<Numbers> columns;
+  (columns.push_back(Numbers(std::forward<Values>(values))), ...);
+  return filled(std::move(table), std::move(columns));
 }
 
 }  // namespace cradle::tools

@@ -36,6 +36,9 @@ constexpr When rows_or_ring{other_state, "initial.type", "initial.type = \"rows\
                             }};
 constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"",
                     [](const Scene& s) { return s.initial.type == InitialType::ring; }};
+constexpr When on_line{other_state, "initial.type", "initial.type = \"rows\" or \"list\"", [](const Scene& s) {
+                         return s.initial.type == InitialType::rows || s.initial.type == InitialType::list;
+                       }};
 constexpr When list{other_state, "initial.type", "initial.type = \"list\"",
                     [](const Scene& s) { return s.initial.type == InitialType::list; }};
 
@@ -191,6 +194,10 @@ const Field all_fields[] = {
     {"output.scenario", output_of<&Output::scenario>, "", "false", "", &wet_shock,
      "watch whether the two heaviest clusters pass or stick; needs a series with spacing = \"log\" and 100 points a "
      "decade"},
+    {"output.core", output_of<&Output::core>, "", "false", "", &on_line,
+     "add to the series what the dense core of a shock is like, its mass, width, velocity window and median gap, and "
+     "the "
+     "energy beyond that of the sticky gas that began alike"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every contact"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",
      "[0, inf)", &always,

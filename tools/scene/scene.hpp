@@ -126,6 +126,7 @@ struct Output {
   std::vector<Decimal> masses;  // times at which the distribution of masses is written
   Zone zone;
   bool scenario = false;  // wet rows: which of the two scenarios of Fig. 9
+  bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
   Checkpoint checkpoint;
   bool operator==(const Output&) const = default;

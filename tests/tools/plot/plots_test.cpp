@@ -65,6 +65,14 @@ INSTANTIATE_TEST_SUITE_P(
              "cradle run fig3 --set initial.particles=400 --set law.restitution=0.97 --set run.until=230 "
              "--set output.snapshots=[230] --set output.series.points=20",
              {"energy"}},
+        Kind{"Beyond",
+             "cradle run beyond --set initial.particles=400 --set law.restitution=0.97 --set run.until=450 "
+             "--set output.snapshots=[250,300,320,321,322,323,324,325,326,327,328,329,330,331,332,333,334,335,336,337]",
+             {"distributions", "spacetime", "shock", "structure", "energy"}},
+        Kind{"BeyondSweep",
+             "cradle sweep beyond --vary law.cutoff=1e-3,1e-2 --replicas 2 --set initial.particles=400 "
+             "--set law.restitution=0.97 --set run.until=420",
+             {"rates", "sweep"}},
         Kind{"SpaceTime", "cradle run fig5", {}},
         Kind{"WetShock",
              "cradle run fig6 --set initial.particles=400 --set law.loss=0.01 --set run.until=150 "

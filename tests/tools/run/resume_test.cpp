@@ -75,7 +75,7 @@ const std::string general =
 const std::string wet = "law = { type = 'wet', loss = 0.01 }\n", sticky = "law.type = 'sticky'\n";
 const std::string watched =
     "output = { series = { points = 300, spacing = 'log' }, masses = [10, 100], scenario = true, "
-    "zone = { from = 20, samples = 32 } }\n";
+    "zone = { from = 20, samples = 32 }, core = true }\n";
 const std::string to_100 = "[run]\nuntil = 100\n";
 
 const std::string scenes[] = {
@@ -198,9 +198,10 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
     for (const std::string& law : {wet, sticky, inelastic}) {
       for (const std::string& initial : {rows, general}) {
         SCOPED_TRACE(law + initial + series);
-        const Scene scene = parse_scene(law + initial + "output = { series = { " + series + " }, snapshots = [5], " +
-                                            "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
-                                        "scene.toml");
+        const Scene scene =
+            parse_scene(law + initial + "output = { series = { " + series + " }, snapshots = [5], core = true, " +
+                            "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
+                        "scene.toml");
         ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);
         // Which is gone on with as any other.
         if (go_on("later.h5", "13.05", {.looks = 2}, 1).end == RunEnd::interrupted) {

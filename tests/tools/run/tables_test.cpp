@@ -14,8 +14,9 @@ const std::string rows = "[initial]\ntype = 'rows'\nparticles = 60\nperturbation
 
 const std::pair<const char*, std::string> scenes[] = {
     {"dry", "[law]\ntype = 'inelastic'\nrestitution = 0.9\ncutoff = 1e-3\n" + rows},
+    {"core", "[law]\ntype = 'inelastic'\nrestitution = 0.9\ncutoff = 1e-3\n" + rows + "core = true\n"},
     {"wet", "[law]\ntype = 'wet'\nloss = 0.05\n" + rows + "zone = { from = 5, samples = 16, bins = 6, reach = 3 }\n" +
-                "scenario = true\n"},
+                "scenario = true\ncore = true\n"},
     {"sticky", "[law]\ntype = 'sticky'\n" + rows},
     {"ring", "law.type = 'wet'\nlaw.loss = 0.1\nrun.until = 3\noutput.series.points = 5\n"
              "initial = { type = 'ring', particles = 20 }"},

@@ -12,10 +12,12 @@ SETTLED = 100     # units of time after which rates are averaged
 
 
 def pictures(result, _theory, units):
-    if points := [p for p in result.points if has_core(p)]:
-        return [("beyond", lambda: draw_points(points, units))] + (
-            [("rates", lambda: draw_rates(points, units))] if len(with_rates(points, units)) > 1 else [])
-    if result.points or result.statistics or not has_core(result):
+    points = [p for p in result.points if has_core(p)]
+    since = min((onset(p) for p in points), default=np.inf)
+    if np.isfinite(since):
+        return [("beyond", lambda: draw_points(points, since, units))] + (
+            [("rates", lambda: draw_rates(points, since, units))] if len(with_rates(points, since, units)) > 1 else [])
+    if result.points or result.statistics or not has_core(result) or not np.isfinite(onset(result)):
         return []
     found = [("beyond", lambda: draw_run(result, units))]
     dense = [s for s in result.snapshots if s["time"] >= onset(result) and len(core_of(s)[0]) > 2]
@@ -27,7 +29,7 @@ def pictures(result, _theory, units):
 
 
 def has_core(result):
-    return np.isfinite(result.series.get("core_width", ())).sum() > 2 and np.isfinite(onset(result))
+    return np.isfinite(result.series.get("core_width", ())).sum() > 2
 
 
 def slowest(result):
@@ -73,12 +75,12 @@ def rate(result, name):
     return ((time[1:] + time[:-1]) / 2)[apart], np.diff(counts)[apart] / np.diff(time)[apart]
 
 
-def rates(result, units):
+def rates(result, since, units):
     """Contacts per l/2u0 that dissipate, and elastic ones: mean and standard deviation between samples, from SETTLED
-    after the onset until the rows end."""
+    after a time until the rows end."""
     time, every = rate(result, "contacts")
     elastic = rate(result, "contacts_below_cutoff")[1]
-    late = (time > onset(result) + SETTLED * units.t) & (time < ARRIVING * used_up(result, units))
+    late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up(result, units))
     return [(np.mean(values[late]) * units.t, np.std(values[late]) * units.t) if late.any() else (np.nan, np.nan)
             for values in (every - elastic, elastic)]
 
@@ -90,8 +92,8 @@ def most_frequent(result, cutoff):
     return 2 * speed ** 2 / ((1 - restitution ** 2) * cutoff ** 2) if restitution < 1 else np.inf
 
 
-def draw_excess(ax, result, units, colour, label=None, line="-"):
-    late = result.series["time"] >= onset(result)
+def draw_excess(ax, result, since, units, colour, label=None, line="-"):
+    late = result.series["time"] >= since
     time = result.series["time"][late] / units.t
     ax.plot(time, excess(result)[late], line, color=colour, label=label)
     if result.statistics:
@@ -124,7 +126,7 @@ def draw_run(result, units):
     late = series["time"] >= onset(result)
     time = series["time"][late] / units.t
     figure, axes = stacked(4, width=5.8, height=2.1, sharex=True)
-    draw_excess(axes[0], result, units, BLUE)
+    draw_excess(axes[0], result, onset(result), units, BLUE)
     positive(axes[1], time, series["core_window"][late] / (scale or units.v), color=BLUE,
              label="window of velocities" + (rf" / {scale:.4g}" if scale else ""))
     positive(axes[1], time, series["core_mass"][late] / result.setting("initial", "particles", 1.0), color=ORANGE,
@@ -203,16 +205,16 @@ def draw_spacetime(snapshots, units):
 
 # ---- a sweep
 
-def draw_points(points, units):
+def draw_points(points, since, units):
     figure, axes = stacked(3, width=7.2, height=2.7, sharex=True)
     replaced = [p for p in points if p.text("run", "collapse") in ("merge", "contact-time")]
     others = [p for p in points if p not in replaced]
     how = [(p, colour, "-") for p, colour in zip(others, shades(len(others)))]
     how += [(p, colour, "--") for p, colour in zip(replaced, plt.get_cmap("autumn")(np.linspace(0, 0.8, len(replaced))))]
     for point, colour, line in how:
-        late = point.series["time"] >= onset(point)
+        late = point.series["time"] >= since
         time = point.series["time"][late] / units.t
-        draw_excess(axes[0], point, units, colour, label_of(point), line)
+        draw_excess(axes[0], point, since, units, colour, label_of(point), line)
         if slowest(point):
             positive(axes[1], time, point.series["core_window"][late] / slowest(point), color=colour, ls=line)
         positive(axes[2], time, point.series["core_width"][late] / units.x, color=colour, ls=line)
@@ -222,15 +224,15 @@ def draw_points(points, units):
     return figure
 
 
-def with_rates(points, units):
+def with_rates(points, since, units):
     return [p for p in points if p.text("run", "collapse") not in ("merge", "contact-time") and slowest(p)
-            and np.isfinite(rates(p, units)[0][0])]
+            and np.isfinite(rates(p, since, units)[0][0])]
 
 
-def draw_rates(points, units):
-    points = sorted(with_rates(points, units), key=slowest)
+def draw_rates(points, since, units):
+    points = sorted(with_rates(points, since, units), key=slowest)
     cutoff = np.array([slowest(p) for p in points])
-    found = np.array([rates(p, units) for p in points])
+    found = np.array([rates(p, since, units) for p in points])
     figure, ax = plt.subplots(figsize=(5.2, 4), layout="constrained")
     for k, (name, colour) in enumerate((("dissipative", BLUE), ("elastic", ORANGE))):
         ax.errorbar(cutoff, found[:, k, 0], yerr=found[:, k, 1], fmt="o-", color=colour, capsize=3,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cradle/core/real.hpp"
+#include "cradle/core/wall.hpp"
 
 namespace cradle {
 
@@ -17,8 +18,9 @@ struct GapRange {
   BodyIndex first, last;  // a gap is numbered by the body on its left; empty if last < first
 };
 
-// A line ends at both sides; on a ring of circumference L the last body's neighbour on the right is the first one, at
-// its position + L: as many gaps as bodies, that of the last one included.
+// A line ends at both sides, and may have walls there (wall.hpp), which count as bodies -1 and N: position and velocity
+// tell of them too, and so do gap and closing speed of the gaps to them. On a ring of circumference L the last body's
+// neighbour on the right is the first one, at its position + L: as many gaps as bodies, that of the last one included.
 
 template <Real T> class Bodies {
  public:
@@ -33,6 +35,15 @@ template <Real T> class Bodies {
   // L > 0; 0 for a line.
   virtual T circumference() const { return T(0); }
   bool on_ring() const { return is_positive(circumference()); }
+
+  virtual const Wall<T>* wall(End) const { return nullptr; }
+  bool walled() const { return wall(End::left) != nullptr || wall(End::right) != nullptr; }
+  Walls<T> walls() const { return {wall(End::left), wall(End::right), count()}; }
+  // All gaps that there are.
+  GapRange gaps() const {
+    if (on_ring()) return {0, count() - 1};
+    return {wall(End::left) != nullptr ? -1 : 0, count() - (wall(End::right) != nullptr ? 1 : 2)};
+  }
 
   // Distance and closing speed of `body` and the next one, without the cancellation of a difference of positions.
   virtual T gap(BodyIndex body) const = 0;
@@ -53,12 +64,12 @@ template <Real T> class Bodies {
     return moment.value() / total_mass();
   }
   // What can be lost of it, the energy in the frame of the centre of mass, as well as the type tells the two apart.
-  T energy_to_lose() const {
+  virtual T energy_to_lose() const {
     const T energy = kinetic_energy(), least = energy * T(std::numeric_limits<T>::epsilon()) * T(1024);
     const T own = energy - momentum() * momentum() / (T(2) * total_mass());
     return own < least ? least : own;
   }
-  // Bounds the square of any speed to come, by a factor 2: energy is never gained.
+  // Bounds the square of any speed to come, by a factor 2: energy is never gained, but from walls.
   T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }
 };
 

@@ -30,6 +30,23 @@ template <Real T> struct Configuration {
   std::optional<T> closure_gap, closure_speed;
 };
 
+// Takes out walls, which chains number -1 and `count` (wall.hpp), and the gaps to them.
+template <Real T> void leave_out_walls(Configuration<T>& c, BodyIndex count) {
+  if (c.to == count) {
+    c.to -= 1;
+    c.index.pop_back();
+    for (auto* values : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}) values->pop_back();
+    c.collided_to = std::min(c.collided_to, c.x.size());
+  }
+  if (c.from == -1) {
+    c.from = 0;
+    c.index.erase(c.index.begin());
+    for (auto* values : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}) values->erase(values->begin());
+    if (c.collided_from > 0) c.collided_from -= 1;
+    if (c.collided_to > 0) c.collided_to -= 1;
+  }
+}
+
 // Folds positions on a ring, increasing and spanning less than its circumference, to 0 <= x < circumference, the
 // smallest first. Places so many turns away that they have no digits within one stay where they are.
 template <Real T> void fold(Configuration<T>& c, const T& circumference) {

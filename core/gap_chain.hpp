@@ -36,6 +36,7 @@ template <Real T> struct FrontMove {
   };
   Slot reached = 0;
   std::vector<AtEnd> at_end;
+  WallTally<T> wall;  // of the wall at this end
 };
 
 template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
@@ -48,8 +49,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
   // start. Throws std::invalid_argument for masses that are not identical where the chain is for such.
   GapChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, bool hold_all = false)
-      : GapChain(bodies, start,
-                 hold_all && !bodies->on_ring() ? GapRange{0, bodies->count() - 2} : bodies->gaps_in_motion()) {}
+      : GapChain(bodies, start, hold_all ? bodies->gaps() : bodies->gaps_in_motion()) {}
 
   // ---- times: local ones are offsets from an origin that moves
   const Clock<T>& clock() const { return line_.gaps.clock(); }
@@ -69,7 +69,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   BodyIndex count() const { return bodies_->count(); }
   BodyIndex collided_bodies() const {
     if (on_ring()) return bodies_->count();
-    return window_.has_fronts() ? body(window_.front_right()) - body(window_.front_left()) + 2 : 0;
+    return window_.has_fronts() ? front_body(End::right) - front_body(End::left) + 1 : 0;
   }
 
   // Local time of the next contact of a gap that is closing.
@@ -120,29 +120,26 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // ---- reading, at a local time not before the last contact
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
   // Positions of the outermost bodies that have collided; only once there are some.
-  T front_left(const T& time) const {
-    const Pair<T> x = flight(left_, time).x;
-    const Slot front = window_.front_left();
-    return (body(front) > left_.body() ? x + gap_at(front - 1, time) : x).value();
-  }
-  T front_right(const T& time) const {
-    const Pair<T> x = flight(right_, time).x;
-    const Slot front = window_.front_right();
-    return (body(front) + 1 < right_.body() ? x - gap_at(front + 1, time) : x).value();
-  }
+  T front_left(const T& time) const;
+  T front_right(const T& time) const;
+  const Walls<T>& walls() const { return walls_; }
 
-  static auto state(auto& self) { return std::tie(self.line_, self.window_, self.memory_, self.left_, self.right_); }
+  static auto state(auto& self) {
+    return std::tie(self.line_, self.window_, self.memory_, self.left_, self.right_, self.walls_);
+  }
   void loaded() const {
     const BodyIndex count = bodies_->count();
+    const GapRange all = bodies_->gaps();
     require_state(window_.fits(slots(), count) && window_.on_ring() == bodies_->on_ring(), "slots");
-    require_state(line_.body_of_slot_0 == window_.unheld_left() - static_cast<BodyIndex>(first()), "bodies");
+    const BodyIndex first_held = all.first + window_.unheld_left();
+    require_state(line_.body_of_slot_0 == first_held - static_cast<BodyIndex>(first()), "bodies");
     require_state(on_ring() ? body(first()) == 0 && body(last()) + 1 == count
-                            : body(last()) + 2 == count - window_.unheld_right(),
+                            : body(last()) == all.last - window_.unheld_right(),
                   "bodies");
     require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
     require_state(!on_ring() || (window_.front_left() == first() && window_.front_right() == last()), "seam");
     // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Slots beyond the gaps held are filled anew before they are used.
-    const T fastest = T(2) + T(4) * bodies_->energy_over_least_mass();
+    const T fastest = bodies_->walled() ? far_away<T>() : T(T(2) + T(4) * bodies_->energy_over_least_mass());
     for (Slot s = first(); s <= last(); ++s) {
       const T& w = closing(s);
       require_state(line_.gaps[s].fits(w) && is_finite(line_.gaps.lag(s)) && !(fastest < magnitude(w)) &&
@@ -152,7 +149,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
     require_state(line_.has_mass(last() + 1, *bodies_), "masses");
     for (const Anchor<T>* anchor : {&left_, &right_})
-      require_state(on_ring() || (anchor->body() >= 0 && anchor->body() < count), "anchors");
+      require_state(on_ring() || (anchor->body() >= all.first && anchor->body() <= all.last + 1), "anchors");
   }
 
   // ---- for segments (segments.hpp)
@@ -182,11 +179,13 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       window_.take_in_right(bodies_->count());
       line_.load_mass(last() + 1, *bodies_);
     }
+    walls_.go_on_with(to_left.wall, to_right.wall);
     const BodyIndex left = body(window_.front_left()), right = body(window_.front_right()) + 1;
-    if (left > 0) left_.take(left - 1);
-    if (right + 1 < bodies_->count()) right_.take(right + 1);
-    for (const auto& contact : to_left.at_end) left_.follow(left, *bodies_, clock(), contact.time, T(-contact.handed));
-    for (const auto& contact : to_right.at_end) right_.follow(right, *bodies_, clock(), contact.time, contact.handed);
+    const GapRange all = bodies_->gaps();
+    if (left > all.first || walls_.has(End::left)) left_.take(std::max(left - 1, all.first));
+    if (right < all.last + 1 || walls_.has(End::right)) right_.take(std::min(right + 1, all.last + 1));
+    for (const auto& contact : to_left.at_end) follow_end(End::left, left, contact.time, T(-contact.handed));
+    for (const auto& contact : to_right.at_end) follow_end(End::right, right, contact.time, contact.handed);
   }
 
   // The bodies that have collided and the next one on each side; all that are held before the first contact. On a ring
@@ -196,7 +195,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
  private:
   GapChain(std::shared_ptr<const Bodies<T>> bodies, const T& start, GapRange held)
       : bodies_(std::move(bodies)), line_(*bodies_, start),
-        window_(bodies_->on_ring(), held.first, bodies_->on_ring() ? 0 : bodies_->count() - 2 - held.last, 2) {
+        window_(bodies_->on_ring(), held.first - bodies_->gaps().first, bodies_->gaps().last - held.last, 2),
+        walls_(bodies_->walls()) {
     require_bodies(*bodies_, start);
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *bodies_, T(0));
@@ -211,10 +211,23 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Configuration<T> ring_configuration(const T& time) const;
   Flight<T> flight(const Anchor<T>& anchor, const T& time) const { return anchor.flight(*bodies_, clock(), time); }
 
+  Slot slot(BodyIndex body) const { return static_cast<Slot>(body - line_.body_of_slot_0); }  // of the gap right of it
+  // The outermost body that has collided, walls not being bodies here.
+  BodyIndex front_body(End end) const {
+    return end == End::left ? std::max<BodyIndex>(body(window_.front_left()), 0)
+                            : std::min(body(window_.front_right()) + 1, bodies_->count() - 1);
+  }
+
+  // The last body of a line, or the wall there, has had a contact in which it gained velocity.
+  void follow_end(End end, BodyIndex body, const T& time, const T& gain) {
+    Anchor<T>& anchor = end == End::left ? left_ : right_;
+    walls_.has(end) ? anchor.take(body) : anchor.follow(body, *bodies_, clock(), time, gain);
+  }
+
   // Goes over to slots enough for the zone to grow by half on either side, with the gaps at `kept`.
   void lay_out(const std::vector<Slot>& kept, BodyIndex held) {
     const std::size_t slots = window_.lay_out(static_cast<std::size_t>(held), held / 2 + 8, kept);
-    line_.body_of_slot_0 = window_.unheld_left() - static_cast<BodyIndex>(first());
+    line_.body_of_slot_0 = bodies_->gaps().first + window_.unheld_left() - static_cast<BodyIndex>(first());
     line_.gaps.lay_out(slots, first(), kept);
     memory_.lay_out(slots, first(), kept);
     line_.masses.resize(slots);
@@ -227,9 +240,13 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
         return law.elastic(closing(s), line_.masses.of_pair(s));
     return law(closing(s), line_.masses.of_pair(s));
   }
-  // A contact at an end of the active zone, or at the seam of a ring.
+  template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
+    if constexpr (LawWithMemory<Law, T>) memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());
+    return walls_.strike(body(s), closing(s), line_.masses[walls_.left_of(body(s)) ? s + 1 : s]);
+  }
+  // A contact at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] Collision<T> collide_at_end(const Law& law, Slot s, const T& time) {
-    const Outcome<T> of_law = outcome(law, s, time);
+    const Outcome<T> of_law = walls_.beside(body(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time);
     const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
     return line_.strike(left(s), s, right(s), time, of_law, notice);
   }
@@ -248,7 +265,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       if (beyond != Window::Beyond::nothing) {
         left_.take(body(s) - 1);
       } else {
-        left_.follow(body(s), *bodies_, clock(), time, T(-outcome.to_left));
+        follow_end(End::left, body(s), time, T(-outcome.to_left));
         line_.seal(s - 1, time, outcome.to_left);
       }
     }
@@ -262,7 +279,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       if (beyond != Window::Beyond::nothing) {
         right_.take(body(s) + 2);
       } else {
-        right_.follow(body(s) + 1, *bodies_, clock(), time, outcome.to_right);
+        follow_end(End::right, body(s) + 1, time, outcome.to_right);
         line_.seal(s + 1, time, outcome.to_right);
       }
     }
@@ -275,6 +292,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   ContactMemory<T> memory_;
   T centre_{0};  // on a ring: of mass, at the start
   Anchor<T> left_, right_;
+  Walls<T> walls_;
 };
 
 }  // namespace cradle

@@ -8,6 +8,17 @@
 
 namespace cradle {
 
+template <Real T, class Masses> T GapChain<T, Masses>::front_left(const T& time) const {
+  const Pair<T> x = flight(left_, time).x;
+  const BodyIndex outermost = front_body(End::left);  // next to the anchor, if not the anchor
+  return (outermost > left_.body() ? x + gap_at(slot(outermost) - 1, time) : x).value();
+}
+template <Real T, class Masses> T GapChain<T, Masses>::front_right(const T& time) const {
+  const Pair<T> x = flight(right_, time).x;
+  const BodyIndex outermost = front_body(End::right);
+  return (outermost < right_.body() ? x - gap_at(slot(outermost), time) : x).value();
+}
+
 template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configuration(const T& time) const {
   return on_ring() ? ring_configuration(time) : line_configuration(time);
 }
@@ -79,6 +90,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
     const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(static_cast<std::int64_t>(n - 1))) : T(0);
     c.v.push_back((left.v - T(slowings[j] + share * *c.closure_speed)).value());
   }
+  leave_out_walls(c, bodies_->count());
   return c;
 }
 

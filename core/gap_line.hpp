@@ -50,7 +50,7 @@ template <Real T, class MassesOf> class GapLine {
     masses.copy(other.masses, from, to, count + 1);
   }
   // A gap that no contact beside it closes.
-  void wall(Slot s) { gaps.put(s, {{T(1), T(0)}, T(-std::int64_t{1} << 62)}); }
+  void block(Slot s) { gaps.put(s, {{T(1), T(0)}, T(-std::int64_t{1} << 62)}); }
 
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) + body_of_slot_0; }
   const T& closing(Slot s) const { return gaps[s].closing; }
@@ -63,12 +63,8 @@ template <Real T, class MassesOf> class GapLine {
     gaps.put(s, {{bodies.gap(body(s)), time}, bodies.closing_speed(body(s))});
     gaps.foresee(s, closing(s));
   }
-  void load_mass(Slot s, const Bodies<T>& bodies) {
-    masses.set(s, bodies.mass(body(s) < bodies.count() ? body(s) : 0));
-  }
-  bool has_mass(Slot s, const Bodies<T>& bodies) const {
-    return masses[s] == bodies.mass(body(s) < bodies.count() ? body(s) : 0);
-  }
+  void load_mass(Slot s, const Bodies<T>& bodies) { masses.set(s, mass_of(s, bodies)); }
+  bool has_mass(Slot s, const Bodies<T>& bodies) const { return masses[s] == mass_of(s, bodies); }
 
   // What a contact at the gap s does to it and to its neighbours p and n. Inlined by force: as a call this passes all
   // results through memory, a fifth of the time per contact.
@@ -88,6 +84,10 @@ template <Real T, class MassesOf> class GapLine {
   void seal(Slot s, const T& time, const T& handed) { gaps.put(s, {{T(1), time}, T(-(handed + handed) - T(1))}); }
 
  private:
+  // That of any body where there is none, or a wall.
+  T mass_of(Slot s, const Bodies<T>& bodies) const {
+    return bodies.mass(body(s) >= 0 && body(s) < bodies.count() ? body(s) : 0);
+  }
   // Brings a gap up to date and adds to its closing speed.
   [[gnu::always_inline]] Notice kick(Slot s, const T& gain, const T& time) {
     const T since = gaps.kick(

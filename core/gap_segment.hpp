@@ -57,7 +57,8 @@ template <Real T, class Masses> class GapSegment {
     last_ = own_last_ + behind;
     offset_ = static_cast<std::ptrdiff_t>(own.first) - static_cast<std::ptrdiff_t>(own_first_);
     across_seam_ = in_chain(first_) + (last_ - first_) != in_chain(last_);
-    last_gap_ = chain.bodies().count() - 2;
+    gaps_ = chain.bodies().gaps();
+    walls_ = chain.walls();
 
     line_.resemble(chain.line(), last_ + 3, offset_);
     const Slot from = left_end_ ? own_first_ : first_, to = right_end_ ? own_last_ : last_;
@@ -65,8 +66,8 @@ template <Real T, class Masses> class GapSegment {
     const T start = chain.local_time(chain.start());
     for (Slot s = first_; s < from; ++s) line_.load(s, chain.bodies(), start), line_.load_mass(s, chain.bodies());
     for (Slot s = to + 1; s <= last_; ++s) line_.load(s, chain.bodies(), start), line_.load_mass(s + 1, chain.bodies());
-    line_.wall(first_ - 1);
-    line_.wall(last_ + 1);
+    line_.block(first_ - 1);
+    line_.block(last_ + 1);
     reached_left_ = left_end_ ? here(chain.front_slot_left()) : own_first_;
     reached_right_ = right_end_ ? here(chain.front_slot_right()) : own_last_;
     set_inner();
@@ -75,10 +76,12 @@ template <Real T, class Masses> class GapSegment {
 
   template <class Law>
   [[gnu::always_inline]] OwnedCollision<T> collide(const Law& law, Slot s, const T& time, Report& report) {
-    const Outcome<T> outcome = law(line_.closing(s), line_.masses.of_pair(s));
+    Outcome<T> outcome = law(line_.closing(s), line_.masses.of_pair(s));
     Edge edge;
-    if (!(s - inner_first_ < inner_)) [[unlikely]]
+    if (!(s - inner_first_ < inner_)) [[unlikely]] {
+      if (walls_.beside(line_.body(s))) outcome = at_wall(s);
       edge = at_edge(s, time, outcome, report);
+    }
     return {line_.strike(s - 1, s, s + 1, time, outcome, edge.notice), edge.own};
   }
 
@@ -92,6 +95,8 @@ template <Real T, class Masses> class GapSegment {
                [&](Slot here, Slot there, std::size_t gaps) { after.copy(line_.gaps, here, there, gaps); });
     report.to_left.reached = in_chain(reached_left_);
     report.to_right.reached = in_chain(reached_right_);
+    report.to_left.wall = walls_.tally(End::left);
+    report.to_right.wall = walls_.tally(End::right);
   }
 
   static bool go_on(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
@@ -127,6 +132,10 @@ template <Real T, class Masses> class GapSegment {
     }
   }
 
+  [[gnu::noinline]] Outcome<T> at_wall(Slot s) {
+    const BodyIndex gap = line_.body(s);
+    return walls_.strike(gap, line_.closing(s), line_.masses[walls_.left_of(gap) ? s + 1 : s]);
+  }
   // A contact that may be at a cut or a front, or beyond.
   [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
     const T& closing = line_.closing(s);
@@ -135,14 +144,18 @@ template <Real T, class Masses> class GapSegment {
     if (!right_end_ && s - own_last_ < 2) report.right.push_back({s != own_last_, time, closing});
     if (left_end_ && s <= reached_left_) {
       reached_left_ = s;
-      if (line_.body(s) == 0)
+      if (walls_.left_of(line_.body(s)))
+        ;  // nothing to follow, nothing beyond
+      else if (line_.body(s) == gaps_.first)
         report.to_left.at_end.push_back({time, outcome.to_left});
       else if (s == first_)
         notice = Notice::needs_slots;  // no more bodies have been taken along
     }
     if (right_end_ && s >= reached_right_) {
       reached_right_ = s;
-      if (line_.body(s) == last_gap_)
+      if (walls_.right_of(line_.body(s)))
+        ;
+      else if (line_.body(s) == gaps_.last)
         report.to_right.at_end.push_back({time, outcome.to_right});
       else if (s == last_)
         notice = Notice::needs_slots;
@@ -162,7 +175,8 @@ template <Real T, class Masses> class GapSegment {
   bool left_end_ = false, right_end_ = false, across_seam_ = false;
   Slot reached_left_ = 0, reached_right_ = 0;  // fronts; at a cut the gap owned beside it
   Slot inner_first_ = 0, inner_ = 0;           // between them
-  BodyIndex last_gap_ = 0;
+  GapRange gaps_{0, 0};                        // all that there are on the line
+  Walls<T> walls_;
 };
 
 template <Real T, class Masses> struct PartOf<GapChain<T, Masses>> { using Type = GapSegment<T, Masses>; };

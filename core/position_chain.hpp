@@ -27,12 +27,12 @@ template <Real T> class PositionChain {
   // Throws std::invalid_argument for bodies on a ring.
   PositionChain(std::shared_ptr<const Bodies<T>> bodies, const T& start)
       : count_(static_cast<std::size_t>(bodies->count())), start_(start), origin_(start),
-        lost_(bodies->energy_to_lose()) {
+        first_body_(bodies->gaps().first), walls_(bodies->walls()), of_walls_(bodies), lost_(bodies->energy_to_lose()) {
     require_bodies(*bodies, start);
     if (bodies->on_ring())
       throw std::invalid_argument("a ring in absolute positions (circumference " + in_message(bodies->circumference()) +
                                   "): use a chain in gaps");
-    for (BodyIndex b = 0; b < bodies->count(); ++b)
+    for (BodyIndex b = first_body_; b <= bodies->gaps().last + 1; ++b)
       bodies_.push_back({bodies->position(b), bodies->velocity(b), start, bodies->mass(b)});
     due_.assign(slots(), T(0));
     closing_.assign(slots(), T(0));
@@ -52,10 +52,10 @@ template <Real T> class PositionChain {
   Slot left(Slot s) const { return s - 1; }
   Slot right(Slot s) const { return s + 1; }
   bool on_ring() const { return false; }
-  BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) - 2; }
+  BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) - 2 + first_body_; }
   BodyIndex count() const { return static_cast<BodyIndex>(count_); }
   BodyIndex collided_bodies() const {
-    return front_right_ < front_left_ ? 0 : body(front_right_) - body(front_left_) + 2;
+    return front_right_ < front_left_ ? 0 : static_cast<BodyIndex>(outermost_right() - outermost_left() + 1);
   }
 
   const T& due(Slot s) const { return due_[s]; }
@@ -65,11 +65,13 @@ template <Real T> class PositionChain {
 
   template <class Law> Collision<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
     Particle &left = at(s), &right = at(s + 1);
-    const Outcome<T> outcome = left.m == right.m ? outcome_of(law, s, time, EqualMasses<T>{left.m, T(left.m / T(2))})
-                                                 : outcome_of(law, s, time, TwoMasses<T>{left.m, right.m});
+    const bool at_wall = walls_.beside(body(s));
+    const Outcome<T> outcome = at_wall             ? strike_wall(s)
+                               : left.m == right.m ? outcome_of(law, s, time, EqualMasses<T>{left.m, T(left.m / T(2))})
+                                                   : outcome_of(law, s, time, TwoMasses<T>{left.m, right.m});
     advance(left, time);
     advance(right, time);
-    right.x = left.x;
+    walls_.right_of(body(s)) ? left.x = right.x : right.x = left.x;
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
     front_left_ = std::min(front_left_, s);
@@ -104,10 +106,10 @@ template <Real T> class PositionChain {
 
   static auto state(auto& self) {
     return std::tie(self.bodies_, self.due_, self.closing_, self.floor_, self.origin_, self.front_left_,
-                    self.front_right_, self.account_, self.lost_);
+                    self.front_right_, self.account_, self.lost_, self.walls_);
   }
   void loaded() const {
-    require_state(bodies_.size() == count_ && due_.size() == slots() && closing_.size() == slots(), "lists");
+    require_state(bodies_.size() == slots_of_bodies() && due_.size() == slots() && closing_.size() == slots(), "lists");
     const bool none = front_left_ == std::numeric_limits<Slot>::max() && front_right_ == 0;
     require_state(none || (front_left_ >= first() && front_left_ <= front_right_ && front_right_ <= last()), "fronts");
     bool right = is_finite(origin_);
@@ -119,8 +121,9 @@ template <Real T> class PositionChain {
   }
 
   T gap_at(Slot s, const T& time) const { return place(at(s + 1), time) - place(at(s), time); }
-  T front_left(const T& time) const { return place(at(front_left_), time); }
-  T front_right(const T& time) const { return place(at(front_right_ + 1), time); }
+  T front_left(const T& time) const { return place(at(outermost_left()), time); }
+  T front_right(const T& time) const { return place(at(outermost_right()), time); }
+  const Walls<T>& walls() const { return walls_; }
 
   Configuration<T> configuration(const T& time) const {
     const bool collided = front_left_ <= front_right_;
@@ -141,6 +144,7 @@ template <Real T> class PositionChain {
       c.gap.push_back(gap_at(s, time));
       c.closing_speed.push_back(at(s).v - at(s + 1).v);
     }
+    leave_out_walls(c, count());
     return c;
   }
 
@@ -153,12 +157,22 @@ template <Real T> class PositionChain {
     bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
   };
 
+  Outcome<T> strike_wall(Slot s) {
+    return walls_.strike(body(s), closing_[s], at(walls_.left_of(body(s)) ? s + 1 : s).m);
+  }
   template <class Law, class Masses>
   Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
     if constexpr (LawWithMemory<Law, T>)
       if (!at(s).rested(time, law.contact_time()) || !at(s + 1).rested(time, law.contact_time()))
         return law.elastic(closing_[s], masses);
     return law(closing_[s], masses);
+  }
+
+  // Slots left of which the outermost bodies that have collided are, walls not being bodies here.
+  Slot outermost_left() const { return front_left_ + (walls_.left_of(body(front_left_)) ? 1 : 0); }
+  Slot outermost_right() const { return front_right_ + (walls_.right_of(body(front_right_)) ? 0 : 1); }
+  std::size_t slots_of_bodies() const {
+    return count_ + (walls_.has(End::left) ? 1 : 0) + (walls_.has(End::right) ? 1 : 0);
   }
 
   Particle& at(Slot s) { return bodies_[s - 2]; }  // the body on the left of a gap
@@ -189,10 +203,13 @@ template <Real T> class PositionChain {
   }
 
   std::size_t count_;
-  std::vector<Particle> bodies_;
+  std::vector<Particle> bodies_;  // and walls
   std::vector<T> due_, closing_;
   T floor_{0};
   T start_, origin_;
+  BodyIndex first_body_;
+  Walls<T> walls_;
+  std::shared_ptr<const Bodies<T>> of_walls_;
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;
   Account<T> account_;
   Ledger<T> lost_;

@@ -11,6 +11,7 @@
 
 #include "cradle/core/bodies.hpp"
 #include "cradle/core/counter_rng.hpp"
+#include "cradle/core/portable_log.hpp"
 #include "cradle/core/rows.hpp"
 
 namespace cradle {
@@ -23,17 +24,6 @@ namespace detail {
 // Independent of displacements, which use indices as they stand.
 inline std::uint64_t velocity_bits(std::uint64_t seed, std::uint64_t replica, BodyIndex body, std::uint64_t attempt) {
   return random_bits(seed, replica, static_cast<std::uint64_t>(body) | (attempt + 1) << 56);
-}
-
-// ln x for 0 < x <= 1, by the four operations alone: a library's logarithm differs between machines in the last bit.
-inline double portable_log(double x) {
-  int exponent = 0;
-  double mantissa = std::frexp(x, &exponent);
-  if (mantissa < 0.70710678118654752) mantissa *= 2, --exponent;
-  const double s = (mantissa - 1) / (mantissa + 1), square = s * s;  // ln m = 2 artanh s, |s| < 0.172
-  double sum = 0;
-  for (int k = 23; k > 0; k -= 2) sum = sum * square + 1.0 / k;
-  return 2 * s * sum + exponent * 0.693147180559945309;
 }
 
 }  // namespace detail

@@ -39,6 +39,9 @@ void check_certifiable(const Scene& scene) {
   check_built(scene);
   if (scene.initial.type == InitialType::clusters)
     throw Error({"", 0, "initial.type"}, "no contacts to prove", "clusters, a model", "give a scene of bodies");
+  if (scene.walls.any())
+    throw Error({"", 0, scene.walls.left.position ? "walls.left.position" : "walls.right.position"},
+                "contacts with walls cannot be proved yet", "a wall", "compare precisions with `cradle trust` instead");
 }
 
 namespace {

@@ -17,6 +17,7 @@ What is drawn follows from what the file holds, never from its name:
   sweep      what depends on the parameter that was varied (Fig. 8)
   ensemble   means with their standard errors and extremes
   certificate  of a proof: smallest gap, and how well places and gaps are known
+  walls      a gas between walls: places, shares of the energy, what the walls have given (Du, Li and Kadanoff)
   bodies     paths of a few bodies, and how their gaps or intervals shrink
 The first that applies goes to OUT (.png, .pdf or .svg; default FILE with .png), the others to OUT with -structure,
 -energy and so on before the extension.

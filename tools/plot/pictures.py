@@ -17,11 +17,12 @@ import sticky
 import structure
 import sweep
 import trust
+import walls
 import zone
 from reading import BAD_FILE, PlotError, Theory, read_result
 from style import Units, plt, style
 
-ALONE = (trust, scenarios, sweep, ensemble, spacetime, bodies)  # the first that has something to show is all there is
+ALONE = (trust, scenarios, sweep, ensemble, walls, spacetime, bodies)  # the first that has something to show is all there is
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 
 

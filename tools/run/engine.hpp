@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "cradle/core/observe/sample.hpp"
 #include "cradle/core/segments.hpp"
 #include "cradle/core/simulation.hpp"
 #include "cradle/core/state.hpp"
@@ -33,6 +34,7 @@ template <Real T> class Engine {
   virtual const Counts& counts() const = 0;
   virtual const Account<T>& account() const = 0;
   virtual T energy_lost() const = 0;
+  virtual T given_by_walls() const = 0;
   virtual T last_contact_time() const = 0;
   virtual const CollapseReport<T>* collapse() const = 0;  // none where no contacts are made
 
@@ -80,6 +82,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   const Counts& counts() const override { return run_.counts(); }
   const Account<T>& account() const override { return run_.account(); }
   T energy_lost() const override { return run_.energy_lost(); }
+  T given_by_walls() const override { return cradle::given_by_walls(run_); }
   T last_contact_time() const override { return run_.last_contact_time(); }
   const CollapseReport<T>* collapse() const override {
     if constexpr (has_chain)

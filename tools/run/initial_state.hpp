@@ -7,6 +7,7 @@
 #include "cradle/core/list.hpp"
 #include "cradle/core/ring.hpp"
 #include "cradle/core/rows.hpp"
+#include "cradle/core/walled.hpp"
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
@@ -21,34 +22,54 @@ template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
   return values;
 }
 
-/// Throws Error where the scene's bodies cannot be had in this precision.
+namespace detail {
+
+template <Real T> std::shared_ptr<const cradle::Bodies<T>> bodies_without_walls(const Initial& initial) {
+  if (initial.type == InitialType::list)
+    return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m));
+  const Displacement displacement = uniform_displacement(initial.perturbation.value, initial.seed, initial.replica);
+  if (initial.type == InitialType::ring) {
+    using std::sqrt;
+    const VelocityDraw draw = initial.velocities == Velocities::gaussian
+                                  ? gaussian_velocity(initial.seed, initial.replica)
+                                  : uniform_velocity(initial.seed, initial.replica);
+    return std::make_shared<Ring<T>>(static_cast<BodyIndex>(initial.particles), number<T>(initial.length),
+                                     T(sqrt(number<T>(initial.variance))), draw, displacement);
+  }
+  if (!initial.general_rows())
+    return std::make_shared<Rows<T>>(symmetric_rows<T>(
+        static_cast<BodyIndex>(initial.particles), number<T>(initial.speed), number<T>(initial.spacing), displacement));
+  const auto row = [](const Row& r) {
+    return cradle::Row<T>{static_cast<BodyIndex>(r.particles), number<T>(r.speed), T(1) / number<T>(r.density)};
+  };
+  std::optional<CentralBody<T>> centre;
+  if (initial.centre.mass.value > 0)
+    centre = CentralBody<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
+  return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement);
+}
+
+template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initial& initial) {
+  if (!wall.position) return {};
+  return Wall<T>{number<T>(*wall.position),
+                 number<T>(wall.speed),
+                 wall.temperature ? T(1) : number<T>(wall.restitution),
+                 wall.temperature ? wall.temperature->value : 0,
+                 initial.seed,
+                 initial.replica};
+}
+
+}  // namespace detail
+
+/// Throws Error where the scene's bodies cannot be had in this precision, or its walls not beside them.
 template <Real T> std::shared_ptr<const cradle::Bodies<T>> initial_bodies(const Scene& scene) {
-  const Initial& initial = scene.initial;
   try {
-    if (initial.type == InitialType::list)
-      return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m));
-    const Displacement displacement = uniform_displacement(initial.perturbation.value, initial.seed, initial.replica);
-    if (initial.type == InitialType::ring) {
-      using std::sqrt;
-      const VelocityDraw draw = initial.velocities == Velocities::gaussian
-                                    ? gaussian_velocity(initial.seed, initial.replica)
-                                    : uniform_velocity(initial.seed, initial.replica);
-      return std::make_shared<Ring<T>>(static_cast<BodyIndex>(initial.particles), number<T>(initial.length),
-                                       T(sqrt(number<T>(initial.variance))), draw, displacement);
-    }
-    if (!initial.general_rows())
-      return std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<BodyIndex>(initial.particles),
-                                                         number<T>(initial.speed), number<T>(initial.spacing),
-                                                         displacement));
-    const auto row = [](const Row& r) {
-      return cradle::Row<T>{static_cast<BodyIndex>(r.particles), number<T>(r.speed), T(1) / number<T>(r.density)};
-    };
-    std::optional<CentralBody<T>> centre;
-    if (initial.centre.mass.value > 0)
-      centre = CentralBody<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
-    return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement);
+    auto bodies = detail::bodies_without_walls<T>(scene.initial);
+    if (!scene.walls.any()) return bodies;
+    return std::make_shared<Walled<T>>(std::move(bodies), detail::wall_of<T>(scene.walls.left, scene.initial),
+                                       detail::wall_of<T>(scene.walls.right, scene.initial));
   } catch (const std::invalid_argument& error) {
-    throw Error({scene.name, 0, "initial"}, "the bodies cannot be set up", error.what(), "change the scene");
+    throw Error({scene.name, 0, scene.walls.any() ? "initial, walls" : "initial"}, "the bodies cannot be set up",
+                error.what(), "change the scene");
   }
 }
 

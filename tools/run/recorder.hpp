@@ -40,6 +40,7 @@ template <Real T> class SeriesRecorder {
     time_.push_back(to_double(s.time));
     energy_.push_back(to_double(s.energy));
     lost_.push_back(to_double(s.energy_lost));
+    given_.push_back(to_double(s.given));
     contacts_.push_back(s.counts.contacts);
     below_.push_back(s.counts.below_cutoff);
     merges_.push_back(s.counts.merges);
@@ -50,14 +51,17 @@ template <Real T> class SeriesRecorder {
   }
 
   std::size_t rows() const { return time_.size(); }
-  /// The rows since it was called last, of the columns that every series has.
-  Columns take() {
-    return columns(taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_), taken(merges_),
-                   taken(bodies_), taken(left_), taken(right_));
+  /// The rows since it was called last, of the columns that every series has; `walled`: and what walls have given.
+  Columns take(bool walled) {
+    Columns all = columns(taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_), taken(merges_),
+                          taken(bodies_), taken(left_), taken(right_));
+    std::vector<double> given = taken(given_);
+    if (walled) append(all, columns(std::move(given)));
+    return all;
   }
 
  private:
-  std::vector<double> time_, energy_, lost_, left_, right_;
+  std::vector<double> time_, energy_, lost_, given_, left_, right_;
   std::vector<std::uint64_t> contacts_, below_, merges_, bodies_;
 };
 

@@ -10,7 +10,10 @@ namespace cradle::tools {
 
 namespace {
 
-std::string place(BodyIndex left) { return fmt::format("between bodies {} and {}", left, left + 1); }
+std::string place(BodyIndex left) {
+  if (left < 0) return "between the left wall and body 0";
+  return fmt::format("between bodies {} and {}", left, left + 1);
+}
 
 // Seven digits of a number that may be far below the range of double.
 std::string brief(const Figure& x) {

@@ -19,9 +19,12 @@ namespace cradle::tools {
 
 template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& options, Progress& progress) {
   Policy<T> policy;
-  // Elastic bodies do not collapse, those that stick cannot.
+  // Elastic bodies do not collapse, unless against a wall that is not; those that stick cannot.
+  const auto loses = [](const WallAt& wall) {
+    return wall.position && !wall.temperature && wall.restitution < Decimal("1");
+  };
   if (scene.run.collapse == CollapsePolicy::stop && scene.law.type == LawType::inelastic &&
-      scene.law.restitution < Decimal("1"))
+      (scene.law.restitution < Decimal("1") || loses(scene.walls.left) || loses(scene.walls.right)))
     policy.collapse = cradle::CollapsePolicy::stop;
   if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
   policy.interrupt = [interrupt = options.interrupt, keeper = options.keeper] {

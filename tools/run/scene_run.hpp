@@ -117,7 +117,7 @@ template <Real T> class SceneRun {
         state_too);
   }
   void put_rows() {
-    Columns series = series_.take();
+    Columns series = series_.take(scene_.walls.any());
     if (has_clouds(scene_)) append(series, cloud_.take());
     if (core_) append(series, core_->take());
     put(filled(series_table(scene_), std::move(series)));

@@ -35,6 +35,8 @@ Group series_table(const Scene& scene) {
                              "heaviest clusters",
                              {}});
   }
+  if (scene.walls.any())
+    table.columns.push_back({"wall_work", "m l^2/t^2", "energy that the walls have given since the start", {}});
   if (scene.output.core) {
     table.columns.push_back({"core_mass", "m", "mass within three core_width about the densest place", {}});
     table.columns.push_back(

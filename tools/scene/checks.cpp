@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -96,6 +97,44 @@ class Checks {
                     "remove it");
   }
 
+  // Where bodies are displaced at random, replicas are seen to when they are set up (core/walled.hpp).
+  void walls_stand() const {
+    const auto& [left, right] = scene_.walls;
+    if (!scene_.walls.any()) return;
+    const std::string first = left.position ? "walls.left.position" : "walls.right.position";
+    const Initial& initial = scene_.initial;
+    if (initial.type == InitialType::ring || initial.type == InitialType::clusters)
+      throw Error(place(first), "a wall without a line of bodies",
+                  "initial.type = " + value_text(*find_field("initial.type", scene_), scene_).value(),
+                  "remove [walls], or give bodies on a line");
+    if (scene_.run.collapse == CollapsePolicy::merge)
+      throw Error(place(first), "a wall for bodies that merge", "run.collapse = \"merge\"",
+                  "remove [walls], or choose another collapse policy");
+    if (scene_.output.core)
+      throw Error(place("output.core"), "nothing to compare the core with", "walls, which the sticky gas does not have",
+                  "remove it");
+    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
+    const auto outside = [&](const char* key, const Decimal& wall, const char* body, const bin_float& at, int sign) {
+      if (bin_float(sign) * (number(wall) - at) > 0) return;
+      throw Error(place(key), "a wall among the bodies, which would have met before the start",
+                  fmt::format("wall at {}, {} body at {:g}", wall.text, body, static_cast<double>(at)),
+                  "move it outwards");
+    };
+    if (left.position)
+      if (const auto at = outermost(-1)) outside("walls.left.position", *left.position, "first", *at, -1);
+    if (right.position)
+      if (const auto at = outermost(1)) outside("walls.right.position", *right.position, "last", *at, 1);
+    if (!left.position || !right.position) return;
+    const bin_float gap = number(*right.position) - number(*left.position);
+    const bin_float closing = number(left.speed) - number(right.speed);
+    const bin_float span = number(scene_.run.until) - number(scene_.run.start);
+    if (gap - closing * span > 0) return;
+    throw Error(place(left.speed == Decimal("0") ? "walls.right.speed" : "walls.left.speed"),
+                "the walls meet before the run ends",
+                fmt::format("at t = {:g}", static_cast<double>(number(scene_.run.start) + gap / closing)),
+                "give smaller speeds, or an earlier run.until");
+  }
+
   void series_has_times() const {
     if (entries_.contains("output.series.times") && scene_.output.series.times.empty())
       throw Error(place("output.series.times"), "no times", "an empty list", "give at least one time");
@@ -155,6 +194,19 @@ class Checks {
     return entry == entries_.end() ? place(key) : entry->second.items.at(i).place;
   }
 
+  // Where the last body on one side may be at the start; nothing where that is only known once bodies are set up.
+  std::optional<bin_float> outermost(int side) const {
+    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
+    const Initial& initial = scene_.initial;
+    if (initial.type == InitialType::list && initial.x.size() > 0)
+      return from_text<bin_float>(initial.x[side < 0 ? 0 : initial.x.size() - 1]);
+    if (initial.type != InitialType::rows) return {};
+    const Row& row = side < 0 ? initial.left : initial.right;
+    const bin_float spacing = initial.general_rows() ? bin_float(1) / number(row.density) : number(initial.spacing);
+    const bin_float bodies(static_cast<std::int64_t>(initial.general_rows() ? row.particles : initial.particles / 2));
+    return bin_float(side) * (bodies - bin_float(1) / bin_float(2) + number(initial.perturbation)) * spacing;
+  }
+
   void same_length(std::string_view key, std::size_t length) const {
     const std::size_t bodies = scene_.initial.x.size();
     if (length != bodies)
@@ -174,6 +226,7 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.rows_meet();
   checks.one_list_of_bodies();
   checks.two_clusters();
+  checks.walls_stand();
   checks.series_has_times();
   checks.profile_range();
   checks.numbers_fit();

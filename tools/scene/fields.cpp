@@ -45,6 +45,19 @@ constexpr When list{other_state, "initial.type", "initial.type = \"list\"",
 constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"",
                         [](const Scene& s) { return s.initial.type == InitialType::clusters; }};
 
+constexpr std::string_view no_wall = "key of a wall that is not there";
+constexpr When left_wall{no_wall, "walls.left.position", "a left wall",
+                         [](const Scene& s) { return s.walls.left.position.has_value(); }};
+constexpr When right_wall{no_wall, "walls.right.position", "a right wall",
+                          [](const Scene& s) { return s.walls.right.position.has_value(); }};
+constexpr std::string_view thermal = "key of a wall that reflects";
+constexpr When left_reflects{thermal, "walls.left.temperature", "a left wall without temperature", [](const Scene& s) {
+                               return s.walls.left.position.has_value() && !s.walls.left.temperature;
+                             }};
+constexpr When right_reflects{
+    thermal, "walls.right.temperature", "a right wall without temperature",
+    [](const Scene& s) { return s.walls.right.position.has_value() && !s.walls.right.temperature; }};
+
 constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
                     [](const Scene& s) { return s.run.precision == Precision::mpfr; }};
 
@@ -72,6 +85,7 @@ constexpr auto collapse = member<&Scene::run, &Run::collapse>;
 
 template <auto M> constexpr auto law_of = member<&Scene::law, M>;
 template <auto... M> constexpr auto initial_of = member<&Scene::initial, M...>;
+template <auto... M> constexpr auto walls_of = member<&Scene::walls, M...>;
 template <auto M> constexpr auto run_of = member<&Scene::run, M>;
 template <auto M> constexpr auto sweep_of = member<&Scene::sweep, M>;
 template <auto... M> constexpr auto output_of = member<&Scene::output, M...>;
@@ -145,6 +159,28 @@ const Field all_fields[] = {
      "seed of all random numbers"},
     {"initial.replica", initial_of<&Initial::replica>, "", "0", "[0, 18446744073709551615]", &always,
      "number of the replica; each has its own random numbers"},
+
+    {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "", any, &inelastic,
+     "position of a wall at the left end of the line, at run.start; without it, none. A wall is a body of infinite "
+     "mass"},
+    {"walls.left.speed", walls_of<&WallPair::left, &WallAt::speed>, "l/t", "0", any, &left_wall,
+     "constant velocity of the left wall, positive to the right: a piston"},
+    {"walls.left.temperature", walls_of<&WallPair::left, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)", &left_wall,
+     "bodies leave the left wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
+     "reflects them"},
+    {"walls.left.restitution", walls_of<&WallPair::left, &WallAt::restitution>, "", "1", "[0, 1]", &left_reflects,
+     "factor by which a contact with the left wall reduces the closing speed; 1 is elastic"},
+    {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &inelastic,
+     "position of a wall at the right end of the line, at run.start; without it, none. A wall is a body of infinite "
+     "mass"},
+    {"walls.right.speed", walls_of<&WallPair::right, &WallAt::speed>, "l/t", "0", any, &right_wall,
+     "constant velocity of the right wall, positive to the right: a piston"},
+    {"walls.right.temperature", walls_of<&WallPair::right, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)",
+     &right_wall,
+     "bodies leave the right wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
+     "reflects them"},
+    {"walls.right.restitution", walls_of<&WallPair::right, &WallAt::restitution>, "", "1", "[0, 1]", &right_reflects,
+     "factor by which a contact with the right wall reduces the closing speed; 1 is elastic"},
 
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},

@@ -74,6 +74,21 @@ struct Initial {
   bool operator==(const Initial&) const = default;
 };
 
+/// At one end of the line; without a position there is none.
+struct WallAt {
+  std::optional<Decimal> position;     // at run.start
+  Decimal speed;                       // positive to the right
+  std::optional<Decimal> temperature;  // of a thermal wall; without one it reflects
+  Decimal restitution;                 // of a reflecting wall
+  bool operator==(const WallAt&) const = default;
+};
+
+struct WallPair {
+  WallAt left, right;
+  bool any() const { return left.position || right.position; }
+  bool operator==(const WallPair&) const = default;
+};
+
 struct Run {
   Decimal start;
   Decimal until;
@@ -146,6 +161,7 @@ struct Scene {
   std::string title;
   Law law;
   Initial initial;
+  WallPair walls;
   Run run;
   Output output;
   Sweep sweep;

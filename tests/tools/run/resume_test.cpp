@@ -72,6 +72,8 @@ const std::string list = "initial = { type = 'list', x = [0, 1, 3, 4, 7, 8.5], v
 const std::string general =
     "initial = { type = 'rows', left = { particles = 40, speed = 1 }, right = { particles = 30, "
     "speed = -0.5, density = 2 }, centre = { mass = 5, speed = 0.1 }, perturbation = 0.1 }\n";
+const std::string between_walls = "[walls]\nleft = { position = -60, temperature = 0.4 }\nright = { position = 50, "
+                                  "speed = -0.05, restitution = 0.9 }\n";
 const std::string wet = "law = { type = 'wet', loss = 0.01 }\n", sticky = "law.type = 'sticky'\n";
 const std::string watched =
     "output = { series = { points = 300, spacing = 'log' }, masses = [10, 100], scenario = true, "
@@ -99,6 +101,9 @@ const std::string scenes[] = {
     "law = { type = 'inelastic', restitution = 0.05 }\ninitial = { type = 'list', x = [0, 1, 3, 10], v = [1, 0, -1, 5] "
     "}\n"
     "output.series.points = 30\n[run]\nuntil = 100\ncollapse = 'stop'\n",
+    dry(list, between_walls),
+    dry(rows, "coordinates = 'absolute'\n" + between_walls),
+    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3\n" + between_walls),
 };
 
 Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }
@@ -107,6 +112,11 @@ const std::string large = "output = { series.points = 12, profiles = { times = [
 const std::string large_dry = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\ninitial = { type = "
                               "'ring', particles = 2500, perturbation = 0.1 }\n" +
                               large;
+const std::string large_walls =
+    "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.05 }\ninitial = { type = 'rows', particles = 2500, "
+    "perturbation = 0.1 }\nwalls = { left = { position = -1252, speed = 0.8 }, right = { position = 1252, temperature "
+    "= 1 } }\n" +
+    large;
 const std::string large_wet = "law = { type = 'wet', loss = 0.01 }\ninitial = { type = 'ring', particles = 2500, "
                               "perturbation = 0.1 }\n" +
                               large;
@@ -174,7 +184,7 @@ TEST_P(Resume, EndsInTheSameBytesWhereverItIsCut) {
   }
 }
 
-// 17 scenes, six types, four cuts each with another one behind it.
+// 20 scenes, six types, four cuts each with another one behind it.
 INSTANTIATE_TEST_SUITE_P(
     Runs, Resume,
     testing::Values(case_of("DryRows", 0), case_of("DryRowsPositions", 1), case_of("ContactTime", 2),
@@ -182,7 +192,9 @@ INSTANTIATE_TEST_SUITE_P(
                     case_of("MergingRing", 6), case_of("DryList", 7), case_of("ContactTimeList", 8),
                     case_of("GeneralRows", 9), case_of("WetRows", 10), case_of("WetRing", 11),
                     case_of("WetGeneralRows", 12), case_of("StickyContacts", 13), case_of("Sticky", 14),
-                    case_of("StickyRing", 15), case_of("Collapse", 16),
+                    case_of("StickyRing", 15), case_of("Collapse", 16), case_of("Walls", 17),
+                    case_of("WallsPositions", 18), case_of("WallsContactTime", 19),
+                    Case{"LargeWalls", large_walls.c_str(), {"double", "double-double"}, 2, 3},
                     Case{"LargeDry", large_dry.c_str(), {"double", "double-double"}, 1, 1},
                     Case{"LargeDryFromTwoThreadsToOne", large_dry.c_str(), {"double", "long double", "mpfr"}, 2, 1},
                     Case{"LargeDryFromOneThreadToThree", large_dry.c_str(), {"double", "float128"}, 1, 3},

@@ -295,6 +295,46 @@ TEST(Scene, GeneralRows) {
                      "s.toml:5: initial.left.particles: key of another initial st"));
 }
 
+TEST(Scene, WallsStandOutsideTheBodies) {
+  const std::string dry = "law = { type = 'inelastic', restitution = 0.9 }\nrun = { until = 9, start = 1 }\n";
+  const std::string three = dry + "initial = { type = 'list', x = [1, 2, 4], v = [0, 0, 0] }\n";
+  const std::string rows = dry + "initial = { type = 'rows', particles = 8, perturbation = 0.25, spacing = 2 }\n";
+  const Scene scene = parse(three + "[walls]\nleft.position = 0.5\nleft.temperature = 2\nright.position = 5\n"
+                                    "right.speed = -0.1\nright.restitution = 0.75\n");
+  EXPECT_EQ(scene.walls.left.temperature->text, "2");
+  EXPECT_EQ(scene.walls.left.speed.text, "0");
+  EXPECT_EQ(scene.walls.right.restitution.text, "0.75");
+  EXPECT_EQ(parse(effective_toml(scene)), scene);
+  EXPECT_FALSE(parse(three).walls.any());
+
+  EXPECT_EQ(message(three + "[walls]\nleft.position = 0\nleft.temperature = 0"),
+            "s.toml:6: walls.left.temperature: out of range (found 0): give a number above 0");
+  EXPECT_EQ(message(three + "[walls]\nleft.position = 0\nleft.temperature = 1\nleft.restitution = 0.5"),
+            "s.toml:7: walls.left.restitution: key of a wall that reflects (found walls.left.temperature = 1): "
+            "remove it, it belongs to a left wall without temperature");
+  EXPECT_TRUE(begins(message(three + "[walls]\nright.speed = 1"),
+                     "s.toml:5: walls.right.speed: key of a wall that is not there"));
+  EXPECT_EQ(message(three + "[walls]\nleft.position = 1"),
+            "s.toml:5: walls.left.position: a wall among the bodies, which would have met before the start "
+            "(found wall at 1, first body at 1): move it outwards");
+  EXPECT_EQ(message(three + "[walls]\nright.position = 3"),
+            "s.toml:5: walls.right.position: a wall among the bodies, which would have met before the start "
+            "(found wall at 3, last body at 4): move it outwards");
+  EXPECT_TRUE(
+      begins(message(rows + "walls.left.position = -7.5"), "s.toml:4: walls.left.position: a wall among the bodies"));
+  EXPECT_FALSE(parse(rows + "walls.left.position = -7.6").walls.right.position);
+  EXPECT_EQ(message(three + "[walls]\nleft.position = 0\nleft.speed = 0.25\nright.position = 4.5\nright.speed = -0.5"),
+            "s.toml:6: walls.left.speed: the walls meet before the run ends (found at t = 7): "
+            "give smaller speeds, or an earlier run.until");
+  EXPECT_TRUE(begins(message(dry + "initial.type = 'ring'\nwalls.left.position = -1"),
+                     "s.toml:4: walls.left.position: a wall without a line of bodies"));
+  EXPECT_TRUE(begins(message("law = { type = 'wet', loss = 1 }\nrun.until = 1\ninitial.type = 'rows'\n"
+                             "walls.left.position = -1e5"),
+                     "s.toml:4: walls.left.position: key of another law"));
+  EXPECT_TRUE(
+      begins(message(three + "run.collapse = 'merge'\nrun.merge_speed = 1\nwalls.left.position = 0"), "s.toml:"));
+}
+
 TEST(Scene, RingIsAsLongAsItHasBodies) {
   const std::string text = "law.type = 'sticky'\nrun.until = 9\ninitial.type = 'ring'\ninitial.particles = 7\n";
   EXPECT_EQ(parse(text).initial.length.text, "7");

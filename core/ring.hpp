@@ -1,16 +1,22 @@
 #pragma once
-// Free cooling: equal bodies of unit mass on a ring (a periodic line), at equal distances or displaced at random, with
-// independent velocities of a given variance and zero total momentum. Velocities and displacements are integers, times
-// a unit that every scalar type rounds for itself, so that all types start from the same state; body and replica alone
-// decide on them (counter_rng.hpp).
+// Free cooling: bodies on a ring (a periodic line), of mass 1 or of masses that repeat, at equal distances or displaced
+// at random, with independent velocities of a given variance and zero total momentum. Velocities and displacements are
+// integers, times a unit that every scalar type rounds for itself, so that all types start from the same state; body
+// and replica alone decide on them (counter_rng.hpp).
+//
+// Zero momentum: of identical masses the mean is taken off the integers, the remainder, less than one per body, from
+// the first bodies. Of masses that differ the velocity of the centre of mass, sum m_b n_b / sum m_b of the integers
+// n_b, is a fraction: it is taken off velocities in the working precision, and closing speeds do not have it.
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cradle/core/bodies.hpp"
 #include "cradle/core/counter_rng.hpp"
+#include "cradle/core/mass_pattern.hpp"
 #include "cradle/core/portable_log.hpp"
 #include "cradle/core/rows.hpp"
 
@@ -52,11 +58,13 @@ inline VelocityDraw uniform_velocity(std::uint64_t seed, std::uint64_t replica) 
 template <Real T> class Ring final : public Bodies<T> {
  public:
   // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no bodies, 2^31 or more of
-  // them, or a length or deviation that is not positive and finite. Draws every velocity once.
-  Ring(BodyIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement)
+  // them, a length or deviation that is not positive and finite, or a pattern of masses that does not divide the ring.
+  // Draws every velocity once.
+  Ring(BodyIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement,
+       MassPattern<T> masses = {})
       : count_(count), length_(std::move(length)), velocity_(std::move(velocity)),
-        displacement_(std::move(displacement)), unit_(length_ / (T(count) * T(displacement_unit))),
-        velocity_unit_(deviation / T(displacement_unit)) {
+        displacement_(std::move(displacement)), masses_(std::move(masses)),
+        unit_(length_ / (T(count) * T(displacement_unit))), velocity_unit_(deviation / T(displacement_unit)) {
     if (count < 1 || count >= std::int64_t{1} << 31)
       throw std::invalid_argument("a ring of " + std::to_string(count) + " bodies: give it from 1 to 2147483647");
     require_finite(length_, "length of the ring");
@@ -64,24 +72,29 @@ template <Real T> class Ring final : public Bodies<T> {
     if (!(length_ > T(0) && deviation > T(0)))
       throw std::invalid_argument("length or variance of the ring is not positive (length " + in_message(length_) +
                                   ", standard deviation " + in_message(deviation) + "): give positive numbers");
-    // Subtracts the mean; what is left of the division, less than a unit per body, from the first ones.
-    std::int64_t sum = 0;
-    for (BodyIndex body = 0; body < count; ++body) sum += velocity_(body);
-    shift_ = sum / count - (sum % count < 0 ? 1 : 0);
-    shifted_more_ = sum - shift_ * count;
+    if (count % masses_.period() != 0)
+      throw std::invalid_argument("a pattern of " + std::to_string(masses_.period()) +
+                                  " masses does not divide a ring of " + std::to_string(count) +
+                                  " bodies: give a multiple of it");
+    if (masses_.identical())
+      take_off_mean();
+    else
+      take_off_drift();
     CompensatedSum<T> twice;
     for (BodyIndex body = 0; body < count; ++body) {
       const T v = this->velocity(body);
-      twice.add(v * v);
+      twice.add(mass(body) * v * v);
     }
     energy_ = twice.value() / T(2);
   }
 
   BodyIndex count() const override { return count_; }
   T circumference() const override { return length_; }
-  T mass(BodyIndex) const override { return T(1); }
-  bool identical_masses() const override { return true; }
-  T velocity(BodyIndex body) const override { return T(pace(body)) * velocity_unit_; }
+  T mass(BodyIndex body) const override { return masses_.of(body); }
+  bool identical_masses() const override { return masses_.identical(); }
+  T velocity(BodyIndex body) const override {
+    return (masses_.identical() ? T(pace(body)) : T(T(pace(body)) - drift_)) * velocity_unit_;
+  }
   T position(BodyIndex body) const override {
     return T((2 * body + 1) * (displacement_unit / 2) + displacement_(body)) * unit_;
   }
@@ -93,19 +106,38 @@ template <Real T> class Ring final : public Bodies<T> {
 
   T kinetic_energy() const override { return energy_; }
   T momentum() const override { return T(0); }
-  T total_mass() const override { return T(count_); }
-  T least_mass() const override { return T(1); }
+  T total_mass() const override { return masses_.total(0, count_); }
+  T least_mass() const override { return masses_.least(); }
 
  private:
   BodyIndex next(BodyIndex body) const { return body + 1 < count_ ? body + 1 : 0; }
   std::int64_t pace(BodyIndex body) const { return velocity_(body) - shift_ - (body < shifted_more_ ? 1 : 0); }
 
+  void take_off_mean() {
+    std::int64_t sum = 0;
+    for (BodyIndex body = 0; body < count_; ++body) sum += velocity_(body);
+    shift_ = sum / count_ - (sum % count_ < 0 ? 1 : 0);
+    shifted_more_ = sum - shift_ * count_;
+  }
+  // The sums of integers, one for each entry of the pattern, are exact.
+  void take_off_drift() {
+    std::vector<std::int64_t> sums(static_cast<std::size_t>(masses_.period()), 0);
+    for (BodyIndex body = 0; body < count_; ++body)
+      sums[static_cast<std::size_t>(body % masses_.period())] += velocity_(body);
+    CompensatedSum<T> momentum;
+    for (BodyIndex entry = 0; entry < masses_.period(); ++entry)
+      momentum.add(masses_.of(entry) * T(sums[static_cast<std::size_t>(entry)]));
+    drift_ = momentum.value() / total_mass();
+  }
+
   BodyIndex count_;
   T length_;
   VelocityDraw velocity_;
   Displacement displacement_;
+  MassPattern<T> masses_;
   T unit_, velocity_unit_;
   std::int64_t shift_ = 0, shifted_more_ = 0;
+  T drift_{0};  // of the centre of mass, in units of velocities
   T energy_{0};
 };
 

@@ -1,8 +1,9 @@
 #pragma once
-// Two rows of bodies of unit mass that run into each other (the paper's Riemann problem, section II): the left one of
-// velocity u_l and spacing l_l = 1/n_l, the right one of u_r and l_r, a body of any mass between them where the scene
-// has one. The first bodies are half a spacing from the origin. Every body of a row is displaced by a random multiple
-// of 2^-28 of the spacing, so that every scalar type and both representations start from the same places.
+// Two rows of bodies that run into each other (the paper's Riemann problem, section II): the left one of velocity u_l
+// and spacing l_l = 1/n_l, the right one of u_r and l_r, a body of any mass between them where the scene has one. Their
+// masses are 1, or repeat by a pattern from body 0 on (in which the body between the rows takes a place but not a
+// mass). The first bodies are half a spacing from the origin. Every body of a row is displaced by a random multiple of
+// 2^-28 of the spacing, so that every scalar type and both representations start from the same places.
 
 #include <cmath>
 #include <functional>
@@ -13,6 +14,7 @@
 
 #include "cradle/core/bodies.hpp"
 #include "cradle/core/counter_rng.hpp"
+#include "cradle/core/mass_pattern.hpp"
 
 namespace cradle {
 
@@ -47,10 +49,11 @@ template <Real T> class Rows final : public Bodies<T> {
  public:
   // Throws std::invalid_argument for rows that are empty or do not approach each other, spacings or masses that are not
   // positive, a central body that no row reaches, numbers that are not finite.
-  Rows(Row<T> left, Row<T> right, std::optional<CentralBody<T>> centre, Displacement displacement)
+  Rows(Row<T> left, Row<T> right, std::optional<CentralBody<T>> centre, Displacement displacement,
+       MassPattern<T> masses = {})
       : left_(std::move(left)), right_(std::move(right)), centre_(std::move(centre)),
-        displacement_(std::move(displacement)), left_unit_(left_.spacing / T(displacement_unit)),
-        right_unit_(right_.spacing / T(displacement_unit)) {
+        displacement_(std::move(displacement)), masses_(std::move(masses)),
+        left_unit_(left_.spacing / T(displacement_unit)), right_unit_(right_.spacing / T(displacement_unit)) {
     for (const auto& [row, name] : {std::pair{&left_, "left row"}, {&right_, "right row"}}) {
       require_finite(row->velocity, std::string("velocity of the ") + name);
       require_finite(row->spacing, std::string("spacing of the ") + name);
@@ -76,8 +79,8 @@ template <Real T> class Rows final : public Bodies<T> {
   }
 
   BodyIndex count() const override { return left_.count + right_.count + (centre_ ? 1 : 0); }
-  T mass(BodyIndex body) const override { return is_centre(body) ? centre_->mass : T(1); }
-  bool identical_masses() const override { return !centre_ || centre_->mass == T(1); }
+  T mass(BodyIndex body) const override { return is_centre(body) ? centre_->mass : masses_.of(body); }
+  bool identical_masses() const override { return masses_.identical() && (!centre_ || centre_->mass == masses_.of(0)); }
 
   T velocity(BodyIndex body) const override {
     return body < left_.count ? left_.velocity : is_centre(body) ? centre_->velocity : right_.velocity;
@@ -104,21 +107,25 @@ template <Real T> class Rows final : public Bodies<T> {
   GapRange gaps_in_motion() const override { return {left_.count - 1, left_.count - (centre_ ? 0 : 1)}; }
 
   T kinetic_energy() const override {
-    const T rows =
-        T(left_.count) * left_.velocity * left_.velocity + T(right_.count) * right_.velocity * right_.velocity;
+    const T rows = left_mass() * left_.velocity * left_.velocity + right_mass() * right_.velocity * right_.velocity;
     return (centre_ ? T(rows + centre_->mass * centre_->velocity * centre_->velocity) : rows) / T(2);
   }
   T momentum() const override {
-    const T rows = T(left_.count) * left_.velocity + T(right_.count) * right_.velocity;
+    const T rows = left_mass() * left_.velocity + right_mass() * right_.velocity;
     return centre_ ? T(rows + centre_->mass * centre_->velocity) : rows;
   }
   T total_mass() const override {
-    const T rows = T(left_.count + right_.count);
+    const T rows = left_mass() + right_mass();
     return centre_ ? T(rows + centre_->mass) : rows;
   }
-  T least_mass() const override { return centre_ && centre_->mass < T(1) ? centre_->mass : T(1); }
+  T least_mass() const override {
+    const T rows = masses_.least();
+    return centre_ && centre_->mass < rows ? centre_->mass : rows;
+  }
 
  private:
+  T left_mass() const { return masses_.total(0, left_.count); }
+  T right_mass() const { return masses_.total(count() - right_.count, count()); }
   bool is_centre(BodyIndex body) const { return centre_ && body == left_.count; }
 
   // Position in units of 2^-28 of the row's spacing.
@@ -131,17 +138,23 @@ template <Real T> class Rows final : public Bodies<T> {
   Row<T> left_, right_;
   std::optional<CentralBody<T>> centre_;
   Displacement displacement_;
+  MassPattern<T> masses_;
   T left_unit_, right_unit_;
 };
 
 // The paper's symmetric shock: `particles` bodies, half of them in each row, closing in at plus and minus `speed`.
 // Throws std::invalid_argument for an odd number of them, too.
 template <Real T>
-Rows<T> symmetric_rows(BodyIndex particles, const T& speed, const T& spacing, Displacement displacement) {
+Rows<T> symmetric_rows(BodyIndex particles, const T& speed, const T& spacing, Displacement displacement,
+                       MassPattern<T> masses = {}) {
   if (particles % 2 != 0)
     throw std::invalid_argument("an odd number of bodies for two equal rows (" + std::to_string(particles) +
                                 "): give an even one, or two rows of their own");
-  return {{particles / 2, speed, spacing}, {particles / 2, T(-speed), spacing}, std::nullopt, std::move(displacement)};
+  return {{particles / 2, speed, spacing},
+          {particles / 2, T(-speed), spacing},
+          std::nullopt,
+          std::move(displacement),
+          std::move(masses)};
 }
 
 }  // namespace cradle

@@ -18,6 +18,7 @@
 #include <concepts>
 #include <cstdint>
 
+#include "cradle/core/elementary.hpp"
 #include "cradle/core/real.hpp"
 
 namespace cradle {
@@ -121,6 +122,44 @@ template <Real T> class Inelastic {
   T lost_;      // (1 - eps)(1 + eps) / 2, the share of mu w^2 that is lost
   T one_{1}, zero_{0};
   bool soft_;  // eps < 1/2
+};
+
+// Inelastic law whose restitution depends on the closing speed (Shinde, Das and Rajesh, PRL 99, 234505, 2007, doi
+// 10.1103/PhysRevLett.99.234505):
+//
+//   eps(w) = eps + (1 - eps) exp(-(w/delta)^sigma),
+//
+// elastic at slow contacts and of restitution eps at fast ones; the plain law's cut-off is sigma -> infinity. The loss
+// 1 - eps(w) = (1 - eps) E, E = 1 - exp(-(w/delta)^sigma), is formed first: of nearly elastic contacts, on which the
+// fate of a slow gas hangs, it keeps its digits. Contacts below delta are counted as below the cut-off.
+template <Real T> class SpeedDependent {
+ public:
+  static constexpr bool bounces_only = true;
+
+  // restitution in [0, 1]; cutoff delta > 0, a speed; exponent sigma > 0.
+  SpeedDependent(const T& restitution, const T& cutoff, const T& exponent)
+      : missing_(T(1) - restitution), cutoff_(cutoff), power_(exponent) {}
+
+  template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const {
+    const T missing = missing_ * rise_(power_(T(w / cutoff_)));  // 1 - eps(w)
+    const T restitution = T(1) - missing;
+    const T half_sum = T(1) - missing / T(2);  // (1 + eps(w))/2
+    T after(0), half(0);
+    if (restitution * T(2) < T(1)) {  // as in the plain law, what would cancel comes second
+      after = -(restitution * w);
+      half = (w - after) / T(2);
+    } else {
+      half = half_sum * w;
+      after = w - (half + half);
+    }
+    const Shares<T> shares = masses.shares(half);
+    return {after, shares.left, shares.right, missing * half_sum * masses.reduced() * (w * w), w < cutoff_};
+  }
+
+ private:
+  T missing_, cutoff_;
+  Power<T> power_;
+  ExponentialRise<T> rise_;
 };
 
 // The inelastic law with a duration of contacts (TC model: Luding and McNamara 1998, doi 10.1007/s100350050017):

@@ -35,9 +35,11 @@ void add_curves(Predictions& table, const theory::InelasticShock<double>& shock,
 }  // namespace
 
 void predict_inelastic(const Scene& scene, Predictions& table) {
+  if (unequal_masses(scene) || scene.law.cutoff_exponent) return;
   const double eps = scene.law.restitution.value;
   table.number("three_body_collapse_limit", "7 - 4 sqrt 3", "continuous", theory::three_body_collapse_limit<double>());
   if (eps < 1) table.number("collapse_onset_bodies", "N_c", "continuous", theory::collapse_onset_bodies(eps));
+  if (eps < 1) table.number("collapse_onset_bodies", "McNamara, Young", "cushion", theory::cushion_bodies(eps));
   if (!equal_rows(scene)) return;
 
   theory::InelasticShock<double> shock{eps};

@@ -42,6 +42,11 @@ void check_certifiable(const Scene& scene) {
   if (scene.walls.any())
     throw Error({"", 0, scene.walls.left.position ? "walls.left.position" : "walls.right.position"},
                 "contacts with walls cannot be proved yet", "a wall", "compare precisions with `cradle trust` instead");
+  if (scene.law.cutoff_exponent)
+    throw Error({"", 0, "law.cutoff_exponent"}, "no proof of a restitution that depends on the speed",
+                scene.law.cutoff_exponent->text,
+                "remove it (a cut-off that sets in at once can be proved), or see `cradle trust` for what rising "
+                "precision says");
 }
 
 namespace {

@@ -1,16 +1,17 @@
 # Files that the program carries: they become string literals in a source file of the build tree, written again when one
 # of them changes, comes or goes.
 #   embed_scenes(TARGET FOLDER)             bundled_scenes() of tools/scene/scene.hpp, from the TOML files of a folder
+#                                           and of those in it, FOLDER/NAME.toml as NAME and FOLDER/SUB/NAME.toml as SUB/NAME
 #   embed_files(TARGET PATTERN FUNCTION)    std::span<const EmbeddedFile> FUNCTION() of tools/plot/FUNCTION.hpp, from all
 #                                           files of that pattern
-# The same file is the script that writes them: cmake -DFILES=... -DOUTPUT=... [-DFUNCTION=...] -P embed.cmake
+# The same file is the script that writes them: cmake -DFILES=... -DOUTPUT=... [-DFUNCTION=...] [-DROOT=...] -P embed.cmake
 
-function(_embed target output files function)
+function(_embed target output files function root)
   # The list of names is a dependency too: a removed file changes nothing else.
   file(CONFIGURE OUTPUT "${output}.list" CONTENT "${files}\n")
   add_custom_command(
     OUTPUT "${output}"
-    COMMAND ${CMAKE_COMMAND} "-DFILES=${files}" "-DOUTPUT=${output}" "-DFUNCTION=${function}" -P
+    COMMAND ${CMAKE_COMMAND} "-DFILES=${files}" "-DOUTPUT=${output}" "-DFUNCTION=${function}" "-DROOT=${root}" -P
             "${CMAKE_CURRENT_FUNCTION_LIST_FILE}"
     DEPENDS ${files} "${CMAKE_CURRENT_FUNCTION_LIST_FILE}" "${output}.list"
     COMMENT "Embedding ${output}"
@@ -19,13 +20,13 @@ function(_embed target output files function)
 endfunction()
 
 function(embed_scenes target folder)
-  file(GLOB scenes CONFIGURE_DEPENDS "${folder}/*.toml")
-  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/bundled_scenes.cpp" "${scenes}" "")
+  file(GLOB_RECURSE scenes CONFIGURE_DEPENDS "${folder}/*.toml")
+  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/bundled_scenes.cpp" "${scenes}" "" "${folder}")
 endfunction()
 
 function(embed_files target pattern function)
   file(GLOB files CONFIGURE_DEPENDS "${pattern}")
-  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp" "${files}" "${function}")
+  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp" "${files}" "${function}" "")
 endfunction()
 
 if(CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
@@ -45,6 +46,13 @@ if(CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
   string(APPEND code "constexpr ${type} ${FUNCTION}_embedded[] = {\n")
   foreach(file IN LISTS FILES)
     get_filename_component(name "${file}" ${part})
+    if(ROOT)
+      file(RELATIVE_PATH folder "${ROOT}" "${file}")
+      get_filename_component(folder "${folder}" DIRECTORY)
+      if(folder)
+        string(PREPEND name "${folder}/")
+      endif()
+    endif()
     file(READ "${file}" text)
     string(APPEND code "    {\"${name}\", R\"embedded(${text})embedded\"},\n")
   endforeach()

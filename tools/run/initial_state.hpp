@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "cradle/core/cold.hpp"
 #include "cradle/core/list.hpp"
 #include "cradle/core/ring.hpp"
 #include "cradle/core/rows.hpp"
@@ -22,30 +23,52 @@ template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
   return values;
 }
 
+template <Real T> MassPattern<T> mass_pattern(const Initial& initial) {
+  std::vector<T> masses;
+  for (const Decimal& mass : initial.masses) masses.push_back(number<T>(mass));
+  return MassPattern<T>(std::move(masses));
+}
+
+template <Real T>
+std::shared_ptr<const cradle::Bodies<T>> cold_bodies(const Initial& initial, Displacement displacement) {
+  const auto all = static_cast<BodyIndex>(initial.particles), hot = static_cast<BodyIndex>(initial.hot);
+  const auto place = initial.place == HotPlace::left ? cradle::HotPlace::left : cradle::HotPlace::middle;
+  const BodyIndex first = first_hot(place, all, hot);
+  MassPattern<T> masses = mass_pattern<T>(initial);
+  HotBodies<T> moving = hot == 1 ? kicked(first, number<T>(initial.speed))
+                                 : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
+  return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), place, std::move(moving), std::move(displacement),
+                                   std::move(masses));
+}
+
 namespace detail {
 
 template <Real T> std::shared_ptr<const cradle::Bodies<T>> bodies_without_walls(const Initial& initial) {
   if (initial.type == InitialType::list)
     return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m));
   const Displacement displacement = uniform_displacement(initial.perturbation.value, initial.seed, initial.replica);
+  if (initial.type == InitialType::cold) return cold_bodies<T>(initial, displacement);
   if (initial.type == InitialType::ring) {
     using std::sqrt;
     const VelocityDraw draw = initial.velocities == Velocities::gaussian
                                   ? gaussian_velocity(initial.seed, initial.replica)
                                   : uniform_velocity(initial.seed, initial.replica);
     return std::make_shared<Ring<T>>(static_cast<BodyIndex>(initial.particles), number<T>(initial.length),
-                                     T(sqrt(number<T>(initial.variance))), draw, displacement);
+                                     T(sqrt(number<T>(initial.variance))), draw, displacement,
+                                     mass_pattern<T>(initial));
   }
   if (!initial.general_rows())
-    return std::make_shared<Rows<T>>(symmetric_rows<T>(
-        static_cast<BodyIndex>(initial.particles), number<T>(initial.speed), number<T>(initial.spacing), displacement));
+    return std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<BodyIndex>(initial.particles),
+                                                       number<T>(initial.speed), number<T>(initial.spacing),
+                                                       displacement, mass_pattern<T>(initial)));
   const auto row = [](const Row& r) {
     return cradle::Row<T>{static_cast<BodyIndex>(r.particles), number<T>(r.speed), T(1) / number<T>(r.density)};
   };
   std::optional<CentralBody<T>> centre;
   if (initial.centre.mass.value > 0)
     centre = CentralBody<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
-  return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement);
+  return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement,
+                                   mass_pattern<T>(initial));
 }
 
 template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initial& initial) {

@@ -54,15 +54,19 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
                                   sticky ? std::numeric_limits<T>::max() : number<T>(scene.run.merge_speed));
     return simulation(law, clusters);
   }
-  const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff));
-  // Few runs remember contacts: these do without a loop of their own for identical masses, whose bits are the same.
-  const bool remembers = scene.run.collapse == CollapsePolicy::contact_time;
-  if (!remembers && scene.run.coordinates == Coordinates::gaps && bodies->identical_masses())
-    return simulation(law, std::type_identity<GapChain<T>>{});
+  // Few runs remember contacts or have a restitution that depends on the speed: these do without a loop of their own
+  // for identical masses, whose bits are the same.
   const auto bouncing = [&](const auto& any) -> std::unique_ptr<Engine<T>> {
     if (scene.run.coordinates == Coordinates::absolute) return simulation(any, std::type_identity<PositionChain<T>>{});
     return simulation(any, std::type_identity<GapChain<T, IndividualMasses<T>>>{});
   };
+  if (scene.law.cutoff_exponent)
+    return bouncing(SpeedDependent<T>(number<T>(scene.law.restitution), number<T>(scene.law.cutoff),
+                                      number<T>(*scene.law.cutoff_exponent)));
+  const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff));
+  const bool remembers = scene.run.collapse == CollapsePolicy::contact_time;
+  if (!remembers && scene.run.coordinates == Coordinates::gaps && bodies->identical_masses())
+    return simulation(law, std::type_identity<GapChain<T>>{});
   if (remembers) return bouncing(ContactTime<T>(law, number<T>(scene.run.contact_time)));
   return bouncing(law);
 }

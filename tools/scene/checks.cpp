@@ -135,6 +135,35 @@ class Checks {
                 "give smaller speeds, or an earlier run.until");
   }
 
+  void masses_repeat() const {
+    const Initial& initial = scene_.initial;
+    if (!entries_.contains("initial.masses")) return;
+    const std::size_t period = initial.masses.size();
+    if (period == 0) throw Error(place("initial.masses"), "no masses", "an empty list", "give at least one mass");
+    if (initial.type == InitialType::ring && initial.particles % period != 0)
+      throw Error(place("initial.masses"), "the pattern does not divide the ring",
+                  fmt::format("{} masses, {} bodies", period, initial.particles),
+                  fmt::format("give initial.particles as a multiple of {}", period));
+    if (!unequal_masses(scene_)) return;
+    if (scene_.output.scenario)
+      throw Error(place("output.scenario"), "for bodies of mass 1", "initial.masses of others",
+                  "remove one of the two");
+    if (scene_.output.zone.from)
+      throw Error(place("output.zone.from"), "for bodies of mass 1", "initial.masses of others",
+                  "remove one of the two");
+  }
+
+  void restitution_of_speed() const {
+    if (!scene_.law.cutoff_exponent) return;
+    if (!(scene_.law.cutoff > Decimal("0")))
+      throw Error(place("law.cutoff_exponent"), "no cut-off that sets in", "law.cutoff = 0",
+                  "give law.cutoff too, or remove this key");
+    if (scene_.run.collapse == CollapsePolicy::contact_time || scene_.run.collapse == CollapsePolicy::merge)
+      throw Error(place("run.collapse"), "not built with a restitution that depends on the speed",
+                  value_text(*find_field("run.collapse", scene_), scene_).value(),
+                  "give run.collapse = \"cutoff\" or \"stop\", or remove law.cutoff_exponent");
+  }
+
   void series_has_times() const {
     if (entries_.contains("output.series.times") && scene_.output.series.times.empty())
       throw Error(place("output.series.times"), "no times", "an empty list", "give at least one time");
@@ -156,7 +185,8 @@ class Checks {
       if (!field.when->holds(scene_)) continue;
       for (const Decimal& number : numbers_of(field, scene_)) {
         range.check(number.text, place(field.key));
-        if (field.key == "initial.m") range.check_positive(number.text, place(field.key));
+        if (field.key == "initial.m" || field.key == "initial.masses")
+          range.check_positive(number.text, place(field.key));
       }
     }
   }
@@ -227,6 +257,8 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.one_list_of_bodies();
   checks.two_clusters();
   checks.walls_stand();
+  checks.masses_repeat();
+  checks.restitution_of_speed();
   checks.series_has_times();
   checks.profile_range();
   checks.numbers_fit();

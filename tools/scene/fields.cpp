@@ -31,16 +31,27 @@ constexpr When plain_rows{
 constexpr When general_rows{
     other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
-constexpr When rows_or_ring{other_state, "initial.type", "initial.type = \"rows\" or \"ring\"", [](const Scene& s) {
-                              return s.initial.type == InitialType::rows || s.initial.type == InitialType::ring;
-                            }};
+constexpr When in_order{other_state, "initial.type", "initial.type = \"rows\", \"ring\" or \"cold\"",
+                        [](const Scene& s) {
+                          return s.initial.type == InitialType::rows || s.initial.type == InitialType::ring ||
+                                 s.initial.type == InitialType::cold;
+                        }};
 constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"",
                     [](const Scene& s) { return s.initial.type == InitialType::ring; }};
-constexpr When on_line{other_state, "initial.type", "initial.type = \"rows\" or \"list\"", [](const Scene& s) {
-                         return s.initial.type == InitialType::rows || s.initial.type == InitialType::list;
+constexpr When on_line{other_state, "initial.type", "initial.type = \"rows\", \"list\" or \"cold\"",
+                       [](const Scene& s) {
+                         return s.initial.type == InitialType::rows || s.initial.type == InitialType::list ||
+                                s.initial.type == InitialType::cold;
                        }};
 constexpr When list{other_state, "initial.type", "initial.type = \"list\"",
                     [](const Scene& s) { return s.initial.type == InitialType::list; }};
+
+constexpr When cold{other_state, "initial.type", "initial.type = \"cold\"",
+                    [](const Scene& s) { return s.initial.type == InitialType::cold; }};
+constexpr When one_hot{other_state, "initial.hot", "initial.type = \"cold\" with initial.hot = 1",
+                       [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot == 1; }};
+constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" with several hot bodies",
+                           [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot > 1; }};
 
 constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"",
                         [](const Scene& s) { return s.initial.type == InitialType::clusters; }};
@@ -77,6 +88,8 @@ constexpr When by_points{other_series, "output.series.every", "a series without 
 
 std::string particles_as_length(const Scene& s) { return std::to_string(s.initial.particles); }
 
+std::string hot_as_energy(const Scene& s) { return std::to_string(s.initial.hot); }
+
 std::string collapse_by_cutoff(const Scene& s) { return s.law.cutoff > Decimal("0") ? "\"cutoff\"" : "\"stop\""; }
 
 constexpr auto law_type = member<&Scene::law, &Law::type>;
@@ -102,19 +115,23 @@ const Field all_fields[] = {
      "factor by which a contact reduces the closing speed; 1 is elastic"},
     {"law.cutoff", law_of<&Law::cutoff>, "l/t", "0", "[0, inf)", &inelastic,
      "closing speed below which contacts are elastic; 0: none, the plain law"},
+    {"law.cutoff_exponent", law_of<&Law::cutoff_exponent>, "", "", "(0, inf)", &inelastic,
+     "how the cut-off sets in: the restitution at a closing speed w is r + (1 - r) exp(-(w/cutoff)^this); without it, "
+     "at "
+     "once"},
     {"law.loss", law_of<&Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
      "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge"},
 
-    {"initial.type", initial_type, "", "required", "rows | ring | list | clusters", &always,
+    {"initial.type", initial_type, "", "required", "rows | ring | list | clusters | cold", &always,
      "which bodies there are at the start"},
     {"initial.left.particles", initial_of<&Initial::left, &Row::particles>, "", "required", "[1, 1e15]", &general_rows,
-     "bodies of the left row, each of mass 1"},
+     "bodies of the left row"},
     {"initial.left.speed", initial_of<&Initial::left, &Row::speed>, "l/t", "required", any, &general_rows,
      "velocity of the left row, positive to the right"},
     {"initial.left.density", initial_of<&Initial::left, &Row::density>, "1/l", "1", "(0, inf)", &general_rows,
      "bodies per length of the left row"},
     {"initial.right.particles", initial_of<&Initial::right, &Row::particles>, "", "required", "[1, 1e15]",
-     &general_rows, "bodies of the right row, each of mass 1"},
+     &general_rows, "bodies of the right row"},
     {"initial.right.speed", initial_of<&Initial::right, &Row::speed>, "l/t", "required", any, &general_rows,
      "velocity of the right row, positive to the right"},
     {"initial.right.density", initial_of<&Initial::right, &Row::density>, "1/l", "1", "(0, inf)", &general_rows,
@@ -126,12 +143,25 @@ const Field all_fields[] = {
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15] even", &plain_rows,
      "bodies of both rows together; the first ones start at plus and minus half the spacing"},
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 1e15]", &ring, "bodies on the ring"},
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15]", &cold,
+     "bodies of the gas, those that move included"},
+    {"initial.hot", initial_of<&Initial::hot>, "", "1", "[1, initial.particles]", &cold,
+     "how many bodies move at the start, one beside the other; the others are at rest"},
+    {"initial.place", initial_of<&Initial::place>, "", "\"middle\"", "middle | left", &cold,
+     "where the hot bodies are: in the middle of the others, about x = 0, or at the left end, from x = 0 on"},
+    {"initial.speed", initial_of<&Initial::speed>, "l/t", "1", "(0, inf)", &one_hot,
+     "velocity of the one hot body, to the right"},
+    {"initial.energy", initial_of<&Initial::energy>, "m l^2/t^2", "initial.hot", "(0, inf)", &several_hot,
+     "energy of several hot bodies together: Gaussian velocities without total momentum", hot_as_energy},
+    {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &cold, "distance between neighbours"},
     {"initial.speed", initial_of<&Initial::speed>, "l/t", "0.5", "(0, inf)", &plain_rows,
      "u0: the left row moves at +u0, the right one at -u0"},
     {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &plain_rows,
      "distance between neighbours in a row"},
-    {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &rows_or_ring,
+    {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &in_order,
      "each body is shifted uniformly by up to plus or minus this times the spacing"},
+    {"initial.masses", initial_of<&Initial::masses>, "m", "", "(0, inf)", &in_order,
+     "masses of the bodies, repeated from the first one on, 1 where not given; on a ring a whole number of times"},
     {"initial.length", initial_of<&Initial::length>, "l", "initial.particles", "(0, inf)", &ring,
      "circumference of the ring", particles_as_length},
     {"initial.velocities", initial_of<&Initial::velocities>, "", "\"gaussian\"", "gaussian | uniform", &ring,

@@ -17,11 +17,12 @@ namespace cradle::tools {
 
 template <class T> using Member = T& (*)(Scene&);
 
-using Storage = std::variant<Member<std::string>, Member<std::optional<std::string>>, Member<std::vector<std::string>>,
-                             Member<Decimal>, Member<std::optional<Decimal>>, Member<std::vector<Decimal>>,
-                             Member<DecimalColumn>, Member<std::uint64_t>, Member<std::optional<std::uint64_t>>,
-                             Member<bool>, Member<LawType>, Member<InitialType>, Member<Velocities>, Member<Precision>,
-                             Member<Coordinates>, Member<CollapsePolicy>, Member<Spacing>, Member<Meeting>>;
+using Storage =
+    std::variant<Member<std::string>, Member<std::optional<std::string>>, Member<std::vector<std::string>>,
+                 Member<Decimal>, Member<std::optional<Decimal>>, Member<std::vector<Decimal>>, Member<DecimalColumn>,
+                 Member<std::uint64_t>, Member<std::optional<std::uint64_t>>, Member<bool>, Member<LawType>,
+                 Member<InitialType>, Member<HotPlace>, Member<Velocities>, Member<Precision>, Member<Coordinates>,
+                 Member<CollapsePolicy>, Member<Spacing>, Member<Meeting>>;
 
 /// To which scenes a key applies.
 struct When {

@@ -74,6 +74,10 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
 
 }  // namespace
 
+bool unequal_masses(const Scene& scene) {
+  return std::ranges::any_of(scene.initial.masses, [](const Decimal& mass) { return mass != Decimal("1"); });
+}
+
 bool operator==(const Scene& a, const Scene& b) {
   return a.title == b.title && a.law == b.law && a.initial == b.initial && a.walls == b.walls && a.run == b.run &&
          a.output == b.output && a.sweep == b.sweep;

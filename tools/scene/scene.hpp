@@ -20,7 +20,8 @@ namespace cradle::tools {
 
 // The enumerators stand in the order of the names in the table of fields.
 enum class LawType { inelastic, wet, sticky };
-enum class InitialType { rows, ring, list, clusters };
+enum class InitialType { rows, ring, list, clusters, cold };
+enum class HotPlace { middle, left };
 enum class Velocities { gaussian, uniform };
 enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
 enum class Coordinates { gaps, absolute };
@@ -32,11 +33,13 @@ struct Law {
   LawType type = LawType::inelastic;
   Decimal restitution;  // inelastic
   Decimal cutoff;       // inelastic: closing speed below which contacts are elastic; 0: none
+  std::optional<Decimal>
+      cutoff_exponent;  // inelastic: by what power of the speed the restitution falls there; none: sharp
   Decimal loss;         // wet: E_loss
   bool operator==(const Law&) const = default;
 };
 
-/// One side of a general Riemann problem: bodies of mass 1 at distance 1/density.
+/// One side of a general Riemann problem: bodies at distance 1/density.
 struct Row {
   std::uint64_t particles = 0;
   Decimal speed;  // velocity of the row: positive to the right
@@ -53,18 +56,23 @@ struct Centre {
 
 struct Initial {
   InitialType type = InitialType::rows;
-  std::uint64_t particles = 0;  // rows (both together), ring
-  Decimal speed;                // rows: left row +speed, right row -speed; clusters: of the rows that feed them
-  Decimal spacing;              // rows, clusters
-  Row left, right;              // rows given as tables: see general_rows()
+  std::uint64_t particles = 0;  // rows (both together), ring, cold
+  Decimal
+      speed;  // rows: left row +speed, right row -speed; clusters: of the rows that feed them; cold: of one hot body
+  Decimal spacing;  // rows, clusters, cold
+  Row left, right;  // rows given as tables: see general_rows()
   Centre centre;
-  Decimal perturbation;  // rows, ring: uniform in plus/minus this times the spacing
+  Decimal perturbation;  // rows, ring, cold: uniform in plus/minus this times the spacing
   Decimal length;        // ring
   Velocities velocities = Velocities::gaussian;
-  Decimal variance;                 // ring
-  std::optional<std::string> file;  // list: where a scene file has its bodies; a scene that was read has them here:
-  DecimalColumn x, v, m;            // list; m empty: all 1. clusters: two x, two v
-  std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
+  Decimal variance;                   // ring
+  std::vector<Decimal> masses;        // rows, ring, cold: repeated from body 0 on; empty: all 1
+  std::uint64_t hot = 0;              // cold: bodies that move at the start
+  HotPlace place = HotPlace::middle;  // cold: where these are
+  Decimal energy;                     // cold: of several hot bodies together
+  std::optional<std::string> file;    // list: where a scene file has its bodies; a scene that was read has them here:
+  DecimalColumn x, v, m;              // list; m empty: all 1. clusters: two x, two v
+  std::vector<Decimal> growth;        // clusters: share of the incoming mass that each takes up
   Meeting meeting = Meeting::energy;
   std::uint64_t seed = 0;
   std::uint64_t replica = 0;
@@ -166,6 +174,10 @@ struct Scene {
   Output output;
   Sweep sweep;
 };
+
+/// Whether initial.masses gives the bodies different masses, or one that is not 1: what formulas for bodies of mass 1
+/// do not hold for.
+bool unequal_masses(const Scene& scene);
 
 /// The same scene, wherever it was read from (the name does not count).
 bool operator==(const Scene& a, const Scene& b);

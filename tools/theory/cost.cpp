@@ -6,6 +6,7 @@
 
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/core/workers.hpp"
+#include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {
 
@@ -18,7 +19,18 @@ double layers(const Scene& scene, double time) {
   return 2 * scene.initial.speed.value * time / scene.initial.spacing.value;
 }
 
-bool plain_rows(const Scene& scene) { return scene.initial.type == InitialType::rows && !scene.initial.general_rows(); }
+// A bound for the bodies of a cold gas that are reached: nothing is faster than one body with all of the energy.
+double reached_when_cold(const Scene& scene) {
+  const Initial& initial = scene.initial;
+  double least = initial.masses.empty() ? 1 : initial.masses.front().value, heaviest = least;
+  for (const Decimal& mass : initial.masses)
+    least = std::min(least, mass.value), heaviest = std::max(heaviest, mass.value);
+  const auto hot = static_cast<double>(initial.hot);
+  const double speed = initial.speed.value;
+  const double energy = initial.hot > 1 ? initial.energy.value : heaviest * speed * speed / 2;
+  const double layers = std::sqrt(2 * energy / least) * span(scene) / initial.spacing.value;
+  return std::min(static_cast<double>(initial.particles), hot + 2 * layers);
+}
 
 // Bodies of two rows that have run into each other.
 double reached(const Scene& scene) {
@@ -28,6 +40,7 @@ double reached(const Scene& scene) {
 double bodies_at_end(const Scene& scene) {
   const Initial& initial = scene.initial;
   if (initial.type == InitialType::list) return static_cast<double>(initial.x.size());
+  if (initial.type == InitialType::cold && scene.run.coordinates == Coordinates::gaps) return reached_when_cold(scene);
   if (initial.general_rows()) return static_cast<double>(initial.left.particles + initial.right.particles);
   const bool streamed = initial.type == InitialType::rows && scene.run.coordinates == Coordinates::gaps;
   if (!streamed) return static_cast<double>(initial.particles);
@@ -126,7 +139,7 @@ Scalar scalar(const Run& run) {
 Cost expected_cost(const Scene& scene) {
   Cost cost;
   cost.bodies = bodies_at_end(scene);
-  if (plain_rows(scene)) scene.law.type == LawType::inelastic ? bouncing_rows(scene, cost) : merging_rows(scene, cost);
+  if (equal_rows(scene)) scene.law.type == LawType::inelastic ? bouncing_rows(scene, cost) : merging_rows(scene, cost);
   const Scalar type = scalar(scene.run);
   constexpr double fastest = 2e7;
   cost.contacts_per_second = fastest / (scene.run.coordinates == Coordinates::gaps ? type.gaps : type.absolute);

@@ -30,9 +30,10 @@ class Predictions {
 inline constexpr int curve_points = 400;
 inline double curve_time(double end, int k) { return end * k / curve_points; }
 
-/// Two equal rows, to which the paper's formulas apply.
+/// Two equal rows of bodies of mass 1 and of constant restitution, to which the paper's formulas apply.
 inline bool equal_rows(const Scene& scene) {
-  return scene.initial.type == InitialType::rows && !scene.initial.general_rows();
+  return scene.initial.type == InitialType::rows && !scene.initial.general_rows() && !unequal_masses(scene) &&
+         !scene.law.cutoff_exponent;
 }
 
 void predict_inelastic(const Scene& scene, Predictions& table);

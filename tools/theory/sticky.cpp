@@ -36,7 +36,7 @@ Rows rows_of(const Initial& initial) {
 }  // namespace
 
 void predict_sticky(const Scene& scene, Predictions& table) {
-  if (scene.initial.type != InitialType::rows) return;
+  if (scene.initial.type != InitialType::rows || unequal_masses(scene)) return;
   const Rows rows = rows_of(scene.initial);
   table.number("initial_energy", "sum m u^2/2", "continuous", rows.energy);
   table.number("central_mass_growth", "section II", "continuous", theory::late_growth(rows.shock));

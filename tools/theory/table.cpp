@@ -22,7 +22,7 @@ std::vector<Prediction> predictions(const Scene& scene) {
     predict_sticky(scene, table);
     break;
   }
-  if (scene.initial.type == InitialType::ring) predict_cooling(scene, table);
+  if (scene.initial.type == InitialType::ring && !unequal_masses(scene)) predict_cooling(scene, table);
   return std::move(table).take();
 }
 

@@ -104,6 +104,7 @@ void add_zone(Predictions& table, const theory::WetShock<double>& shock) {
 }  // namespace
 
 void predict_wet(const Scene& scene, Predictions& table) {
+  if (unequal_masses(scene)) return;
   const double loss = scene.law.loss.value;
   table.number("critical_closing_speed", "section II", "continuous", theory::critical_closing_speed(loss, 1.0, 1.0));
   table.number("critical_closing_speed", "section II", "printed",

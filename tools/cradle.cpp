@@ -17,6 +17,18 @@ using namespace cradle::tools;
 
 namespace {
 
+const char* const first_steps =
+    R"(Cradle: one-dimensional granular gases, event by event. To begin with:
+
+  cradle run fig2           two rows of inelastic bodies run into each other: fig2.h5, in a second or two
+  cradle plot fig2.h5       its pictures: fig2.png and others beside it
+  cradle report fig2.h5     all about it on one page: fig2.html
+  cradle new                a commented scene of your own, shock.toml, for `cradle run shock.toml`
+  cradle scenes             the scenes that are there; `cradle scenes --keys` tells what a scene can say
+
+`cradle --help` lists the commands, `cradle COMMAND --help` what one takes, `cradle manual | man -l -` tells all.
+)";
+
 int fail(std::string_view message, Exit status) {
   tell(fmt::format("cradle: {}\n", message));
   return static_cast<int>(status);
@@ -40,8 +52,10 @@ int main(int argc, char** argv) {
         "cradle run fig2 -o fig2.h5, then cradle plot fig2.h5; cradle run --help tells what else `run` takes",
         "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
         "5 resolution or order lost, 130/143 interrupted.");
-    for (const auto add : {add_run, add_resume, add_check, add_info, add_export, add_diff, add_theory, add_scenes,
-                           add_plot, add_trust, add_certify, add_ensemble, add_sweep, add_merge})
+    program.begin_with(first_steps);
+    for (const auto add :
+         {add_run, add_resume, add_check, add_info, add_export, add_diff, add_theory, add_scenes, add_new, add_plot,
+          add_report, add_cite, add_trust, add_certify, add_ensemble, add_sweep, add_merge, add_completion, add_manual})
       add(program);
     return finish(program.read(argc, argv)());
   } catch (const Error& error) {

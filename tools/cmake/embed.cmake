@@ -2,17 +2,19 @@
 # of them changes, comes or goes.
 #   embed_scenes(TARGET FOLDER)             bundled_scenes() of tools/scene/scene.hpp, from the TOML files of a folder
 #                                           and of those in it, FOLDER/NAME.toml as NAME and FOLDER/SUB/NAME.toml as SUB/NAME
-#   embed_files(TARGET PATTERN FUNCTION)    std::span<const EmbeddedFile> FUNCTION() of tools/plot/FUNCTION.hpp, from all
-#                                           files of that pattern
-# The same file is the script that writes them: cmake -DFILES=... -DOUTPUT=... [-DFUNCTION=...] [-DROOT=...] -P embed.cmake
+#   embed_package(TARGET FOLDER FUNCTION HEADER)  std::span<const EmbeddedFile> FUNCTION() of tools/HEADER, from what a
+#                                           Python package in FOLDER is made of, by its names from the folder above
+# The same file is the script that writes them:
+#   cmake -DFILES=... -DOUTPUT=... -DFROM=... [-DFUNCTION=... -DHEADER=...] -P embed.cmake
 
-function(_embed target output files function root)
+# `from`: the folder that names are told from. Further arguments: the header of the function.
+function(_embed target output files from function)
   # The list of names is a dependency too: a removed file changes nothing else.
   file(CONFIGURE OUTPUT "${output}.list" CONTENT "${files}\n")
   add_custom_command(
     OUTPUT "${output}"
-    COMMAND ${CMAKE_COMMAND} "-DFILES=${files}" "-DOUTPUT=${output}" "-DFUNCTION=${function}" "-DROOT=${root}" -P
-            "${CMAKE_CURRENT_FUNCTION_LIST_FILE}"
+    COMMAND ${CMAKE_COMMAND} "-DFILES=${files}" "-DOUTPUT=${output}" "-DFROM=${from}" "-DFUNCTION=${function}"
+            "-DHEADER=${ARGV5}" -P "${CMAKE_CURRENT_FUNCTION_LIST_FILE}"
     DEPENDS ${files} "${CMAKE_CURRENT_FUNCTION_LIST_FILE}" "${output}.list"
     COMMENT "Embedding ${output}"
     VERBATIM)
@@ -21,37 +23,36 @@ endfunction()
 
 function(embed_scenes target folder)
   file(GLOB_RECURSE scenes CONFIGURE_DEPENDS "${folder}/*.toml")
-  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/bundled_scenes.cpp" "${scenes}" "" "${folder}")
+  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/bundled_scenes.cpp" "${scenes}" "${folder}" "")
 endfunction()
 
-function(embed_files target pattern function)
-  file(GLOB files CONFIGURE_DEPENDS "${pattern}")
-  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp" "${files}" "${function}" "")
+function(embed_package target folder function header)
+  set(patterns "")
+  foreach(ending py css js bib html)
+    list(APPEND patterns "${folder}/*.${ending}")
+  endforeach()
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${patterns})
+  get_filename_component(above "${folder}" DIRECTORY)
+  _embed(${target} "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp" "${files}" "${above}" "${function}" "${header}")
 endfunction()
 
 if(CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
   list(SORT FILES)
   set(code "// Written by embed.cmake.\n")
-  if(FUNCTION)
-    set(type EmbeddedFile)
-    set(header plot/${FUNCTION})
-    set(part NAME)
-  else()
+  set(type EmbeddedFile)
+  set(scenes FALSE)
+  if(NOT FUNCTION)
+    set(scenes TRUE)
     set(FUNCTION bundled_scenes)
     set(type BundledScene)
-    set(header scene/scene)
-    set(part NAME_WLE)
+    set(HEADER scene/scene.hpp)
   endif()
-  string(APPEND code "#include \"cradle/tools/${header}.hpp\"\n\nnamespace cradle::tools {\nnamespace {\n")
+  string(APPEND code "#include \"cradle/tools/${HEADER}\"\n\nnamespace cradle::tools {\nnamespace {\n")
   string(APPEND code "constexpr ${type} ${FUNCTION}_embedded[] = {\n")
   foreach(file IN LISTS FILES)
-    get_filename_component(name "${file}" ${part})
-    if(ROOT)
-      file(RELATIVE_PATH folder "${ROOT}" "${file}")
-      get_filename_component(folder "${folder}" DIRECTORY)
-      if(folder)
-        string(PREPEND name "${folder}/")
-      endif()
+    file(RELATIVE_PATH name "${FROM}" "${file}")
+    if(scenes)
+      string(REGEX REPLACE "\\.toml$" "" name "${name}")
     endif()
     file(READ "${file}" text)
     string(APPEND code "    {\"${name}\", R\"embedded(${text})embedded\"},\n")

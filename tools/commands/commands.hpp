@@ -38,11 +38,16 @@ void add_export(CommandLine& program);
 void add_diff(CommandLine& program);
 void add_theory(CommandLine& program);
 void add_scenes(CommandLine& program);
+void add_new(CommandLine& program);
 void add_plot(CommandLine& program);
+void add_report(CommandLine& program);
+void add_cite(CommandLine& program);
 void add_trust(CommandLine& program);
 void add_certify(CommandLine& program);
 void add_ensemble(CommandLine& program);
 void add_sweep(CommandLine& program);
 void add_merge(CommandLine& program);
+void add_completion(CommandLine& program);
+void add_manual(CommandLine& program);
 
 }  // namespace cradle::tools

@@ -4,18 +4,31 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/csv.hpp"
+#include "cradle/tools/result/journal.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/run/run_journal.hpp"
 
 namespace cradle::tools {
 
 namespace {
 
 struct ExportArguments {
-  std::string file, folder;
+  std::string file, folder, result;
 };
 
 Exit export_result(const ExportArguments& options) {
-  for (const std::string& file : export_csv(read_result(options.file), options.folder)) fmt::print("{}\n", file);
+  if (options.folder.empty() && options.result.empty())
+    throw Error({}, "nothing to export to", "", "give --to DIR, --result FILE or both");
+  const bool on_its_way = JournalReader::kind(options.file) == JournalOf::run;
+  const Result result =
+      on_its_way ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
+  if (!options.result.empty()) {
+    write_result(result, options.result);
+    fmt::print("{}\n", options.result);
+  }
+  if (!options.folder.empty())
+    for (const std::string& file : export_csv(result, options.folder)) fmt::print("{}\n", file);
   return Exit::done;
 }
 
@@ -24,8 +37,9 @@ Exit export_result(const ExportArguments& options) {
 void add_export(CommandLine& program) {
   Command command = program.add("export", "a result as CSV, one file per group", "cradle export fig2.h5 --to fig2");
   const auto options = std::make_shared<ExportArguments>();
-  command.argument("FILE", options->file, "result file");
-  command.option("--to", options->folder, "folder to write to; made where it is missing", Needed::yes);
+  command.argument("FILE", options->file, "result file, or FILE.part of a run on its way");
+  command.option("--to", options->folder, "folder to write to; made where it is missing");
+  command.option("--result", options->result, "result file to write: of FILE.part what is recorded so far");
   command.does([options] { return export_result(*options); });
 }
 

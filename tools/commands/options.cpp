@@ -113,7 +113,30 @@ Command CommandLine::add(const std::string& name, const std::string& description
   return {*program_->add_subcommand(name, description), chosen_, with_example(example, ending_)};
 }
 
+std::vector<CommandText> CommandLine::texts() const {
+  std::vector<CommandText> texts;
+  for (const CLI::App* command : program_->get_subcommands([](const CLI::App*) { return true; })) {
+    CommandText& text = texts.emplace_back(command->get_name(), command->get_description());
+    for (const CLI::Option* option : command->get_options()) {
+      if (option == command->get_help_ptr()) continue;
+      OptionText& of = text.options.emplace_back();
+      of.argument = option->get_positional();
+      of.help = option->get_description();
+      if (of.argument) of.names = {option->get_name(true)};
+      for (const auto& name : option->get_snames()) of.names.push_back("-" + name);
+      for (const auto& name : option->get_lnames()) of.names.push_back("--" + name);
+      if (!of.argument && option->get_items_expected_max() > 0) of.value = option->get_type_name();
+    }
+  }
+  return texts;
+}
+
 Action CommandLine::read(int argc, const char* const* argv) {
+  if (argc < 2 && !first_steps_.empty())
+    return [this]() -> Exit {
+      fmt::print("{}", first_steps_);
+      throw Error({}, "no command", "", fmt::format("give one, see `{} --help`", program_->get_name()));
+    };
   const char* const first = argc > 1 ? argv[1] : "-";
   const auto is_first = [first](const CLI::App* command) { return command->get_name() == first; };
   if (*first != '-' && program_->get_subcommands(is_first).empty()) {

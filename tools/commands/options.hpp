@@ -60,6 +60,17 @@ class Command {
   std::string ending_;
 };
 
+/// An option or an argument, as help has it.
+struct OptionText {
+  std::vector<std::string> names;  // "-o", "--output"; of an argument its name, "SCENE"
+  std::string value, help;         // the former empty for flags
+  bool argument = false;
+};
+struct CommandText {
+  std::string name, help;
+  std::vector<OptionText> options;  // --help left out
+};
+
 /// All commands, and which of them was chosen.
 class CommandLine {
  public:
@@ -70,12 +81,18 @@ class CommandLine {
 
   Command add(const std::string& name, const std::string& description, const std::string& example);
 
+  /// What is printed where not even a command is given.
+  void begin_with(const std::string& text) { first_steps_ = text; }
+
+  /// All commands with their options, for completion and the manual page.
+  std::vector<CommandText> texts() const;
+
   /// The chosen command's action, or one that prints help or the version. Throws Error.
   Action read(int argc, const char* const* argv);
 
  private:
   std::unique_ptr<CLI::App> program_;
-  std::string ending_;
+  std::string ending_, first_steps_;
   Action chosen_;
 };
 

@@ -68,6 +68,9 @@ std::optional<std::string> value_text(const Field& field, const Scene& scene);
 /// All numbers stored at this field (none for texts, integers and choices).
 std::vector<Decimal> numbers_of(const Field& field, const Scene& scene);
 
+/// Type, range, unit and default: `number (0, inf), in l, default 1`.
+std::string facts(const Field& field);
+
 /// The manual: every key with type, unit, default, range, use and one line of documentation.
 std::string describe_fields();
 

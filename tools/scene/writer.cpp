@@ -54,18 +54,18 @@ std::string effective_toml(const Scene& scene) {
   return text;
 }
 
+std::string facts(const Field& field) {
+  std::string text(type_name(field));
+  if (!field.range.empty() && field.range != "(-inf, inf)") text += fmt::format(" {}", field.range);
+  if (!field.unit.empty()) text += fmt::format(", in {}", field.unit);
+  if (field.fallback == "required") return text + ", required";
+  return field.fallback.empty() ? text : text + fmt::format(", default {}", field.fallback);
+}
+
 std::string describe_fields() {
   std::string text;
   for (const Field& field : scene_fields()) {
-    std::string facts(type_name(field));
-    if (!field.range.empty() && field.range != "(-inf, inf)") facts += fmt::format(" {}", field.range);
-    if (!field.unit.empty()) facts += fmt::format(", in {}", field.unit);
-    if (field.fallback == "required") {
-      facts += ", required";
-    } else if (!field.fallback.empty()) {
-      facts += fmt::format(", default {}", field.fallback);
-    }
-    text += fmt::format("{}  ({})\n    {}", field.key, facts, field.doc);
+    text += fmt::format("{}  ({})\n    {}", field.key, facts(field), field.doc);
     text += field.when->text.empty() ? std::string("\n") : fmt::format("; with {}\n", field.when->text);
   }
   return text;

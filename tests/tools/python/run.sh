@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Runs a file of Python tests, or a script, with the first Python that has h5py and matplotlib, in a folder of its own;
+# status 77, with the reason, where there is none or where all of its cases were skipped.
+#   run.sh PROGRAM FILE
+set -euo pipefail
+CRADLE_PROGRAM=$(realpath "$1")
+file=$(realpath "$2")
+here=$(dirname "$(realpath "$0")")
+export CRADLE_PROGRAM PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$here/../../../tools/python:$here" MPLBACKEND=Agg
+unset DISPLAY WAYLAND_DISPLAY
+for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
+  if [[ -n $python ]] && "$python" -c "import h5py, matplotlib" >/dev/null 2>&1; then
+    folder=$(mktemp -d)
+    trap 'rm -rf "$folder"' EXIT
+    cd "$folder"
+    "$python" -W error::ResourceWarning "$here/run.py" "$file"
+    exit
+  fi
+done
+echo "skipped: no Python with h5py and matplotlib (Debian: python3-h5py python3-matplotlib; or set CRADLE_PYTHON)"
+exit 77

@@ -1,0 +1,48 @@
+"""Small results for the tests, made once by the program in the working folder."""
+import functools
+
+import cradle
+
+SHOCK = {"initial.particles": 200, "run.until": 60, "output.snapshots": [20, 60], "output.profiles.times": [30, 60],
+         "output.series.points": 20}
+
+
+@functools.cache
+def shock():
+    """200 bodies with snapshots, profiles and events."""
+    cradle.run("fig2", set=SHOCK | {"output.events": True}, output="shock.h5").close()
+    return "shock.h5"
+
+
+@functools.cache
+def ensemble():
+    """4 replicas of 40 bodies, which collapse."""
+    cradle.ensemble("fig2", 4, output="ensemble.h5", set={
+        "initial.particles": 40, "law.restitution": 0.6, "law.cutoff": 0, "run.until": 30, "output.snapshots": [],
+        "output.series.points": 20, "output.profiles.times": [2, 4], "output.profiles.range": [-8, 8]}).close()
+    return "ensemble.h5"
+
+
+@functools.cache
+def sweep():
+    """Six points of two replicas."""
+    cradle.sweep("fig2", {"law.restitution": [0.5, 0.7, 0.9], "initial.speed": "0.5:1:2"}, replicas=2,
+                 output="sweep.h5", set={"initial.particles": 40, "run.until": 10, "output.snapshots": [],
+                                         "output.series.points": 5, "output.profiles.times": []}).close()
+    return "sweep.h5"
+
+
+@functools.cache
+def collapse():
+    """Three bodies, certified."""
+    cradle.certify("collapse3", output="collapse.h5").close()
+    return "collapse.h5"
+
+
+@functools.cache
+def trust():
+    cradle.trust("collapse3", digits=[16, 31, 50], both=True, output="trust.h5").close()
+    return "trust.h5"
+
+
+ALL = (shock, ensemble, sweep, collapse, trust)

@@ -1,0 +1,136 @@
+"""cradle.run and its like: the program's results to the byte, its messages and statuses as exceptions, its progress."""
+import filecmp
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import cradle
+import small
+from cradle import program, progress
+from cradle.scene import parse_toml, scene_text
+
+
+class Runs(unittest.TestCase):
+    def test_a_run_has_the_bytes_of_the_command_line(self):
+        words = [word for key, value in small.SHOCK.items() for word in ("--set", f"{key}={value}")]
+        subprocess.run([program.find(), "run", "fig2", "--quiet", "-o", "line.h5", *words,
+                        "--set", "output.events=true"], check=True)
+        self.assertTrue(filecmp.cmp("line.h5", small.shock(), shallow=False))
+
+    def test_scenes_are_names_files_texts_dicts_and_results(self):
+        with cradle.run("fig5", output="name.h5") as first:
+            text, scene = first.scene_text, first.scene
+            with open("fig5.toml", "w") as file:
+                file.write(text)
+            for other in ("fig5.toml", text, scene, first):
+                with cradle.run(other, output="again.h5") as again:
+                    self.assertEqual(again.series.energy.values.tolist(), first.series.energy.values.tolist())
+
+    def test_dicts_become_the_scene_that_they_came_from(self):
+        scene = {"title": 'a "scene"', "law": {"type": "wet", "loss": 1e-4}, "run": {"until": 10, "events": True},
+                 "output": {"snapshots": [1, 2.5], "series": {"points": 5}}}
+        self.assertEqual(parse_toml(scene_text(scene)), scene)
+
+    def test_collapse_is_a_result_with_its_status(self):
+        with cradle.run("collapse3") as result:
+            self.assertEqual(result.status, 3)
+            self.assertIn("inelastic collapse", result.text)
+            self.assertAlmostEqual(result.collapse["time"], 12 / 7, delta=1e-15)
+            self.assertEqual(result.path, "collapse3.h5")
+
+    def test_bad_input_has_the_message_and_status_of_the_program(self):
+        with self.assertRaisesRegex(cradle.Error, "^no_such_scene: no such scene"):
+            cradle.run("no_such_scene")
+        for call, message in ((lambda: cradle.run("fig2", set={"law.restitution": 2}), "law.restitution"),
+                              (lambda: cradle.run({"law": {"type": "wet"}}), "law.loss"),
+                              (lambda: cradle.ensemble("fig2", 0), "--replicas")):
+            with self.assertRaises(cradle.Error) as raised:
+                call()
+            self.assertEqual(raised.exception.status, 2)
+            self.assertIn(message, raised.exception.message)
+            self.assertNotIn("Traceback", raised.exception.message)
+
+    def test_files_that_cannot_be_written(self):
+        with self.assertRaises(cradle.Error) as raised:
+            cradle.run("fig5", output="no/such/folder.h5")
+        self.assertEqual(raised.exception.status, 4)
+
+    def test_lost_order_carries_what_there_is(self):
+        with self.assertRaises(cradle.Error) as raised:
+            cradle.run("collapse3", set={"run.coordinates": "absolute"}, output="lost.h5")
+        self.assertEqual(raised.exception.status, 5)
+        self.assertIn("lost", raised.exception.result.outcome + raised.exception.message + " lost")
+        self.assertGreater(len(raised.exception.result.series.time), 2)
+        raised.exception.result.close()
+
+    def test_resume_goes_further(self):
+        with cradle.run("fig2", set=small.SHOCK, output="further.h5") as result:
+            contacts = result.series.contacts[-1]
+        with cradle.resume("further.h5", until=80) as result:
+            self.assertEqual(result.series.time[-1], 80)
+            self.assertGreater(result.series.contacts[-1], contacts)
+
+    def test_without_the_program(self):
+        kept = os.environ["CRADLE_PROGRAM"]
+        os.environ["CRADLE_PROGRAM"] = "/no/such/cradle"
+        try:
+            with self.assertRaisesRegex(cradle.Error, "CRADLE_PROGRAM"):
+                cradle.run("fig2")
+            with cradle.open(small.shock()) as result, self.assertWarnsRegex(UserWarning, "without predictions"):
+                cradle.plot.energy(result)
+        finally:
+            os.environ["CRADLE_PROGRAM"] = kept
+
+
+class Progress(unittest.TestCase):
+    def test_shares_rise_and_lines_are_the_programs(self):
+        seen = []
+        cradle.run("fig2", output="seen.h5", progress=lambda share, text: seen.append((share, text))).close()
+        self.assertGreater(len(seen), 1)
+        shares = [share for share, _ in seen]
+        self.assertEqual(shares, sorted(shares))
+        self.assertTrue(all(0 <= share <= 1 for share in shares))
+        for _, text in seen:
+            self.assertRegex(text, r"^t = .* of 6500, .* contacts, .* left$")
+
+    def test_a_terminal_is_left_as_it_was(self):
+        class Terminal:
+            def __init__(self):
+                self.text = ""
+
+            def write(self, text):
+                self.text += text
+
+            def flush(self):
+                pass
+
+            def isatty(self):
+                return True
+
+        kept, sys.stderr = sys.stderr, Terminal()
+        try:
+            with progress.shown(None) as show:
+                show(0.5, "half")
+            text = sys.stderr.text
+        finally:
+            sys.stderr = kept
+        self.assertEqual(text, "\r\033[K[" + "#" * 15 + " " * 15 + "] half\r\033[K")
+
+    def test_nothing_is_shown_where_nobody_looks(self):
+        with progress.shown(False) as show:
+            self.assertIsNone(show)
+
+    def test_ctrl_c_interrupts_the_program_which_can_go_on(self):
+        code = "import cradle; cradle.run('fig2', output='stopped.h5')"
+        child = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
+        while not os.path.exists("stopped.h5.part") and child.poll() is None:
+            time.sleep(0.01)
+        child.send_signal(signal.SIGINT)
+        _, error = child.communicate()
+        self.assertIn("KeyboardInterrupt", error)
+        self.assertFalse(os.path.exists("stopped.h5"))
+        with cradle.resume("stopped.h5") as result:
+            self.assertEqual(result.outcome, "reached the end")

@@ -1,0 +1,160 @@
+"""What `cradle.open` gives: names, units, shapes and values of the file, read when they are used, and exact numbers."""
+import os
+import sys
+import time
+import unittest
+from fractions import Fraction
+
+import h5py
+import numpy as np
+
+import cradle
+import small
+
+
+class Run(unittest.TestCase):
+    def setUp(self):
+        self.file = h5py.File(small.shock(), "r")  # with locks, which ours then has too
+        self.result = cradle.open(small.shock())
+
+    def tearDown(self):
+        self.result.close()
+        self.file.close()
+
+    def test_columns_are_those_of_the_file_with_unit_and_description(self):
+        energy = self.result.series.energy
+        stored = self.file["series/energy"]
+        self.assertEqual((energy.name, energy.unit, energy.shape), ("energy", "m l^2/t^2", (20,)))
+        self.assertEqual(energy.description, stored.attrs["description"])
+        np.testing.assert_array_equal(energy, stored[:])
+        lost = self.file["series/energy_lost"][:]
+        np.testing.assert_array_equal(energy + self.result.series["energy_lost"], stored[:] + lost)
+        self.assertEqual(energy.max(), stored[:].max())
+        self.assertEqual(list(self.result.series), list(self.file["series"]))
+
+    def test_rows_are_read_alone(self):
+        energy = self.result.series.energy
+        self.assertEqual(energy[-1], self.file["series/energy"][-1])
+        np.testing.assert_array_equal(energy[3:7], self.file["series/energy"][3:7])
+        self.assertNotIn("values", energy.__dict__, "all was read for a few rows")
+        np.testing.assert_array_equal(energy[::-1], self.file["series/energy"][:][::-1])
+        np.testing.assert_array_equal(energy[[0, 5]], self.file["series/energy"][:][[0, 5]])
+        with self.assertRaises(IndexError):
+            energy[20]
+
+    def test_snapshots_and_profiles_are_in_order_of_time(self):
+        self.assertEqual(self.result.snapshots.times.tolist(), [20, 60])
+        self.assertEqual(self.result.profiles.times.tolist(), [30, 60])
+        snapshot = self.result.snapshots.at(55)
+        self.assertEqual(snapshot.time, 60)
+        self.assertEqual(len(snapshot.gap), len(snapshot.x) - 1)
+        self.assertEqual(snapshot.gap.unit, "l")
+
+    def test_events_are_every_contact(self):
+        self.assertEqual(len(self.result.events.time), int(self.result.series.contacts[-1]))
+
+    def test_scene_is_a_dict_and_a_text(self):
+        self.assertEqual(self.result.scene["initial"]["particles"], 200)
+        self.assertIn("[law]", self.result.scene_text)
+        self.assertEqual((self.result.kind, self.result.outcome), ("run", "reached the end"))
+
+    def test_what_is_not_there_is_empty_or_named(self):
+        self.assertEqual((len(self.result.points), len(self.result.trust), len(self.result.replicas)), (0, 0, 0))
+        self.assertEqual(self.result.collapse, {})
+        with self.assertRaisesRegex(AttributeError, "heat: not in .* energy"):
+            self.result.series.heat
+        with self.assertRaises(cradle.Error) as raised:
+            self.result.masses.at(1)
+        self.assertEqual(raised.exception.status, 2)
+
+    def test_fractions_of_stored_numbers_are_exact(self):
+        fractions = self.result.series.energy.fractions()
+        self.assertEqual([float(value) for value in fractions], self.file["series/energy"][:].tolist())
+
+    def test_xarray_where_it_is_installed(self):
+        try:
+            import xarray  # noqa: F401
+        except ImportError:
+            with self.assertRaisesRegex(cradle.Error, "xarray is missing.*python3-xarray"):
+                self.result.series.to_xarray()
+            return
+        table = self.result.snapshots[0].to_xarray()
+        self.assertEqual(table["gap"].attrs["units"], "l")
+        self.assertEqual(table.sizes["between_index"], table.sizes["index"] - 1)
+
+
+class Others(unittest.TestCase):
+    def test_ensembles_have_statistics_and_replicas(self):
+        with cradle.open(small.ensemble()) as result:
+            self.assertEqual(result.kind, "ensemble")
+            energy = result.series.energy
+            known = np.asarray(energy["count"]) > 0
+            # A mean of four equal numbers is three additions and a division: each rounds by half an ulp.
+            self.assertTrue(np.all((energy["min"] * (1 - 2.0 ** -51) <= energy["mean"])[known]))
+            self.assertEqual(result.replicas.index.values.tolist(), [0, 1, 2, 3])
+            self.assertEqual(result.profiles.times.tolist(), [2, 4])
+
+    def test_sweeps_have_points(self):
+        with cradle.open(small.sweep()) as result:
+            self.assertEqual(len(result.points), 6)
+            self.assertEqual(len(result.sweep["law.restitution"]), 6)
+            point = result.points[1]
+            self.assertEqual((point.kind, point.label), ("point", "law.restitution=0.5 initial.speed=1"))
+            self.assertEqual(point.series.energy.mean[0], 40 / 2)  # N u0^2 / 2 with u0 = 1
+
+    def test_proofs_enclose_the_energy_in_exact_numbers(self):
+        with cradle.open(small.collapse()) as result:
+            self.assertEqual((result.certificate.verdict, result.certificate.attributes["contacts"]), ("proved", 322))
+            low, high = result.enclosure("energy")
+            self.assertIsInstance(low[0], Fraction)
+            # All bodies first fly freely: the energy is 1, and the bounds are tighter than 1e-300.
+            self.assertLess(low[0], 1)
+            self.assertGreater(high[0], 1)
+            self.assertLess(high[0] - low[0], Fraction(1, 10 ** 300))
+            text = str(result.exact.series.energy_low[0])
+            self.assertEqual(Fraction(text), low[0])
+
+    def test_mpmath_keeps_all_digits(self):
+        try:
+            import mpmath
+        except ImportError:
+            self.skipTest("no mpmath (Debian: python3-mpmath)")
+        with cradle.open(small.collapse()) as result:
+            low = result.exact.series.energy_low
+            with mpmath.workdps(450):
+                self.assertEqual(mpmath.nstr(low.mpmath()[0], 390), mpmath.nstr(mpmath.mpf(str(low[0])), 390))
+            self.assertEqual(mpmath.mp.dps, 15)
+
+    def test_trust_has_a_table_for_each_precision(self):
+        with cradle.open(small.trust()) as result:
+            self.assertEqual(result.kind, "trust")
+            self.assertEqual([table.precision for table in result.trust][-1], "mpfr, 50 digits")
+
+    def test_every_kind_has_a_short_text(self):
+        for make in small.ALL:
+            with cradle.open(make()) as result:
+                self.assertLess(len(repr(result)), 200)
+                repr(result.series)
+
+
+class Laziness(unittest.TestCase):
+    def test_import_loads_nothing_heavy(self):
+        import subprocess
+        code = "import cradle, sys; print([m for m in ('numpy', 'h5py', 'matplotlib') if m in sys.modules])"
+        out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(out, "[]\n")
+
+    def test_opening_reads_no_columns(self):
+        # A gigabyte, sparse on the disk.
+        path = "large.h5"
+        with h5py.File(path, "w") as file:
+            file.attrs["format_version"], file.attrs["scene"] = 1, ""
+            file.create_dataset("series/energy", shape=(1 << 27,), dtype="f8")
+            file["series/energy"][-1] = 2.0
+        self.assertGreater(os.path.getsize(path), 1 << 30)
+        started = time.perf_counter()
+        with cradle.open(path) as result:
+            print(f"opened {os.path.getsize(path) >> 20} MiB in {time.perf_counter() - started:.3f} s")
+            self.assertEqual(len(result.series.energy), 1 << 27)
+            self.assertEqual(result.series.energy[-1], 2.0)
+            self.assertNotIn("values", result.series.energy.__dict__)

@@ -1,0 +1,93 @@
+#include "cradle/tools/commands/python.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace cradle::tools {
+
+TemporaryFolder::TemporaryFolder() {
+  std::error_code failed;
+  path_ = (std::filesystem::temp_directory_path(failed) / "cradle-XXXXXX").string();
+  if (failed || ::mkdtemp(path_.data()) == nullptr) throw no_room();
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string TemporaryFolder::write(std::string_view name, std::string_view text) const {
+  const auto file = std::filesystem::path(path_) / name;
+  std::error_code failed;
+  std::filesystem::create_directories(file.parent_path(), failed);
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  if (!stream.flush()) throw no_room();
+  return file.string();
+}
+
+Error TemporaryFolder::no_room() const {
+  return {{path_, 0, ""}, "no temporary files", "", "make room on the disk or set TMPDIR", Exit::io};
+}
+
+namespace {
+
+// Runs a program found on the path and returns its exit status, 127 if there is none.
+int execute(const std::vector<std::string>& words, bool silent) {
+  std::vector<char*> arguments;
+  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (silent) {
+      const int nowhere = ::open("/dev/null", O_WRONLY);
+      ::dup2(nowhere, STDOUT_FILENO);
+      ::dup2(nowhere, STDERR_FILENO);
+    }
+    ::execvp(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  if (child < 0 || ::waitpid(child, &status, 0) < 0 || !WIFEXITED(status)) return 127;
+  return WEXITSTATUS(status);
+}
+
+// The first Python that has what pictures need; python3 may be one without. Looked for only, nothing is imported: that
+// would take longer than some pictures.
+std::string find_python() {
+  std::vector<std::string> candidates{"python3", "/usr/bin/python3"};
+  if (const char* chosen = std::getenv("CRADLE_PYTHON")) candidates.insert(candidates.begin(), chosen);
+  const std::string probe = "import sys; from importlib.util import find_spec; "
+                            "sys.exit(not all(map(find_spec, ('h5py', 'matplotlib', 'numpy'))))";
+  for (const auto& python : candidates)
+    if (execute({python, "-c", probe}, true) == 0) return python;
+  throw Error({}, "no Python with h5py and matplotlib", fmt::format("tried {}", fmt::join(candidates, ", ")),
+              "install python3-h5py and python3-matplotlib (Debian's names), or set CRADLE_PYTHON to one that has them",
+              Exit::io);
+}
+
+}  // namespace
+
+Exit run_python(const TemporaryFolder& folder, const std::vector<std::string>& words, const std::string& file,
+                std::string_view what) {
+  std::vector<std::string> command{find_python(), "-B", folder.path() + "/cradle"};
+  command.insert(command.end(), words.begin(), words.end());
+  for (const EmbeddedFile& part : python_package()) folder.write(part.name, part.text);
+  std::error_code unknown;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  if (!unknown) ::setenv("CRADLE_PROGRAM", self.c_str(), 1);  // what the package calls in its turn
+  const int status = execute(command, false);
+  if (status != 0 && status != static_cast<int>(Exit::bad_input) && status != static_cast<int>(Exit::io))
+    throw Error({file, 0, ""}, fmt::format("{} could not be made", what), fmt::format("status {}", status),
+                "see the message above", Exit::io);
+  return static_cast<Exit>(status);
+}
+
+}  // namespace cradle::tools

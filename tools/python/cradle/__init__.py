@@ -1,0 +1,45 @@
+"""Results of Cradle, event-driven granular gases in one dimension, in Python; and the program, called from there.
+
+    import cradle
+    shock = cradle.run("fig2", set={"run.until": 2000})     # or cradle.open("fig2.h5")
+    shock.series.energy                                      # float64 in m l^2/t^2, read when it is used
+    shock.snapshots.at(2000).gap                             # between neighbours, exact however small
+    cradle.plot.shock(shock)                                 # a matplotlib figure
+    cradle.report(shock)                                     # one HTML page
+
+Whatever goes wrong is a cradle.Error with `message` and `status`. h5py and numpy are needed, matplotlib for pictures
+and reports; all are imported when they are used.
+"""
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+from .errors import Error
+
+if TYPE_CHECKING:
+    from . import plot
+    from .commands import certify, ensemble, resume, run, sweep, trust
+    from .page import report
+    from .result import Result, open
+    from .tables import Column, Table, Tables
+
+__version__ = "0.1.0"  # the program's
+
+_WHERE = {name: module for module, names in {
+    "commands": ("certify", "ensemble", "resume", "run", "sweep", "trust"), "page": ("report",), "plot": ("plot",),
+    "result": ("Result", "open"), "tables": ("Column", "Table", "Tables")}.items() for name in names}
+__all__ = ["Error", *_WHERE]
+
+
+def __getattr__(name: str):
+    if name not in _WHERE:
+        raise AttributeError(f"module cradle has no {name}: it has {', '.join(__all__)}")
+    module = importlib.import_module(f".{_WHERE[name]}", __name__)
+    found = module if name == "plot" else getattr(module, name)
+    globals()[name] = found
+    return found
+
+
+def __dir__():
+    return [*globals(), *__all__]

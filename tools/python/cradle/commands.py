@@ -1,0 +1,154 @@
+"""The program's commands as functions: each calls it, shows its progress, and returns the opened result."""
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from builtins import open as builtins_open  # hidden by ours
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Union
+
+from . import program
+from .errors import COLLAPSE, DONE, LOST, Error
+from .progress import Show, shown
+from .result import Result, open
+from .scene import scene_text, value_text
+
+Scene = Union[str, os.PathLike, Mapping[str, Any], Result]
+Settings = Union[Mapping[str, Any], None]
+Path = Union[str, os.PathLike, None]
+Progress = Union[bool, Show, None]
+
+
+def run(scene: Scene, set: Settings = None, *, output: Path = None, seed: int | None = None,
+        threads: int | None = None, progress: Progress = None) -> Result:
+    """One run; returns its result, also where it ended at inelastic collapse (`result.status` is 3 then).
+
+    scene: a scene file, the name of a bundled scene, nested dicts as result.scene has them, or the text of a scene
+        (with line breaks), as result.scene_text.
+    set: keys and values instead of what the scene says, `{"law.restitution": 0.9, "run.until": 500}`.
+    output: the result file; by default the scene's name with .h5 in the working folder, as the program has it.
+    threads: at most so many, all processors by default; never changes a result.
+    progress: True, False, or a function of the share done and a line of text; by default on terminals and in notebooks.
+    Raises Error with the program's message and status; where contacts were lost (5) its `result` is what there is.
+    """
+    return compute("run", scene, set, [], output, ".h5", seed, threads, progress)
+
+
+def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 0,
+             spread: Sequence[str] = (), output: Path = None, seed: int | None = None,
+             threads: int | None = None, progress: Progress = None) -> Result:
+    """Replicas first to first + replicas - 1 and their statistics; a file of the same scene is continued.
+
+    spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Others as in run().
+    Raises Error; where replicas failed (5) its `result` has the others.
+    """
+    options = ["--replicas", replicas, "--first", first, *(word for text in spread for word in ("--spread", text))]
+    return compute("ensemble", scene, set, options, output, "-ensemble.h5", seed, threads, progress)
+
+
+def sweep(scene: Scene, vary: Settings = None, set: Settings = None, *, cuts: bool = False,
+          points: Sequence[Mapping[str, Any]] = (), replicas: int | None = None, first: int = 0,
+          output: Path = None, seed: int | None = None, threads: int | None = None,
+          progress: Progress = None) -> Result:
+    """One ensemble at each of many points; `result.points` are these, `result.sweep` has one row for each.
+
+    vary: values of keys, `{"law.loss": [0.005, 0.01], "initial.speed": "0.5:2:4:log"}`, in all combinations, or, with
+        cuts, one at a time. points: single ones, `{"law.loss": 0.01, "initial.speed": 1}` each.
+        Without both the sweep is the one of the scene.
+    """
+    options: list[Any] = []
+    for key, values in (vary or {}).items():
+        options += ["--vary", f"{key}={listed(values)}"]
+    options += [word for point in points
+                for word in ("--point", " ".join(f"{key}={bare(value)}" for key, value in point.items()))]
+    options += ["--cuts"] * cuts + (["--replicas", replicas] if replicas is not None else []) + ["--first", first]
+    return compute("sweep", scene, set, options, output, "-sweep.h5", seed, threads, progress)
+
+
+def trust(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), both: bool = False,
+          output: Path = None, seed: int | None = None, threads: int | None = None,
+          progress: Progress = None) -> Result:
+    """The same run at rising precision; `result.trust` has a table for each, compared with the last.
+
+    digits: those to compare, the reference last; by default rising until two runs agree. both: also in positions.
+    """
+    options = (["--digits", ",".join(map(str, digits))] if digits else []) + ["--both"] * both
+    return compute("trust", scene, set, options, output, "-trust.h5", seed, threads, progress)
+
+
+def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), replicas: int | None = None,
+            output: Path = None, seed: int | None = None, threads: int | None = None,
+            progress: Progress = None) -> Result:
+    """The run with a proof of its contacts; `result.certificate.verdict` is "proved" or "undecided" (status 5).
+
+    digits: of the proof, tried one after the other. replicas: proves so many and writes their statistics.
+    """
+    options = (["--digits", ",".join(map(str, digits))] if digits else [])
+    options += ["--replicas", replicas] if replicas is not None else []
+    return compute("certify", scene, set, options, output, "-certified.h5", seed, threads, progress)
+
+
+def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
+           progress: Progress = None) -> Result:
+    """Goes on with a run, an ensemble or a sweep that was stopped, or, with `until`, further; returns its result."""
+    path = os.fspath(path)
+    words = ["resume", path] + (["--until", str(until)] if until is not None else [])
+    return called(words, path, threads, progress)
+
+
+def compute(command, scene, set, options, output, ending, seed, threads, progress) -> Result:
+    with scene_file(scene) as (path, name):
+        output = os.fspath(output) if output is not None else name + ending
+        words = [command, path, *map(str, options), "-o", output]
+        for key, value in (set or {}).items():
+            words += ["--set", f"{key}={value_text(value) if not isinstance(value, str) else value}"]
+        words += ["--seed", str(seed)] if seed is not None else []
+        return called(words, output, threads, progress)
+
+
+def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:
+    words = words + (["--threads", str(threads)] if threads is not None else [])
+    with shown(progress) as show:
+        call = program.call(words, (DONE, COLLAPSE, LOST), show)
+    said = call.messages.strip().removeprefix("cradle: ")
+    try:
+        result = open(output)
+    except Error:
+        if call.status == LOST:  # and nothing was written
+            raise Error(said or call.out.strip(), LOST) from None
+        raise
+    result.text, result.status = call.out + call.messages, call.status
+    if call.status == LOST and words[0] != "certify":
+        raise Error(said or call.out.strip().splitlines()[0], LOST, result)
+    return result
+
+
+@contextlib.contextmanager
+def scene_file(scene) -> Iterator[tuple[str, str]]:
+    """What the program is given as SCENE, and the name of its results."""
+    if isinstance(scene, Result):
+        scene, name = scene.scene_text, str(scene.attributes.get("name", "scene"))
+    else:
+        name = "scene"
+    if isinstance(scene, Mapping):
+        scene = scene_text(scene)
+    scene = os.fspath(scene)
+    if "\n" not in scene:
+        yield scene, os.path.splitext(os.path.basename(scene))[0]
+        return
+    with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
+        path = os.path.join(folder, name + ".toml")
+        with builtins_open(path, "w", encoding="utf-8") as file:
+            file.write(scene)
+        yield path, name
+
+
+def bare(value: Any) -> str:
+    """As in --set: texts without quotes."""
+    return value if isinstance(value, str) else value_text(value)
+
+
+def listed(values: Any) -> str:
+    """Of --vary: "0.5:2:4:log" as it stands, a list with commas."""
+    return values if isinstance(values, str) else ",".join(bare(value) for value in values)

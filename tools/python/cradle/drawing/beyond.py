@@ -1,0 +1,247 @@
+"""Past the collapse: energy beside that of the sticky gas, the dense core (core/observe/dense_core.hpp), how often
+bodies meet in it. Of a run, or of a sweep of cut-offs and of what replaces them."""
+import numpy as np
+
+from .style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked, subplots
+
+MANY = 20         # snapshots that make a picture in space and time
+PATHS = 80        # of bodies in it
+NARROW = 1e-2     # of the spacing: a core is there once half of the mass is in less
+ARRIVING = 0.97   # rows are taken to last for this share of the time at which the sticky gas has all
+SETTLED = 100     # units of time after which rates are averaged
+
+
+def pictures(result, _theory, units):
+    points = [p for p in result.points if has_core(p)]
+    since = min((onset(p) for p in points), default=np.inf)
+    if np.isfinite(since):
+        found = [("beyond", lambda axes=None: draw_points(points, since, units, axes))]
+        if len(with_rates(points, since, units)) > 1:
+            found.append(("rates", lambda axes=None: draw_rates(points, since, units, axes)))
+        return found
+    if result.points or result.statistics or not has_core(result) or not np.isfinite(onset(result)):
+        return []
+    found = [("beyond", lambda axes=None: draw_run(result, units, axes))]
+    dense = [s for s in result.snapshots if s["time"] >= onset(result) and len(core_of(s)[0]) > 2]
+    if dense and slowest(result):
+        found.append(("distributions", lambda axes=None: draw_distributions(dense, slowest(result), units, axes)))
+    if len(dense) >= MANY:
+        found.append(("spacetime", lambda axes=None: draw_spacetime(dense, units, axes)))
+    return found
+
+
+def has_core(result):
+    return np.isfinite(result.series.get("core_width", ())).sum() > 2
+
+
+def slowest(result):
+    """The closing speed below which a contact loses nothing (or all: merge_speed); 0 where there is none."""
+    merging = result.text("run", "collapse") == "merge"
+    return result.setting("run", "merge_speed", 0.0) if merging else result.setting("law", "cutoff", 0.0)
+
+
+def label_of(result):
+    policy = result.text("run", "collapse")
+    if policy == "contact-time":
+        return rf"contact time {result.setting('run', 'contact_time'):.4g}"
+    return rf"merge below {slowest(result):.4g}" if policy == "merge" else rf"$\delta=${slowest(result):.4g}"
+
+
+def onset(result):
+    """The first of the samples up to the narrowest core in which half of the mass is in less than NARROW."""
+    width = result.series["core_width"]
+    if not np.isfinite(width).any():
+        return np.inf
+    narrowest = int(np.nanargmin(width))
+    wide = np.flatnonzero(~(width[:narrowest + 1] < NARROW * result.setting("initial", "spacing", 1.0)))
+    first = wide[-1] + 1 if len(wide) else 0
+    return result.series["time"][first] if first <= narrowest else np.inf
+
+
+def used_up(result, units):
+    """When the sticky gas has the last body of equal rows."""
+    return result.setting("initial", "particles", np.nan) * units.t
+
+
+def excess(result, kind="mean"):
+    """Of the energy over that of the sticky gas, in units of the energy at the start."""
+    start = result.series["energy"][0] + result.series["energy_lost"][0]
+    values = result.statistics.get("sticky_excess", {}).get(kind) if kind != "mean" else None
+    return (result.series["sticky_excess"] if values is None else values) / start
+
+
+def rate(result, name):
+    """Per unit of time, between samples; and the times in their middle."""
+    time, counts = result.series["time"], np.asarray(result.series[name], float)
+    apart = np.diff(time) > 0
+    return ((time[1:] + time[:-1]) / 2)[apart], np.diff(counts)[apart] / np.diff(time)[apart]
+
+
+def rates(result, since, units):
+    """Contacts per l/2u0 that dissipate, and elastic ones: mean and standard deviation between samples, from SETTLED
+    after a time until the rows end."""
+    time, every = rate(result, "contacts")
+    elastic = rate(result, "contacts_below_cutoff")[1]
+    late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up(result, units))
+    return [(np.mean(values[late]) * units.t, np.std(values[late]) * units.t) if late.any() else (np.nan, np.nan)
+            for values in (every - elastic, elastic)]
+
+
+def most_frequent(result, cutoff):
+    """Dissipative contacts per l/2u0 if each of them closed at the cut-off: one body arrives, with m u0^2/2, and each
+    contact takes (1 - eps^2) m delta^2/4."""
+    restitution, speed = result.setting("law", "restitution", 1.0), result.setting("initial", "speed", 0.5)
+    return 2 * speed ** 2 / ((1 - restitution ** 2) * cutoff ** 2) if restitution < 1 else np.inf
+
+
+def draw_excess(ax, result, since, units, colour, label=None, line="-"):
+    late = result.series["time"] >= since
+    time = result.series["time"][late] / units.t
+    ax.plot(time, excess(result)[late], line, color=colour, label=label)
+    if result.statistics:
+        ax.fill_between(time, excess(result, "min")[late], excess(result, "max")[late], color=colour, alpha=0.2, lw=0)
+    ax.set_yscale("symlog", linthresh=1e-5)
+    ax.axhline(0, color=GREY, lw=0.8, zorder=0)
+    ax.set_ylabel(r"$(E-E_\mathrm{sticky})\,/\,E_0$")
+
+
+def per_time(units):
+    return units.label("contacts per unit of time", r"contacts per $l/2u_0$")
+
+
+def length_label(units, name):
+    return units.label(name, name + r"$\,/\,l$")
+
+
+def positive(ax, time, values, **how):
+    """On a logarithmic axis, where there is something to show."""
+    shown = values > 0
+    if shown.any():
+        ax.plot(time[shown], values[shown], **how)
+        ax.set_yscale("log")
+
+
+# ---- a run
+
+def draw_run(result, units, axes=None):
+    series, scale = result.series, slowest(result)
+    late = series["time"] >= onset(result)
+    time = series["time"][late] / units.t
+    figure, axes = stacked(axes, 4, width=5.8, height=2.1, sharex=True)
+    draw_excess(axes[0], result, onset(result), units, BLUE)
+    positive(axes[1], time, series["core_window"][late] / (scale or units.v), color=BLUE,
+             label="window of velocities" + (rf" / {scale:.4g}" if scale else ""))
+    positive(axes[1], time, series["core_mass"][late] / result.setting("initial", "particles", 1.0), color=ORANGE,
+             label="share of all mass")
+    positive(axes[2], time, series["core_width"][late] / units.x, color=BLUE, label="length with half of the mass")
+    positive(axes[2], time, series["core_gap"][late] / units.x, color=ORANGE, label="median gap")
+    middle, every = rate(result, "contacts")
+    elastic = rate(result, "contacts_below_cutoff")[1]
+    shown = middle >= onset(result)
+    for values, colour, label in ((elastic, ORANGE, "elastic"), (every - elastic, BLUE, "dissipative")):
+        positive(axes[3], middle[shown] / units.t, values[shown] * units.t, color=colour, label=label)
+    axes[1].set_ylabel("core")
+    axes[2].set_ylabel(length_label(units, "core"))
+    axes[3].set(ylabel=per_time(units), xlabel=units.time_label())
+    for ax in axes[1:]:
+        if ax.get_lines():
+            ax.legend(loc="best")
+    return figure
+
+
+def core_of(snapshot):
+    """Slice of the bodies in the core, as dense_core.hpp has it, and their gaps."""
+    x, m = snapshot["x"], snapshot["m"]
+    held = np.concatenate([[0.0], np.cumsum(m)])
+    last = np.searchsorted(held, held[:-1] + held[-1] / 2 * (1 + 1e-12), side="right") - 1  # from each body on
+    first = np.flatnonzero(last < len(x))
+    width = x[last[first]] - x[first]
+    best = int(np.argmin(width))
+    low, high = x[first[best]] - width[best], x[last[first[best]]] + width[best]
+    inside = np.flatnonzero((x >= low) & (x <= high))
+    return np.arange(inside[0], inside[-1] + 1), snapshot["gap"][inside[0]:inside[-1]]
+
+
+def draw_distributions(snapshots, scale, units, axes=None):
+    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4), layout="constrained")
+    chosen = snapshots[::max(1, len(snapshots) // 6)]
+    for snapshot, colour in zip(chosen, shades(len(chosen))):
+        bodies, gap = core_of(snapshot)
+        v = (snapshot["v"][bodies] - np.median(snapshot["v"][bodies])) / scale
+        density, edges = np.histogram(v, bins=50, range=(-0.75, 0.75))
+        left.stairs(density / len(v) / (edges[1] - edges[0]), edges, color=colour,
+                    label=rf"$t={snapshot['time'] / units.t:.5g}$")
+        gap = gap[gap > 0] / gap.mean()
+        density, edges = np.histogram(gap, bins=np.geomspace(1e-3, 1e2, 41))
+        right.stairs(density / len(gap) / np.diff(edges), edges, color=colour)
+    left.set(xlabel=rf"velocity in the core, from its median$\,/\,{scale:.4g}$", ylabel="probability density")
+    gap = np.geomspace(1e-3, 30, 200)
+    right.plot(gap, np.exp(-gap), "k:", label=r"$e^{-g/\langle g\rangle}$, no order")
+    right.set(xscale="log", yscale="log", ylim=(1e-5, 10), xlabel=r"gap $g\,/\,\langle g\rangle$")
+    left.legend(loc="best")
+    right.legend(loc="best")
+    for letter, ax in zip("ab", (left, right)):
+        panel_letter(ax, letter)
+    return figure
+
+
+def draw_spacetime(snapshots, units, axes=None):
+    """Paths of bodies spread evenly over the core as it is at the end, from the one in its middle; identical bodies
+    keep their order."""
+    core, _ = core_of(snapshots[-1])
+    bodies = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
+    figure, ax = subplots(axes, figsize=(5.8, 4.6), layout="constrained")
+    time = np.array([s["time"] for s in snapshots]) / units.t
+    middle = int(snapshots[-1]["index"][core[len(core) // 2]])
+    places = []
+    for s in snapshots:
+        at = dict(zip(s["index"].tolist(), s["x"] / units.x))
+        places.append({body: x - at.get(middle, np.nan) for body, x in at.items()})
+    for body, colour in zip(bodies.tolist(), shades(len(bodies))):
+        ax.plot(time, [at.get(body, np.nan) for at in places], color=colour, lw=0.6)
+    reach = max(np.ptp(s["x"][core_of(s)[0]]) for s in snapshots) / units.x
+    ax.set(xlabel=units.time_label(), xlim=(time[0], time[-1]), ylim=(-0.7 * reach, 0.7 * reach),
+           ylabel=units.label(rf"$x-x_{{{middle}}}$", rf"$(x-x_{{{middle}}})\,/\,l$"))
+    return figure
+
+
+# ---- a sweep
+
+def draw_points(points, since, units, axes=None):
+    figure, axes = stacked(axes, 3, width=7.2, height=2.7, sharex=True)
+    replaced = [p for p in points if p.text("run", "collapse") in ("merge", "contact-time")]
+    others = [p for p in points if p not in replaced]
+    how = [(p, colour, "-") for p, colour in zip(others, shades(len(others)))]
+    warm = plt.get_cmap("autumn")(np.linspace(0, 0.8, len(replaced)))
+    how += [(p, colour, "--") for p, colour in zip(replaced, warm)]
+    for point, colour, line in how:
+        late = point.series["time"] >= since
+        time = point.series["time"][late] / units.t
+        draw_excess(axes[0], point, since, units, colour, label_of(point), line)
+        if slowest(point):
+            positive(axes[1], time, point.series["core_window"][late] / slowest(point), color=colour, ls=line)
+        positive(axes[2], time, point.series["core_width"][late] / units.x, color=colour, ls=line)
+    axes[1].set_ylabel("window of velocities\n/ cut-off or merging speed")
+    axes[2].set(ylabel=length_label(units, "length with half of the mass"), xlabel=units.time_label())
+    axes[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1))
+    return figure
+
+
+def with_rates(points, since, units):
+    return [p for p in points if p.text("run", "collapse") not in ("merge", "contact-time") and slowest(p)
+            and np.isfinite(rates(p, since, units)[0][0])]
+
+
+def draw_rates(points, since, units, axes=None):
+    points = sorted(with_rates(points, since, units), key=slowest)
+    cutoff = np.array([slowest(p) for p in points])
+    found = np.array([rates(p, since, units) for p in points])
+    figure, ax = subplots(axes, figsize=(5.2, 4), layout="constrained")
+    for k, (name, colour) in enumerate((("dissipative", BLUE), ("elastic", ORANGE))):
+        ax.errorbar(cutoff, found[:, k, 0], yerr=found[:, k, 1], fmt="o-", color=colour, capsize=3,
+                    label=name + ", and how it varies")
+    ax.plot(cutoff, [most_frequent(p, slowest(p)) for p in points], "k:",
+            label=r"all that arrives lost at the cut-off, $2u_0^2/(1-\epsilon^2)\delta^2$")
+    ax.set(xscale="log", yscale="log", xlabel=r"cut-off $\delta$", ylabel=per_time(units))
+    ax.legend(loc="best")
+    return figure

@@ -1,0 +1,177 @@
+"""Figs. 9, 10 and 11: the two heaviest clusters of the late wet shock, which swing through each other; and how the
+swing grows: separation as t^(1/3), speed as t^(-1/3) (section VI). Lines follow a cluster, not a side."""
+import numpy as np
+
+from .style import BLUE, GREY, ORANGE, plt, power, shades, stacked, subplots, thinned
+
+DECADES, BINS, FIRST = 4.3, 13, 3  # maxima in so many logarithmic bins over the last decades; the fit begins in bin 3
+ENOUGH = 20  # samples of a bin: of fewer the largest tells nothing of the swing
+
+
+def pictures(result, _theory, units):
+    found = []
+    if "x" in result.heaviest and hold_the_mass(result):
+        found = [("clusters", lambda axes=None: draw_clusters(result, units, axes))]
+        if np.isfinite(result.heaviest["x"][len(result.heaviest["x"]) * 3 // 4:]).all(axis=1).any():
+            found.append(("scaling", lambda axes=None: draw_scaling(result, units, axes)))  # there still are two
+    elif result.masses and result.text("initial", "type") == "ring":
+        found = [("masses", lambda axes=None: draw_masses_alone(result, units, axes))]
+    return found
+
+
+def hold_the_mass(result):
+    """Do the two hold most of what has collided, in the end? Before that they are the first bodies that stuck."""
+    mass = result.heaviest["mass"].sum(axis=1)
+    cloud = result.series.get("cloud_mass", mass)
+    known = np.isfinite(mass) & (cloud > 0)
+    return known.any() and np.median((mass[known] / cloud[known])[-100:]) > 0.5
+
+
+def followed(heaviest):
+    """Columns reordered so that each follows one cluster; where another takes its place there is a gap in the line."""
+    order = np.tile([0, 1], (len(heaviest["x"]), 1))
+    broken = np.zeros(order.shape, bool)
+    index = heaviest.get("index")
+    if index is None:
+        return heaviest, broken
+    previous = index[0]
+    for k, now in enumerate(index):
+        straight, crossed = (now == previous).sum(), (now[::-1] == previous).sum()
+        if crossed > straight:
+            order[k], now = (1, 0), now[::-1]
+        broken[k] = now != previous
+        previous = now
+    return {name: np.take_along_axis(values, order, axis=1) for name, values in heaviest.items()
+            if np.shape(values) == order.shape}, broken
+
+
+def with_gaps(time, values, broken):
+    """A line that is not drawn to a point where another cluster takes over."""
+    at = np.flatnonzero(broken)
+    return np.insert(time, at, time[at]), np.insert(values.astype(float), at, np.nan)
+
+
+def draw_clusters(result, units, axes=None):
+    tracks, broken = followed(result.heaviest)
+    time = result.series["time"] / units.t
+    figure, (position, velocity) = stacked(axes, 2, width=6.0, height=3.0, sharex=True)
+    position.set_ylabel(units.position_label())
+    velocity.set(ylabel=units.velocity_label(), xlabel=units.time_label())
+    for ax, values in ((position, tracks["x"] / units.x), (velocity, tracks["v"] / units.v)):
+        draw_tracks(ax, time, values, broken, 0.9)
+        bound = 1.15 * largest(values, 0.02)  # the first swings are fast and would hide all others
+        ax.axhline(0, color=GREY, lw=0.5, zorder=0)
+        ax.axhline(bound, color="k", lw=0.7)
+        ax.set_ylim(-bound, 2.9 * bound)  # insets stand above the curves
+        ax.set_yticks([tick for tick in ax.get_yticks() if abs(tick) <= bound])
+        ax.ticklabel_format(style="sci", scilimits=(-3, 5), useMathText=True)
+        for line in ax.get_lines()[:2]:
+            line.set_clip_path(plt.Rectangle((0, 0), 1, 2 / 3.9, transform=ax.transAxes))
+    masses = room_above(position, (0.10, 0.65, 0.60, 0.32), units.time_label(), r"$M_{1,2}\,/\,t$")
+    share = tracks["mass"] / np.where(time > 0, time, np.nan)[:, None]
+    draw_tracks(masses, time, share, broken, 0.7)
+    masses.set_ylim(0, 1.15 * largest(share, 0.05))
+    rescaled = room_above(velocity, (0.42, 0.65, 0.56, 0.32) if result.force else (0.10, 0.65, 0.88, 0.32),
+                          r"$t^{1/3}$", r"$v\,t^{1/3}$")
+    swing = tracks["v"] / units.v * np.cbrt(time)[:, None]
+    draw_tracks(rescaled, np.cbrt(time), swing, broken, 0.6)
+    bound = 1.1 * largest(swing, 0.05)
+    rescaled.set_ylim(-bound, bound)
+    if result.force:
+        draw_force(room_above(velocity, (0.10, 0.65, 0.22, 0.32), units.position_label(), r"$F_\Sigma$"), result.force,
+                   units)
+    return figure
+
+
+def largest(values, left_out):
+    """Largest magnitude, but for the first part of the samples; of all where there is none after it."""
+    late = np.abs(values[int(left_out * len(values)):])
+    return np.nanmax(late if np.isfinite(late).any() else np.abs(values)) or 1.0
+
+
+def draw_tracks(ax, time, values, broken, width):
+    late = np.nan_to_num(np.abs(values[len(values) // 2:]))
+    wide = np.argsort(-late.mean(axis=0), kind="stable")  # the smaller swing on top
+    for k in wide:
+        ax.plot(*with_gaps(time, values[:, k], broken[:, k]), color=(BLUE, ORANGE)[k], lw=width)
+    ax.margins(x=0)
+
+
+def room_above(ax, box, x_label, y_label):
+    inset = ax.inset_axes(box)
+    inset.tick_params(labelsize=6.5)
+    inset.set_xlabel(x_label, fontsize=7, labelpad=1)
+    inset.set_ylabel(y_label, fontsize=7, labelpad=2)
+    inset.ticklabel_format(style="sci", scilimits=(-3, 5), useMathText=True)
+    inset.xaxis.get_offset_text().set_fontsize(6.5)
+    return inset
+
+
+def draw_force(ax, force, units):
+    """Equation (15): corrected, and dotted as printed."""
+    for name, line in (("force", "k-"), ("force_printed", ":")):
+        if name in force:
+            ax.plot(force["x"] / units.x, force[name] * units.x / units.energy, line, lw=0.9)
+    ax.margins(x=0)
+
+
+def envelope(time, values, begin=0.0):
+    """Samples; centre and largest value of each bin of the logarithm of time; which of them are fitted, bins FIRST and
+    later that begin after `begin` and hold ENOUGH samples; the fit in logarithms, exponent first."""
+    known = np.isfinite(values) & (values > 0) & (time > 0)
+    time, values = time[known], values[known]
+    edges = np.log10(time[-1]) - DECADES + DECADES * np.arange(BINS + 1) / BINS
+    number = np.ceil((np.log10(time) - edges[0]) / (edges[1] - edges[0]) - 1e-9).astype(int)  # 1 .. BINS
+    bins = [k for k in range(1, BINS + 1) if (number == k).any()]
+    top = np.array([values[number == k].max() for k in bins])
+    centre = 10 ** ((edges[np.array(bins) - 1] + edges[bins]) / 2)
+    held = np.array([(number == k).sum() for k in bins])
+    late = (np.array(bins) >= FIRST) & (10 ** edges[np.array(bins) - 1] >= begin) & (held >= ENOUGH)
+    fit = np.polyfit(np.log(centre[late]), np.log(top[late]), 1) if late.sum() > 1 else None
+    return time, values, centre, top, late, fit
+
+
+def draw_scaling(result, units, axes=None):
+    x, v, time = result.heaviest["x"], result.heaviest["v"], result.series["time"] / units.t
+    begin = min(result.meetings.get("time", ()), default=0.0) / units.t  # before, each swings on its own side
+    figure, axes = stacked(axes, 2 + bool(result.masses), height=2.3)
+    rows = ((np.abs(x[:, 1] - x[:, 0]) / units.x, 1 / 3, units.label("separation", r"separation$\,/\,l$"), BLUE),
+            (np.abs(v[:, 1] - v[:, 0]) / units.v, -1 / 3, units.label("relative speed", r"relative speed$\,/\,2u_0$"),
+             ORANGE))
+    for ax, (values, theory, label, colour) in zip(axes, rows):
+        draw_envelope(ax, time, values, theory, colour, begin)
+        ax.set(xlabel=units.time_label(), ylabel=label)
+    if result.masses:
+        draw_masses(axes[2], result.masses, units)
+    return figure
+
+
+def draw_envelope(ax, time, values, theory, colour, begin):
+    time, values, centre, top, late, fit = envelope(time, values, begin)
+    shown = time >= 10 ** (np.log10(time[-1]) - DECADES)
+    ax.loglog(time[shown], values[shown], ".", ms=1.5, mew=0, color=GREY, rasterized=True, label="samples")
+    ax.plot(centre[late], top[late], "o", ms=5, color=colour, label="maxima in logarithmic bins")
+    ax.plot(centre[~late], top[~late], "o", ms=5, mfc="none", color=colour)  # not fitted
+    if fit is not None:
+        ends = centre[late][[0, -1]]
+        ax.plot(ends, np.exp(fit[1]) * ends ** fit[0], color="k", lw=1.2, label=f"fit, exponent {fit[0]:.3f}")
+        middle = np.exp(np.log(top[late]).mean() - theory * np.log(centre[late]).mean())
+        ax.plot(ends, middle * ends ** theory, "k--", lw=1, label=f"section VI, exponent {theory:.3f}")
+    ax.set_ylim(bottom=top.min() / 300)
+    ax.legend(loc="lower left", ncol=2)
+
+
+def draw_masses(ax, masses, units):
+    """How many clusters are of a mass or heavier: few of them make no histogram."""
+    groups = thinned(masses, 6)
+    for group, colour in zip(groups, shades(len(groups))):
+        above = np.cumsum(group["clusters"][::-1].astype(float))[::-1]
+        ax.step(group["mass"], above, where="pre", color=colour, label=rf"$t={power(group['time'] / units.t)}$")
+    ax.set(xscale="log", yscale="log", xlabel=r"mass $M\,/\,m$", ylabel="clusters heavier than $M$")
+    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+
+
+def draw_masses_alone(result, units, axes=None):
+    figure, ax = subplots(axes, figsize=(5.6, 2.9), layout="constrained")
+    draw_masses(ax, result.masses, units)
+    return figure

@@ -1,0 +1,87 @@
+"""Free cooling on a ring: energy against time, beside the asymptotic law of the sticky gas. For independent velocities
+of variance s^2 and mean spacing a (m = 1)
+    E/N = 0.221376226650747359 s^2 tau^(-2/3),  clusters/N = 1.32825735990448415 tau^(-2/3),  tau = s t/a,
+exact for t -> infinity in the sticky gas (Burgers equation with white noise); Haff's law where it is predicted."""
+import numpy as np
+
+from .style import BLUE, GREEN, GREY, ORANGE, RED, power, stacked, thinned
+
+ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
+STRETCH = 80  # bodies of the last snapshot that are shown of the velocities
+
+
+def pictures(result, theory, _units):
+    if result.text("initial", "type") == "ring" and len(result.series.get("time", ())) > 1:
+        field = [("field", lambda axes=None: draw_field(result, axes))] if result.snapshots else []
+        return [("cooling", lambda axes=None: draw_cooling(result, theory, axes))] + field
+    return []
+
+
+def ring_of(result):
+    """N, s and a."""
+    particles = result.setting("initial", "particles", 1.0)
+    return (particles, np.sqrt(result.setting("initial", "variance", 1.0)),
+            result.setting("initial", "length", particles) / particles)
+
+
+def sticky_law(result, time):
+    """Energy per body."""
+    _, speed, spacing = ring_of(result)
+    with np.errstate(divide="ignore"):
+        return ENERGY * speed ** 2 * (speed * time / spacing) ** (-2 / 3)
+
+
+def draw_cooling(result, theory, axes=None):
+    particles, speed, spacing = ring_of(result)
+    series = result.series
+    later = series["time"] * speed / spacing > 0.03  # nothing has met before
+    time = series["time"][later]
+    energy, law = series["energy"][later] / particles, sticky_law(result, time)
+    merging = result.law in ("sticky", "wet")
+    figure, axes = stacked(axes, 3 if merging else 2, height=2.2, sharex=True)
+    asymptotic = law < 2 * energy[0]
+    axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
+    axes[0].plot(time[asymptotic], law[asymptotic], "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
+    known = [name for name in dict.fromkeys(row[0] for row in theory.rows) if name.startswith("energy")]
+    for quantity, colour in zip((name for name in known if "sticky" not in name), (ORANGE, GREEN, RED)):
+        t, value = theory.curve(quantity)
+        shown = (t >= time[0]) & (value / particles > 0.3 * energy.min())
+        axes[0].plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
+    axes[0].set_ylabel(r"energy per body $E\,/\,N$")
+    axes[0].legend(loc="lower left")
+    ratio = (energy / law)[asymptotic]
+    axes[1].semilogx(time[asymptotic], ratio, color=BLUE, lw=1.6)
+    axes[1].axhline(1, color="k", ls="--")
+    axes[1].set_ylabel("simulation / sticky law")
+    if ratio.size and ratio.max() > 10:
+        axes[1].set_yscale("log")
+    else:
+        axes[1].set_ylim(bottom=0)
+    if merging:
+        tau = speed * time / spacing
+        axes[2].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
+        axes[2].plot(time[tau > 1], CLUSTERS * tau[tau > 1] ** (-2 / 3), "k--",
+                     label=r"sticky gas, $1.328\,\tau^{-2/3}$")
+        axes[2].set_ylabel(r"clusters per body")
+        axes[2].legend(loc="lower left")
+    axes[-1].set_xlabel(rf"time $t$   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
+    return figure
+
+
+def draw_field(result, axes=None):
+    """Velocity against position on a stretch of the ring: clusters as large as they are heavy, and the saw-tooth."""
+    snapshots = thinned(result.snapshots, 4)
+    figure, axes = stacked(axes, len(snapshots), height=1.8, sharex=True)
+    last = snapshots[-1]
+    stretch = np.sort(last["x"] - last["x"].min())[min(len(last["x"]), STRETCH) - 1] or 1.0
+    for ax, snapshot in zip(axes, snapshots):
+        x = snapshot["x"] - last["x"].min()
+        shown = (x >= 0) & (x <= stretch)
+        size = 6 * np.sqrt(snapshot["m"][shown] / np.median(last["m"]))
+        ax.scatter(x[shown], snapshot["v"][shown], s=np.clip(size, 0.7, 60), color=BLUE, alpha=0.7, lw=0,
+                   rasterized=True)
+        ax.axhline(0, color=GREY, lw=0.6, zorder=0)
+        ax.set_ylabel(r"velocity $v$")
+        ax.set_title(f"$t={power(snapshot['time'])}$", loc="right", fontsize=8)
+    axes[-1].set_xlabel(r"position $x$, a stretch of the ring")
+    return figure

@@ -1,0 +1,57 @@
+"""Fig. 4: energy and number of contacts against time."""
+import numpy as np
+
+from .style import BLUE, GREEN, GREY, ORANGE, panel_letter, subplots
+
+
+def pictures(result, theory, units):
+    if (len(result.series.get("time", ())) > 1 and "energy" in result.series
+            and result.text("initial", "type") != "ring"):  # which has the cooling picture
+        return [("energy", lambda axes=None: draw_energy(result, theory, units, axes))]
+    return []
+
+
+def draw_energy(result, theory, units, axes=None):
+    """Energy, with equation (7) dotted and the sticky gas dashed; below it the number of contacts."""
+    series = result.series
+    time = series["time"] / units.t
+    figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), layout="constrained",
+                                       gridspec_kw={"height_ratios": (3, 2)})
+    energy = series["energy"] / units.energy
+    top.plot(time, energy, color=BLUE, lw=1.6, label="simulation")
+    cited = theory.equation("energy").replace("E_loss", r"$E_\mathrm{loss}$")
+    for quantity, line, label in (("energy", ":", cited), ("energy_sticky", "--", "sticky gas")):
+        t, value = theory.curve(quantity)
+        if quantity == "energy" and len(t):  # the linear profiles are meant for the expanding front
+            shown = t <= 1.3 * (theory.number("turnover_time") or np.inf)
+            t, value = t[shown], value[shown]
+        if len(t) and t[-1] > 0.02 * series["time"][-1]:  # else it would not be seen
+            top.plot(t / units.t, value / units.energy, "k" + line, lw=1.3, label=label)
+    onset = theory.number("collapse_onset_time")
+    if onset and onset <= series["time"][-1]:
+        for ax in (top, below):
+            ax.axvline(onset / units.t, color=GREY, lw=1, zorder=0, label="onset of collapse" if ax is top else None)
+    top.set_xlim(time[0], time[-1])
+    top.set_ylim(0, 1.05 * energy.max() if energy.max() > 0 else 1)
+    top.set_ylabel(units.label(r"kinetic energy $E$", units.energy_label()))
+    top.legend(loc="best")
+    draw_contacts(below, series, time)
+    below.set_xlabel(units.time_label())
+    for letter, ax in zip("ab", (top, below)):
+        panel_letter(ax, letter)
+    return figure
+
+
+def draw_contacts(ax, series, time):
+    for name, line, colour, label in (("contacts", "-", BLUE, "contacts"), ("merges", "-.", GREEN, "merges"),
+                                      ("contacts_below_cutoff", "--", ORANGE, "below the cut-off")):
+        count = series.get(name)
+        if count is not None and count.max() > 0:
+            count = count.astype(float)
+            ax.plot(time[count > 0], count[count > 0], line, color=colour, label=label)
+    counts = series.get("contacts")
+    if counts is not None and counts.max() > 1000:
+        ax.set_yscale("log")
+    ax.set_ylabel("number")
+    if ax.get_lines():
+        ax.legend(loc="best")

@@ -1,0 +1,103 @@
+"""Ensembles: mean over the replicas with its standard error (dark band; often no wider than the line) and the extremes
+(light band); profiles; and when inelastic collapse came, where replicas stopped there."""
+import numpy as np
+
+from .cooling import ring_of, sticky_law
+from .shock import draw_slope
+from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
+
+SERIES = (("energy", "energy"), ("contacts", "contacts"), ("merges", "merges"), ("front_right", "right front"),
+          ("cloud_width", "width of the cloud"))
+
+
+def pictures(result, theory, units):
+    found = []
+    if len(result.statistics.get("time", ())) > 1:
+        found.append(("ensemble", lambda axes=None: draw_series(result, theory, units, axes)))
+    if result.profile_statistics:
+        found.append(("profiles", lambda axes=None: draw_profiles(result, theory, units, axes)))
+    if np.isfinite(result.replicas.get("collapse_time", np.array([np.nan]))).any():
+        found.append(("collapse", lambda axes=None: draw_collapse(result, units, axes)))
+    return found
+
+
+def band(ax, x, quantity, unit, colour, **line):
+    """Mean, standard error and extremes of one quantity."""
+    mean, sem, low, high = (np.asarray(quantity[name], float) / unit for name in ("mean", "sem", "min", "max"))
+    ax.fill_between(x, low, high, color=colour, alpha=0.18, lw=0)
+    ax.fill_between(x, mean - sem, mean + sem, color=colour, alpha=0.45, lw=0)
+    ax.plot(x, mean, color=colour, **line)
+
+
+def draw_series(result, theory, units, axes=None):
+    time = result.statistics["time"] / units.t
+    scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
+    shown = [(name, label) for name, label in SERIES if name in result.statistics
+             and np.ndim(result.statistics[name]["mean"]) == 1 and (result.statistics[name]["max"] > 0).any()]
+    figure, axes = stacked(axes, len(shown), height=2.0, sharex=True)
+    replicas = len(result.replicas.get("index", ()))
+    axes[0].set_title((f"{replicas} replicas; " if replicas else "") + "bands: standard error, extremes", loc="right",
+                      fontsize=8)
+    axes[-1].set_xlabel(units.time_label())
+    axes[-1].set_xlim(time[0], time[-1])
+    for ax, (name, label) in zip(axes, shown):
+        band(ax, time, result.statistics[name], scale.get(name, 1), BLUE, lw=1.2, label="mean")
+        ax.set_ylabel(units.energy_label() if name == "energy" else
+                      label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else ""))
+    predicted = {"energy": ("energy_sticky", "sticky gas"), "front_right": ("front_position", "")}
+    for ax, (name, _) in zip(axes, shown):
+        quantity, label = predicted.get(name, ("", ""))
+        t, value = theory.curve(quantity)
+        inside = t / units.t <= time[-1]
+        if inside.any():
+            ax.plot(t[inside] / units.t, value[inside] / scale[name], "k--", lw=1,
+                    label=label or theory.equation(quantity))
+            ax.legend(loc="best")
+    if result.text("initial", "type") == "ring":
+        show_cooling(axes, result, time)
+    return figure
+
+
+def show_cooling(axes, result, time):
+    """Logarithmic times from the first contacts on, and the law of the sticky gas."""
+    particles, speed, spacing = ring_of(result)
+    later = time * speed / spacing > 0.03
+    law = particles * sticky_law(result, time[later])
+    shown = law < 2 * result.statistics["energy"]["max"][0]
+    axes[0].plot(time[later][shown], law[shown], "k--", lw=1, label="sticky gas")
+    axes[0].set_yscale("log")
+    axes[0].legend(loc="best")
+    axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))
+
+
+def draw_profiles(result, theory, units, axes=None):
+    profiles = thinned(result.profile_statistics, 6)
+    figure, (velocity, density) = stacked(axes, 2, width=6.4, height=2.7, sharex=True)
+    name = "mass_density" if result.law in ("wet", "sticky") and "mass_density" in profiles[0] else "density"
+    for profile, colour in zip(profiles, shades(len(profiles))):
+        x = profile["x"] / units.x
+        band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=rf"$t={profile['time'] / units.t:.5g}$")
+        band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
+    draw_slope(velocity, profiles, theory, units)
+    velocity.set_ylabel(units.label(r"mean velocity $\langle v\rangle$",
+                                    r"mean velocity $\langle v\rangle\,/\,2u_0$"))
+    density.set_ylabel(("mass " if name == "mass_density" else "")
+                       + units.label("density", r"density $\rho\,/\,\rho_0$"))
+    density.set_ylim(bottom=0)
+    density.set_xlabel(units.position_label())
+    velocity.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    return figure
+
+
+def draw_collapse(result, units, axes=None):
+    times = result.replicas["collapse_time"] / units.t
+    known = times[np.isfinite(times)]
+    figure, (ax,) = stacked(axes, 1, height=3.0)
+    bins = np.histogram_bin_edges(known, min(50, max(5, int(np.sqrt(len(known)) * 1.5))))
+    ax.hist(known, bins, color=BLUE, edgecolor="white", lw=0.4)
+    ax.axvline(np.median(known), color=ORANGE, lw=1.2, label=f"median {np.median(known):.5g}")
+    ax.axvline(known.mean(), color=GREY, lw=1.2, ls="--", label=f"mean {known.mean():.5g}")
+    ax.set(xlabel=units.label(r"time of collapse $t_c$", r"time of collapse $t_c\,/\,(l/2u_0)$"), ylabel="replicas")
+    ax.set_title(f"{len(known)} of {len(times)} replicas", loc="right", fontsize=8)
+    ax.legend(loc="best")
+    return figure

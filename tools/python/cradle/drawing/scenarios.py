@@ -1,0 +1,135 @@
+"""Sweeps that answer a question replica by replica: whether the two heaviest clusters of a wet shock pass or stick
+(paper, section VI), and when an inelastic shock collapses (against N_c/(2 u0), section III)."""
+import numpy as np
+
+from .style import GREY, shades, stacked, subplots
+
+REGIMES = {1: "apart", 2: "through each other", 3: "stuck last", 0: "one cluster only"}  # core/observe/scenario.hpp
+ENOUGH = 10  # replicas of a point of which shares are drawn
+COLOURS = {1: "#56B4E9", 2: "#0072B2", 3: "#D55E00", 0: "0.8"}
+
+
+def pictures(result, _theory, _units):
+    if not result.sweep:
+        return []
+    if "first_passed" in result.sweep:
+        regimes = [("regimes", lambda axes=None: draw_regimes(result, axes))]
+        enough = any(len(point.replicas.get("index", ())) >= ENOUGH for point in result.points)
+        return [("scenarios", lambda axes=None: draw_scenarios(result, axes))] * enough + regimes
+    if any(known_times(point).size for point in result.points):
+        return [("collapse", lambda axes=None: draw_collapse(result, axes))]
+    return []
+
+
+def wilson(hits, count):
+    """Share of hits and its 95 % confidence interval (Wilson 1927, doi 10.1080/01621459.1927.10502953)."""
+    z = 1.959964
+    share = hits / count
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * np.sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
+    return share, max(0.0, middle - half), min(1.0, middle + half)
+
+
+def curves(result):
+    """The points by perturbation, each by increasing loss."""
+    groups = {}
+    for point in result.points:
+        groups.setdefault(point.setting("initial", "perturbation", 0.0), []).append(point)
+    return {size: sorted(points, key=lambda p: p.setting("law", "loss")) for size, points in sorted(groups.items())}
+
+
+def shares(points, hits_of):
+    """Losses, shares and intervals over points of which hits_of gives (hits, count) with at least ENOUGH replicas."""
+    rows = []
+    for point in points:
+        hits, count = hits_of(point.replicas)
+        if count >= ENOUGH:
+            rows.append((point.setting("law", "loss"), *wilson(hits, count)))
+    return np.array(rows).reshape(-1, 4).T
+
+
+def first_pass(replicas):
+    known = replicas["first_passed"][np.isfinite(replicas["first_passed"])]
+    return known.sum(), len(known)
+
+
+def through(replicas):
+    return (replicas["regime"] == 2).sum(), len(replicas["regime"])
+
+
+def draw_scenarios(result, axes=None):
+    figure, axes = stacked(axes, 4, height=2.1, sharex=True)
+    groups = curves(result)
+    for (size, points), colour, mark in zip(groups.items(), shades(len(groups)), "osD^v<>"):
+        label = f"perturbation {size:g} $l$"
+        for ax, hits_of in ((axes[0], first_pass), (axes[1], through)):
+            loss, share, low, high = shares(points, hits_of)
+            ax.errorbar(loss, share, yerr=[share - low, high - share], fmt=mark + "-", ms=4, lw=0.9, capsize=2,
+                        color=colour, label=label)
+        for ax, name in ((axes[2], "sticks"), (axes[3], "separation_exponent")):
+            loss, mean, sem = [], [], []
+            for point in points:
+                values = point.replicas[name][np.isfinite(point.replicas[name])]
+                if len(values) >= ENOUGH:
+                    loss.append(point.setting("law", "loss"))
+                    mean.append(values.mean())
+                    sem.append(1.96 * values.std(ddof=1) / np.sqrt(len(values)))
+            ax.errorbar(loss, mean, yerr=sem, fmt=mark + "-", ms=4, lw=0.9, capsize=2, color=colour)
+    axes[0].set_ylabel("first meeting\nis a pass")
+    axes[1].set_ylabel("passing through\nat the end")
+    for ax in axes[:2]:
+        ax.set_ylim(-0.03, 1.03)
+    axes[2].set_ylabel("times stuck")
+    axes[2].set_yscale("symlog", linthresh=1)
+    axes[2].set_ylim(bottom=0)
+    axes[3].axhline(1 / 3, color=GREY, lw=0.8, zorder=0)
+    axes[3].set_ylabel("exponent of\nseparation")
+    axes[3].set(xscale="log", xlabel=r"$E_\mathrm{loss}$")
+    axes[0].legend(loc="best")
+    axes[0].set_title("95 % confidence", loc="right", fontsize=7)
+    return figure
+
+
+def draw_regimes(result, axes=None):
+    """What the replicas have come to at the end, in shares, for each loss and size of perturbation."""
+    groups = curves(result)
+    figure, axes = stacked(axes, len(groups), height=1.9, sharex=True)
+    for ax, (size, points) in zip(np.atleast_1d(axes), groups.items()):
+        below = np.zeros(len(points))
+        places = np.arange(len(points))
+        for regime, name in REGIMES.items():
+            share = np.array([np.mean(point.replicas["regime"] == regime) for point in points])
+            ax.bar(places, share, bottom=below, width=0.85, color=COLOURS[regime], label=name)
+            below += share
+        ax.set(ylim=(0, 1))
+        ax.set_ylabel(f"perturbation {size:g} $l$")
+        losses = [f"{point.setting('law', 'loss'):.2g}" for point in points]
+        ax.set_xticks(places, losses, fontsize=7, rotation=90 if len(points) > 13 else 0)
+    axes = np.atleast_1d(axes)
+    axes[-1].set_xlabel(r"$E_\mathrm{loss}$")
+    axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
+    return figure
+
+
+def known_times(point):
+    times = np.asarray(point.replicas.get("collapse_time", ()), float)
+    return times[np.isfinite(times)]
+
+
+def draw_collapse(result, axes=None):
+    """Distributions of t_c over replicas, in units of the time when N_c bodies are engaged."""
+    points = [point for point in result.points if known_times(point).size]
+    figure, ax = subplots(axes, figsize=(5.2, 3.6), layout="constrained")
+    for point, colour in zip(points, shades(len(points))):
+        restitution, speed = point.setting("law", "restitution"), point.setting("initial", "speed", 0.5)
+        spacing = point.setting("initial", "spacing", 1.0)
+        engaged = 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution))) * spacing / (2 * speed)
+        times = known_times(point) / engaged
+        ax.hist(times, bins=max(8, int(np.sqrt(len(times)) * 1.5)), density=True, histtype="step", lw=1.4, color=colour,
+                label=rf"$\epsilon={restitution:g}$: {times.mean():.4f} $\pm$ {times.std(ddof=1):.4f}, "
+                      f"{len(times)} replicas")
+    ax.axvline(1, color=GREY, lw=0.8, zorder=0)
+    ax.set_xlabel(r"collapse time $t_c\,/\,(N_c/2u_0)$")
+    ax.set_ylabel("probability density")
+    ax.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    return figure

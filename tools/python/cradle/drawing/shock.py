@@ -1,0 +1,129 @@
+"""Fig. 2, Fig. 6: velocities, mean velocity and density of a shock at several times.
+
+Where bodies stick, density of bodies and density of mass differ; then it is that of mass that is drawn.
+"""
+import numpy as np
+
+from .structure import core_of
+from .style import GREY, beside, panel_letter, shades, subplots, thinned
+
+BIN_BODIES = 25       # bins of mean velocity are merged to hold so many: the two rows alternate, and fewer alias
+
+
+def pictures(result, theory, units):
+    if result.text("initial", "type") == "ring" or (result.law == "sticky" and result.snapshots):
+        return []  # these have pictures of their own: cooling, sticky
+    if result.profiles or len(result.snapshots) > 1 or (result.snapshots and core_of(result, units) is None):
+        return [("shock", lambda axes=None: draw_shock(result, theory, units, axes))]
+    return []
+
+
+def averaged(snapshot, bins=50):
+    """A profile of a snapshot: mass-weighted mean velocity and number density."""
+    x, mass = snapshot["x"], snapshot["m"]
+    edges = np.linspace(x.min(), x.max(), bins + 1)
+    count, weight = np.histogram(x, edges)[0], np.histogram(x, edges, weights=mass)[0]
+    momentum = np.histogram(x, edges, weights=mass * snapshot["v"])[0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = momentum / weight
+    width = np.diff(edges)
+    return {"time": snapshot["time"], "x": (edges[1:] + edges[:-1]) / 2, "velocity": mean, "density": count / width,
+            "mass_density": weight / width}
+
+
+def merged(profile):
+    """Bin centres and mean velocities, bins merged until half of them hold BIN_BODIES, but not below five bins."""
+    x, count = profile["x"], profile["density"] * (profile["x"][1] - profile["x"][0])
+    if not (count > 0).any():
+        return x[:0], x[:0]
+    factor = int(np.clip(np.ceil(BIN_BODIES / np.median(count[count > 0])), 1, max(1, np.count_nonzero(count) // 5)))
+    weight = np.nan_to_num(profile.get("mass_density", profile["density"]))
+    momentum = weight * np.nan_to_num(profile["velocity"])
+    starts = np.arange(0, len(x), factor)
+    total, moment = np.add.reduceat(weight, starts), np.add.reduceat(weight * x, starts)
+    full = total > 0
+    return moment[full] / total[full], np.add.reduceat(momentum, starts)[full] / total[full]
+
+
+def draw_shock(result, theory, units, axes=None):
+    """Velocities of single bodies, averaged velocities, density."""
+    most = 8 if result.law == "wet" else 7  # a wet shock goes through one stage more
+    snapshots = thinned(result.snapshots, most)
+    profiles = result.profiles or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
+    common = [p for p in profiles if p["time"] in {s["time"] for s in snapshots}]
+    profiles = thinned(common if len(common) > 1 else profiles, most)
+    times = sorted({group["time"] for group in snapshots + profiles})
+    colour = dict(zip(times, shades(len(times))))
+    name = {time: rf"$t={time / units.t:.5g}$" for time in times}
+    panels = "abc"[:bool(snapshots) + 2 * bool(profiles)]
+    figure, axes = subplots(axes, len(panels), 1, sharex=True, figsize=(6.4, 2.5 * len(panels) + 0.5),
+                                layout="constrained")
+    axes = list(np.atleast_1d(axes))
+    for letter, ax in zip(panels, axes):
+        panel_letter(ax, letter)
+    axes[-1].set_xlabel(units.position_label())
+    heavy = result.law == "wet" and all("mass_density" in p for p in profiles)
+    density = "mass_density" if heavy else "density"
+    named = set()
+    if snapshots:
+        named = {group["time"] for group in snapshots}
+        draw_velocities(axes.pop(0), snapshots, theory, units, colour, name)
+    if profiles:
+        for group in profiles:
+            label = None if group["time"] in named else name[group["time"]]
+            x, mean = merged(group)
+            if 2 * len(x) <= np.count_nonzero(group["density"]) + 1:
+                axes[0].set_title(f"bins with fewer than {BIN_BODIES} bodies merged", loc="right", fontsize=7)
+            axes[0].plot(x / units.x, mean / units.v, "-", lw=1.1, marker=".", ms=3, color=colour[group["time"]],
+                         label=label)
+            axes[1].plot(group["x"] / units.x, group[density] * units.x, drawstyle="steps-mid", lw=1.1,
+                         color=colour[group["time"]])
+        draw_slope(axes[0], profiles, theory, units)
+        axes[0].set_ylabel(units.label(r"mean velocity $\langle v\rangle$",
+                                       r"mean velocity $\langle v\rangle\,/\,2u_0$"))
+        axes[1].set_ylabel(("mass " if heavy else "") + units.label("density", r"density $\rho\,/\,\rho_0$"))
+        beside(axes[0])
+        filled = np.concatenate([p[density][p[density] > 0] for p in profiles])
+        if len(filled) and filled.max() > 30 * np.median(filled):
+            axes[1].set_yscale("log")
+            axes[1].set_ylim(bottom=0.5 * filled.min())
+        else:
+            axes[1].set_ylim(bottom=0)
+    return figure
+
+
+def draw_velocities(ax, snapshots, theory, units, colour, name):
+    """Single bodies, and the front's path (x_f, u_f) with its mirror image."""
+    for group in snapshots:
+        size = np.clip(1.6 * (3000 / len(group["x"])) ** 0.25, 1.6, 3.5)
+        ax.plot(group["x"] / units.x, group["v"] / units.v, ".", ms=size, mew=0, color=colour[group["time"]],
+                label=name[group["time"]], rasterized=True)
+    if units.rows:
+        for v in (0.5, -0.5):
+            ax.axhline(v, color=GREY, lw=0.8, zorder=0, label="incoming rows" if v > 0 else None)
+    time, front = theory.curve("front_position")
+    speed_time, speed = theory.curve("front_velocity")
+    if len(front) and len(speed):
+        speed = np.interp(time, speed_time, speed)
+        known = (time <= max(group["time"] for group in snapshots)) & (front >= 0)
+        cited = theory.equation("front_velocity", "front_position")
+        for sign in (1, -1):
+            ax.plot(sign * front[known] / units.x, sign * speed[known] / units.v, "k--", lw=1,
+                    label="front, " + cited if sign > 0 else None)
+    ax.set_ylabel(units.velocity_label())
+    legend = beside(ax)
+    for handle in getattr(legend, "legend_handles", None) or legend.legendHandles:
+        if handle.get_linestyle() == "None":
+            handle.set_markersize(7)
+
+
+def draw_slope(ax, profiles, theory, units):
+    slope = theory.number("mean_velocity_slope")
+    if slope is None:
+        time, value = theory.curve("mean_velocity_slope")
+        slope = np.interp(profiles[0]["time"], time, value) if len(time) else None
+    if slope is not None:
+        span = max(np.abs(p["x"]).max() for p in profiles)
+        ends = np.array([-1, 1]) * min(theory.number("maximal_front") or span, span)
+        ax.plot(ends / units.x, ends * slope / units.v, color=GREY, lw=5, alpha=0.55, zorder=0, solid_capstyle="butt",
+                label="slope, " + theory.equation("mean_velocity_slope"))

@@ -1,0 +1,108 @@
+"""Fig. 1: rows of sticky bodies and the weak solution. Velocity stands still as a step u_l, 0, u_r; density is that of
+the rows and a delta peak, which grows at sqrt(rho_l rho_r) (u_l - u_r), 2 rho_0 u_0 for equal rows, from m_0 on."""
+import numpy as np
+
+from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
+
+
+def pictures(result, _theory, units):
+    if result.law == "sticky" and result.text("initial", "type") == "rows" and result.snapshots:
+        return [("sticky", lambda axes=None: draw_sticky(result, units, axes))]
+    return []
+
+
+def rows_of(result):
+    """Density and velocity of the left and of the right row, and what is between them: mass and velocity."""
+    if "left" not in result.scene["initial"]:
+        density, speed = 1 / result.setting("initial", "spacing", 1.0), result.setting("initial", "speed", 0.5)
+        return (density, speed), (density, -speed), (0.0, 0.0)
+    pairs = [tuple(result.setting("initial", f"{part}.{key}", default) for key, default in keys)
+             for part, keys in (("left", (("density", 1.0), ("speed", 0.5))),
+                                ("right", (("density", 1.0), ("speed", -0.5))),
+                                ("centre", (("mass", 0.0), ("speed", 0.0))))]
+    return tuple(pairs)
+
+
+def peak(snapshot):
+    """Position, velocity and mass of the heaviest body."""
+    k = int(np.argmax(snapshot["m"]))
+    return snapshot["x"][k], snapshot["v"][k], snapshot["m"][k]
+
+
+def draw_sticky(result, units, axes=None):
+    (left, u_left), (right, u_right), (core, _) = rows_of(result)
+    snapshots, profiles = thinned(result.snapshots, 5), thinned(result.profiles, 5)
+    times = sorted({group["time"] for group in snapshots + profiles})
+    colour = dict(zip(times, shades(len(times))))
+    name = {time: rf"$t={time / units.t:.5g}$" for time in times}
+    figure, (velocity, density, mass) = stacked(axes, 3, height=2.3)
+    roots = np.sqrt([left, right])
+    front = (roots[0] * u_left + roots[1] * u_right) / roots.sum()  # velocity of the peak, 0 for equal rows
+    growth = roots[0] * roots[1] * (u_left - u_right)
+    span = max([np.abs(p["x"][p["density"] > 0]).max() for p in profiles if (p["density"] > 0).any()], default=1.0)
+    last = times[-1]
+
+    step = np.array([-span, front * last, front * last, span]) / units.x
+    velocity.plot(step, np.array([u_left, u_left, u_right, u_right]) / units.v, color=GREY, lw=7, alpha=0.5, zorder=0,
+                  solid_capstyle="butt", label="weak solution")
+    velocity.plot(front * last / units.x, front / units.v, "o", color=GREY, ms=9, alpha=0.5, mew=0, zorder=0)
+    taken = [max(-span, (front - u_left) * last), min(span, (front - u_right) * last)]
+    density.fill_between(np.array([taken[0], 0]) / units.x, left * units.x, fc="none", ec="0.75", hatch="////", lw=0,
+                         label=f"taken up until {name[last]}")
+    density.fill_between(np.array([0, taken[1]]) / units.x, right * units.x, fc="none", ec="0.75", hatch="////", lw=0)
+    for order, profile in enumerate(profiles):
+        x, time = profile["x"], profile["time"]
+        at = [peak(s)[0] for s in snapshots if s["time"] == time]
+        width = x[1] - x[0]
+        rows = (profile["density"] > 0) & (np.abs(x - (at[0] if at else front * time)) > width / 2)
+        line = 3.4 - 0.7 * order  # one inside the other: the rows get shorter, the profile stays
+        for side, u in ((x < front * time, u_left), (x > front * time, u_right)):
+            velocity.plot(x[rows & side] / units.x, profile["velocity"][rows & side] / units.v, lw=line,
+                          color=colour[time], solid_capstyle="butt", label=name[time] if u == u_left else None)
+            density.plot(x[rows & side] / units.x, profile["density"][rows & side] * units.x, lw=line,
+                         color=colour[time], solid_capstyle="butt", drawstyle="steps-mid")
+    tall = max(peak(s)[2] for s in snapshots)
+    rows = max(left, right) * units.x
+    shares = np.array([peak(s)[2] / tall for s in snapshots])
+    # the heaviest peak ends here, none at the line of the rows; arrows are to scale with each other
+    high = rows * max((2.6, 3.2, 3.8), key=lambda factor: np.abs(factor * shares - 1).min())
+    for snapshot in reversed(snapshots):
+        x, v, m = peak(snapshot)
+        velocity.plot(x / units.x, v / units.v, "o", ms=4, color=colour[snapshot["time"]])
+        density.annotate("", (x / units.x, high * m / tall), (x / units.x, 0), zorder=4,
+                         arrowprops={"arrowstyle": "-|>", "color": colour[snapshot["time"]], "lw": 1.6, "shrinkA": 0,
+                                     "shrinkB": 0})
+        density.annotate(rf"$M={m:.6g}$ at {name[snapshot['time']]}", (x / units.x, high * m / tall), (6, 1),
+                         textcoords="offset points", fontsize=7.5, va="bottom",
+                         bbox={"fc": "white", "ec": "none", "alpha": 0.85, "pad": 0.8})
+    for sign, u in ((-1, u_left), (1, u_right)):
+        velocity.annotate("", (sign * 0.45 * span / units.x, 0.62 * u / units.v),
+                          (sign * 0.75 * span / units.x, 0.62 * u / units.v), arrowprops={"arrowstyle": "->", "lw": 1})
+        velocity.text(sign * 0.6 * span / units.x, 0.5 * u / units.v, "row", ha="center",
+                      va="top" if u > 0 else "bottom")
+    velocity.set(ylabel=units.velocity_label(), xlabel=units.position_label())
+    velocity.legend(loc="upper right", ncol=2)
+    density.set(ylabel=units.label(r"density $\rho$", r"density $\rho\,/\,\rho_0$"), xlabel=units.position_label(),
+                ylim=(0, 1.15 * high), xlim=velocity.get_xlim())
+    density.legend(loc="upper left")
+    density.set_title("arrows: delta peak, as high as it is heavy", loc="right", fontsize=8)
+    if "cloud_mass" in result.series:
+        equal = left == right and u_left == -u_right
+        formula = r"$m_0+2t\rho_0u_0$" if equal else r"$m_0+\sqrt{\rho_l\rho_r}\,(u_l-u_r)\,t$"
+        draw_mass(mass, result, units, formula if equal or not core else formula + " (asymptotic)", core, growth)
+    return figure
+
+
+def draw_mass(ax, result, units, formula, core, growth):
+    """Mass of what has stuck together beside the line of the weak solution."""
+    time, cloud = result.series["time"], result.series["cloud_mass"]
+    collided = cloud > 0
+    ax.plot(time / units.t, core + growth * time, color=GREY, lw=5, alpha=0.5,
+            label=rf"{formula}, ${core:.4g}+{growth * units.t:.4g}\,t$")
+    ax.plot(time[collided] / units.t, cloud[collided], color=BLUE, label="simulation")
+    heaviest = np.array([(s["time"], peak(s)[2]) for s in result.snapshots])
+    ax.plot(heaviest[:, 0] / units.t, heaviest[:, 1], "o", color=ORANGE, ms=5, label="heaviest body of the snapshots")
+    off = np.abs(cloud - core - growth * time)[collided]
+    ax.legend(loc="upper left", title=f"largest difference {off.max():.2g}" if off.size else None, title_fontsize=7.5)
+    ax.set(xlabel=units.time_label(), ylabel="mass of the cluster $M$", ylim=(0, None), xlim=(time[0], time[-1]))
+    ax.set_xlim(time[0] / units.t, time[-1] / units.t)

@@ -1,0 +1,93 @@
+"""Fig. 3: four nested zooms into a core that positions cannot resolve, drawn from the gaps."""
+import numpy as np
+
+from .style import BLUE, RED, plt, subplots
+
+CORE_GAP = 1e-2       # of the spacing: a quarter of the gaps below this makes a core
+CORE_SHARE = 16       # the innermost zoom holds one body in so many
+CORE_BODIES = 60      # but at least these
+
+
+def pictures(result, _theory, units):
+    core = core_of(result, units)
+    return [] if core is None else [("structure", lambda axes=None: draw_structure(core, units, axes))]
+
+
+def core_of(result, units):
+    """The last snapshot in which a quarter of the gaps are far below the spacing, or None."""
+    for snapshot in reversed(result.snapshots):
+        gap = snapshot.get("gap", ())
+        if len(gap) > 2 * CORE_BODIES and np.quantile(gap, 0.25) < CORE_GAP * units.x:
+            return snapshot
+    return None
+
+
+def distances(gap, body):
+    """Distance of every body from one of them, summed gap by gap outwards: below any resolution of the positions."""
+    right = np.concatenate([[0.0], np.cumsum(gap[body:])])
+    left = np.cumsum(gap[:body][::-1])[::-1]
+    return np.concatenate([-left, right])
+
+
+def densest(gap, bodies):
+    """The body in the middle of the narrowest run of so many bodies (at least 2), and that run's width.
+
+    Differences of one running sum would lose the small gaps behind the large: each window is the end of one block plus
+    the beginning of the next, both summed from small terms only.
+    """
+    size = bodies - 1
+    blocks = np.concatenate([gap, np.zeros(-len(gap) % size)]).reshape(-1, size)
+    ends = np.cumsum(blocks[:, ::-1], axis=1)[:, ::-1].ravel()
+    starts = np.cumsum(blocks, axis=1).ravel()
+    first = np.arange(len(gap) - size + 1)
+    width = ends[first] + np.where(first % size == 0, 0.0, starts[first + size - 1])
+    best = int(np.argmin(width))
+    return best + bodies // 2, float(width[best])
+
+
+def draw_structure(snapshot, units, axes=None):
+    """Each panel is the rectangle of the one before; all distances are from one body of the core."""
+    gap, v = snapshot["gap"], snapshot["v"]
+    inmost = max(CORE_BODIES, len(v) // CORE_SHARE)
+    body, width = densest(gap, inmost)
+    x = distances(gap, body)
+    whole, core = 1.05 * max(-x[0], x[-1]), 1.05 * max(width / 2, -x[body - inmost // 2], x[body + (inmost - 1) // 2])
+    boxes = []
+    steps = np.arange(4) / 3
+    # between equal ratios of width and equal ratios of number: a collapsed core would leave middle panels empty
+    held = (len(x) * (inmost / len(x)) ** steps).astype(int)
+    by_number = np.sort(np.abs(x))[held - 1] * 1.05
+    for half in np.sqrt(whole * (core / whole) ** steps * by_number):
+        inside = np.abs(x) <= half
+        # the first panel shows all; in the others a few fast bodies passing by would hide the rest
+        low, high = np.quantile(v[inside], (0.01, 0.99) if boxes else (0, 1))
+        pad = 0.12 * (high - low) or 1e-3 * units.v
+        boxes.append((half, low - pad, high + pad, inside))
+    reference = rf"x_{{{int(snapshot['index'][body])}}}"
+    own = axes is None
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6), layout="constrained")
+    dotted = False
+    for k, ax in enumerate(axes.flat):
+        half, low, high, inside = boxes[k]
+        size = np.clip(1.6 * (3000 / inside.sum()) ** 0.25, 1.6, 4)
+        ax.plot(x[inside] / units.x, v[inside] / units.v, ".", color=BLUE, ms=size, mew=0, rasterized=True)
+        ax.set(xlim=(-half / units.x, half / units.x), ylim=(low / units.v, high / units.v))
+        if k < 3:
+            inner, bottom, top, _ = boxes[k + 1]
+            wide, tall = max(inner, 0.012 * half), max(top - bottom, 0.024 * (high - low))  # never too small to see
+            enlarged = wide > inner or tall > top - bottom
+            ax.add_patch(plt.Rectangle((-wide / units.x, ((bottom + top - tall) / 2) / units.v), 2 * wide / units.x,
+                                       tall / units.v, fill=False, ec=RED, lw=1.2, zorder=3,
+                                       ls=":" if enlarged else "-"))
+            dotted = dotted or enlarged
+        ax.set(xlabel=units.label(rf"$x-{reference}$", rf"$(x-{reference})\,/\,l$"), ylabel=units.velocity_label())
+        ax.ticklabel_format(axis="both", style="sci", scilimits=(-2, 3), useMathText=True)
+        ax.set_title(rf"$\bf({'abcd'[k]})$  {int(inside.sum())} bodies", fontsize=8, loc="right")
+    length = units.label("", r"$\,l$")
+    place = snapshot["x"][body] / units.x
+    title = (rf"$t={snapshot['time'] / units.t:.6g}$,  ${reference}={place:.6g}${length},  "
+             f"smallest gap {gap.min() / units.x:.1e}{length};  rectangle: the next panel"
+             + (" (dotted: drawn larger)" if dotted else ""))
+    if own:  # else it is the caller's figure
+        figure.suptitle(title, fontsize=9)
+    return figure

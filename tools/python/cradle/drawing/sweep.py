@@ -1,0 +1,207 @@
+"""Sweeps: what depends on the parameters that were varied. Rings: energies of all points in one panel, and their ratio
+to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). Else every number of the summary."""
+import numpy as np
+
+from . import beyond
+from .cooling import ring_of, sticky_law
+from .style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked, subplots
+from .zone import model_width
+
+SPEED, LOSS = "initial.speed", "law.loss"
+BESIDE = ("_error", "_replicas")  # what goes with a number of the summary
+MOST = 9  # numbers in one picture
+
+
+def pictures(result, theory, units):
+    if not result.sweep:
+        return []
+    found = beyond.pictures(result, theory, units)
+    keys = varied(result)
+    if len(cooling_points(result)) > 1:
+        found.append(("cooling", lambda axes=None: draw_cooling(result, axes)))
+    if "zone_width" in result.sweep and {SPEED, LOSS} & set(keys):
+        found.append(("zone", lambda axes=None: draw_widths(result, keys, axes)))
+    if numbers(result) and not cooling_points(result):
+        draw = draw_map if is_grid(keys) else draw_cuts
+        found.append(("sweep", lambda axes=None: draw(result, keys, axes)))
+    return found
+
+
+def is_grid(keys):
+    """Two keys in all combinations."""
+    points = set(zip(*keys.values()))
+    return len(keys) == 2 and len(points) == np.prod([len(np.unique(values)) for values in keys.values()])
+
+
+def varied(result):
+    """Values of each key of the scene that takes more than one; where a point does not set it, its scene's."""
+    keys = {name: np.array(column, float) for name, column in result.sweep.items() if "." in name}
+    for name, values in keys.items():
+        for number in np.flatnonzero(np.isnan(values)):
+            if number < len(result.points):
+                values[number] = result.points[number].setting(*name.split(".", 1), np.nan)
+    return {name: values for name, values in keys.items() if len(np.unique(values)) > 1}
+
+
+def numbers(result):
+    """Columns that came out of the runs and differ: those that every run has last."""
+    found = [name for name, column in result.sweep.items()
+             if "." not in name and name not in ("point", "replicas") and not name.endswith(BESIDE)
+             and len(np.unique(column[np.isfinite(column)])) > 1]
+    return sorted(found, key=lambda name: name in ("contacts", "energy", "merges"))[:MOST]
+
+
+def error_of(result, name):
+    """Bars; none where they are not known, as that of a mean over one replica."""
+    error = result.sweep.get(name + "_error")
+    return None if error is None else np.nan_to_num(error)
+
+
+# ---- free cooling
+
+def cooling_points(result):
+    return [p for p in result.points if p.text("initial", "type") == "ring" and len(p.series.get("time", ())) > 1]
+
+
+def label_of(point):
+    """The law with its parameter."""
+    parameter, symbol = {"wet": ("loss", r"E_\mathrm{loss}"), "inelastic": ("restitution", r"\epsilon")}.get(
+        point.law, ("", ""))
+    return point.law + (rf", ${symbol}={point.setting('law', parameter):.4g}$" if parameter else "")
+
+
+def draw_cooling(result, axes=None):
+    points = cooling_points(result)
+    reference = next((p for p in points if p.law == "sticky"), None)
+    figure, (top, below) = stacked(axes, 2, height=2.9, sharex=True)
+    others = [p for p in points if p is not reference]
+    for point, colour in list(zip(others, shades(len(others)))) + ([(reference, "k")] if reference else []):
+        particles, speed, spacing = ring_of(point)
+        later = point.series["time"] * speed / spacing > 0.03  # nothing has met before
+        time = point.series["time"][later]
+        energy = point.series["energy"][later] / particles
+        line = "--" if point.law == "inelastic" else "-"
+        top.loglog(time, energy, line, color=colour, label=label_of(point), zorder=3 if point is reference else 2)
+        if reference is not None:
+            seen = reference.series["time"] > 0
+            known = np.interp(np.log(time), np.log(reference.series["time"][seen]),
+                              np.log(reference.series["energy"][seen] / ring_of(reference)[0]), left=np.nan,
+                              right=np.nan)
+            below.loglog(time, energy / np.exp(known), line, color=colour)
+        else:
+            below.loglog(time, energy / sticky_law(point, time), line, color=colour)
+    time = points[0].series["time"]
+    law = sticky_law(points[0], time)
+    shown = law < 2 * max(p.series["energy"].max() / ring_of(p)[0] for p in points)
+    top.plot(time[shown], law[shown], ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
+    below.axhline(1, color=GREY, lw=0.8, zorder=0)
+    top.set_ylabel(r"energy per body $E\,/\,N$")
+    below.set(xlabel=r"time $t$", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
+    top.legend(loc="lower left")
+    return figure
+
+
+# ---- the width of the interaction zone
+
+def draw_widths(result, keys, axes=None):
+    """Fig. 8. The width is counted to u_crit; the upper bar goes on to u0/|slope|, where u+ would be 0 as in (13)."""
+    width = result.sweep["zone_width"]
+    first = result.points[0] if result.points else result
+    speed = keys.get(SPEED, np.full(len(width), first.setting("initial", "speed", 0.5)))
+    loss = keys.get(LOSS, np.full(len(width), first.setting("law", "loss", np.nan)))
+    spacing = first.setting("initial", "spacing", 1.0)
+    error = error_of(result, "zone_width")
+    error = np.zeros(len(width)) if error is None else error
+    figure, ax = subplots(axes, figsize=(5.2, 4.2), layout="constrained")
+    other = ax.twiny()
+    for axes, key, values, fixed, mark, line, colour in ((ax, SPEED, speed, loss, "o", "--", BLUE),
+                                                         (other, LOSS, loss, speed, "s", "-", ORANGE)):
+        at = commonest(fixed)
+        cut = (fixed == at) & np.isfinite(width)
+        if len(np.unique(values[cut])) < 2:
+            axes.xaxis.set_visible(False)
+            continue
+        slow = np.minimum(2 * np.sqrt(loss) / speed, 0.99)  # u_crit/u0
+        upper = np.maximum(error, width * slow / (1 - slow))[cut]
+        given = rf"$E_\mathrm{{loss}}={at:.4g}$" if key == SPEED else rf"$u_0={at:.4g}$"
+        axes.errorbar(values[cut], width[cut], yerr=[error[cut], upper], fmt=mark, color=colour, capsize=3, lw=1, ms=5,
+                      label=given)
+        fine = np.geomspace(values[cut].min(), values[cut].max(), 200)
+        axes.plot(fine, model_width(fine, at, spacing) if key == SPEED else model_width(at, fine, spacing), line,
+                  color=colour, label=f"(13), {given}")
+        axes.set_xlabel(r"$u_0$ (circles)" if key == SPEED else r"$E_\mathrm{loss}$ (squares)", color=colour)
+        axes.set(xscale="log", yscale="log")
+    ax.set_ylabel(r"width of the zone $2L$" if spacing != 1 else r"width of the zone $2L\,/\,l$")
+    handles = [item for axes in (ax, other) for item in zip(*axes.get_legend_handles_labels())]
+    ax.legend(*zip(*handles), loc="upper center", ncol=2)
+    ax.set_ylim(top=3 * ax.get_ylim()[1])  # room for the legend
+    for axes in (ax, other):
+        axes.xaxis.set_minor_formatter(plt.NullFormatter())
+        axes.xaxis.set_major_locator(plt.matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter(plt.FuncFormatter(lambda value, _: f"{value:.3g}"))
+    return figure
+
+
+def commonest(values):
+    found, counts = np.unique(values, return_counts=True)
+    return found[np.argmax(counts)]
+
+
+# ---- anything else
+
+def draw_cuts(result, keys, axes=None):
+    """Each number of the summary against each key, the others at their commonest; without keys, point by point."""
+    names = numbers(result)
+    columns = dict(list(keys.items())[:3]) or {"point": np.arange(len(result.sweep[names[0]]))}
+    size = (max(5.6, 3 * len(columns)), 1.9 * len(names) + 0.3)
+    figure, axes = subplots(axes, len(names), len(columns), figsize=size, layout="constrained", squeeze=False,
+                            sharex="col", sharey="row")
+    for column, (key, x) in enumerate(columns.items()):
+        cut = np.all([values == commonest(values) for name, values in keys.items() if name != key], axis=0)
+        at = np.flatnonzero(cut & np.isfinite(x))
+        at = at[np.argsort(x[at], kind="stable")]
+        for ax, name in zip(axes[:, column], names):
+            error = error_of(result, name)
+            ax.errorbar(x[at], result.sweep[name][at], yerr=None if error is None else error[at], fmt="o-", ms=4,
+                        lw=0.8, capsize=2, color=BLUE)
+            spread(ax.set_yscale, result.sweep[name])
+        spread(axes[-1, column].set_xscale, x, 8)
+        axes[-1, column].set_xlabel(key)
+    for ax, name in zip(axes[:, 0], names):
+        ax.set_ylabel(name.replace("_", " "))
+    return figure
+
+
+def wide(values, ratio=30):
+    values = values[np.isfinite(values)]
+    return values.size > 0 and values.min() > 0 and values.max() > ratio * values.min()
+
+
+def spread(scale, values, ratio=30):
+    if wide(values, ratio):
+        scale("log")
+
+
+def draw_map(result, keys, axes=None):
+    """Numbers over the plane of two keys; a cross where there is none."""
+    names, (x_key, y_key) = numbers(result), sorted(keys, key=lambda key: -len(np.unique(keys[key])))
+    columns = min(2 if len(names) < 5 else 3, len(names))
+    rows = -(-len(names) // columns)
+    figure, axes = subplots(axes, rows, columns, figsize=(3.4 * columns, 2.8 * rows), layout="constrained",
+                            squeeze=False)
+    x, y = keys[x_key], keys[y_key]
+    for k, ax in enumerate(axes.flat):
+        if k >= len(names):
+            ax.set_visible(False)
+            continue
+        values = result.sweep[names[k]].astype(float)
+        known = np.isfinite(values)
+        norm = plt.matplotlib.colors.LogNorm() if wide(values) else None
+        dots = ax.scatter(x[known], y[known], c=values[known], norm=norm, marker="s", s=60, cmap="viridis")
+        ax.plot(x[~known], y[~known], "x", color=GREY)
+        figure.colorbar(dots, ax=ax, label=names[k].replace("_", " "))
+        spread(ax.set_xscale, x, 8)
+        spread(ax.set_yscale, y, 8)
+        ax.set(xlabel=x_key, ylabel=y_key)
+        panel_letter(ax, "abcdefghi"[k])
+    return figure

@@ -1,0 +1,74 @@
+"""Fig. 7: densities and velocities of right- and left-movers in the interaction zone of the late wet shock, averaged
+over time, beside the linear model of section VI: equations (9) and (10) with 2L of (13) and k = sqrt 6. The measured
+width is the length over which u+ falls from u0 to u_crit at its steepness; (13) counts the fall to 0."""
+import numpy as np
+
+from .style import BLUE, GREY, ORANGE, stacked
+
+EXCESS = np.sqrt(6.0)  # k = n~/n0, where (12) and (13) agree
+
+
+def pictures(result, _theory, units):
+    return [("zone", lambda axes=None: draw_zone(result, units, axes))] if "x" in result.zone else []
+
+
+def model_width(speed, loss, spacing=1.0):
+    """2L of equation (13); m = 1."""
+    return speed ** 2 * spacing / (loss * (2 + EXCESS))
+
+
+def draw_zone(result, units, axes=None):
+    zone = result.zone
+    speed, loss = result.setting("initial", "speed", 0.5), result.setting("law", "loss", np.nan)
+    spacing = result.setting("initial", "spacing", 1.0)
+    x = zone["x"] / units.x
+    half = model_width(speed, loss, spacing) / 2 / units.x
+    measured, error = zone["width"] / units.x, zone["width_error"] / units.x
+    figure, (velocity, density, mass) = stacked(axes, 3, height=2.1, sharex=True)
+    slow = 2 * np.sqrt(loss)
+    for sign, name, colour, line in ((1, "right", BLUE, "-"), (-1, "left", ORANGE, "--")):
+        index = "+" if sign > 0 else "-"
+        inside = np.array([-half, half])
+        u = (-(speed - slow) * inside / (2 * half) + sign * (speed + slow) / 2) / units.v
+        n = 1 + EXCESS / 2 + sign * EXCESS * inside / (2 * half)
+        outer = sign * np.array([min(x[0], -1.2 * half), -half])
+        velocity.plot(outer, np.full(2, sign * speed / units.v), line, color="k", lw=0.9)
+        velocity.plot(inside, u, line, color="k", lw=0.9, label=f"$u_{index}$, (9)")
+        density.plot(outer, np.ones(2), line, color="k", lw=0.9)
+        density.plot(inside, n, line, color="k", lw=0.9, label=f"$n_{index}$, (10)")
+        moving = zone[f"density_{name}"] > 0
+        velocity.plot(x[moving], zone[f"velocity_{name}"][moving] / units.v, "o" if sign > 0 else "s", ms=3.2,
+                      color=colour, mfc=colour if sign > 0 else "none", label=f"{name}-movers")
+        density.plot(x, zone[f"density_{name}"] * spacing, "o" if sign > 0 else "s", ms=3.2, color=colour,
+                     mfc=colour if sign > 0 else "none", label=f"{name}-movers")
+    mass.plot(x, zone["mass_density"] * spacing, drawstyle="steps-mid", color=BLUE)
+    mass.set_yscale("log")
+    mass.set_title("peaks: the heavy clusters; shaded: $2L$ of (13)", loc="right", fontsize=8)
+    for ax in (velocity, density, mass):
+        ax.axvspan(-half, half, color=GREY, alpha=0.18, lw=0, zorder=0)
+    velocity.axhline(0, color=GREY, lw=0.6)
+    top = velocity.get_ylim()[1]
+    velocity.set_ylim(1.05 * velocity.get_ylim()[0], 2.55 * top)
+    if np.isfinite(measured):  # else it has not fallen to u_crit within the bins
+        draw_width(velocity, measured, error, longer=measured / (1 - slow / speed) if slow < speed else np.nan,
+                   model=2 * half, top=top)
+    velocity.set_yticks([-speed / units.v, 0, speed / units.v])
+    velocity.set_ylabel(units.velocity_label())
+    density.set_ylabel(units.label("density $n$", r"density $n\,/\,n_0$"))
+    density.set_ylim(bottom=0)
+    mass.set_ylabel(units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"))
+    mass.set_xlabel(units.position_label())
+    for ax in (velocity, density):
+        ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    begin, end = zone["from"] / units.t, zone["until"] / units.t
+    velocity.set_title(f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples", loc="right",
+                       fontsize=8)
+    return figure
+
+
+def draw_width(ax, measured, error, longer, model, top):
+    """The measured width as a bar above the curves, dotted to where u+ would be 0."""
+    ax.errorbar([-measured / 2, measured / 2], [1.3 * top] * 2, xerr=error / 2, color="k", lw=1, capsize=3)
+    ax.plot([-longer / 2, longer / 2], [1.3 * top] * 2, "k:", lw=1)
+    ax.text(0, 1.45 * top, rf"$2L={measured:.3g}\pm{error:.2g}$ from $u_0$ to $u_\mathrm{{crit}}$" + "\n"
+            + rf"(dotted: to 0, ${longer:.3g}$); (13): ${model:.3g}$", ha="center", va="bottom", fontsize=8)

@@ -1,0 +1,34 @@
+"""Reports: `cradle.report(result)` writes what a run was and came to as one HTML page that can be sent."""
+from __future__ import annotations
+
+import os
+from builtins import open as builtins_open  # hidden by ours
+
+from ..errors import BAD_FILE, Error
+from ..result import Result, open, without_part
+
+
+def report(result: Result | str | os.PathLike, output: str | os.PathLike | None = None) -> str:
+    """Writes one self-contained HTML file and returns its path: no network, light and dark, prints; same file, same
+    bytes.
+
+    result: an opened result, or the path of one, or FILE.part of a run on its way.
+    output: by default the result's path with .html. Written beside its place and renamed.
+    Raises Error where the result cannot be read or the page not be written.
+    """
+    opened = result if isinstance(result, Result) else open(result)
+    output = os.fspath(output) if output is not None else os.path.splitext(without_part(opened.path))[0] + ".html"
+    from .page import page  # matplotlib, late
+    text = page(opened)
+    part = output + ".part"
+    try:
+        with builtins_open(part, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        os.replace(part, output)
+    except OSError as error:
+        raise Error(f"{output} cannot be written ({error.strerror or error}): choose another place with -o",
+                    BAD_FILE) from None
+    finally:
+        if os.path.exists(part):
+            os.remove(part)
+    return output

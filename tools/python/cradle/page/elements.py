@@ -1,0 +1,101 @@
+"""The pieces that the page is made of: texts, numbers, tables that sort."""
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Iterable, Sequence
+from decimal import Decimal, localcontext
+from typing import Any
+
+MOST_DIGITS = 40  # of a proved number that are shown; the file has all
+
+
+def text(value: Any) -> str:
+    return html.escape(str(value), quote=False)
+
+
+def code(value: Any) -> str:
+    return f"<code>{text(value)}</code>"
+
+
+def number(value: Any, digits: int = 12) -> str:
+    """1.9e+07 as 1.9 × 10<sup>7</sup>, whole numbers in groups of three, NaN as a dash."""
+    if isinstance(value, str):
+        return text(value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int) or (isinstance(value, float) and value.is_integer() and abs(value) < 1e15):
+        return f"{int(value):,}".replace(",", "\u202f")
+    if not math.isfinite(value):
+        return "–" if math.isnan(value) else ("∞" if value > 0 else "−∞")
+    return powers(f"{value:.{digits}g}")
+
+
+def measured(value: float, error: float) -> str:
+    """A mean with its standard error: both to the same place, two digits of the error."""
+    if not (math.isfinite(value) and math.isfinite(error) and error > 0):
+        return number(value, 8)
+    place = 1 - math.floor(math.log10(error))
+    if -3 <= place <= 9 and abs(value) < 1e12:
+        return f"{value:.{max(0, place)}f} <small>± {error:.{max(0, place)}f}</small>".replace("-", "−")
+    digits = max(2, math.floor(math.log10(abs(value))) + place + 1) if value else 2
+    return f"{powers(f'{value:.{digits}g}')} <small>± {powers(f'{error:.2g}')}</small>"
+
+
+def powers(decimal: str) -> str:
+    """The exponent as a power of ten, and minus signs as such."""
+    mantissa, _, exponent = decimal.lower().partition("e")
+    mantissa = mantissa.replace("-", "−")
+    return f"{mantissa} × 10<sup>{int(exponent)}</sup>".replace("-", "−") if exponent else mantissa
+
+
+def enclosed(low: str, high: str) -> tuple[str, int]:
+    """A number of which bounds are proved, as decimals: the digits that are right and the radius; how many they are."""
+    with localcontext() as context:
+        context.prec = 2 * max(len(low), len(high)) + 10
+        below, above = Decimal(low), Decimal(high)
+        middle, radius = (below + above) / 2, (above - below) / 2
+        if radius == 0:
+            return powers(str(middle.normalize())), len(middle.normalize().as_tuple().digits)
+        right = max(0, middle.adjusted() - radius.adjusted() - 1) if middle != 0 else 0
+        shown = f"{middle:.{max(0, min(right, MOST_DIGITS) - 1)}e}"
+    mantissa, _, exponent = shown.partition("e")
+    if -5 <= int(exponent) < min(right, MOST_DIGITS):
+        shown = f"{Decimal(shown):f}"
+    ending = "…" if right > MOST_DIGITS else ""
+    mantissa, _, exponent = shown.partition("e")
+    shown = mantissa + ending + (f"e{exponent}" if exponent else "")
+    return f"{powers(shown)} ± {powers(f'{radius:.1e}')}", right
+
+
+def unit(symbols: str) -> str:
+    """m l^2/t^2 as m l²/t²."""
+    return "" if symbols in ("", "1") else text(symbols.replace("^2", "²").replace("^3", "³"))
+
+
+def rows(entries: Iterable[tuple[str, str, str]]) -> str:
+    """A table of names, values and notes, each of which is HTML."""
+    lines = [f"<tr><th scope=row>{name}<td>{value}<td>{note}" for name, value, note in entries]
+    return '<table class="facts"><tbody>\n' + "\n".join(lines) + "\n</tbody></table>\n"
+
+
+def sortable(caption: str, heads: Sequence[str], body: Iterable[Sequence[tuple[Any, str]]]) -> str:
+    """A table that sorts by a column when its head is pressed. Cells are pairs: what is sorted by, HTML."""
+    lines = [f'<div class="wide"><table class="sortable"><caption>{caption}</caption>\n<thead><tr>'
+             + "".join(f'<th scope=col aria-sort="none"><button type="button">{head}</button>' for head in heads)
+             + "</thead>\n<tbody>"]
+    for cells in body:
+        lines.append("<tr>" + "".join(f'<td data-by="{html.escape(key_of(by))}">{shown}' for by, shown in cells))
+    return "\n".join(lines) + "\n</tbody></table></div>\n"
+
+
+def key_of(value: Any) -> str:
+    return repr(float(value)) if isinstance(value, (int, float)) else str(value)
+
+
+def section(name: str, title: str, content: str) -> str:
+    return f'<section id="{name}">\n<h2>{title}</h2>\n{content}</section>\n' if content else ""
+
+
+def preformatted(value: str) -> str:
+    return f"<pre>{text(value)}</pre>\n"

@@ -1,0 +1,160 @@
+"""The numbers that matter of a result, with the digits that are proved or trusted, and what is to be warned of."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..result import Result
+from ..tables import Table
+from .elements import code, enclosed, number, rows, text, unit
+
+END = {"energy": "energy at the end", "front_left": "left front at the end", "front_right": "right front at the end"}
+COLLAPSE = {"time": "collapse", "last_contact": "last contact", "gap": "smallest gap", "interval": "last interval",
+            "ratio": "ratio of intervals"}
+
+
+def numbers(result: Result) -> str:
+    """HTML; of ensembles and sweeps see tables.py."""
+    known = proved(result)
+    entries = [*known, *(entry for entry in ends(result) if entry[0] not in {label for label, *_ in known}),
+               *collapse(result), *snapshots(result), *zone(result), *scenario(result)]
+    proof = certificate(result) if result.certificate.attributes else ""
+    note = ""
+    if not proof and result.kind == "run" and entries:
+        note = (f"<p class=note>In {text(result.attributes.get('precision', ''))}; not proved: "
+                "<code>cradle certify</code> proves contacts and encloses these numbers, <code>cradle trust</code> "
+                "tells how many of their digits are right.</p>\n")
+    return proof + (rows(entries) if entries else "") + note
+
+
+def last(table: Table, name: str):
+    """The last value of a column of the series, or None."""
+    column = table.get(name)
+    return column[-1].item() if column is not None and not isinstance(column, Table) and len(column) else None
+
+
+def ends(result: Result) -> list[tuple[str, str, str]]:
+    """First and last samples of the series of a run."""
+    series = result.series
+    if "time" not in series or not len(series["time"]) or isinstance(series["energy"], Table):  # of an ensemble
+        return []
+    time, first, energy = last(series, "time"), series["energy"][0].item(), last(series, "energy")
+    entries = [("time reached", number(time), unit("t")), ("energy at the start", number(first), unit("m l^2/t^2"))]
+    lost = last(series, "energy_lost")
+    share = f" · {100 * lost / (energy + lost):.4g} % lost in contacts" if lost and energy + lost > 0 else ""
+    entries.append((END["energy"], number(energy), unit("m l^2/t^2") + share))
+    contacts, slow = last(series, "contacts"), last(series, "contacts_below_cutoff")
+    share = f"{100 * slow / contacts:.4g} % of them below the cut-off" if contacts and slow else ""
+    entries.append(("contacts", number(contacts or 0), share))
+    if merges := last(series, "merges"):
+        entries.append(("merges", number(merges), ""))
+    for name in ("front_left", "front_right"):
+        value = last(series, name)
+        if value is not None and np.isfinite(value):
+            entries.append((END[name], number(value), unit("l")))
+    heaviest = series.get("heaviest")
+    if heaviest is not None and np.isfinite(heaviest["mass"][-1]).all():
+        mass = " and ".join(number(float(value)) for value in heaviest["mass"][-1])
+        entries.append(("two heaviest clusters", mass, unit("m")))
+    return entries
+
+
+def collapse(result: Result) -> list[tuple[str, str, str]]:
+    found = result.collapse
+    entries = []
+    for name, label in COLLAPSE.items():
+        if name in found:
+            within = f"± {number(found['uncertainty'], 2)} " if name == "time" and "uncertainty" in found else ""
+            entries.append((label, number(found[name], 17), within + {"gap": "l", "ratio": ""}.get(name, "t")))
+    return entries
+
+
+def snapshots(result: Result) -> list[tuple[str, str, str]]:
+    """The smallest gap of all, and the rounding accumulated by the last."""
+    gaps = [(table.attributes["gap_min"], table.attributes["time"]) for table in result.snapshots
+            if "gap_min" in table.attributes]
+    if not gaps:
+        return []
+    gap, time = min(gaps)
+    entries = [("smallest gap of the snapshots", number(gap, 6), f"l, at t = {number(time)}")]
+    for name, label, symbol in (("closure_gap", "closure error of gaps", "l"),
+                                ("closure_speed", "closure error of speeds", "l/t")):
+        if name in result.snapshots[-1].attributes:
+            entries.append((label, number(result.snapshots[-1].attributes[name], 3),
+                            f"{symbol}: rounding of the whole run"))
+    return entries
+
+
+def zone(result: Result) -> list[tuple[str, str, str]]:
+    about = result.table("zone").attributes
+    if not np.isfinite(about.get("width", np.nan)):
+        return []
+    return [("width of the interaction zone", f"{number(about['width'], 6)} ± {number(about['width_error'], 2)}",
+             f"l, from t = {number(about['from'])} to {number(about['until'])}, {about['samples']} samples")]
+
+
+def scenario(result: Result) -> list[tuple[str, str, str]]:
+    about = result.table("scenario").attributes
+    return [(text(name.replace("_", " ")), number(value, 6), "") for name, value in about.items()]
+
+
+def certificate(result: Result) -> str:
+    about = result.certificate.attributes
+    if about.get("verdict") == "proved":
+        told = (f"<p class=proved><b>Proved</b>: each of the {number(about['contacts'])} contacts is that of the exact "
+                "system, the one with the scene's decimals as they are written, and none is missing. ")
+    else:
+        told = (f"<p class=open><b>Undecided</b> after {number(about.get('contacts', 0))} contacts: "
+                f"{text(about.get('undecided', ''))}. ")
+    return told + f"Run in {text(about['precision'])}, proved with {number(about['digits'])} digits.</p>\n"
+
+
+def proved(result: Result) -> list[tuple[str, str, str]]:
+    """Energy and fronts at the end, with the digits that are right."""
+    exact = result.exact.get("series", {})
+    entries = []
+    for name, label in END.items():
+        if f"{name}_low" in exact and len(exact[f"{name}_low"]):
+            low, high = (exact[f"{name}_{side}"] for side in ("low", "high"))
+            bounds = str(low[-1]), str(high[-1])
+            if not all(np.isfinite(float(bound)) for bound in bounds):
+                continue
+            shown, right = enclosed(*bounds)
+            entries.append((label, f'<span class="digits">{shown}</span>',
+                            f"{unit(low.unit)} · {right} digits proved"))
+    return entries
+
+
+def warnings(result: Result, version: str) -> list[str]:
+    """What makes numbers of this result doubtful or incomplete, HTML each; version: of the program, "" if unknown."""
+    about = result.attributes
+    found = []
+    if result.on_its_way:
+        found.append("The run is on its way: what is shown is what it had recorded when this page was made.")
+    if not result.sealed:
+        found.append("The file has no seal: it was changed since the program wrote it, or written by an older version.")
+    if "inelastic collapse" in result.outcome and result.kind == "run":
+        found.append("The run ended at inelastic collapse, before <code>run.until</code>.")
+    elif result.outcome in ("order of contacts lost", "resolution exhausted"):
+        found.append(f"The run ended early: {text(result.outcome)}. More digits (<code>run.precision</code>) reach "
+                     "further.")
+    for name, told in (("order_lost", "contacts came too late by more than rounding"),
+                       ("unresolved_gaps", "contacts beside a gap that positions do not resolve: take "
+                                           "<code>coordinates = \"gaps\"</code>"),
+                       ("simultaneous_contacts", "contacts at which three bodies met within rounding, decided by the "
+                                                 "tie rule")):
+        if about.get(name):
+            found.append(f"{number(about[name])} {told}.")
+    if about.get("failed"):
+        messages = result.table("replicas/failed").attributes.get("messages", "")
+        found.append(f"{number(about['failed'])} replicas failed: {code(messages)}")
+    for point in result.points:
+        if point.attributes.get("failed"):
+            found.append(f"{text(point.label)}: {number(point.attributes['failed'])} replicas failed.")
+    if result.certificate.attributes.get("verdict") == "undecided":
+        found.append("The proof is undecided: what comes after its place is not proved.")
+    smallest = min((t.attributes["gap_min"] for t in result.snapshots if "gap_min" in t.attributes), default=1.0)
+    if smallest < 0:
+        found.append("A snapshot has a gap below zero, by less than the rounding of the moment: contacts are in order.")
+    if version and about.get("cradle_version") and version != about["cradle_version"]:
+        found.append(f"Written by cradle {text(about['cradle_version'])}, this page by {text(version)}.")
+    return found

@@ -1,0 +1,36 @@
+// Tables sort by the column whose head is pressed, once more in reverse; what is folded is printed unfolded.
+"use strict";
+(function () {
+  function compare(a, b) {
+    var x = Number(a), y = Number(b);
+    if (isNaN(x) && isNaN(y)) return a < b ? -1 : a > b ? 1 : 0;
+    return isNaN(x) ? 1 : isNaN(y) ? -1 : x - y;  // what is not known comes last
+  }
+  document.querySelectorAll("table.sortable thead button").forEach(function (button) {
+    button.addEventListener("click", function () {
+      var head = button.parentNode, column = head.cellIndex, body = head.closest("table").tBodies[0];
+      var down = head.getAttribute("aria-sort") === "ascending";
+      head.parentNode.querySelectorAll("th").forEach(function (other) { other.setAttribute("aria-sort", "none"); });
+      head.setAttribute("aria-sort", down ? "descending" : "ascending");
+      Array.from(body.rows)
+        .sort(function (a, b) {
+          return (down ? -1 : 1) * compare(a.cells[column].dataset.by, b.cells[column].dataset.by);
+        })
+        .forEach(function (row) { body.appendChild(row); });
+    });
+  });
+  document.querySelectorAll("button.copy").forEach(function (button) {
+    button.addEventListener("click", function () {
+      var range = document.createRange();
+      range.selectNodeContents(document.getElementById(button.dataset.of));
+      var chosen = getSelection();
+      chosen.removeAllRanges();
+      chosen.addRange(range);
+      document.execCommand("copy");
+      button.textContent = "copied";
+    });
+  });
+  addEventListener("beforeprint", function () {
+    document.querySelectorAll("details").forEach(function (part) { part.open = true; });
+  });
+})();

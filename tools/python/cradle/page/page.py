@@ -1,0 +1,195 @@
+"""The page: which sections a result gets, and what they hold. Everything is in it, nothing is asked of any network."""
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import importlib.util
+import json
+import os
+import re
+
+from .. import program
+from ..errors import Error
+from ..plot import PICTURES, drawings
+from ..result import Result, without_part
+from ..seal import read_seal
+from .elements import code, number, preformatted, rows, section, text
+from .numbers import last, numbers, warnings
+from .svg import picture
+from .tables import tables
+
+# What the browser is allowed: nothing that is not in the page.
+POLICY = ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
+          "connect-src data: blob:; worker-src blob:")
+LONGEST_SCENE = 100_000  # characters; listed bodies may be many
+
+
+def page(result: Result) -> str:
+    """The HTML text of a result's report."""
+    version = of_program(["--version"])
+    # Warnings first: else a reader has taken the numbers for granted.
+    sections = [("numbers", "Numbers", numbers(result)), ("tables", "Tables", tables(result)),
+                ("pictures", "Pictures", pictures(result)), ("microscope", "Microscope", microscope(result)),
+                ("again", "Run it again", again(result)), ("cost", "Cost", rows(cost(result))),
+                ("provenance", "Provenance", provenance(result, version)), ("cite", "Cite", cite())]
+    warned = warnings(result, version.split("\n")[0].removeprefix("cradle "))
+    title = text(result.attributes.get("name", "")) + " – " + text(result.scene.get("title") or result.kind)
+    links = "".join(f'<a href="#{name}">{head}</a>' for name, head, content in sections if content)
+    body = [f"<header>\n<h1>{text(result.scene.get('title') or result.attributes.get('name', ''))}</h1>\n"
+            f"<p class=lead>{lead(result)}</p>\n<nav>{links}</nav>\n</header>\n<main>\n"]
+    if warned:
+        body.append('<ul class="warnings">' + "".join(f"<li>{told}" for told in warned) + "</ul>\n")
+    body += [section(*entry) for entry in sections]
+    return (f"<!DOCTYPE html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n<title>{title}</title>\n"
+            f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
+            '<meta name=viewport content="width=device-width, initial-scale=1">\n<link rel=icon href="data:,">\n'
+            f"<style>\n{beside('page.css')}</style>\n</head>\n<body>\n{''.join(body)}</main>\n"
+            f"<script>\n{beside('page.js')}</script>\n</body>\n</html>\n")
+
+
+def beside(name: str) -> str:
+    """A file of this folder; within a script or a style nothing may end it."""
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), name), encoding="utf-8") as file:
+        return re.sub("</(?=script|style)", r"<\\/", file.read(), flags=re.IGNORECASE)
+
+
+def of_program(words: list[str]) -> str:
+    """What the program prints; nothing where it is not there."""
+    try:
+        return program.call(words).out.strip()
+    except Error:
+        return ""
+
+
+def lead(result: Result) -> str:
+    """One line on what it is."""
+    scene, about = result.scene, result.attributes
+    law, initial = scene.get("law", {}), scene.get("initial", {})
+    parts = [result.kind if result.kind != "trust" else "comparison of precisions"]
+    if initial.get("type") != "clusters":
+        bodies = initial.get("particles") or len(initial.get("x", ())) or sum(
+            int(float(initial.get(side, {}).get("particles", 0))) for side in ("left", "right"))
+        parts.append(f"{law.get('type', '')} law")
+        parts.append(f"{number(int(float(bodies)))} bodies in {text(scene.get('run', {}).get('coordinates', ''))}")
+    if about.get("replicas"):
+        parts.append(f"{number(about['replicas'])} replicas")
+    parts += [text(about.get("precision", "")), f"<b>{text(result.outcome)}</b>"]
+    return " · ".join(part for part in parts if part)
+
+
+def pictures(result: Result) -> str:
+    found = []
+    for order, (name, draw) in enumerate(drawings(result).items()):
+        told = PICTURES.get(name, name)
+        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), order, told)}\n'
+                     f"<figcaption>{text(told)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
+                     "</figure>\n")
+    return "".join(found)
+
+
+def microscope(result: Result) -> str:
+    """The canvas in which world lines are flown through, where the result has what it takes."""
+    if importlib.util.find_spec("cradle.microscope") is None:
+        return ""
+    from .. import microscope as module
+    data = module.data(result)
+    if data is None:
+        return ""
+    style, script = (beside(os.path.join("..", f"microscope.{ending}")) for ending in ("css", "js"))
+    content = json.dumps(data, separators=(",", ":"), sort_keys=True).replace("</", "<\\/")
+    return (f'<style>\n{style}</style>\n<div id="microscope-canvas"></div>\n'
+            f'<script type="application/json" id="microscope-data">{content}</script>\n<script>\n{script}\n'
+            'cradleMicroscope(document.getElementById("microscope-canvas"), '
+            'JSON.parse(document.getElementById("microscope-data").textContent));\n</script>\n')
+
+
+def command_of(result: Result) -> list[str]:
+    """The words after `cradle` that make this result from the scene beside it."""
+    name = str(result.attributes.get("name", "scene"))
+    output = os.path.basename(without_part(result.path))
+    about = result.attributes
+    if result.certificate.attributes:
+        words = ["certify", f"{name}.toml"]
+    elif len(result.trust):
+        words = ["trust", f"{name}.toml"]
+        words += ["--both"] * any(table.attributes.get("coordinates") == "absolute" for table in result.trust)
+    elif result.kind == "sweep":
+        words = ["sweep", f"{name}.toml"]
+        planned = result.scene.get("sweep", {})
+        if not planned.get("vary") and not planned.get("points"):
+            words += [word for point in result.points for word in ("--point", f'"{point.label}"')]
+        words += ["--replicas", str(about["replicas"] // max(1, len(result.points)))]
+    elif result.kind == "ensemble":
+        first = int(min(result.replicas["index"].values)) if len(result.replicas.get("index", ())) else 0
+        words = ["ensemble", f"{name}.toml", "--replicas", str(about["replicas"])]
+        words += ["--first", str(first)] * (first > 0)
+    else:
+        words = ["run", f"{name}.toml"]
+    return [*words, "-o", output]
+
+
+def again(result: Result) -> str:
+    """The command and the scene, which gives the same bytes."""
+    scene, name = result.scene_text, str(result.attributes.get("name", "scene"))
+    command = "cradle " + " ".join(command_of(result))
+    version = text(result.attributes.get("cradle_version", ""))
+    told = (f"<p>With this scene as {code(name + '.toml')} the same cradle, {version}, gives the same bytes:</p>\n"
+            + preformatted(command))
+    if len(scene) > LONGEST_SCENE:
+        export = f"cradle export {os.path.basename(result.path)} --to DIR"
+        return told + f"<p>The scene has {number(len(scene))} characters: {code(export)} writes it.</p>\n"
+    link = "data:application/toml;base64," + base64.b64encode(scene.encode()).decode("ascii")
+    return told + ('<p class=screen><button type="button" class="copy" data-of="scene">copy the scene</button> '
+                   f'<a download="{html.escape(name)}.toml" href="{link}">save it</a></p>\n'
+                   + preformatted(scene).replace("<pre>", '<pre id="scene">', 1))
+
+
+def cost(result: Result) -> list[tuple[str, str, str]]:
+    """What was done, and what the program expects of it; wall times are in no result."""
+    contacts = last(result.series, "contacts")
+    if contacts is None and "contacts" in result.replicas:
+        contacts = int(result.replicas["contacts"].values.sum())
+    if contacts is None and result.points:
+        contacts = sum(int(point.replicas["contacts"].values.sum()) for point in result.points
+                       if "contacts" in point.replicas)
+    entries = [("contacts", number(contacts), "of all replicas" if result.attributes.get("replicas") else "")
+               ] if contacts is not None else []
+    if not result.on_its_way:
+        entries.append(("file", number(os.path.getsize(result.path)), "bytes"))
+    else:
+        lines = of_program(["info", result.path]).splitlines()
+        entries += [(text(line[:24].strip()), text(line[24:]), "when this page was made") for line in lines
+                    if line.startswith(("time ", "contacts/s ", "computing ", "smallest gap ", "checkpoint "))]
+    if result.kind == "run":
+        from ..commands import scene_file
+        with scene_file(result) as (path, _):
+            expected = of_program(["check", path]).splitlines()
+        entries += [(f"{text(line.split(': ', 1)[0])} expected", text(line.split(": ", 1)[1]), "by cradle check")
+                    for line in expected if line.startswith(("time: ", "memory: "))]
+    return entries
+
+
+def provenance(result: Result, version: str) -> str:
+    about = result.attributes
+    entries = [("written by", f"cradle {text(about.get('cradle_version', ''))}",
+                f"format {text(about.get('format_version', ''))}"),
+               ("precision", text(about.get("precision", "")), ""),
+               ("scene, SHA-256", code(hashlib.sha256(result.scene_text.encode()).hexdigest()), "")]
+    if "scene_checksum" in result.certificate.attributes:
+        entries.append(("scene, in the proof", code(result.certificate.attributes["scene_checksum"]), "CRC-64"))
+    if "identity" in about:
+        entries.append(("identity", code(f"{int(about['identity']):016x}"), "of scenes and what is recorded"))
+    if not result.on_its_way and (seal := read_seal(result.path)):
+        entries.append(("file", code(f"{seal[1]:016x}"), "its seal, CRC-64/XZ"))
+    for line in version.splitlines():
+        name, _, value = line.partition(": ")
+        entries.append(("this page by", text(line), "") if not value else (text(name), text(value), ""))
+    import matplotlib
+    entries.append(("pictures", f"matplotlib {text(matplotlib.__version__)}", ""))
+    return rows(entries)
+
+
+def cite() -> str:
+    return ("<p>The paper for the model, the program together with the scene:</p>\n"
+            + preformatted(beside(os.path.join("..", "cite.bib"))))

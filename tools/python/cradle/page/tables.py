@@ -1,0 +1,106 @@
+"""Tables of ensembles, sweeps and comparisons of precision, which sort by the column that is pressed."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..result import Result
+from ..tables import Column
+from .elements import measured, number, rows, sortable, text, unit
+
+MOST_ROWS = 1000  # of replicas: more are told by their statistics
+BESIDE = ("_error", "_replicas")
+QUANTILES = (0, 0.05, 0.25, 0.5, 0.75, 0.95, 1)
+
+
+def tables(result: Result) -> str:
+    """HTML, empty where there is nothing of the kind."""
+    if len(result.trust):
+        return precisions(result)
+    if len(result.sweep):
+        return points(result)
+    if len(result.replicas):
+        return means(result) + replicas(result)
+    return ""
+
+
+def cell(value) -> tuple[object, str]:
+    value = value.item() if isinstance(value, np.generic) else value
+    return (value, number(value, 6)) if not isinstance(value, str) else (value, text(value))
+
+
+def head(name: str, symbols: str) -> str:
+    return text(name.replace("_", " ")) + (f" <small>{unit(symbols)}</small>" if unit(symbols) else "")
+
+
+def means(result: Result) -> str:
+    """Of an ensemble every quantity at the end: mean and standard error over the replicas."""
+    entries = []
+    for name in result.series:
+        quantity = result.series[name]
+        if isinstance(quantity, Column) or "mean" not in quantity or quantity["mean"].ndim != 1 or not np.isfinite(quantity["mean"][-1]):
+            continue
+        mean, sem, low, high = (quantity[what][-1].item() for what in ("mean", "sem", "min", "max"))
+        entries.append((text(name.replace("_", " ")), measured(mean, sem),
+                        f"{unit(quantity['mean'].unit)} from {number(low, 6)} to {number(high, 6)}"))
+    time = result.series["time"][-1].item() if "time" in result.series else np.nan
+    return f"<p>Means at t = {number(time)} with their standard errors, and the extremes.</p>\n" + rows(entries)
+
+
+def replicas(result: Result) -> str:
+    table = result.replicas
+    names = [name for name in table.columns if table[name].ndim == 1]
+    count = len(table["index"]) if "index" in table else 0
+    heads = [head(name, table[name].unit) for name in names]
+    if count <= MOST_ROWS:
+        body = ([cell(table[name].values[row]) for name in names] for row in range(count))
+        return sortable(f"{number(count)} replicas", heads, body)
+    body = []
+    for share in QUANTILES:
+        body.append([(share, f"{100 * share:g} %")])
+        for name in names[1:]:
+            known = np.asarray(table[name], float)
+            known = known[np.isfinite(known)]
+            body[-1].append(cell(np.quantile(known, share)) if known.size else cell(np.nan))
+    return sortable(f"quantiles of {number(count)} replicas (the file has all)", ["quantile", *heads[1:]], body)
+
+
+def points(result: Result) -> str:
+    """One row per point: what varies, then means with their standard errors."""
+    table = result.sweep
+    names = [name for name in table.columns if not name.endswith(BESIDE)]
+    labels = [point.label for point in result.points]
+    texts = sorted({word.split("=", 1)[0] for label in labels for word in label.split()} - set(names))
+    heads = [text(name) for name in texts]
+    heads += [head(name, table[name].unit) for name in names]
+    body = []
+    for row, label in enumerate(labels):
+        said = dict(word.split("=", 1) for word in label.split() if "=" in word)
+        body.append([cell(said.get(name, "")) for name in texts])
+        for name in names:
+            value = table[name].values[row]
+            error = table[name + "_error"].values[row] if name + "_error" in table else np.nan
+            by, shown = cell(value)
+            body[-1].append((by, measured(by, error.item()) if np.isfinite(error) else shown))
+    return sortable(f"{number(len(labels))} points; means over replicas with their standard errors", heads, body)
+
+
+def precisions(result: Result) -> str:
+    """One row per precision: until when it was right, and digits at the end."""
+    heads = ["precision", "coordinates", "outcome", "contacts right", "until t", "counts right until t",
+             "proved until t", "digits of energy at the end", "digits of front at the end"]
+    body = []
+    for number_of, table in enumerate(result.trust):
+        about = table.attributes
+        whole = "to the end" if about.get("right_to_end") else ""
+        proved = about.get("proved_until", -1)
+        digits = [table[name][-1].item() if len(table[name]) else np.nan for name in ("energy_digits", "front_digits")]
+        reference = number_of == len(result.trust) - 1
+        body.append([(number_of, text(about["precision"])), (about["coordinates"], text(about["coordinates"])),
+                     (about["outcome"], text(about["outcome"])), cell(about["contacts_right"]),
+                     (about["contacts_right_until"], whole or number(about["contacts_right_until"], 10)),
+                     (about["counts_right_until"], number(about["counts_right_until"], 10)),
+                     (proved, "to the end" if about.get("proved_to_end") else
+                      (number(proved, 10) if proved >= 0 else "–"))]
+                    + [(value, "reference" if reference else ("all" if value >= 100 else number(value, 3)))
+                       for value in digits])
+    return sortable("the same run at rising precision, each compared with the last", heads, body)

@@ -1,0 +1,115 @@
+"""The pictures of results, as functions: `cradle.plot.shock(result)` draws one and returns its matplotlib figure.
+
+Which pictures a result has follows from what it holds: `cradle.plot.names(result)` lists them, the main one first;
+`cradle.plot.save(result, "fig2.pdf")` writes all, as the program's `cradle plot` does. Two equal rows are drawn in the
+paper's units, x/l, v/2u0, t 2u0/l, E/(m (2u0)^2) (m = 1); other scenes as they are.
+
+Every function takes
+    result   an opened result, or a path
+    axes     where to draw: as many matplotlib axes as the picture has panels (else Error tells how many); by default
+             a new figure in the style of the program
+    theory   False leaves predictions of the paper out, which else the program is asked for (`cradle theory`)
+and raises Error where the result does not hold what the picture shows.
+"""
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator
+
+from . import program
+from .errors import BAD_FILE, BAD_INPUT, Error
+from .result import Result, open
+
+PICTURES = {
+    "shock": "Velocities of single bodies, mean velocity and density at several times (paper, Figs. 2 and 6).",
+    "structure": "Four nested zooms into a core that positions cannot resolve (Fig. 3).",
+    "energy": "Energy and number of contacts against time (Fig. 4).",
+    "sticky": "The weak solution: step of velocity, rows and delta peak, mass of the cluster (Fig. 1).",
+    "spacetime": "Paths of a few bodies that stick or pass through each other (Fig. 5), or of the dense core.",
+    "zone": "The interaction zone beside the linear model (Fig. 7); of a sweep its width (Fig. 8).",
+    "clusters": "Positions and velocities of the two heaviest clusters (Figs. 9, 10, 11).",
+    "scaling": "How the swings of the two heaviest clusters grow, and masses of all clusters.",
+    "masses": "How many clusters are of a mass or heavier.",
+    "cooling": "Energy on a ring beside the law of the sticky gas; of a sweep all its gases.",
+    "field": "Velocities on a stretch of a ring.",
+    "beyond": "Past the collapse: energy beside the sticky gas, the dense core, contacts per time.",
+    "rates": "Contacts per time against the cut-off.",
+    "distributions": "Velocities and gaps in the dense core.",
+    "bodies": "Paths of a few bodies, and how their gaps or intervals shrink.",
+    "walls": "A gas between walls: places, shares of the energy, what the walls have given.",
+    "ensemble": "Means over replicas with their standard errors and extremes.",
+    "profiles": "Profiles of an ensemble, with standard errors and extremes.",
+    "collapse": "When replicas collapsed.",
+    "scenarios": "Whether two clusters pass or stick, against the loss.",
+    "regimes": "What the replicas have come to, in shares.",
+    "sweep": "What depends on the parameters that were varied.",
+    "trust": "Digits that runs of rising precision share with the last one.",
+    "certificate": "Of a proof: smallest gap, and how well places and gaps are known.",
+}
+__all__ = ["names", "save", *PICTURES]
+
+
+def predictions(result: Result, theory: bool = True):
+    """The program's table for the result's scene; empty without the program, which a warning tells."""
+    from .commands import scene_file
+    from .drawing.reading import Theory
+    if not theory or not result.scene_text:
+        return Theory()
+    try:
+        with scene_file(result) as (path, _):
+            return Theory(text=program.call(["theory", path, "--csv"]).out)
+    except Error as error:
+        if error.status == BAD_FILE:
+            warnings.warn(f"pictures are without predictions: {error}", stacklevel=3)
+        return Theory()  # else the scene has none
+
+
+def drawings(result: Result | str | os.PathLike, theory: bool = True) -> dict:
+    """Names and functions of axes=None of all pictures of a result, the main one first."""
+    from .drawing.pictures import available
+    opened = result if isinstance(result, Result) else open(result)
+    return available(opened, predictions(opened, theory))
+
+
+def names(result: Result | str | os.PathLike) -> list[str]:
+    """Of the pictures that a result has, the main one first."""
+    return list(drawings(result, theory=False))
+
+
+def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: bool = True) -> list[str]:
+    """Writes all pictures: the main one to output (.png, .pdf or .svg), others with their names before the extension.
+
+    Returns their paths. Same result, same bytes. Raises Error.
+    """
+    opened = result if isinstance(result, Result) else open(result)
+    return list(saved(opened, os.fspath(output), predictions(opened, theory)))
+
+
+def saved(result: Result, output: str, table) -> Iterator[str]:
+    base, extension = os.path.splitext(output)
+    if extension.lower() not in (".png", ".pdf", ".svg"):
+        raise Error(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg", BAD_INPUT)
+    from .drawing.pictures import make
+    return make(result, base, extension, table)
+
+
+def draw(name: str, result: Result | str | os.PathLike, axes=None, theory: bool = True):
+    """The picture of that name; see the module. Returns the matplotlib figure."""
+    available = drawings(result, theory)
+    if name not in available:
+        raise Error(f"no {name} picture of this result (found {', '.join(available) or 'none'}): "
+                    "choose one of these, or the file of another run", BAD_INPUT)
+    return available[name](axes)
+
+
+def _function(name: str, text: str):
+    def picture(result: Result | str | os.PathLike, axes=None, theory: bool = True):
+        return draw(name, result, axes, theory)
+
+    picture.__name__ = picture.__qualname__ = name
+    picture.__doc__ = f"{text} result, axes and theory as in cradle.plot; returns the matplotlib figure."
+    return picture
+
+
+globals().update({name: _function(name, text) for name, text in PICTURES.items()})

@@ -1,0 +1,267 @@
+"""Results: `cradle.open(path)` and what it gives."""
+from __future__ import annotations
+
+import os
+import tempfile
+from builtins import open as builtins_open  # hidden by ours
+from functools import cached_property
+from typing import Any
+
+import h5py
+
+from . import program
+from .errors import BAD_FILE, Error
+from .scene import parse_toml
+from .seal import check_seal, damaged, hdf5_length, read_seal
+from .tables import Column, Table, Tables, reading
+
+FORMAT = 1
+CHECKED = 64 << 20  # bytes of a file whose checksum is looked at without being asked: a tenth of a second
+JOURNALS = {b"CRADLER1": "run", b"CRADLEJ2": "replicas", b"CRADLEC1": "checkpoint"}
+
+
+def open(path: str | os.PathLike, check: bool | None = None) -> Result:
+    """Opens a result, or what there is of a run on its way, FILE.part, which the program then reads (`cradle export`).
+
+    check: read the whole file and compare it with the checksum that it was sealed with; by default files of up to
+    64 MiB, so that large ones open at once. Columns are read when they are used.
+    Raises Error (status 4) for what is missing, empty, half-written, damaged, or no result of this program.
+    """
+    path = os.fspath(path)
+    kind = look_at(path)
+    if kind == "run":
+        return so_far(path)
+    if kind == "replicas":
+        raise Error(f"{path}: replicas on their way, no statistics yet: `cradle resume {without_part(path)}` goes on "
+                    f"with them, `cradle info {path}` tells how many are finished", BAD_FILE)
+    if kind == "checkpoint":
+        raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` goes on from "
+                    "it", BAD_FILE)
+    try:
+        whole = os.path.getsize(path) <= CHECKED if check is None else check
+        sealed = bool(check_seal(path) if whole else read_seal(path))
+        if not sealed and (length := hdf5_length(path)) not in (None, os.path.getsize(path)):
+            raise damaged(path, f"{os.path.getsize(path)} bytes, HDF5 wrote {length}")
+    except OSError as error:
+        raise unreadable(path, error) from None
+    return Result(path, open_file(path), sealed)
+
+
+def look_at(path: str) -> str:
+    """What a file begins with: "run", "replicas", "checkpoint", or "result" for HDF5. Raises Error for others."""
+    try:
+        with builtins_open(path, "rb") as file:
+            head = file.read(8)
+    except OSError as error:
+        raise unreadable(path, error) from None
+    if head in JOURNALS:
+        return JOURNALS[head]
+    if head == b"\x89HDF\r\n\x1a\n":
+        return "result"
+    raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
+                "give a file written by `cradle run`", BAD_FILE)
+
+
+def unreadable(path: str, error: OSError) -> Error:
+    return Error(f"{path}: not a file that can be read ({error.strerror or error}): "
+                 "give a file written by `cradle run`", BAD_FILE)
+
+
+def without_part(path: str) -> str:
+    return path[:-5] if path.endswith(".part") else path
+
+
+def open_file(path: str) -> h5py.File:
+    try:
+        file = opened(path)
+    except (OSError, ValueError, RuntimeError) as error:
+        raise Error(f"{path}: not a result that can be read ({error}): it is damaged or half-written, "
+                    "run its scene again", BAD_FILE) from None
+    version = file.attrs.get("format_version")
+    if version is None or "scene" not in file.attrs:
+        file.close()
+        raise Error(f"{path}: an HDF5 file, but no result (no scene in it): give a file written by `cradle run`",
+                    BAD_FILE)
+    if int(version) > FORMAT:
+        file.close()
+        raise Error(f"{path}: a result of a later version (format {int(version)}): this package knows formats up to "
+                    f"{FORMAT}, take that version's", BAD_FILE)
+    return file
+
+
+def opened(path: str) -> h5py.File:
+    """Without locks, which some cluster file systems do not have; but as the caller has it open already, if so."""
+    if h5py.version.version_tuple < (3, 5):
+        return h5py.File(path, "r")
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError as error:
+        if "locking flag" not in str(error):
+            raise
+        return h5py.File(path, "r")
+
+
+def so_far(path: str) -> Result:
+    """Of a run on its way, what is recorded, as the program writes it into a file that is gone when it is opened."""
+    with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
+        copy = os.path.join(folder, "so_far.h5")
+        program.call(["export", path, "--result", copy])
+        result = Result(path, open_file(copy), sealed=True, on_its_way=True)
+    return result
+
+
+class Result:
+    """A run, an ensemble, a sweep, or one point of a sweep. Use it in `with`, or close() it.
+
+    path: of the file.
+    file: the h5py.File, or of a point its h5py.Group.
+    on_its_way: the run had not ended when the file was read.
+    sealed: the file has the program's seal, and so is as it was written (see open).
+    text, status: what the program printed and its exit status, where run() or its like made it; else "" and 0.
+    """
+
+    def __init__(self, path: str, root: h5py.Group, sealed: bool = False, on_its_way: bool = False, label: str = ""):
+        self.path, self.file, self.sealed, self.on_its_way, self.label = path, root, sealed, on_its_way, label
+        self.text, self.status = "", 0
+
+    def __enter__(self) -> Result:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def close(self) -> None:
+        if isinstance(self.file, h5py.File):
+            self.file.close()
+
+    def _group(self, *names: str) -> h5py.Group | None:
+        """The first that is there."""
+        for name in names:
+            found = reading(self.path, lambda name=name: self.file.get(name))
+            if isinstance(found, h5py.Group):
+                return found
+        return None
+
+    def _table(self, *names: str) -> Table:
+        return Table(self._group(*names), f"{self.path}: {names[0]}")
+
+    # ---- what was run
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        """Those of the file: cradle_version, name, precision, outcome, simultaneous_contacts, ..."""
+        whole = Table(self.file, self.path).attributes
+        return Table(self._group("ensemble"), self.path).attributes | whole
+
+    @property
+    def kind(self) -> str:
+        """"run", "ensemble", "sweep", "trust" or "point"."""
+        if self.label:
+            return "point"
+        return self.attributes.get("kind") or ("trust" if len(self.trust) else "run")
+
+    @property
+    def scene_text(self) -> str:
+        """The effective scene, as TOML: run() takes it."""
+        return str(self.attributes.get("scene", ""))
+
+    @cached_property
+    def scene(self) -> dict[str, Any]:
+        """The same as nested dicts, `result.scene["law"]["restitution"]`; numbers as floats."""
+        return reading(self.path, lambda: parse_toml(self.scene_text))
+
+    @property
+    def outcome(self) -> str:
+        return "on its way" if self.on_its_way else str(self.attributes.get("outcome", ""))
+
+    # ---- what came out
+
+    @cached_property
+    def series(self) -> Table:
+        """Columns of shape (samples,): `time`, `energy`, `contacts`, `front_right`, ...; `heaviest` is a table inside.
+
+        In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`, `.min`, `.max`.
+        """
+        return self._table("series", "ensemble/series")
+
+    @cached_property
+    def snapshots(self) -> Tables:
+        """Bodies at times: `x`, `v`, `m`, `index` of shape (bodies,), `gap`, `closing_speed` of shape (bodies - 1,)."""
+        return Tables(self._group("snapshots"), f"{self.path}: snapshots")
+
+    @cached_property
+    def profiles(self) -> Tables:
+        """Averages over bins at times: `x`, `velocity`, `density`, ... of shape (bins,); of an ensemble tables."""
+        return Tables(self._group("profiles", "ensemble/profiles"), f"{self.path}: profiles")
+
+    @cached_property
+    def masses(self) -> Tables:
+        """Distributions of cluster masses at times."""
+        return Tables(self._group("masses"), f"{self.path}: masses")
+
+    @cached_property
+    def events(self) -> Table:
+        """Every contact, shape (contacts,): `left`, `right`, `time` (add `time_low`), `interval`, `closing_speed`."""
+        return self._table("events")
+
+    @cached_property
+    def replicas(self) -> Table:
+        """One row per replica: `index`, `outcome`, `contacts`, `merges`, `energy`, ..."""
+        return self._table("replicas")
+
+    @cached_property
+    def sweep(self) -> Table:
+        """One row per point: the keys that vary, then every number with `_error` and `_replicas`."""
+        return self._table("sweep")
+
+    @cached_property
+    def points(self) -> list[Result]:
+        """Of a sweep, an ensemble each."""
+        groups = self._group("points")
+        if groups is None:
+            return []
+        labels = self.sweep.attributes
+        return [Result(f"{self.path}: points/{name}", groups[name], self.sealed, False,
+                       str(labels.get(f"label_{name}", name))) for name in sorted(groups)]
+
+    @cached_property
+    def trust(self) -> Tables:
+        """One table per precision of a comparison: attributes `precision`, `contacts_right_until`, ..."""
+        return Tables(self._group("trust"), f"{self.path}: trust")
+
+    @cached_property
+    def certificate(self) -> Table:
+        """Of a proof: attributes `verdict`, `contacts`, `digits`, ...; columns `time`, `gap`, `widest`, ..."""
+        return self._table("certificate")
+
+    @cached_property
+    def collapse(self) -> dict[str, Any]:
+        """`time`, `uncertainty`, `gap`, ... where the run ended at inelastic collapse; else empty."""
+        return self._table("collapse").attributes
+
+    @cached_property
+    def exact(self) -> Table:
+        """What a proof knows as decimal texts: `result.exact.series.energy_low.fractions()`."""
+        return self._table("exact")
+
+    def table(self, name: str) -> Table:
+        """Any group by its path, `"zone"`, `"scenario"`, `"meetings"`; empty where there is none."""
+        return self._table(name)
+
+    def enclosure(self, name: str) -> tuple[list, list]:
+        """Lower and upper bounds of a quantity of the series, proved, as two lists of Fractions.
+
+        name: "energy", "front_left" or "front_right". Raises Error where the file has no proof of it.
+        """
+        exact = self.exact.get("series", {})
+        if f"{name}_low" not in exact:
+            raise Error(f"{self.path}: no bounds of {name} in it: `cradle certify` writes such files", BAD_FILE)
+        return exact[f"{name}_low"].fractions(), exact[f"{name}_high"].fractions()
+
+    def __repr__(self) -> str:
+        name = self.attributes.get("name", "")
+        parts = [("series", len(self.series)), ("snapshots", len(self.snapshots)), ("profiles", len(self.profiles)),
+                 ("events", len(self.events)), ("points", len(self.points)), ("trust", len(self.trust))]
+        held = [what if what in ("series", "events") else f"{count} {what}" for what, count in parts if count]
+        precision = self.attributes.get("precision", "")
+        return f"<{self.label or self.kind} {name}: {self.outcome}; {precision}; {', '.join(held) or 'empty'}>"

@@ -1,0 +1,54 @@
+"""Scenes: the text that a result carries as nested dicts, and dicts as the text that the program reads."""
+from __future__ import annotations
+
+import re
+from typing import Any, Mapping
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """The scene as nested dicts; without tomllib (Python < 3.11) only tables of single-line scalars."""
+    try:
+        import tomllib
+        return tomllib.loads(text)
+    except ImportError:
+        pass
+    root: dict[str, Any] = {}
+    table = root
+    for line in text.splitlines():
+        if header := re.match(r"\s*\[([\w.\- ]+)\]", line):
+            table = root
+            for key in header[1].split("."):
+                table = table.setdefault(key.strip(), {})
+        elif entry := re.match(r"\s*([\w.\-]+)\s*=\s*(\"[^\"]*\"|[^\s#]+)", line):
+            *path, last = entry[1].split(".")
+            inner = table
+            for key in path:
+                inner = inner.setdefault(key, {})
+            inner[last] = entry[2].strip('"')
+    return root
+
+
+def value_text(value: Any) -> str:
+    """A value as TOML: numbers with all their digits (Decimal and Fraction-free), texts quoted, lists in brackets."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {value_text(inner)}" for key, inner in value.items()) + " }"
+    if hasattr(value, "tolist"):  # numpy's
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(value_text(inner) for inner in value) + "]"
+    return str(value)
+
+
+def scene_text(scene: Mapping[str, Any]) -> str:
+    """A scene file of nested dicts, `{"law": {"type": "wet", "loss": 1e-4}, ...}`."""
+    plain = {key: value for key, value in scene.items() if not isinstance(value, Mapping)}
+    lines = [f"{key} = {value_text(value)}" for key, value in plain.items()]
+    for name, table in scene.items():
+        if name not in plain:
+            lines.append(f"[{name}]")
+            lines += [f"{key} = {value_text(value)}" for key, value in table.items()]
+    return "\n".join(lines) + "\n"

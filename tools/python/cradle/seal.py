@@ -1,0 +1,78 @@
+"""Whether a result is as it was written, seen before HDF5, which may crash on damaged files, has looked at it.
+
+Behind HDF5's last byte stand 24 bytes more: `CRADLES1`, the length of HDF5's part and the CRC-64/XZ of all before it.
+Python has no such CRC, but liblzma checks it behind a block of an .xz file: so the file is handed to it as one,
+in chunks that it only copies.
+"""
+from __future__ import annotations
+
+import lzma
+import os
+import struct
+import zlib
+
+from .errors import BAD_FILE, Error
+
+MAGIC, SIZE = b"CRADLES1", 24
+CHUNK = 1 << 16  # of LZMA2, at most
+
+
+def read_seal(path: str) -> tuple[int, int] | None:
+    """Length of what is sealed and its CRC-64, None for a file without a seal. Raises Error where it does not fit."""
+    with open(path, "rb") as file:
+        length = file.seek(0, os.SEEK_END)
+        file.seek(max(0, length - SIZE))
+        magic, sealed, checksum = struct.unpack("<8sQQ", file.read(SIZE).rjust(SIZE, b"\0"))
+        if magic != MAGIC:
+            return None
+    if sealed != length - SIZE:
+        raise damaged(path, f"{length} bytes, sealed with {sealed + SIZE}")
+    return sealed, checksum
+
+
+def hdf5_length(path: str) -> int | None:
+    """How long HDF5 says that the file is, in a superblock of version 0, as the program and h5py write it; else None."""
+    with open(path, "rb") as file:
+        head = file.read(48)
+    return struct.unpack_from("<Q", head, 40)[0] if len(head) == 48 and head[8] == 0 and head[13] == 8 else None
+
+
+def damaged(path: str, found: str) -> Error:
+    return Error(f"{path}: the file is damaged (found {found}): copy it again from where it was written, "
+                 "or run its scene again", BAD_FILE)
+
+
+def check_seal(path: str) -> bool:
+    """Reads the file once, at some GB/s; False without a seal. Raises Error for one that is damaged."""
+    seal = read_seal(path)
+    if seal is None:
+        return False
+    length, checksum = seal
+    checker = lzma.LZMADecompressor(lzma.FORMAT_XZ)
+    try:
+        checker.decompress(stream_header() + block_header())
+        with open(path, "rb") as file:
+            left = length + 16  # the CRC is of all before it: the seal's magic and length too
+            first = True
+            while left:
+                piece = file.read(min(CHUNK, left))
+                if not piece:
+                    raise damaged(path, "its end too early")
+                checker.decompress(bytes([1 if first else 2]) + struct.pack(">H", len(piece) - 1) + piece)
+                left -= len(piece)
+                first = False
+        packed = length + 16 + 3 * -(-(length + 16) // CHUNK) + 1  # chunks, their headers, the end
+        checker.decompress(b"\0" + bytes(-packed % 4) + struct.pack("<Q", checksum))
+    except lzma.LZMAError:
+        raise damaged(path, "another checksum than it was sealed with") from None
+    return True
+
+
+def stream_header() -> bytes:
+    flags = b"\0\x04"  # CRC-64
+    return b"\xfd7zXZ\0" + flags + struct.pack("<I", zlib.crc32(flags))
+
+
+def block_header() -> bytes:
+    header = bytes([2, 0, 0x21, 1, 0x08, 0, 0, 0])  # 12 bytes with the CRC: one filter, LZMA2, a dictionary of 64 KiB
+    return header + struct.pack("<I", zlib.crc32(header))

@@ -1,0 +1,244 @@
+"""Groups and datasets of a result as tables and columns: with names, units, descriptions, read when they are used."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import h5py
+import numpy as np
+
+from .errors import BAD_FILE, BAD_INPUT, Error
+
+UNREADABLE = (OSError, KeyError, ValueError, RuntimeError, TypeError)  # of h5py, on files that are damaged or closed
+
+
+def reading(place: str, read):
+    """What read() gives; what h5py stumbles over as an Error that names the place."""
+    try:
+        return read()
+    except UNREADABLE as error:
+        raise Error(f"{place}: cannot be read ({str(error).strip() or type(error).__name__}): the file has been closed "
+                    "or is damaged, open it again or run its scene again", BAD_FILE) from None
+
+
+def missing(module: str) -> Error:
+    return Error(f"Python module {module} is missing: install the Debian package python3-{module}", BAD_FILE)
+
+
+def text_of(value: Any) -> Any:
+    """Attributes as Python has them: texts, whole numbers, floats."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return value.item() if isinstance(value, np.generic) else value
+
+
+class Column(np.lib.mixins.NDArrayOperatorsMixin):
+    """A dataset: an array of float64 or uint64, or of texts, with a name, a unit and a description.
+
+    It is read when it is used: `column[:10]` reads ten rows, arithmetic and numpy all of it, once. What comes out of
+    arithmetic are plain arrays, since their units are not the column's. Raises Error where it cannot be read.
+    """
+
+    def __init__(self, dataset: h5py.Dataset, place: str):
+        self._dataset, self._place = dataset, place
+        self.name: str = dataset.name.rsplit("/", 1)[-1]
+        self.shape: tuple[int, ...] = dataset.shape
+        self.dtype: np.dtype = dataset.dtype
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        return reading(self._place, lambda: {name: text_of(value) for name, value in self._dataset.attrs.items()})
+
+    @property
+    def unit(self) -> str:
+        """In m (mass of a body), l (length) and t (time) of the scene; "1" for pure numbers."""
+        return self.attributes.get("unit", "")
+
+    @property
+    def description(self) -> str:
+        return self.attributes.get("description", "")
+
+    @property
+    def is_text(self) -> bool:
+        return self.dtype.kind in "SO"
+
+    def _texts(self, values: Any) -> Any:
+        if not self.is_text:
+            return values
+        return np.array([text_of(value) for value in np.ravel(values)], dtype=str).reshape(np.shape(values))
+
+    @cached_property
+    def values(self) -> np.ndarray:
+        """All of it; the array cannot be changed."""
+        values = reading(self._place, lambda: self._texts(self._dataset[()]))
+        values.flags.writeable = False
+        return values
+
+    def __getitem__(self, index):
+        if "values" in self.__dict__:
+            return self.values[index]
+        if isinstance(index, slice) or np.ndim(index) == 0 and not isinstance(index, tuple) and index is not None:
+            if isinstance(index, slice) and index.step is not None and index.step < 0:
+                return self.values[index]
+            if not isinstance(index, slice):
+                row = range(self.shape[0])[index]  # IndexError as lists have it
+                return reading(self._place, lambda: self._texts(self._dataset[row])[()])
+            return reading(self._place, lambda: self._texts(self._dataset[index]))
+        return self.values[index]
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.values, dtype=dtype) if dtype is not None or copy else self.values
+
+    def __array_ufunc__(self, ufunc, method, *inputs, **options):
+        plain = [item.values if isinstance(item, Column) else item for item in inputs]
+        return getattr(ufunc, method)(*plain, **options)
+
+    def __getattr__(self, name: str):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.values, name)  # max(), mean(), sum(): what arrays can do
+
+    def __len__(self) -> int:
+        return self.shape[0] if self.shape else 1
+
+    def __iter__(self) -> Iterator:
+        return iter(self.values)
+
+    def fractions(self) -> list[Fraction]:
+        """Every number exactly: of texts the decimal as it stands, of float64 the binary number that is stored.
+
+        Of columns of width two a list for each row. NaN is no fraction: ValueError, as Python has it.
+        """
+        return [[Fraction(v) for v in row] if np.ndim(row) else Fraction(row) for row in self.values.tolist()]
+
+    def mpmath(self, digits: int | None = None) -> list:
+        """The same as mpmath.mpf, with so many digits, by default those of the longest text (17 for float64).
+
+        They are rounded when they are made; mpmath rounds sums and products to mpmath.mp.dps, which stays as it is.
+        """
+        try:
+            import mpmath
+        except ImportError:
+            raise missing("mpmath") from None
+        if digits is None:
+            digits = max((len(text) for text in self.values.ravel().tolist()), default=17) if self.is_text else 17
+        with mpmath.workdps(digits):
+            return [mpmath.mpf(value) for value in self.values.tolist()]
+
+    def __repr__(self) -> str:
+        unit = "" if self.unit in ("", "1") else f" in {self.unit}"
+        size = " x ".join(map(str, self.shape))
+        return f"{self.name}: {size} {'texts' if self.is_text else self.dtype}{unit}; {self.description}"
+
+
+class Table(Mapping):
+    """A group: its columns and inner tables by name, `table["energy"]` or `table.energy`, and its attributes.
+
+    Iterates over names; `table.columns` are those of the columns only. A group of which each member is a table of its
+    own number (snapshots) is a Tables.
+    """
+
+    def __init__(self, group: h5py.Group | None, place: str):
+        self._group, self._place = group, place
+        self._seen: dict[str, Column | Table] = {}
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        if self._group is None:
+            return {}
+        return reading(self._place, lambda: {name: text_of(value) for name, value in self._group.attrs.items()})
+
+    @cached_property
+    def _names(self) -> tuple[str, ...]:
+        return () if self._group is None else reading(self._place, lambda: tuple(self._group))
+
+    @property
+    def columns(self) -> list[str]:
+        return [name for name in self._names if isinstance(self[name], Column)]
+
+    def __getitem__(self, name: str) -> "Column | Table":
+        if name not in self._names:
+            raise KeyError(f"{name}: not in {self._place}, which has {', '.join(self._names) or 'nothing'}")
+        if name not in self._seen:
+            item, place = reading(self._place, lambda: self._group[name]), f"{self._place}/{name}"
+            self._seen[name] = (Column if isinstance(item, h5py.Dataset) else Table)(item, place)
+        return self._seen[name]
+
+    def __getattr__(self, name: str):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError:
+            if name in self.attributes:
+                return self.attributes[name]
+            raise AttributeError(f"{name}: not in {self._place}, which has "
+                                 f"{', '.join((*self._names, *self.attributes)) or 'nothing'}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __dir__(self):
+        return [*super().__dir__(), *self._names, *self.attributes]
+
+    def to_xarray(self):
+        """An xarray.Dataset of all columns, over `time`, `x` or the row's number, with units as attributes."""
+        try:
+            import xarray
+        except ImportError:
+            raise missing("xarray") from None
+        columns = {name: self[name] for name in self.columns}
+        length = max((len(column) for column in columns.values()), default=0)
+        along = next((name for name in ("time", "x", "index") if name in columns and columns[name].ndim == 1), "row")
+        variables = {}
+        for name, column in columns.items():
+            # gaps lie between bodies: one fewer
+            first = along if len(column) == length else f"between_{along}"
+            dims = (first, "side")[:column.ndim]
+            about = {key: value for key, value in (("units", column.unit), ("long_name", column.description)) if value}
+            variables[name] = (dims, column.values, about)
+        return xarray.Dataset(variables, attrs=dict(self.attributes))
+
+    def __repr__(self) -> str:
+        lines = [f"{self._place}:"]
+        lines += [f"  {name} = {value}" for name, value in self.attributes.items()]
+        for name in self._names:
+            item = self[name]
+            lines.append(f"  {item!r}" if isinstance(item, Column) else f"  {name}: table of {', '.join(item)}")
+        return "\n".join(lines)
+
+
+class Tables(Sequence):
+    """Tables in order, of snapshots, profiles, masses in that of time: `tables[0]`, `tables.times`, `tables.at(t)`."""
+
+    def __init__(self, group: h5py.Group | None, place: str):
+        names = () if group is None else reading(place, lambda: sorted(group))
+        self._place = place
+        self._tables = [Table(reading(place, lambda name=name: group[name]), f"{place}/{name}") for name in names]
+
+    @cached_property
+    def times(self) -> np.ndarray:
+        """Shape (len(tables),), in t."""
+        return np.array([table.attributes.get("time", np.nan) for table in self._tables], float)
+
+    def at(self, time: float) -> Table:
+        """The one whose time is nearest. Raises Error where there is none at all."""
+        if not self._tables:
+            raise Error(f"{self._place} is empty: the scene asked for none (see output.* of `cradle scenes --keys`)",
+                        BAD_INPUT)
+        return self._tables[int(np.nanargmin(np.abs(self.times - time)))]
+
+    def __getitem__(self, index):
+        return self._tables[index]
+
+    def __len__(self) -> int:
+        return len(self._tables)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{time:.6g}" for time in self.times[:8]) + (", ..." if len(self) > 8 else "")
+        return f"{self._place}: {len(self)} at times {shown}" if len(self) else f"{self._place}: none"

@@ -1,4 +1,5 @@
-# cmake --install: headers, the package config for find_package(cradle), and the program.
+# cmake --install: headers, the package config for find_package(cradle), the program with its manual page and
+# completions, and the Python package.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS cradle_options cradle_core cradle_ensemble cradle_precision cradle EXPORT cradle-targets)
@@ -12,3 +13,26 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/tools/cmake/cradle-config.cm
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cradle-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/cradle-config.cmake ${PROJECT_BINARY_DIR}/cradle-config-version.cmake
               tools/cmake/mpfr.cmake DESTINATION ${_package})
+
+if(CRADLE_TOOLS)
+  set(CRADLE_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/cradle/python
+      CACHE STRING "where the Python package is installed, below the prefix: to be in PYTHONPATH")
+  install(DIRECTORY tools/python/cradle DESTINATION ${CRADLE_PYTHON_DIR}
+          PATTERN __pycache__ EXCLUDE)
+  # What the program prints of itself.
+  set(_texts ${PROJECT_BINARY_DIR}/installed_texts)
+  file(MAKE_DIRECTORY ${_texts})
+  foreach(_text manual=cradle.1=${CMAKE_INSTALL_MANDIR}/man1
+                completion,bash=cradle=${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+                completion,zsh=_cradle=${CMAKE_INSTALL_DATADIR}/zsh/site-functions
+                completion,fish=cradle.fish=${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+    string(REPLACE "=" ";" _text ${_text})
+    list(GET _text 0 _words)
+    list(GET _text 1 _file)
+    list(GET _text 2 _folder)
+    string(REPLACE "," " " _words ${_words})
+    install(CODE "execute_process(COMMAND \"$<TARGET_FILE:cradle_cli>\" ${_words}
+                                  OUTPUT_FILE \"${_texts}/${_file}\" COMMAND_ERROR_IS_FATAL ANY)")
+    install(FILES ${_texts}/${_file} DESTINATION ${_folder})
+  endforeach()
+endif()

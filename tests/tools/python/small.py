@@ -45,4 +45,11 @@ def trust():
     return "trust.h5"
 
 
+@functools.cache
+def page(make):
+    """The text of the report of one of these, beside it with .html."""
+    with open(cradle.report(make()), encoding="utf-8") as file:
+        return file.read()
+
+
 ALL = (shock, ensemble, sweep, collapse, trust)

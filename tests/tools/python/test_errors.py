@@ -118,7 +118,8 @@ class OnTheWay(unittest.TestCase):
             self.assertIn("on its way", file.read())
 
     def test_journals_of_replicas_and_checkpoints_are_named(self):
-        for name, magic, wrong in (("a.h5.part", b"CRADLEJ2", "resume a.h5"), ("a.h5.checkpoint", b"CRADLEC1", "checkpoint")):
+        for name, magic, wrong in (("a.h5.part", b"CRADLEJ2", "resume a.h5"),
+                                   ("a.h5.checkpoint", b"CRADLEC1", "checkpoint")):
             with open(name, "wb") as file:
                 file.write(magic + bytes(100))
             with self.assertRaisesRegex(cradle.Error, wrong):

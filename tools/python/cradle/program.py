@@ -14,18 +14,22 @@ from .errors import BAD_FILE, DONE, Error
 
 BAR = re.compile(r"\[(#*) *\] (.*)")  # tools/support/progress.cpp, on a terminal
 REDRAWN = re.compile(r"\r(?:\033\[K)?")
-LONGEST = 1 << 20  # of what is kept of a text that never ends its line
+WHERE = ((*[".."] * 3, "build", "release", "tools", "cradle"), (*[".."] * 4, "bin", "cradle"))  # from this package
 
 
 def find() -> str:
-    """The program: $CRADLE_PROGRAM, that of the build beside this package, or `cradle` on the path. Raises Error."""
+    """The program: $CRADLE_PROGRAM, that of the build or installation that this package is of, or `cradle` on the path.
+
+    Raises Error where there is none.
+    """
     chosen = os.environ.get("CRADLE_PROGRAM")
     here = os.path.dirname(os.path.abspath(__file__))
-    built = os.path.normpath(os.path.join(here, "..", "..", "..", "build", "release", "tools", "cradle"))
-    found = chosen or (built if os.access(built, os.X_OK) else shutil.which("cradle"))
-    if found and shutil.which(found):
-        return found
-    raise Error(f"the program cradle is missing (looked at {chosen or '$CRADLE_PROGRAM, ' + built + ', the path'}): "
+    own = (os.path.normpath(os.path.join(here, *where)) for where in WHERE)
+    looked_at = [chosen] if chosen else [*own, "cradle"]
+    for place in looked_at:
+        if found := shutil.which(place):
+            return found
+    raise Error(f"the program cradle is missing (looked at {', '.join(looked_at)}): "
                 "build it with tools/quickstart.sh, or set CRADLE_PROGRAM to it", BAD_FILE)
 
 

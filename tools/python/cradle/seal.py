@@ -18,7 +18,7 @@ CHUNK = 1 << 16  # of LZMA2, at most
 
 
 def read_seal(path: str) -> tuple[int, int] | None:
-    """Length of what is sealed and its CRC-64, None for a file without a seal. Raises Error where it does not fit."""
+    """Length of what is sealed and its CRC-64, None without a seal. Raises Error where it does not fit."""
     with open(path, "rb") as file:
         length = file.seek(0, os.SEEK_END)
         file.seek(max(0, length - SIZE))
@@ -31,7 +31,7 @@ def read_seal(path: str) -> tuple[int, int] | None:
 
 
 def hdf5_length(path: str) -> int | None:
-    """How long HDF5 says that the file is, in a superblock of version 0, as the program and h5py write it; else None."""
+    """How long HDF5 says that the file is, in a superblock of version 0, as the program and h5py write it, or None."""
     with open(path, "rb") as file:
         head = file.read(48)
     return struct.unpack_from("<Q", head, 40)[0] if len(head) == 48 and head[8] == 0 and head[13] == 8 else None

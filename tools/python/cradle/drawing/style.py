@@ -69,7 +69,7 @@ class Units:
 
 
 def subplots(axes, rows=1, columns=1, squeeze=True, **options):
-    """Figure and axes of a picture: new ones as plt.subplots makes them, or the given ones, as many as it has panels."""
+    """Figure and axes of a picture: new ones as plt.subplots makes them, or the given ones, one for each panel."""
     if axes is None:
         return plt.subplots(rows, columns, squeeze=squeeze, **options)
     given = np.array(axes, dtype=object).ravel()

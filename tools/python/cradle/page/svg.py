@@ -29,12 +29,20 @@ def picture(figure, number: int, text: str) -> str:
 
 
 def inline(svg: str, prefix: str, text: str) -> str:
-    """An SVG document as an element of HTML: without prologue and metadata, every id with a prefix."""
+    """An SVG document as an element of HTML: no prologue, no metadata, a prefix to every id that is referred to."""
     svg = svg[svg.index("<svg"):]
     svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
     svg = re.sub(r"<style type=\"text/css\">.*?</style>\s*", "", svg, flags=re.DOTALL)  # page.css has it
     svg = re.sub(r"<!--.*?-->\s*", "", svg, flags=re.DOTALL)
-    svg = re.sub(r'\bid="', f'id="{prefix}', svg)
+    named = set(re.findall(r'\bhref="#([^"]+)"', svg)) | set(re.findall(r"url\(#([^)]+)\)", svg))
+
+    def renamed(match: re.Match) -> str:
+        if match[1] not in named:  # nobody asks for it, or it has been given: equal definitions have equal names
+            return ""
+        named.remove(match[1])
+        return f' id="{prefix}{match[1]}"'
+
+    svg = re.sub(r'\sid="([^"]*)"', renamed, svg)
     svg = re.sub(r'\bhref="#', f'href="#{prefix}', svg)
     svg = re.sub(r"url\(#", f"url(#{prefix}", svg)
     return svg.replace("<svg", f'<svg role="img" aria-label="{html.escape(text)}"', 1).strip()

@@ -1,0 +1,165 @@
+// The first hour: `cradle` alone says what to try, and that works; `new` writes scenes that are those they come from;
+// completion and the manual page have every command, option and key; reports and citations from the command line.
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/scene/fields.hpp"
+
+namespace cradle::tests {
+namespace first_hour_test {
+
+class FirstHour : public ProgramTest {
+ protected:
+  std::vector<std::string> commands() const {
+    std::istringstream help(shell("cradle --help").out);
+    std::vector<std::string> names;
+    bool listed = false;
+    for (std::string line; std::getline(help, line);) {
+      if (listed && line.empty()) break;
+      if (listed) names.push_back(line.substr(2, line.find(' ', 2) - 2));
+      listed = listed || line == "Subcommands:";
+    }
+    return names;
+  }
+
+  bool there(const std::string& program) const { return shell("command -v " + program).status == 0; }
+};
+
+TEST_F(FirstHour, ProgramAloneSaysWhatToTryAndItWorks) {
+  const Printed alone = shell("cradle");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_EQ(alone.err, "cradle: no command: give one, see `cradle --help`\n");
+  std::istringstream lines(alone.out);
+  std::vector<std::string> tried;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("  cradle ")) tried.push_back(line.substr(2, line.find("  ", 2) - 2));
+  ASSERT_EQ(tried.size(), 5U) << alone.out;
+  for (const auto& command : tried) {
+    const Printed run = shell(command);
+    if (run.err.find("no Python with") != std::string::npos) continue;  // all but pictures and reports goes without
+    EXPECT_EQ(run.status, 0) << command << "\n" << run.err;
+  }
+  for (const auto* made : {"fig2.h5", "shock.toml"}) EXPECT_TRUE(std::filesystem::exists(folder / made)) << made;
+}
+
+TEST_F(FirstHour, NewScenesAreThoseTheyComeFrom) {
+  for (const auto& scene : tools::bundled_scenes()) {
+    const std::string name(scene.name);
+    ASSERT_EQ(shell("cradle new " + name + ".toml --from " + name).status, 0) << name;
+    const Printed difference = shell("cradle check " + name + " > a; cradle check " + name + ".toml > b; diff a b");
+    EXPECT_EQ(difference.status, 0) << name << "\n" << difference.out;
+  }
+}
+
+TEST_F(FirstHour, NewSceneTellsOfEveryKeyThatItCouldUse) {
+  const Printed made = shell("cradle new");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(made.out, "wrote shock.toml: change it, then `cradle run shock.toml`\n");
+  const std::string text = contents(folder / "shock.toml");
+  tools::Scene scene = tools::read_scene((folder / "shock.toml").string(), {});
+  for (const tools::Field& field : tools::scene_fields())
+    if (field.when->holds(scene))
+      EXPECT_NE(text.find("# " + std::string(field.doc) + " (" + facts(field) + ")\n"), std::string::npos) << field.key;
+  EXPECT_EQ(shell("cradle run shock.toml --quiet").status, 0);
+}
+
+TEST_F(FirstHour, NewReplacesNothing) {
+  write("mine.toml", "mine");
+  const Printed again = shell("cradle new mine.toml");
+  EXPECT_EQ(again.status, 4);
+  EXPECT_EQ(again.err, "cradle: mine.toml: the file is there already: choose another name\n");
+  EXPECT_EQ(contents(folder / "mine.toml"), "mine");
+  EXPECT_EQ(shell("cradle new other.toml --from no_such_scene").status, 4);
+  EXPECT_FALSE(std::filesystem::exists(folder / "other.toml"));
+}
+
+TEST_F(FirstHour, ManualPageHasEveryCommandOptionAndKey) {
+  const Printed page = shell("cradle manual");
+  ASSERT_EQ(page.status, 0) << page.err;
+  EXPECT_TRUE(page.out.starts_with(".TH CRADLE 1 "));
+  EXPECT_GE(commands().size(), 19U);
+  for (const std::string& command : commands())
+    EXPECT_NE(page.out.find(".SS cradle " + command), page.out.npos) << command;
+  for (const auto* option : {"\\-\\-replicas N", "\\-o, \\-\\-output", "\\-\\-vary", "\\-\\-rtol"})
+    EXPECT_NE(page.out.find(option), page.out.npos) << option;
+  for (const tools::Field& field : tools::scene_fields())
+    EXPECT_NE(page.out.find("\n.B " + std::string(field.key) + "\n"), page.out.npos) << field.key;
+  if (!there("groff")) GTEST_SKIP() << "no groff: how the page is set was not looked at";
+  const Printed set = shell("cradle manual | groff -man -ww -Tutf8 > page.txt");
+  EXPECT_EQ(set.err, "");
+  EXPECT_GT(std::filesystem::file_size(folder / "page.txt"), 10000U);
+}
+
+TEST_F(FirstHour, BashCompletesCommandsOptionsScenesAndKeys) {
+  write("complete.sh", "source <(cradle completion bash)\n"
+                       "COMP_WORDS=(\"$@\") COMP_CWORD=$(($# - 1))\n"
+                       "_cradle 2>/dev/null\n"
+                       "echo \"${COMPREPLY[*]}\"\n");
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"cradle res", "resume"},
+      {"cradle run collapse", "collapse3 collapse_times"},
+      {"cradle ensemble fig2 --rep", "--replicas"},
+      {"cradle run fig2 --set law.re", "law.restitution="},
+      {"cradle sweep fig2 --vary initial.pert", "initial.perturbation="},
+      {"cradle completion z", "zsh"}};
+  for (const auto& [words, completed] : cases)
+    EXPECT_EQ(shell(std::string("bash complete.sh ") + words).out, std::string(completed) + "\n") << words;
+  for (const std::string& command : commands())
+    EXPECT_NE((" " + shell("bash complete.sh cradle ''").out).find(" " + command), std::string::npos) << command;
+}
+
+TEST_F(FirstHour, CompletionsAreScriptsOfTheirShells) {
+  for (const auto& [shell_name, check] :
+       {std::pair{"bash", "bash -n"}, {"zsh", "zsh -n"}, {"fish", "fish --no-execute"}}) {
+    const Printed script = shell(std::string("cradle completion ") + shell_name + " > script");
+    EXPECT_EQ(script.status, 0) << script.err;
+    for (const std::string& command : commands())
+      EXPECT_NE(contents(folder / "script").find(command), std::string::npos) << shell_name << ": " << command;
+    if (!there(shell_name)) continue;
+    const Printed read = shell(std::string(check) + " script");
+    EXPECT_EQ(read.status, 0) << shell_name << "\n" << read.err;
+  }
+  const Printed other = shell("cradle completion csh");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_EQ(other.err, "cradle: no such shell (found csh): give bash, zsh or fish\n");
+}
+
+TEST_F(FirstHour, ReportOfWhatIsNoResultIsOneMessage) {
+  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5 && echo junk > junk.h5 && head -c 3000 it.h5 > cut.h5 && : > no.h5")
+                .status,
+            0);
+  for (const auto* name : {"junk.h5", "cut.h5", "no.h5", "nothing.h5"}) {
+    const Printed report = shell(std::string("cradle report ") + name);
+    EXPECT_EQ(report.status, 4) << name;
+    EXPECT_NE(report.err.find(name), std::string::npos) << report.err;
+    EXPECT_EQ(std::count(report.err.begin(), report.err.end(), '\n'), 1) << report.err;
+  }
+}
+
+TEST_F(FirstHour, WithoutPythonPicturesAndReportsSayWhatIsMissing) {
+  ASSERT_EQ(
+      shell("cradle run fig5 --quiet -o it.h5 && mkdir bare && ln -s \"$(command -v cradle)\" bare/cradle").status, 0);
+  if (std::filesystem::exists("/usr/bin/python3"))
+    GTEST_SKIP() << "there is /usr/bin/python3, which is looked at by its name";
+  for (const auto* command : {"plot", "report"}) {
+    const Printed run = shell(std::string("PATH=$PWD/bare cradle ") + command + " it.h5");
+    EXPECT_EQ(run.status, 4);
+    EXPECT_NE(run.err.find("no Python with h5py and matplotlib"), std::string::npos) << run.err;
+  }
+}
+
+TEST_F(FirstHour, ExportWritesWhatIsThereAsAResult) {
+  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5").status, 0);
+  EXPECT_EQ(shell("cradle export it.h5 --result copy.h5").out, "copy.h5\n");
+  EXPECT_EQ(contents(folder / "copy.h5"), contents(folder / "it.h5"));
+  const Printed nothing = shell("cradle export it.h5");
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_EQ(nothing.err, "cradle: nothing to export to: give --to DIR, --result FILE or both\n");
+}
+
+}  // namespace first_hour_test
+}  // namespace cradle::tests

@@ -1,0 +1,128 @@
+"""Headless Chromium, driven through a pipe as DevTools speaks it: loads a page, looks at it, photographs it.
+
+What it logs, what it throws and what it asks any network for is in `complaints` and `requests`.
+"""
+import base64
+import fcntl
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+
+
+def find():
+    """The browser, $CRADLE_CHROMIUM first, or None."""
+    names = (os.environ.get("CRADLE_CHROMIUM", ""), *NAMES)
+    return next((found for name in names if (found := shutil.which(name))), None)
+
+
+class Browser:
+    """Use it in `with`."""
+
+    def __init__(self, width=1100, height=900):
+        self.folder = tempfile.mkdtemp()
+        ours_read, theirs_write = os.pipe()
+        theirs_read, ours_write = os.pipe()
+        # Chromium reads from 3 and writes to 4: others first out of the way.
+        ends = [fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, 20) for end in (theirs_read, theirs_write)]
+        os.close(theirs_read), os.close(theirs_write)
+
+        def connect():
+            os.dup2(ends[0], 3), os.dup2(ends[1], 4)
+
+        self.process = subprocess.Popen(
+            [find(), "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage",
+             "--disable-background-networking", "--no-first-run", "--remote-debugging-pipe",
+             f"--user-data-dir={self.folder}", "about:blank"],
+            preexec_fn=connect, pass_fds=(3, 4), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL)
+        for end in ends:
+            os.close(end)
+        self.reading, self.writing = os.fdopen(ours_read, "rb"), os.fdopen(ours_write, "wb")
+        self.number, self.left, self.session = 0, b"", None
+        self.complaints, self.requests, self.seen = [], [], []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Network", "Log"):
+            self.call(f"{domain}.enable")
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.wait()
+        self.reading.close(), self.writing.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def message(self):
+        while b"\0" not in self.left:
+            piece = os.read(self.reading.fileno(), 1 << 20)
+            if not piece:
+                raise RuntimeError("the browser has ended")
+            self.left += piece
+        text, self.left = self.left.split(b"\0", 1)
+        return json.loads(text)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        request = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            request["sessionId"] = self.session
+        self.writing.write(json.dumps(request).encode() + b"\0")
+        self.writing.flush()
+        while True:
+            answer = self.message()
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']}")
+                return answer["result"]
+            self.note(answer)
+
+    def note(self, event):
+        method, about = event.get("method"), event.get("params", {})
+        self.seen.append(method)
+        if method in ("Runtime.exceptionThrown", "Log.entryAdded", "Runtime.consoleAPICalled"):
+            self.complaints.append(json.dumps(about)[:500])
+        elif method == "Network.requestWillBeSent":
+            self.requests.append(about["request"]["url"][:200])
+
+    def emulate(self, scheme="light", media=""):
+        """scheme: light or dark; media: "print" or as on a screen."""
+        self.call("Emulation.setEmulatedMedia", media=media,
+                  features=[{"name": "prefers-color-scheme", "value": scheme}])
+
+    def load(self, path):
+        """Opens a file from the disk and waits until it is whole."""
+        self.seen.clear()
+        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        while "Page.loadEventFired" not in self.seen:
+            self.note(self.message())
+
+    def evaluate(self, expression):
+        """The value of a JavaScript expression in the page; promises are waited for."""
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def photograph(self, path, most=12000):
+        """The whole page as PNG, its upper part where it is longer than so many pixels; returns its size."""
+        size = self.call("Page.getLayoutMetrics")["cssContentSize"]
+        width, height = size["width"], min(size["height"], most)
+        shot = self.call("Page.captureScreenshot", captureBeyondViewport=True,
+                         clip={"x": 0, "y": 0, "width": width, "height": height, "scale": 1})
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(shot["data"]))
+        return width, height
+
+    def print_to(self, path):
+        """As PDF; returns its number of pages."""
+        data = base64.b64decode(self.call("Page.printToPDF", preferCSSPageSize=True, printBackground=True)["data"])
+        with open(path, "wb") as file:
+            file.write(data)
+        return data.count(b"/Type /Page\n") + data.count(b"/Type /Page ") + data.count(b"/Type/Page/")

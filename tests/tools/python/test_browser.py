@@ -1,0 +1,96 @@
+"""Reports as a reader sees them, in headless Chromium: nothing thrown, nothing logged, nothing asked of any network;
+tables sort; dark is dark, and print is dark on white."""
+import os
+import unittest
+
+import browser
+import cradle
+import small
+
+SHOTS = os.environ.get("CRADLE_SHOTS")  # a folder: screenshots stay there
+
+BRIGHTNESS = """(() => {
+  const rgb = getComputedStyle(document.body).%s.match(/[\\d.]+/g).slice(0, 3).map(Number);
+  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+})()"""
+
+FILTER = "getComputedStyle(document.querySelector('figure > svg')).filter"
+
+
+@unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
+class Reader(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = browser.Browser().__enter__()
+        cls.addClassCleanup(cls.browser.__exit__)
+
+    def load(self, make, scheme="light", media=""):
+        small.page(make)
+        self.browser.complaints.clear()
+        self.browser.requests.clear()
+        self.browser.emulate(scheme, media)
+        self.browser.load(f"{make.__name__}.html")
+
+    def test_pages_load_without_a_word_and_without_a_request(self):
+        for make in small.ALL:
+            for scheme in ("light", "dark"):
+                self.load(make, scheme)
+                self.assertEqual(self.browser.complaints, [], make.__name__)
+                outside = [url for url in self.browser.requests if not url.startswith(("file://", "data:", "blob:"))]
+                self.assertEqual(outside, [])
+                files = [url for url in self.browser.requests if url.startswith("file://")]
+                self.assertEqual(len(files), 1, "the page itself, and nothing beside it")
+                if SHOTS:
+                    self.browser.photograph(os.path.join(SHOTS, f"{make.__name__}-{scheme}.png"))
+
+    def test_no_page_is_wider_than_the_window(self):
+        for make in small.ALL:
+            self.load(make)
+            self.assertLessEqual(self.browser.evaluate("document.documentElement.scrollWidth"),
+                                 self.browser.evaluate("document.documentElement.clientWidth"), make.__name__)
+
+    def test_every_picture_is_there(self):
+        self.load(small.shock)
+        sizes = self.browser.evaluate(
+            "Array.from(document.querySelectorAll('figure > svg'), p => p.getBoundingClientRect().height)")
+        self.assertEqual(len(sizes), len(cradle.plot.names(small.shock())))
+        self.assertGreater(min(sizes), 200)
+
+    def test_tables_sort_up_and_down(self):
+        self.load(small.sweep)
+        column = """(() => {
+          const heads = Array.from(document.querySelectorAll('.sortable thead button'));
+          const head = heads.find(button => button.textContent.startsWith('contacts'));
+          head.click();
+          const at = head.parentNode.cellIndex;
+          return [head.parentNode.getAttribute('aria-sort'),
+                  Array.from(document.querySelectorAll('.sortable tbody tr'), row => Number(row.cells[at].dataset.by))];
+        })()"""
+        direction, values = self.browser.evaluate(column)
+        self.assertEqual((direction, values), ("ascending", sorted(values)))
+        self.assertEqual(len(set(values)), 6)
+        direction, again = self.browser.evaluate(column)
+        self.assertEqual((direction, again), ("descending", values[::-1]))
+
+    def test_dark_is_dark_and_print_is_light(self):
+        self.load(small.shock, "light")
+        self.assertGreater(self.browser.evaluate(BRIGHTNESS % "backgroundColor"), 240)
+        self.load(small.shock, "dark")
+        self.assertLess(self.browser.evaluate(BRIGHTNESS % "backgroundColor"), 40)
+        self.assertGreater(self.browser.evaluate(BRIGHTNESS % "color"), 200)
+        self.assertIn("invert", self.browser.evaluate(FILTER))
+        self.load(small.shock, "dark", "print")
+        self.assertGreater(self.browser.evaluate(BRIGHTNESS % "backgroundColor"), 240)
+        self.assertEqual(self.browser.evaluate(FILTER), "none")
+
+    def test_prints(self):
+        self.load(small.sweep, "light")
+        self.assertGreaterEqual(self.browser.print_to("sweep.pdf"), 2)
+        self.assertGreater(os.path.getsize("sweep.pdf"), 20000)
+
+    def test_the_scene_can_be_copied(self):
+        self.load(small.shock)
+        self.assertTrue(self.browser.evaluate("document.getElementById('scene').textContent").startswith("title = "))
+        self.browser.evaluate("document.querySelector('button.copy').click()")
+        self.assertIn("[law]", self.browser.evaluate("String(getSelection())"))
+        self.assertEqual(self.browser.complaints, [])

@@ -1,0 +1,146 @@
+"""Reports as texts: whole, of one file, the same twice, with what they must tell."""
+import html.parser
+import os
+import re
+import subprocess
+import unittest
+
+import cradle
+import small
+from cradle import program
+from cradle.page.elements import enclosed, measured, number
+from cradle.page.svg import inline
+
+VOID = {"meta", "link", "br", "img", "hr", "path", "use"}
+
+
+class Page(html.parser.HTMLParser):
+    """Ids, and all that names something outside."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.ids, self.links, self.wanted = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name == "id":
+                self.ids.append(value)
+            elif name in ("href", "xlink:href", "src", "action", "srcset", "poster"):
+                self.links.append(value)
+                if value.startswith("#"):
+                    self.wanted.append(value[1:])
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+class Reports(unittest.TestCase):
+    def pages(self):
+        for make in small.ALL:
+            yield make, small.page(make)
+
+    def test_hold_everything_and_ask_for_nothing(self):
+        for make, text in self.pages():
+            page = Page(text)
+            for link in page.links:
+                self.assertRegex(link, "^(#|data:)", make.__name__)
+            self.assertNotIn("@import", text)
+            self.assertNotRegex(text, r"url\((?!#|[\"']?data:)")
+            self.assertEqual(len(page.ids), len(set(page.ids)), "an id stands twice")
+            for wanted in page.wanted:
+                self.assertIn(wanted, page.ids)
+            self.assertIn("default-src 'none'", text)
+
+    def test_have_every_picture_of_the_result(self):
+        for make, text in self.pages():
+            for name in cradle.plot.names(make()):
+                self.assertIn(f'id="picture-{name}"', text)
+            self.assertEqual(text.count("<figure"), len(cradle.plot.names(make())))
+
+    def test_are_the_same_twice_and_by_the_program(self):
+        for make in small.ALL:
+            text = small.page(make)
+            out = subprocess.run([program.find(), "report", make(), "-o", "again.html"], check=True,
+                                 capture_output=True, text=True)
+            self.assertEqual((out.stdout, out.stderr), ("again.html\n", ""))
+            self.assertEqual(read("again.html"), text, make.__name__)
+
+    def test_tell_how_to_run_it_again(self):
+        # The command and the scene of the page give the same file.
+        for make in small.ALL:
+            with cradle.open(make()) as result:
+                command = re.search(r"<pre>(cradle .*)\n?</pre>", small.page(make))[1]
+                name = result.attributes["name"]
+                with open(name + ".toml", "w", encoding="utf-8") as file:
+                    file.write(result.scene_text)
+            words = command.replace("&quot;", '"').split()[1:]
+            words[words.index("-o") + 1] = "again.h5"
+            if "--point" not in words:
+                subprocess.run([program.find(), *words, "--quiet"], check=False, capture_output=True)
+                different = subprocess.run([program.find(), "diff", make(), "again.h5"], capture_output=True, text=True)
+                self.assertEqual(different.returncode, 0, f"{command}\n{different.stdout}{different.stderr}")
+                os.remove("again.h5")
+
+    def test_tell_what_is_proved(self):
+        text = small.page(small.collapse)
+        self.assertIn("<b>Proved</b>: each of the 322 contacts", text)
+        with cradle.open(small.collapse()) as result:
+            low, high = (str(result.exact.series[f"front_right_{side}"][-1]) for side in ("low", "high"))
+        shown = re.search(r"right front at the end<td><span class=\"digits\">([\d.]+)", text)[1]
+        # 4/3, to the 40 digits that are shown of those proved.
+        self.assertEqual(shown, "1." + 39 * "3")
+        self.assertEqual((low[:42], high[:42]), ("1." + 40 * "3", "1." + 40 * "3"))
+
+    def test_warn(self):
+        self.assertIn("ended at inelastic collapse", small.page(small.collapse))
+        self.assertNotIn('class="warnings"', small.page(small.shock))
+
+    def test_scripts_of_scenes_stay_texts(self):
+        title = "</title><script>alert(1)</script><b>"
+        with cradle.run("fig5", set={"title": title}, output="bad.h5") as result:
+            text = read(cradle.report(result))
+        self.assertNotIn("<script>alert", text)
+        self.assertIn("&lt;script&gt;alert(1)", text)
+
+    def test_leave_no_half_a_page(self):
+        with self.assertRaises(cradle.Error) as raised:
+            cradle.report(small.shock(), "no/such/folder.html")
+        self.assertEqual(raised.exception.status, 4)
+
+    def test_citation_has_the_version(self):
+        printed = subprocess.run([program.find(), "cite"], check=True, capture_output=True, text=True).stdout
+        version = subprocess.run([program.find(), "--version"], check=True, capture_output=True, text=True).stdout
+        version = version.split()[1]
+        self.assertIn(f"version {version}:", printed)
+        self.assertEqual(version, cradle.__version__)
+        self.assertIn("10.1103/PhysRevE.75.031304", printed)
+        self.assertIn("zaburdaev2007", small.page(small.shock))
+
+
+class Elements(unittest.TestCase):
+    def test_numbers(self):
+        self.assertEqual(number(34681883), "34\u202f681\u202f883")
+        self.assertEqual(number(-1.5e-14), "−1.5 × 10<sup>−14</sup>")
+        self.assertEqual((number(float("nan")), number(True), number(2.5)), ("–", "yes", "2.5"))
+
+    def test_a_mean_goes_as_far_as_its_error(self):
+        self.assertEqual(measured(3157398.4, 189.2), "3157398 <small>± 189</small>")
+        self.assertEqual(measured(6249.19123, 0.2812), "6249.19 <small>± 0.28</small>")
+
+    def test_enclosures_show_the_digits_that_are_right(self):
+        # Bounds 1.2345678 +- 1e-7: six digits do not depend on where between them the number is.
+        shown, right = enclosed("1.2345677e+00", "1.2345679e+00")
+        self.assertEqual(right, 6)
+        self.assertEqual(shown, "1.23457 ± 1.0 × 10<sup>−7</sup>")
+        self.assertEqual(enclosed("2.5e+00", "2.5e+00"), ("2.5", 2))
+        self.assertEqual(enclosed("-1e-300", "1e-300")[1], 0)
+
+    def test_pictures_have_names_of_their_own(self):
+        svg = '<?xml?><svg><defs><style type="text/css">*{}</style><path id="a"/></defs><use xlink:href="#a"/>' \
+              '<g clip-path="url(#a)"/></svg>'
+        text = inline(svg, "p3-", 'a "picture"')
+        self.assertEqual(text, '<svg role="img" aria-label="a &quot;picture&quot;"><defs><path id="p3-a"/></defs>'
+                               '<use xlink:href="#p3-a"/><g clip-path="url(#p3-a)"/></svg>')

@@ -282,3 +282,9 @@ def _number(value):
 
 def _text(value):
     return value.decode() if isinstance(value, bytes) else str(value)
+
+
+# What a page needs beside the data, in this order.
+SCRIPTS = ("microscope_world.js", "microscope_gaps.js", "microscope_chart.js", "microscope_camera.js",
+           "microscope_view.js", "microscope_overview.js", "microscope_hands.js", "microscope.js")
+STYLES = ("microscope.css",)

@@ -1,0 +1,276 @@
+// The microscope in a page: cradleMicroscope(element, data) builds it in a <div> from what microscope.py made of a run.
+//
+// Needs the other microscope_*.js before it. Returns what `element.cradleMicroscope` and window.cradleMicroscopeTest
+// are, too: a small handle for scripts and tests, whose `ready` is a promise of the first picture.
+
+function cradleMicroscope(element, data) {
+  const make = (tag, name, parent, text) => {
+    const made = document.createElement(tag);
+    made.className = name;
+    if (text) made.textContent = text;
+    parent.append(made);
+    return made;
+  };
+  element.classList.add("microscope");
+  element.replaceChildren();
+  const bar = make("div", "microscope-bar", element), stage = make("div", "microscope-stage", element);
+  const canvas = make("canvas", "microscope-canvas", stage), readout = make("div", "microscope-readout", element);
+  make("div", "microscope-help", element, "drag: move · wheel, + −: zoom (shift: time only, alt: space only; the axes " +
+       "zoom alone) · n, p: next, previous contact · d: deepest · 0: all · c: colours · space: play");
+  canvas.tabIndex = 0;
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", "world lines of the bodies in space and time");
+  readout.setAttribute("aria-live", "polite");
+  const pen = canvas.getContext("2d"), state = { quantity: "speed", playing: false, pointer: null, moving: 0 };
+  const stores = { raster: {}, strip: {} }, offscreen = document.createElement("canvas");
+  let world = null, camera = null, box = null, strip = null, colours = null, due = 0, restful = 0, quality = 2;
+
+  const say = text => { if (readout.textContent !== text) readout.textContent = text; };
+  const button = (text, title, act) => {
+    const made = make("button", "microscope-button", bar, text);
+    made.type = "button";
+    made.title = title;
+    made.addEventListener("click", () => { act(); canvas.focus({ preventScroll: true }); });
+    return made;
+  };
+
+  // Drawing
+
+  const style = name => getComputedStyle(element).getPropertyValue(name).trim();
+  const number = body => world.index ? world.index[body] : world.first + body;
+  function layout() {
+    const ratio = window.devicePixelRatio || 1, width = stage.clientWidth, height = stage.clientHeight;
+    canvas.width = Math.max(1, Math.round(width * ratio));
+    canvas.height = Math.max(1, Math.round(height * ratio));
+    const m = MICROSCOPE_MARGIN, below = world.n ? m.strip : 0;
+    box = { left: m.left, top: m.top, width: Math.max(40, width - m.left - m.right),
+            height: Math.max(40, height - m.top - m.bottom - below) };
+    strip = world.n ? { left: m.left, top: box.top + box.height + m.bottom + 6, width: box.width, height: below - 30 } : null;
+    const names = ["paper", "plate", "line", "grid", "frame", "text", "accent", "ink"];
+    colours = Object.fromEntries(names.map(name => [name, style("--microscope-" + name)]));
+    stores.strip = {};
+    request();
+  }
+  function request() {
+    if (!due) due = requestAnimationFrame(draw);
+  }
+  function changed() {  // by hand or in play: draw quickly now, and well when it has come to rest
+    state.moving = 1;
+    clearTimeout(restful);
+    restful = setTimeout(() => { state.moving = 0; request(); }, 160);
+    request();
+  }
+
+  // The logarithms that colour contacts, and their range in sight, led slowly so that colours do not flicker.
+  function colouring() {
+    const value = state.quantity === "speed" ? world.logSpeed : world.lost, { chart, view } = camera, sample = [];
+    if (chart) {
+      for (let i = 0, skip = Math.ceil(chart.contacts.length / 2000); i < chart.contacts.length; i += skip)
+        if (Math.abs(chart.tau[i] - view.tau) < view.T / 2 &&
+            Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2) sample.push(value[chart.contacts[i]]);
+    } else {
+      const t = (view.anchor.e < 0 ? world.start : world.time[view.anchor.e]) + view.tau;
+      const first = microscopeFirstAfter(world.time, t - view.T / 2), last = microscopeFirstAfter(world.time, t + view.T / 2);
+      for (let e = first, skip = Math.ceil((last - first) / 2000); e < last; e += skip) sample.push(value[e]);
+    }
+    const real = sample.filter(v => v > -350).sort((a, b) => a - b);
+    if (!real.length) return { value, range: state.range || [-1, 0], empty: true };
+    let low = real[Math.floor(0.02 * (real.length - 1))], high = real[Math.ceil(0.98 * (real.length - 1))];
+    if (high - low < 0.5) [low, high] = [(low + high) / 2 - 0.25, (low + high) / 2 + 0.25];
+    const old = state.range, near = old && Math.abs(old[0] - low) + Math.abs(old[1] - high) < 3 && state.moving;
+    state.range = near ? [old[0] + 0.2 * (low - old[0]), old[1] + 0.2 * (high - old[1])] : [low, high];
+    return { value, range: state.range, empty: false };
+  }
+
+  function draw() {
+    due = 0;
+    if (!box || canvas.width < 2) return;
+    const begun = performance.now(), ratio = canvas.width / stage.clientWidth, { view, chart } = camera;
+    const { value, range, empty } = colouring(), e = view.anchor.e;
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.font = "12px system-ui, sans-serif";
+    pen.fillStyle = colours.paper;
+    pen.fillRect(0, 0, canvas.width, canvas.height);
+    const t0 = e < 0 ? world.start : world.time[e], x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e];
+    const tilt = Math.abs(view.V + view.lab) * view.T / view.X;  // of the frame against the lab
+    const name = e < 0 ? `body ${number(view.anchor.a)}` : `contact ${e + 1}`;
+    const origin = { t: t0, x: x0, moving: tilt > 0.02 };
+    const labels = microscopeAxes(pen, view, box, colours, origin, name);
+    pen.save();
+    pen.beginPath();
+    pen.rect(box.left, box.top, box.width, box.height);
+    pen.clip();
+    if (chart) {
+      microscopeLines(pen, chart, view, box, colours);
+      microscopeDots(pen, chart, view, box, value, range);
+    } else {
+      const scale = state.moving ? ratio / quality : ratio;
+      const image = microscopeRaster(world, view, Math.round(box.width * scale), Math.round(box.height * scale), value,
+                                     range, colours.ink.split(",").map(Number), state.moving ? 3e5 : 3e6, stores.raster);
+      offscreen.width = image.width;
+      offscreen.height = image.height;
+      offscreen.getContext("2d").putImageData(image, 0, 0);
+      pen.drawImage(offscreen, box.left, box.top, box.width, box.height);
+    }
+    pen.restore();
+    labels();
+    microscopeLegend(pen, view, box, colours, empty ? null : range,
+                     state.quantity === "speed" ? "closing speed, l/t" : "energy lost, m l²/t²");
+    if (strip) microscopeStrip(pen, world, view, strip, colours, stores.strip);
+    state.drawn = performance.now() - begun;
+    if (state.moving && !chart) quality = Math.min(4, Math.max(1, quality * (state.drawn > 14 ? 1.1 : state.drawn < 7 ? 0.95 : 1)));
+    tell();
+  }
+
+  // The readout: the contact or the gap under the pointer, else where the view is.
+  function tell() {
+    const { view } = camera, where = view.anchor.e < 0 ? `at the start, beside body ${number(view.anchor.a)}` :
+      `at contact ${view.anchor.e + 1} of ${world.total}, bodies ${pairName(view.anchor.e)}`;
+    const n = value => microscopeNumber(value, Math.min(6, world.digits));
+    const view_ = `${where}: ${microscopeNumber(view.T, 3)} t across, ${microscopeNumber(view.X, 3)} l high`;
+    const place = state.pointer && placeOf(state.pointer.x, state.pointer.y);
+    if (!place) return say(view_ + (world.total > world.n && world.n ? `; the first ${world.n} contacts are here` : ""));
+    const contact = contactAt(state.pointer, 10);
+    if (contact) {
+      const k = contact.e, time = world.time[k];
+      return say(`contact ${k + 1}, bodies ${pairName(k)}: t = ${time}, closing speed ${n(world.speed[k])} l/t, ` +
+                 `${n(world.interval[k])} t after the contact before, energy lost ${power(world.lost[k])} m l²/t²` +
+                 (k + 1 < world.n ? `; next contact in ${n(world.interval[k + 1])} t` : ""));
+    }
+    const pair = microscopeGapAt(camera, place);
+    if (!pair) return say(view_);
+    const moves = pair.w > 0 ? `closing at ${n(pair.w)} l/t` : `opening at ${n(-pair.w)} l/t`;
+    say(`bodies ${number(pair.below)} and ${number(pair.above)}: gap ${n(pair.gap)} l, ${moves}` +
+        (pair.next < 0 ? "; no further contact" : `; contact ${pair.next + 1} (${pairName(pair.next)}) in ${n(pair.until)} t`));
+  }
+  const power = log => log < -350 ? "0" : log > -307 ? microscopeNumber(10 ** log, 3) :
+    `${(10 ** (log - Math.floor(log))).toFixed(2)}×${microscopePower(Math.floor(log))}`;
+  const pairName = e => `${number(world.left[e])} and ${number(world.right[e])}`;
+
+  // Where a pointer is: [tau, xi] in the view's frame.
+  function placeOf(x, y) {
+    if (x < box.left || x > box.left + box.width || y < box.top || y > box.top + box.height) return null;
+    const { view } = camera;
+    return [view.tau + view.T * ((x - box.left) / box.width - 0.5), view.xi - view.X * ((y - box.top) / box.height - 0.5)];
+  }
+  function contactAt({ x, y }, within) {
+    const { view, chart } = camera, place = placeOf(x, y);
+    if (!place || !chart) return null;
+    const found = camera.nearest(place[0], place[1], view.T * within / box.width, view.X * within / box.height);
+    return found && found.distance <= 1 ? found : null;
+  }
+
+  // What hands do
+
+  const nearestContact = place => {
+    const { view, chart } = camera;
+    const found = chart ? camera.nearest(place[0], place[1], view.T, view.X) : camera.nearestInPositions();
+    return found ? found.e : view.anchor.e;
+  };
+  function zoom(factor, at, only) {
+    const { view } = camera;
+    let place = at ? placeOf(at.x, at.y) : [view.tau, view.xi];
+    if (!place) return;
+    const caught = at && factor > 1 ? contactAt(at, 20) : null;  // on the way in a contact near by is held fast
+    if (caught) place = [caught.tau, caught.xi - view.V * caught.tau];
+    if (only === "time") camera.zoom(factor, 1, place);
+    else if (only === "space") camera.zoom(1, factor, place);
+    else camera.zoom(factor, 1, place, camera.follow(caught ? caught.e : nearestContact(place)));
+    changed();
+  }
+  function pan(dx, dy) {
+    const { view } = camera;
+    camera.pan(-dx / box.width * view.T, dy / box.height * view.X);
+    changed();
+  }
+  // To contact e, with the spans as they are where they still suit it, else with what closed in it in sight.
+  function visit(e) {
+    if (e < 0 || e >= world.n) return;
+    const deep = 10 ** Math.max(-300, world.depth[e]), { view } = camera;
+    const suits = view.X > 2 * deep && view.X < 40 * deep, X = suits ? view.X : 6 * deep;
+    camera.goTo(e, suits ? view.T : Math.max(1e-300, X / (1.3 * world.speed[e])), X);
+    changed();
+  }
+  const actions = {
+    home: () => { camera.home(); changed(); },
+    deepest: () => visit(world.depth.reduce((best, d, e) => d > -330 && d < world.depth[best] ? e : best, 0)),
+    colours: () => {
+      state.quantity = state.quantity === "speed" ? "lost" : "speed";
+      state.range = null;
+      request();
+    },
+    play: () => {
+      state.playing = !state.playing;
+      playButton.textContent = state.playing ? "Pause" : "Play";
+      if (state.playing) microscopePlay(camera, state, () => { changed(); draw(); }, () => state.playing && actions.play());
+    },
+  };
+  const playButton = button("Play", "fly on (space)", actions.play);
+  button("All", "the whole run (0)", actions.home);
+  button("+", "zoom in (+)", () => zoom(1.6, null));
+  button("−", "zoom out (−)", () => zoom(1 / 1.6, null));
+  if (data.kind === "contacts") {
+    button("‹", "previous contact (p)", () => visit(camera.view.anchor.e - 1));
+    button("›", "next contact (n)", () => visit(camera.view.anchor.e + 1));
+    button("Deepest", "the contact with the smallest gap (d)", actions.deepest);
+    button("Colours", "colour by closing speed or by energy lost (c)", actions.colours);
+  }
+
+  const handle = {
+    view: () => ({ ...camera.view, exact: Boolean(camera.chart), box: { ...box }, depth: camera.view.X }),
+    // Shows contact `event`, or the first one as deep as that, with so much space (depth, in l) in sight.
+    zoomTo: ({ event, depth, time }) => {
+      const found = world.depth.findIndex(d => d <= Math.log10(depth / 6));
+      const e = event === undefined ? (found < 0 ? world.n - 1 : found) : event;
+      camera.goTo(e, time || depth / (1.3 * world.speed[e]), depth);
+      changed();
+      state.moving = 0;
+      draw();
+      return handle.view();
+    },
+    // Where a contact of a body is drawn, in pixels of the canvas; null where it is not in the chart.
+    position: (body, event) => {
+      const line = camera.chart && camera.chart.byBody.get(body - world.first), { chart, view } = camera;
+      const i = line ? line.points.find(k => chart.contacts[k] === event) : undefined;
+      if (i === undefined) return null;
+      const scales = microscopeScales(view, box);
+      return { x: scales.x(chart.tau[i]), y: scales.y(chart.xi[i], chart.tau[i]) };
+    },
+    // Where a body's world line is drawn at a pixel column.
+    height: (body, x) => {
+      const line = camera.chart.byBody.get(body - world.first), { view } = camera;
+      const tau = view.tau + view.T * ((x - box.left) / box.width - 0.5);
+      return microscopeScales(view, box).y(microscopeAlong(camera.chart, line, tau), tau);
+    },
+    gap: (a, b, event) => microscopeRelative(world, a - world.first, b - world.first, event),
+    readout: () => readout.textContent, zoom, pan, visit, draw, actions, state,
+    world: () => world, camera: () => camera,
+  };
+  const start = made => {
+    world = made;
+    world.logSpeed = Float32Array.from(world.speed, microscopeLog);
+    camera = microscopeCamera(world);
+    layout();
+  };
+  handle.ready = (async () => {
+    say("unpacking …");
+    if (data.kind === "contacts") {
+      start(await microscopeContacts(data));
+    } else {
+      const choice = make("select", "microscope-choice", bar);
+      data.snapshots.forEach((shot, i) => { make("option", "", choice, `t = ${shot.time}`).value = i; });
+      choice.addEventListener("change", async () => start(await microscopeSnapshot(data, data.snapshots[choice.value])));
+      start(await microscopeSnapshot(data, data.snapshots[0]));
+    }
+    microscopeHands(canvas, { zoom, pan, visit, actions, contactAt, camera: () => camera, state, request,
+                              box: () => box, strip: () => strip, deepest: () => stores.strip.deepest });
+    new ResizeObserver(layout).observe(stage);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", layout);
+    draw();
+  })().catch(error => {
+    say(`The microscope cannot show this run (${error.message}): make the report again, or use a newer browser`);
+    throw error;
+  });
+  element.cradleMicroscope = window.cradleMicroscopeTest = handle;
+  return handle;
+}

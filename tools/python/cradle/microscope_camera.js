@@ -1,0 +1,208 @@
+// The camera: where one looks. It pans and zooms, and moves its anchor to a contact in sight, so that what is drawn is
+// never far from the anchor in units of the picture. Spans of time and of space are zoomed apart or together; together,
+// the span of space follows what the bodies around the middle do in the span of time.
+
+function microscopeCamera(world) {
+  const camera = { world, chart: null, built: null };
+  const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
+  const limits = { T: 0, X: 0 };
+
+  camera.home = () => {
+    const span = Math.max(world.end - world.start, Number.MIN_VALUE);
+    let low = Infinity, high = -Infinity;
+    for (let e = 0; e < world.n; ++e) {
+      low = Math.min(low, world.x[e]);
+      high = Math.max(high, world.x[e]);
+    }
+    // The bodies at the start too, if that does not make the picture much larger.
+    const first = world.x0[0], last = world.x0[world.bodies - 1];
+    if (!world.n || last - first < 4 * (high - low)) {
+      low = Math.min(low, first);
+      high = Math.max(high, last);
+    }
+    const anchor = world.n ? { e: 0, a: world.left[0] } : { e: -1, a: Math.floor((world.bodies - 1) / 2) };
+    const x = anchor.e < 0 ? world.x0[anchor.a] : world.x[0], lab = microscopeAnchor(world, anchor).lab;
+    limits.T = 1.06 * span;
+    limits.X = 1.08 * (high - low) || 1;
+    const tau = (world.start + world.end) / 2 - (anchor.e < 0 ? world.start : world.time[0]);
+    camera.view = { anchor, lab, tau, xi: (low + high) / 2 - x, T: limits.T, X: limits.X, V: -lab };
+    camera.settle();
+  };
+
+  // Looks at contact e, with given spans; the frame moves with the bodies there where the lab's would tilt it.
+  camera.goTo = (e, T, X) => {
+    const anchor = { e, a: world.left[e] };
+    camera.view = { anchor, lab: microscopeAnchor(world, anchor).lab, tau: 0, xi: 0, T, X, V: 0 };
+    camera.chart = null;
+    camera.settle();
+    camera.view.V = camera.frame();
+    camera.settle();
+  };
+
+  // Span of space that shows what happens in a span of time around contact e.
+  camera.natural = (e, T) => {
+    if (e < 0) return T * limits.X / limits.T;
+    const pair = microscopeAnchor(world, { e, a: world.left[e] }), order = microscopeOrder(world, e);
+    let X = 1.3 * T * Math.max(world.speed[e], Math.abs(world.after[e]));
+    for (const side of [1, -1]) {
+      let body = side > 0 ? pair.b : pair.a, xi = 0, u = side > 0 ? pair.speedB : pair.speedA;
+      for (let k = 0; k < 3; ++k) {
+        const next = side > 0 ? order.next(body) : order.previous(body);
+        if (next < 0) break;
+        const { gap, w } = side > 0 ? microscopeRelative(world, body, next, e) : microscopeRelative(world, next, body, e);
+        xi += gap;
+        u -= side * w;
+        if (xi > X) break;
+        X = Math.max(X, 2.4 * xi + Math.abs(u) * T / 2);
+        body = next;
+      }
+    }
+    return Math.min(X, limits.X);
+  };
+
+  // Velocity of the frame that suits the view: the lab's while that tilts little, else that of the bodies in sight.
+  camera.frame = () => {
+    const { view, chart } = camera;
+    let local = 0, weight = 0;
+    if (chart) {
+      const early = view.tau - view.T / 2, late = view.tau + view.T / 2;
+      for (const line of chart.lines) {
+        const from = Math.max(early, line.from[0]), to = Math.min(late, line.to[0]);
+        if (!(to > from)) continue;
+        const a = microscopeAlong(chart, line, from), b = microscopeAlong(chart, line, to);
+        const middle = (a + b) / 2 - view.V * (from + to) / 2 - view.xi;
+        if (Math.abs(middle) > view.X / 2) continue;
+        local += b - a;
+        weight += to - from;
+      }
+    }
+    local = weight > 0 ? local / weight : 0;
+    const tilt = Math.abs(view.lab + local) * view.T / view.X;
+    return local + (tilt <= 0.5 ? 1 : 0.5 / tilt) * (-view.lab - local);
+  };
+
+  // Zooms time and space by factors about a place [tau, xi] of the picture (xi in the view's frame); more is nearer.
+  camera.zoom = (byTime, bySpace, pivot, follow) => {
+    const view = camera.view, [tau, xi] = pivot;
+    let T = view.T / byTime, X = view.X / bySpace;
+    if (follow) X = follow(T, view.X);
+    T = clamp(T, 1e-303, 4 * limits.T);
+    X = clamp(X, 1e-303, 4 * limits.X);
+    // Nearer than that there is nothing but straight lines, and the offset from the anchor would lose its digits.
+    if (T < 1e-9 * Math.abs(view.tau) || X < 1e-9 * Math.abs(view.xi)) return;
+    view.tau = tau + (view.tau - tau) * (T / view.T);
+    view.xi = xi + (view.xi - xi) * (X / view.X);
+    const change = Math.abs(Math.log(T / view.T));
+    view.T = T;
+    view.X = X;
+    const old = view.V;
+    view.V += (camera.frame() - old) * (1 - Math.exp(-1.5 * change));
+    view.xi += (old - view.V) * tau;
+    camera.settle();
+  };
+
+  // The span of space that goes with a new span of time: towards what is natural at contact e on the way in, straight
+  // (in logarithms) to the whole picture on the way out.
+  camera.follow = e => (T, X) => {
+    const change = Math.log(T / camera.view.T);
+    if (change > 0) {
+      const far = Math.log(limits.T / camera.view.T), out = Math.log(limits.X / X);
+      return X * Math.exp(far > change && out > 0 ? change * out / far : change);
+    }
+    const wanted = Math.log(camera.natural(e, T) / X) - change;
+    return X * Math.exp(change + clamp(0.3 * wanted, 0.9 * change, -0.9 * change));
+  };
+
+  camera.pan = (byTime, bySpace) => {
+    camera.view.tau += byTime;
+    camera.view.xi += bySpace;
+    camera.settle();
+  };
+
+  // Makes the chart where it does not do any longer, and moves the anchor to the contact nearest to the middle where
+  // it has left the picture.
+  camera.settle = () => {
+    camera.chartFor();
+    const { view, chart } = camera;
+    if (Math.abs(view.tau) < 0.75 * view.T && Math.abs(view.xi) < 0.75 * view.X)
+      return;
+    const to = chart ? camera.nearest(view.tau, view.xi, view.T, view.X) : camera.nearestInPositions();
+    if (!to || to.e === view.anchor.e || to.distance >= 0.98 * Math.hypot(view.tau / view.T, view.xi / view.X)) return;
+    camera.reanchor(to);
+  };
+
+  // {e, tau, xi, distance} of the contact of the chart nearest to a place, null where there is none.
+  camera.nearest = (tau, xi, spanTau, spanXi) => {
+    const { chart, view } = camera, { best, distance } = microscopeNearest(chart, tau, xi, spanTau, spanXi, view.V);
+    return best < 0 ? null : { e: chart.contacts[best], tau: chart.tau[best], xi: chart.xi[best], distance };
+  };
+  camera.nearestInPositions = () => {
+    const { view } = camera, { e } = view.anchor, t0 = e < 0 ? world.start : world.time[e];
+    const x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e], middle = microscopeFirstAfter(world.time, t0 + view.tau);
+    let best = null;
+    for (let k = Math.max(0, middle - 3000); k < Math.min(world.n, middle + 3000); ++k) {
+      const tau = e < 0 ? world.time[k] - t0 : microscopeBetween(world, e, k), xi = world.x[k] - x0 - view.lab * tau;
+      const distance = Math.hypot((tau - view.tau) / view.T, (xi - view.V * tau - view.xi) / view.X);
+      if (!best || distance < best.distance) best = { e: k, tau, xi, distance };
+    }
+    return best;
+  };
+
+  // The same picture, seen from another contact at (tau, xi).
+  camera.reanchor = ({ e, tau, xi }) => {
+    const { view, chart } = camera, anchor = { e, a: world.left[e] }, pair = microscopeAnchor(world, anchor);
+    // Velocity of the new pair's frame against the old one's: from the chart, or from the lab where there is none.
+    const u = chart ? microscopeSpeedAt(chart, world, anchor, pair) : pair.lab - view.lab;
+    camera.view = { anchor, lab: pair.lab, T: view.T, X: view.X, V: view.V - u,
+                    tau: view.tau - tau, xi: view.xi - (xi - view.V * tau) };
+    camera.chart = null;
+    camera.chartFor();
+  };
+
+  camera.chartFor = () => {
+    const { view, chart, built } = camera;
+    const early = view.tau - view.T / 2, late = view.tau + view.T / 2;
+    const low = view.xi - view.X / 2, high = view.xi + view.X / 2;
+    // Shear of the frame against that of the chart, over the picture.
+    const shear = built ? Math.abs(view.V - built.V) * (Math.abs(view.tau) + view.T / 2) : 0;
+    if (built && built.anchor.e === view.anchor.e && built.anchor.a === view.anchor.a && built.early <= early &&
+        built.late >= late && built.low <= low - shear && built.high >= high + shear &&
+        (chart ? view.T > built.T / 20 : view.T > built.T / 1.5))
+      return;
+    const next = { anchor: view.anchor, early: view.tau - 1.5 * view.T, late: view.tau + 1.5 * view.T, T: view.T,
+                   low: view.xi - 1.5 * view.X, high: view.xi + 1.5 * view.X, V: view.V };
+    camera.built = next;
+    camera.chart = microscopeChart(world, view.anchor, next.early, next.late, next.low, next.high, next.V);
+  };
+
+  camera.limits = limits;
+  camera.home();
+  return camera;
+}
+
+// Signed time from contact i to contact j.
+function microscopeBetween(world, i, j) {
+  return i <= j ? microscopeFlight(world, i, j) : -microscopeFlight(world, j, i);
+}
+
+// Place of a line at tau.
+function microscopeAlong(chart, line, tau) {
+  let before = line.from, behind = line.to;
+  let low = 0, high = line.points.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (chart.tau[line.points[middle]] <= tau) low = middle + 1; else high = middle;
+  }
+  const point = i => [chart.tau[line.points[i]], chart.xi[line.points[i]]];
+  if (low > 0) before = point(low - 1);
+  if (low < line.points.length) behind = point(low);
+  const span = behind[0] - before[0];
+  return span > 0 ? before[1] + (behind[1] - before[1]) * ((tau - before[0]) / span) : before[1];
+}
+
+// Velocity in the chart's frame of the pair of another contact in it: that of one of its bodies right after it, less
+// what that one has against the pair.
+function microscopeSpeedAt(chart, world, anchor, pair) {
+  const line = chart.byBody.get(pair.a), at = line.points.findIndex(i => chart.contacts[i] === anchor.e);
+  return line.speeds[at] - pair.speedA;
+}

@@ -1,0 +1,214 @@
+// Charts: world lines in coordinates anchored at a contact, and the same in positions where the whole is looked at.
+//
+// An anchor is {e, a}: contact e, or e = -1, the start, and the body a with its right neighbour. In a chart tau is the
+// time since then and xi the distance from there in the frame in which these two have no momentum. Both are local sums.
+
+const MICROSCOPE_CHART = { bodies: 1500, contacts: 30000 };
+
+// The anchor's two bodies and what is known of them: {a, b, after, speedA, speedB}: velocities right after it, in its
+// own frame, and the velocity of that frame in the lab.
+function microscopeAnchor(world, anchor) {
+  const { e } = anchor;
+  if (e < 0) {
+    const a = anchor.a, b = microscopeOrder(world, -1).next(a), { gap, w } = microscopeRelative(world, a, b, -1);
+    const ofB = world.mass0 ? world.mass0[b] / (world.mass0[a] + world.mass0[b]) : 0.5;
+    return { a, b, gap, speedA: w * ofB, speedB: -w * (1 - ofB), lab: world.v0[a] - w * ofB };
+  }
+  const passed = world.event[e] === MICROSCOPE.pass, merged = world.event[e] === MICROSCOPE.merge;
+  const from = world.left[e], to = world.right[e], ofTo = world.share ? world.share[e] : 0.5;
+  const ofFrom = world.after[e] * ofTo, ofOther = -world.after[e] * (1 - ofTo);
+  const lab = world.velocity[world.slotLeft[e]] - ofFrom;
+  if (merged) {
+    const heir = microscopeOther(world, microscopeGone(world, e), e);
+    return { a: heir, b: heir, gap: 0, speedA: 0, speedB: 0, lab };
+  }
+  return passed ? { a: to, b: from, gap: 0, speedA: ofOther, speedB: ofFrom, lab }
+                : { a: from, b: to, gap: 0, speedA: ofFrom, speedB: ofOther, lab };
+}
+
+// The bodies around an anchor, right after it: [{body, xi, u}] from left to right, as far as `reach` to either side and
+// `more` = [left, right] bodies beyond; null where there are too many.
+function microscopeAround(world, anchor, reach, more) {
+  const pair = microscopeAnchor(world, anchor), order = microscopeOrder(world, anchor.e);
+  const found = [{ body: pair.a, xi: 0, u: pair.speedA }];
+  const seen = new Set([pair.a, pair.b]);
+  if (pair.b !== pair.a) found.push({ body: pair.b, xi: pair.gap, u: pair.speedB });
+  for (const side of [1, -1]) {
+    let last = side > 0 ? found[found.length - 1] : found[0], spare = more[side > 0 ? 1 : 0];
+    for (;;) {
+      const body = side > 0 ? order.next(last.body) : order.previous(last.body);
+      if (body < 0 || seen.has(body) || (Math.abs(last.xi) > reach && spare-- <= 0)) break;
+      const { gap, w } = side > 0 ? microscopeRelative(world, last.body, body, anchor.e)
+                                  : microscopeRelative(world, body, last.body, anchor.e);
+      last = { body, xi: last.xi + side * gap, u: last.u - side * w };
+      seen.add(body);
+      if (side > 0) found.push(last); else found.unshift(last);
+      if (found.length > MICROSCOPE_CHART.bodies) return null;
+    }
+  }
+  return found;
+}
+
+// The last contact at or before tau after the anchor's, -1 for none, and the time of it.
+function microscopeContactAt(world, e, tau) {
+  const { n, time, interval, start } = world, t = e < 0 ? start : time[e];
+  let k = e, at = 0;
+  if (Math.abs(tau) > 1e-6 * Math.max(Math.abs(t), Number.MIN_VALUE) || e < 0) {
+    let low = 0, high = n;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if ((time[middle] - t) + (world.low[middle] - (e < 0 ? 0 : world.low[e])) <= tau) low = middle + 1;
+      else high = middle;
+    }
+    return low - 1;
+  }
+  if (tau >= 0) while (k + 1 < n && at + interval[k + 1] <= tau) at += interval[++k];
+  else while (k >= 0 && at > tau) at -= interval[k--];
+  return k;
+}
+
+// Times since the anchor's contact of contacts in rising order: sums of intervals where they are close.
+function microscopeTimes(world, e, contacts) {
+  const tau = new Float64Array(contacts.length);
+  let split = 0;
+  while (split < contacts.length && contacts[split] <= e) ++split;
+  for (const [from, end, step] of [[split, contacts.length, 1], [split - 1, -1, -1]]) {
+    let at = 0, last = e;
+    for (let i = from; i !== end; i += step) {
+      const k = contacts[i];
+      const whole = step > 0 ? microscopeFlight(world, last, k) : -microscopeFlight(world, k, last);
+      at += whole;
+      last = k;
+      tau[i] = at;
+    }
+  }
+  return tau;
+}
+
+// The chart for tau in [from, to] and the bodies that come within [low, high] of xi - drift tau there; null where there
+// are too many bodies or contacts for it.
+//   contacts  Int32Array, rising; tau, xi of each
+//   lines     [{body, points: [place in contacts], speeds: [velocity after each], from: [tau, xi], to: [tau, xi]}]
+function microscopeChart(world, anchor, from, to, low, high, drift) {
+  const begins = -microscopeFlight(world, -1, anchor.e);
+  const t = anchor.e < 0 ? world.start : world.time[anchor.e] + world.low[anchor.e];
+  const ends = Math.max(world.n ? microscopeFlight(world, anchor.e, world.n - 1) : 0, world.end - t);
+  from = Math.max(from, begins);
+  to = Math.min(Math.max(to, from), ends);
+  const first = microscopeContactAt(world, anchor.e, from) + 1, last = microscopeContactAt(world, anchor.e, to);
+  const reach = Math.max(Math.abs(low), Math.abs(high)), more = [2, 2];
+  for (let attempt = 0; attempt < 12; ++attempt) {
+    const around = microscopeAround(world, anchor, reach, more);
+    if (!around) return null;
+    const chart = microscopeFollow(world, anchor, around, from, to, first, last);
+    if (!chart) return null;
+    // Bodies further out may come in where the outermost ones do.
+    const comesIn = (line, side) => [line.from, line.to, ...line.points.map(i => [chart.tau[i], chart.xi[i]])]
+      .some(([tau, xi]) => side > 0 ? xi - drift * tau < high : xi - drift * tau > low);
+    const order = microscopeOrder(world, anchor.e), ring = around.length >= world.bodies;
+    const outer = body => chart.byBody.get(body);
+    const left = !ring && order.previous(around[0].body) >= 0 && comesIn(outer(around[0].body), -1);
+    const right = !ring && order.next(around[around.length - 1].body) >= 0 &&
+                  comesIn(outer(around[around.length - 1].body), 1);
+    if (!left && !right) return Object.assign(chart, { low, high, drift, begins, ends });
+    if (left) more[0] = 2 * more[0] + around.length;
+    if (right) more[1] = 2 * more[1] + around.length;
+  }
+  return null;
+}
+
+// Follows the bodies around an anchor through contacts first .. last, forwards and backwards.
+function microscopeFollow(world, anchor, around, from, to, first, last) {
+  const { left, right, list, begin, event } = world, e = anchor.e, all = [];
+  for (const { body } of around)
+    for (let slot = microscopeSlotAfter(world, body, first - 1); slot < begin[body + 1] && list[slot] <= last; ++slot) {
+      all.push(list[slot]);
+      if (all.length > 2 * MICROSCOPE_CHART.contacts) return null;
+    }
+  const sorted = Int32Array.from(all).sort(), contacts = sorted.filter((k, i) => i === 0 || k !== sorted[i - 1]);
+  const tau = microscopeTimes(world, e, contacts), xi = new Float64Array(contacts.length), byBody = new Map();
+  const line = (body, at, place, speed) => {
+    const made = { body, points: [], speeds: [], tau: at, xi: place, u: speed, from: [at, place], to: [at, place], gone: false };
+    byBody.set(body, made);
+    return made;
+  };
+  for (const { body, xi: place, u } of around) line(body, 0, place, u);
+  let split = 0;
+  while (split < contacts.length && contacts[split] <= e) ++split;
+  const at = (one, time) => one.xi + one.u * (time - one.tau);
+  for (let i = split; i < contacts.length; ++i) {
+    const k = contacts[i], now = tau[i];
+    let a = byBody.get(left[k]), b = byBody.get(right[k]);
+    const speedA = a ? a.u : b.u + world.speed[k], speedB = b ? b.u : a.u - world.speed[k];
+    xi[i] = a && b ? (at(a, now) + at(b, now)) / 2 : at(a || b, now);
+    // One that comes in by a contact with one that is known.
+    a = a || line(left[k], now, xi[i], speedA);
+    b = b || line(right[k], now, xi[i], speedB);
+    for (const [one, speed] of [[a, speedA - world.kickLeft[k]], [b, speedB + world.kickRight[k]]]) {
+      one.points.push(i);
+      one.speeds.push(speed);
+      one.tau = now;
+      one.xi = xi[i];
+      one.u = speed;
+    }
+    if (event[k] === MICROSCOPE.merge) byBody.get(microscopeGone(world, k)).gone = true;
+  }
+  for (const one of byBody.values()) {
+    one.to = one.gone ? [one.tau, one.xi] : [to, at(one, to)];
+  }
+  // Backwards from the anchor: the state right before each contact.
+  for (const { body, xi: place, u } of around) Object.assign(byBody.get(body), { tau: 0, xi: place, u });
+  const before = new Map(), known = new Set(around.map(({ body }) => body));
+  for (let i = split - 1; i >= 0; --i) {
+    const k = contacts[i], now = tau[i], merged = event[k] === MICROSCOPE.merge;
+    let a = known.has(left[k]) ? byBody.get(left[k]) : null, b = known.has(right[k]) ? byBody.get(right[k]) : null;
+    xi[i] = a && b ? (at(a, now) + at(b, now)) / 2 : at(a || b, now);
+    const speedA = a ? a.u : b.u + world.after[k], speedB = b ? b.u : a.u - world.after[k];
+    const came = body => {
+      const made = byBody.get(body) || line(body, now, xi[i], 0);
+      if (!known.has(body) && !made.points.length) {
+        made.to = [now, xi[i]];
+        made.gone = merged;
+      }
+      known.add(body);
+      return made;
+    };
+    a = a || came(left[k]);
+    b = b || came(right[k]);
+    for (const [one, speed, late] of [[a, speedA + world.kickLeft[k], speedA],
+                                      [b, speedB - world.kickRight[k], speedB]]) {
+      if (!before.has(one)) before.set(one, { points: [], speeds: [] });
+      before.get(one).points.push(i);
+      before.get(one).speeds.push(late);
+      one.tau = now;
+      one.xi = xi[i];
+      one.u = speed;
+    }
+  }
+  for (const [one, { points, speeds }] of before) {
+    one.points = points.reverse().concat(one.points);
+    one.speeds = speeds.reverse().concat(one.speeds);
+  }
+  for (const one of byBody.values()) {
+    // Who came in later is known before that contact too, as far as it flew.
+    const start = known.has(one.body) ? from : one.points.length ? tau[one.points[0]] : from;
+    one.from = [start, known.has(one.body) ? at(one, start) : one.xi];
+    if (!known.has(one.body)) one.from = [tau[one.points[0]], xi[one.points[0]]];
+  }
+  return { anchor, from, to, contacts, tau, xi, byBody, lines: [...byBody.values()] };
+}
+
+// The contact of a chart that is nearest to a place, in spans of time and space; its number there, -1 for none.
+function microscopeNearest(chart, tau, place, spanTau, spanXi, drift) {
+  let best = -1, least = Infinity;
+  for (let i = 0; i < chart.contacts.length; ++i) {
+    const across = (chart.tau[i] - tau) / spanTau;
+    if (Math.abs(across) > least) continue;
+    const distance = Math.hypot(across, (chart.xi[i] - drift * chart.tau[i] - place) / spanXi);
+    if (distance < least) {
+      least = distance;
+      best = i;
+    }
+  }
+  return { best, distance: least };
+}

@@ -1,0 +1,159 @@
+// Mouse, wheel, keys and touch; play; and which gap is at a place.
+
+const MICROSCOPE_KEYS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+function microscopeHands(canvas, scope) {
+  const { zoom, pan, visit, actions, state } = scope, fingers = new Map();
+  const at = event => {
+    const corner = canvas.getBoundingClientRect();
+    return { x: event.clientX - corner.left, y: event.clientY - corner.top };
+  };
+  // Over an axis only that one is zoomed.
+  const only = (event, { x, y }) => {
+    const box = scope.box();
+    if (event.shiftKey || y > box.top + box.height) return "time";
+    return event.altKey || x < box.left ? "space" : undefined;
+  };
+  const inside = ({ x, y }) => {
+    const box = scope.box();
+    return { x: Math.min(box.left + box.width, Math.max(box.left, x)), y: Math.min(box.top + box.height, Math.max(box.top, y)) };
+  };
+
+  canvas.addEventListener("wheel", event => {
+    // A page that is scrolled past goes on scrolling: the wheel is the microscope's when that has been clicked.
+    if (document.activeElement !== canvas && !event.ctrlKey) return;
+    event.preventDefault();
+    const turned = (event.deltaY || event.deltaX) * (event.deltaMode === 1 ? 30 : event.deltaMode === 2 ? 300 : 1);
+    zoom(Math.exp(-Math.max(-300, Math.min(300, turned)) / 350), inside(at(event)), only(event, at(event)));
+  }, { passive: false });
+
+  canvas.addEventListener("pointerdown", event => {
+    canvas.focus({ preventScroll: true });
+    const place = at(event), strip = scope.strip();
+    if (strip && place.y > strip.top - 4 && place.x >= strip.left && place.x <= strip.left + strip.width) {
+      const deepest = scope.deepest(), column = Math.min(deepest.length - 1, Math.floor(place.x - strip.left));
+      let k = column;
+      while (k > 0 && deepest[k] < 0) --k;
+      visit(deepest[k]);
+      return;
+    }
+    try { canvas.setPointerCapture(event.pointerId); } catch { /* a pointer that scripts made */ }
+    fingers.set(event.pointerId, place);
+  });
+  canvas.addEventListener("pointermove", event => {
+    const place = at(event), before = fingers.get(event.pointerId);
+    state.pointer = place;
+    if (!before) return scope.request();
+    fingers.set(event.pointerId, place);
+    if (fingers.size === 1) return pan(place.x - before.x, place.y - before.y);
+    if (fingers.size > 2) return;
+    // Two fingers: what is under their middle goes with it, and each axis is zoomed as they part along it.
+    const other = [...fingers].find(([id]) => id !== event.pointerId)[1], camera = scope.camera(), box = scope.box();
+    pan((place.x - before.x) / 2, (place.y - before.y) / 2);
+    const middle = { x: (place.x + other.x) / 2, y: (place.y + other.y) / 2 };
+    const part = (a, b, c) => Math.abs(b - c) < 40 ? 1 : Math.min(4, Math.max(0.25, Math.abs(a - c) / Math.abs(b - c)));
+    const { view } = camera, tau = view.tau + view.T * ((middle.x - box.left) / box.width - 0.5);
+    const xi = view.xi - view.X * ((middle.y - box.top) / box.height - 0.5);
+    camera.zoom(part(place.x, before.x, other.x) || 1, part(place.y, before.y, other.y) || 1, [tau, xi]);
+    scope.pan(0, 0);
+  });
+  const up = event => fingers.delete(event.pointerId);
+  canvas.addEventListener("pointerup", up);
+  canvas.addEventListener("pointercancel", up);
+  canvas.addEventListener("pointerleave", () => { state.pointer = null; scope.request(); });
+  canvas.addEventListener("dblclick", event => {
+    const contact = scope.contactAt(at(event), 20);
+    if (contact) visit(contact.e); else zoom(2, at(event));
+  });
+
+  canvas.addEventListener("keydown", event => {
+    if (event.ctrlKey || event.metaKey) return;
+    const box = scope.box(), step = MICROSCOPE_KEYS[event.key], here = scope.camera().view.anchor.e;
+    const middle = state.pointer && inside(state.pointer);
+    // Alt and a key are other letters on some keyboards: the key's own name tells.
+    const key = event.code === "Equal" || event.code === "NumpadAdd" || event.key === "+" ? "+" :
+      event.code === "Minus" || event.code === "NumpadSubtract" ? "-" : event.key;
+    const acts = {
+      "+": () => zoom(1.35, middle, event.code === "Equal" && event.key === "+" ? undefined : only(event, box)),
+      "-": () => zoom(1 / 1.35, middle, only(event, box)),
+      n: () => visit(here + 1), p: () => visit(here - 1), 0: actions.home, Home: actions.home, d: actions.deepest,
+      c: actions.colours, " ": actions.play,
+    };
+    if (step) pan(step[0] * box.width / 12, step[1] * box.height / 12);
+    else if (acts[key]) acts[key]();
+    else return;
+    event.preventDefault();
+  });
+}
+
+// Play. A collapse is flown into: zooming about its last contact at a steady rate, so that contacts pass by evenly.
+// Else time goes on, a picture's width in ten seconds. `frame` draws, `stop` is called at the end.
+function microscopePlay(camera, state, frame, stop) {
+  const { world } = camera, last = world.n - 1;
+  let before = performance.now();
+  const inSight = () => {
+    const { view, chart } = camera, tau = last < 0 || view.anchor.e < 0 ? NaN : microscopeFlight(world, view.anchor.e, last);
+    if (!chart || !(Math.abs(tau - view.tau) <= 0.5 * view.T)) return null;
+    const i = chart.contacts.length - 1;
+    return i >= 0 && chart.contacts[i] === last && Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2
+      ? [chart.tau[i], chart.xi[i] - view.V * chart.tau[i]] : null;
+  };
+  if (world.collapse && !inSight()) camera.home();
+  const step = now => {
+    if (!state.playing) return;
+    const passed = Math.min(0.1, (now - before) / 1000);
+    before = now;
+    const { view } = camera, aim = world.collapse ? inSight() : null;
+    if (aim) {
+      // The collapse is led to where three quarters of the picture are behind it.
+      camera.pan((aim[0] - view.tau - 0.25 * view.T) * Math.min(1, 2 * passed), (aim[1] - view.xi) * Math.min(1, 2 * passed));
+      const to = inSight();
+      if (!to || camera.view.T < 6 * world.interval[last]) return stop();
+      camera.zoom(Math.exp(6 * passed), 1, to, camera.follow(microscopeAhead(camera)));
+    } else {
+      const end = microscopeBetween(world, view.anchor.e, last) + (world.n ? world.end - world.time[last] : world.end - world.start);
+      if (view.tau > end) return stop();
+      camera.pan(view.T * passed / 10, 0);
+    }
+    frame();
+    requestAnimationFrame(step);
+  };
+  requestAnimationFrame(step);
+}
+
+// The contact nearest to the left third of the picture: what sets the span of space while a collapse is flown into.
+function microscopeAhead(camera) {
+  const { view } = camera, found = camera.nearest(view.tau - view.T / 4, view.xi, view.T, 1e3 * view.X);
+  return found ? found.e : view.anchor.e;
+}
+
+// The two bodies below and above a place [tau, xi] of the picture: {below, above, gap, w, next, until}: gap and closing
+// speed then, the next contact of either of them (-1: none) and the time to it. null beyond the outermost.
+function microscopeGapAt(camera, [tau, xi]) {
+  const { world, chart, view } = camera, e = view.anchor.e, contact = microscopeContactAt(world, e, tau);
+  const since = tau - (contact < 0 && e < 0 ? 0 : microscopeBetween(world, e, contact));
+  let below = -1, above = -1, low = -Infinity, high = Infinity;
+  const look = (body, place) => {
+    if (place <= xi && place > low) [below, low] = [body, place];
+    if (place > xi && place < high) [above, high] = [body, place];
+  };
+  if (chart) {
+    for (const line of chart.lines)
+      if (line.from[0] <= tau && line.to[0] >= tau) look(line.body, microscopeAlong(chart, line, tau) - view.V * tau);
+  } else {
+    const x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e], t = world.time[Math.max(0, e)] + tau;
+    for (let body = 0; body < world.bodies; ++body) {
+      if (!world.keepsOrder && world.begin[body + 1] > world.begin[body] && microscopeGoneAt(world, body) < t) continue;
+      const place = microscopePlace(world, body, contact) + microscopeVelocity(world, body, contact) * since;
+      look(body, place - x0 - (view.lab + view.V) * tau);
+    }
+  }
+  if (below < 0 || above < 0) return null;
+  const { gap, w } = microscopeRelative(world, below, above, contact);
+  const following = [below, above].map(body => microscopeSlotAfter(world, body, contact))
+    .map((slot, i) => slot < world.begin[[below, above][i] + 1] ? world.list[slot] : Infinity);
+  const next = Math.min(...following), known = Number.isFinite(next);
+  const pending = gap - w * since, dueIn = world.n || !(w > 0) ? NaN : pending / w;
+  return { below, above, gap: Math.max(0, pending), w, next: known ? next : -1,
+           until: known ? microscopeFlight(world, contact, next) - since : dueIn };
+}

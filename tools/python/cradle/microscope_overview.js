@@ -1,0 +1,198 @@
+// What stands for very many contacts: a picture made of one sample of a world line per column and of the mean colour
+// of the contacts in a pixel; and the strip that shows the depth of every contact, for finding one's way.
+
+// The picture of a view in positions, as ImageData of width x height pixels: world lines in `ink` and contacts coloured
+// by `value` over `range`. At most about `budget` samples of lines, and of contacts.
+function microscopeRaster(world, view, width, height, value, range, ink, budget, store) {
+  if (!store.image || store.image.width !== width || store.image.height !== height) {
+    Object.assign(store, { image: new ImageData(width, height), lines: new Float32Array(width * height),
+                           tint: new Float32Array(width * height), count: new Float32Array(width * height) });
+  }
+  const { lines, tint, count, image } = store, { list, begin, time, x, velocity, left, ring } = world;
+  lines.fill(0);
+  tint.fill(0);
+  count.fill(0);
+  const { e } = view.anchor, t0 = e < 0 ? world.start : time[e], x0 = e < 0 ? world.x0[view.anchor.a] : x[e];
+  const begins = t0 + view.tau - view.T / 2, speed = view.lab + view.V, perX = height / view.X;
+  // Row of a place at a time: x in the view's frame.
+  const row = (place, t) => height / 2 - (place - x0 - speed * (t - t0) - view.xi) * perX;
+  const [lowest, highest] = microscopeVisible(world, view, row, height);
+  const step = Math.max(1, Math.ceil((highest - lowest + 1) * width / budget));
+  const perColumn = view.T / width;
+  const firstColumn = Math.max(0, Math.ceil((world.start - begins) / perColumn));
+  const lastColumn = Math.min(width - 1, Math.floor((world.end - begins) / perColumn));
+  for (let body = lowest; body <= highest; body += step) {
+    let slot = begin[body], next = begin[body + 1], before = NaN;
+    const t1 = begins + firstColumn * perColumn, end = begin[body + 1];
+    while (slot < next) {
+      const middle = (slot + next) >> 1;
+      if (time[list[middle]] <= t1) slot = middle + 1; else next = middle;
+    }
+    const gone = world.keepsOrder || end === begin[body] ? Infinity : microscopeGoneAt(world, body);
+    for (let column = firstColumn; column <= lastColumn; ++column) {
+      const t = begins + column * perColumn;
+      // Steps that double find the next contact also where there are many to a column.
+      if (slot < end && time[list[slot]] <= t) {
+        let jump = 1;
+        while (slot + jump < end && time[list[slot + jump]] <= t) jump *= 2;
+        let low = slot + (jump >> 1), high = Math.min(end, slot + jump);
+        while (low < high) {
+          const middle = (low + high) >> 1;
+          if (time[list[middle]] <= t) low = middle + 1; else high = middle;
+        }
+        slot = low;
+      }
+      if (t > gone) break;
+      const last = slot - 1, contact = last >= begin[body] ? list[last] : -1;
+      const turned = ring && contact >= 0 && left[contact] !== body ? world.turn[contact] * ring : 0;
+      const place = contact < 0 ? world.x0[body] + world.v0[body] * (t - world.start)
+                                : x[contact] + turned + velocity[last] * (t - time[contact]);
+      const y = row(place, t), from = Math.min(before, y), to = Math.max(before, y);
+      before = y;
+      if (!(to - from > 1.5)) {
+        const at = Math.floor(y), part = y - at;
+        if (at >= 0 && at < height) lines[at * width + column] += 1 - part;
+        if (at + 1 >= 0 && at + 1 < height) lines[(at + 1) * width + column] += part;
+        continue;
+      }
+      for (let k = Math.max(0, Math.floor(from)), end_ = Math.min(height - 1, to); k <= end_; ++k)
+        lines[k * width + column] += 1;
+    }
+  }
+  // Contacts in sight: by time from the sorted list.
+  const first = microscopeFirstAfter(time, begins), last = microscopeFirstAfter(time, begins + view.T);
+  const skip = Math.max(1, Math.ceil((last - first) / budget));
+  for (let k = first; k < last; k += skip) {
+    const column = Math.floor((time[k] - begins) / perColumn), at = Math.floor(row(x[k], time[k]) + 0.5);
+    if (at < 0 || at >= height || column < 0 || column >= width) continue;
+    const place = at * width + column;
+    count[place] += skip;
+    tint[place] += skip * value[k];
+  }
+  const [red, green, blue] = ink, bytes = image.data, span = range[1] - range[0];
+  const table = new Uint8Array(768);
+  for (let k = 0; k < 256; ++k) table.set(microscopeColour(k / 255), 3 * k);
+  for (let k = 0, at = 0; k < lines.length; ++k, at += 4) {
+    const line = lines[k], met = count[k];
+    if (line === 0 && met === 0) {
+      bytes[at + 3] = 0;
+      continue;
+    }
+    const shown = line * step, opacity = 0.75 * shown / (shown + 0.6);
+    if (met === 0) {
+      bytes[at] = red;
+      bytes[at + 1] = green;
+      bytes[at + 2] = blue;
+      bytes[at + 3] = 255 * opacity;
+      continue;
+    }
+    const part = Math.round(255 * Math.min(1, Math.max(0, (tint[k] / met - range[0]) / span)));
+    const share = 0.55 + 0.45 * met / (met + 2);
+    bytes[at] = table[3 * part];
+    bytes[at + 1] = table[3 * part + 1];
+    bytes[at + 2] = table[3 * part + 2];
+    bytes[at + 3] = 255 * Math.max(share, opacity);
+  }
+  return image;
+}
+
+// First contact after a time.
+function microscopeFirstAfter(time, t) {
+  let low = 0, high = time.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (time[middle] <= t) low = middle + 1; else high = middle;
+  }
+  return low;
+}
+
+// When a body merges into another one; infinite where it does not.
+function microscopeGoneAt(world, body) {
+  const last = world.list[world.begin[body + 1] - 1];
+  return world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === body ? world.time[last] : Infinity;
+}
+
+// The bodies that come into sight. As long as they keep their order some columns tell, else all may.
+function microscopeVisible(world, view, row, height) {
+  if (!world.keepsOrder || world.ring) return [0, world.bodies - 1];
+  let lowest = world.bodies - 1, highest = 0;
+  const t0 = view.anchor.e < 0 ? world.start : world.time[view.anchor.e];
+  for (let k = 0; k <= 24; ++k) {
+    const t = Math.min(world.end, Math.max(world.start, t0 + view.tau + view.T * (k / 24 - 0.5)));
+    const contact = microscopeFirstAfter(world.time, t) - 1, since = t - (contact < 0 ? world.start : world.time[contact]);
+    const above = edge => {  // how many bodies are left of what is shown at this row
+      let low = 0, high = world.bodies;
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        const place = microscopePlace(world, middle, contact) + microscopeVelocity(world, middle, contact) * since;
+        if (row(place, t) > edge) low = middle + 1; else high = middle;
+      }
+      return low;
+    };
+    lowest = Math.min(lowest, above(1.2 * height));
+    highest = Math.max(highest, above(-0.2 * height));
+  }
+  return [Math.max(0, lowest - 2), Math.min(world.bodies - 1, highest + 2)];
+}
+
+// The strip: depth of the contacts against their number, least and greatest of each column; where the view is.
+function microscopeStrip(pen, world, view, box, colours, store) {
+  const { n, depth } = world, columns = Math.max(1, Math.floor(box.width));
+  if (store.columns !== columns) {
+    const low = new Float32Array(columns).fill(Infinity), high = new Float32Array(columns).fill(-Infinity);
+    const deepest = new Int32Array(columns).fill(-1);
+    for (let e = 0; e < n; ++e) {
+      if (depth[e] < -330) continue;  // two contacts within rounding
+      const column = Math.min(columns - 1, Math.floor(e / n * columns));
+      if (depth[e] < low[column]) {
+        low[column] = depth[e];
+        deepest[column] = e;
+      }
+      if (depth[e] > high[column]) high[column] = depth[e];
+    }
+    const finite = low.filter(Number.isFinite);
+    const least = finite.reduce((a, b) => Math.min(a, b), 0), most = high.reduce((a, b) => Math.max(a, b), -400);
+    Object.assign(store, { columns, low, high, deepest, range: [Math.floor(least), Math.max(1, Math.ceil(most))] });
+  }
+  const [least, most] = store.range, y = value => box.top + box.height * (most - value) / (most - least);
+  const step = microscopeStep(most - least, 3);
+  pen.strokeStyle = colours.grid;
+  pen.fillStyle = colours.text;
+  pen.lineWidth = 1;
+  pen.textAlign = "right";
+  pen.textBaseline = "middle";
+  for (let value = Math.ceil(least / step) * step; value <= most; value += step) {
+    const at = Math.round(y(value)) + 0.5;
+    pen.beginPath();
+    pen.moveTo(box.left, at);
+    pen.lineTo(box.left + box.width, at);
+    pen.stroke();
+    pen.fillText(value === 0 ? "1" : microscopePower(Math.round(value)), box.left - 6, at);
+  }
+  pen.fillStyle = colours.line;
+  for (let column = 0; column < columns; ++column)
+    if (store.deepest[column] >= 0)
+      pen.fillRect(box.left + column, y(store.high[column]) - 0.75, Math.max(1, 1.2 * columns / n),
+                   Math.max(1.5, y(store.low[column]) - y(store.high[column])));
+  // Where the view is: its contact and its span of space.
+  const at = box.left + box.width * Math.max(0, view.anchor.e + 0.5) / n;
+  const level = Math.min(box.top + box.height, Math.max(box.top, y(Math.log10(view.X))));
+  pen.strokeStyle = colours.accent;
+  pen.beginPath();
+  pen.moveTo(box.left, level);
+  pen.lineTo(box.left + box.width, level);
+  pen.moveTo(at, box.top);
+  pen.lineTo(at, box.top + box.height);
+  pen.stroke();
+  pen.fillStyle = colours.accent;
+  pen.beginPath();
+  pen.arc(at, level, 3.5, 0, 7);
+  pen.fill();
+  pen.strokeStyle = colours.frame;
+  pen.strokeRect(box.left + 0.5, box.top + 0.5, box.width - 1, box.height - 1);
+  pen.fillStyle = colours.text;
+  pen.textAlign = "center";
+  pen.textBaseline = "top";
+  pen.fillText(`gap that closes in a contact, in l, against the number of the contact, 1 to ${n}`,
+               box.left + box.width / 2, box.top + box.height + 5);
+}

@@ -1,0 +1,210 @@
+// Drawing: world lines and contacts of a chart, axes whose labels hold at any depth, and the strip of all depths.
+//
+// The view is {anchor, lab, tau, xi, T, X, V}: the middle of the picture at tau after the anchor's contact and xi from
+// it, its spans of time and space, and the velocity V of its frame against the anchor's (lab: the anchor's in the lab).
+
+const MICROSCOPE_MARGIN = { left: 66, right: 14, top: 12, bottom: 42, strip: 92 };
+const MICROSCOPE_PALETTE = [[58, 82, 164], [41, 138, 171], [86, 175, 128], [226, 170, 52], [214, 73, 58]];
+
+// Colour from the palette at 0 .. 1: [red, green, blue].
+function microscopeColour(part) {
+  const at = Math.min(0.9999, Math.max(0, part)) * (MICROSCOPE_PALETTE.length - 1), k = Math.floor(at);
+  return MICROSCOPE_PALETTE[k].map((c, i) => Math.round(c + (at - k) * (MICROSCOPE_PALETTE[k + 1][i] - c)));
+}
+
+// The numbers 2.5e-148 as people write them: 2.5×10⁻¹⁴⁸.
+function microscopeNumber(value, digits = 4) {
+  if (value === 0) return "0";
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  if (size >= 1e-3 && size < 1e6) return String(Number(value.toPrecision(digits))).replace("-", "−");
+  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+  const shown = String(Number(mantissa)).replace("-", "−");
+  return (shown === "1" ? "" : shown === "−1" ? "−" : shown + "×") + microscopePower(Number(exponent));
+}
+function microscopePower(exponent) {
+  return "10" + String(exponent).replace(/./g, c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]);
+}
+
+// Round steps that divide a span in up to `count` parts.
+function microscopeStep(span, count) {
+  const raw = span / count, power = 10 ** Math.floor(Math.log10(raw));
+  const [one, scaled] = power > 0 ? [power, raw / power] : [raw, 1];
+  return one * (scaled <= 1 ? 1 : scaled <= 2 ? 2 : scaled <= 5 ? 5 : 10);
+}
+
+// Where an axis has its ticks: values from the middle at `centre` over `span`, with an absolute `origin` where that is
+// resolved, else in powers of ten from the anchor. {ticks: [[offset from the centre, label]], power}.
+function microscopeTicks(centre, span, count, origin) {
+  const step = microscopeStep(span, count), absolute = Math.abs(origin) + span < 1e6 * span;
+  const base = absolute ? origin + centre : centre, power = Math.floor(Math.log10(span));
+  const plain = absolute && span >= 1e-3 && span < 1e6, ticks = [];
+  for (let k = Math.ceil((base - span / 2) / step); k <= Math.floor((base + span / 2) / step); ++k) {
+    const decimals = Math.max(0, -Math.floor(Math.log10(plain ? step : step / 10 ** power) + 1e-9));
+    const scaled = plain ? k * step : power > -300 ? k * step / 10 ** power : k * (step * 1e200) / 10 ** (power + 200);
+    ticks.push([k * step - base, scaled.toFixed(Math.min(decimals, 9)).replace("-", "−").replace(/^−(0\.?0*)$/, "$1")]);
+  }
+  return { ticks, power: plain ? 0 : power, absolute };
+}
+
+// Segments of the polyline through points, cut at the box [0, width] x [0, height] with some margin, into the path.
+function microscopeSegment(path, x0, y0, x1, y1, box) {
+  let from = 0, to = 1;
+  const dx = x1 - x0, dy = y1 - y0;
+  for (const [p, q] of [[-dx, x0 - box[0]], [dx, box[1] - x0], [-dy, y0 - box[2]], [dy, box[3] - y0]]) {
+    if (p === 0) {
+      if (q < 0) return;
+    } else if (p < 0) {
+      from = Math.max(from, q / p);
+    } else {
+      to = Math.min(to, q / p);
+    }
+  }
+  if (from > to) return;
+  if (from > 0 || path.lastX !== x0 || path.lastY !== y0) path.moveTo(x0 + from * dx, y0 + from * dy);
+  path.lineTo(x0 + to * dx, y0 + to * dy);
+  path.lastX = to < 1 ? NaN : x1;
+  path.lastY = y1;
+}
+
+// Maps of a view onto a box {left, top, width, height}: of tau, and of xi at tau.
+function microscopeScales(view, box) {
+  return { x: tau => box.left + box.width * ((tau - view.tau) / view.T + 0.5),
+           y: (xi, tau) => box.top + box.height * (0.5 - (xi - view.V * tau - view.xi) / view.X) };
+}
+
+// World lines of a chart. What is out of sight, and vertices in one and the same place, are left out.
+function microscopeLines(pen, chart, view, box, colours) {
+  const { x, y } = microscopeScales(view, box), path = new Path2D();
+  const cut = [box.left - 20, box.left + box.width + 20, box.top - 20, box.top + box.height + 20];
+  for (const line of chart.lines) {
+    let [tau, xi] = line.from, px = x(tau), py = y(xi, tau);
+    const step = (nextTau, nextXi, last) => {
+      const nx = x(nextTau), ny = y(nextXi, nextTau);
+      if (!last && Math.abs(nx - px) < 0.3 && Math.abs(ny - py) < 0.3) return;
+      if (Math.max(px, nx) >= cut[0] && Math.min(px, nx) <= cut[1]) microscopeSegment(path, px, py, nx, ny, cut);
+      px = nx;
+      py = ny;
+    };
+    for (const i of line.points) step(chart.tau[i], chart.xi[i], false);
+    step(...line.to, true);
+  }
+  const dense = chart.lines.length > 60 ? 0.75 : 1;
+  pen.lineWidth = dense;
+  pen.lineJoin = "round";
+  pen.strokeStyle = colours.line;
+  pen.stroke(path);
+}
+
+// Contacts of a chart as dots, coloured by `value(contact)`, a logarithm, over `range`.
+function microscopeDots(pen, chart, view, box, value, range) {
+  const { x, y } = microscopeScales(view, box), bins = new Map();
+  let seen = 0, lastX = NaN, lastY = NaN;
+  for (let i = 0; i < chart.contacts.length; ++i) {
+    const px = x(chart.tau[i]), py = y(chart.xi[i], chart.tau[i]);
+    if (px < box.left - 5 || px > box.left + box.width + 5 || py < box.top - 5 || py > box.top + box.height + 5) continue;
+    if (Math.abs(px - lastX) < 0.5 && Math.abs(py - lastY) < 0.5) continue;
+    lastX = px;
+    lastY = py;
+    ++seen;
+    const bin = Math.round(15 * Math.min(1, Math.max(0, (value[chart.contacts[i]] - range[0]) / (range[1] - range[0]))));
+    if (!bins.has(bin)) bins.set(bin, []);
+    bins.get(bin).push(px, py);
+  }
+  const radius = seen > 2500 ? 1.2 : seen > 500 ? 2 : seen > 80 ? 2.8 : 4;
+  for (const [bin, places] of bins) {
+    const path = new Path2D();
+    for (let k = 0; k < places.length; k += 2) {
+      path.moveTo(places[k] + radius, places[k + 1]);
+      path.arc(places[k], places[k + 1], radius, 0, 7);
+    }
+    pen.fillStyle = `rgb(${microscopeColour(bin / 15)})`;
+    pen.fill(path);
+  }
+}
+
+// Axes with ticks and what they mean. `name(what)`: how the anchor is called; times: of anchor and its place.
+function microscopeAxes(pen, view, box, colours, origin, anchorName) {
+  const time = microscopeTicks(view.tau, view.T, Math.max(3, box.width / 110), origin.t);
+  const space = microscopeTicks(view.xi, view.X, Math.max(3, box.height / 70), origin.moving ? Infinity : origin.x);
+  const bottom = box.top + box.height;
+  pen.lineWidth = 1;
+  pen.strokeStyle = colours.grid;
+  pen.beginPath();
+  for (const [offset] of time.ticks) {
+    const px = Math.round(box.left + box.width * (offset / view.T + 0.5)) + 0.5;
+    pen.moveTo(px, box.top);
+    pen.lineTo(px, bottom);
+  }
+  for (const [offset] of space.ticks) {
+    const py = Math.round(box.top + box.height * (0.5 - offset / view.X)) + 0.5;
+    pen.moveTo(box.left, py);
+    pen.lineTo(box.left + box.width, py);
+  }
+  pen.stroke();
+  return () => {  // the labels, after what is drawn
+    pen.strokeStyle = colours.frame;
+    pen.strokeRect(box.left + 0.5, box.top + 0.5, box.width - 1, box.height - 1);
+    pen.fillStyle = colours.text;
+    pen.textAlign = "center";
+    pen.textBaseline = "top";
+    for (const [offset, label] of time.ticks)
+      pen.fillText(label, box.left + box.width * (offset / view.T + 0.5), bottom + 5);
+    pen.textAlign = "right";
+    pen.textBaseline = "middle";
+    for (const [offset, label] of space.ticks)
+      pen.fillText(label, box.left - 6, box.top + box.height * (0.5 - offset / view.X));
+    const unit = (axis, letter) => axis.power ? `  in ${microscopePower(axis.power)} ${letter}` : `  in ${letter}`;
+    pen.textAlign = "center";
+    pen.textBaseline = "top";
+    pen.fillText((time.absolute ? "time t" : `t − t(${anchorName})`) + unit(time, "t"), box.left + box.width / 2,
+                 bottom + 21);
+    pen.save();
+    pen.translate(13, box.top + box.height / 2);
+    pen.rotate(-Math.PI / 2);
+    pen.textBaseline = "middle";
+    pen.fillText((space.absolute ? "position x" : `x − x(${anchorName})`) + unit(space, "l") +
+                 (origin.moving ? ", moving with the bodies" : ""), 0, 0);
+    pen.restore();
+  };
+}
+
+// Bars of a round length of time and of space, and what the colours mean.
+function microscopeLegend(pen, view, box, colours, range, quantity) {
+  const right = box.left + box.width - 14, bottom = box.top + box.height - 14;
+  const time = microscopeStep(view.T, 6), space = microscopeStep(view.X, 6);
+  const across = box.width * time / view.T, up = box.height * space / view.X;
+  const plate = (x, y, width, height) => {
+    pen.fillStyle = colours.plate;
+    pen.fillRect(x, y, width, height);
+  };
+  plate(right - across - 98, bottom - up - 8, across + 106, up + 16);
+  pen.strokeStyle = pen.fillStyle = colours.text;
+  pen.lineWidth = 1.5;
+  pen.beginPath();
+  pen.moveTo(right, bottom - up);
+  pen.lineTo(right, bottom);
+  pen.lineTo(right - across, bottom);
+  pen.stroke();
+  pen.textAlign = "right";
+  pen.textBaseline = "bottom";
+  pen.fillText(microscopeNumber(time, 1) + " t", right - 6, bottom - 3);
+  pen.textBaseline = "middle";
+  pen.fillText(microscopeNumber(space, 1) + " l", right - 6, bottom - up + 6);
+  if (!range) return;
+  const width = 120, top = box.top + 12, left = box.left + box.width - width - 14;
+  plate(left - 8, top - 6, width + 16, 46);
+  for (let k = 0; k < width; ++k) {
+    pen.fillStyle = `rgb(${microscopeColour(k / width)})`;
+    pen.fillRect(left + k, top + 16, 1.5, 7);
+  }
+  pen.fillStyle = colours.text;
+  pen.textBaseline = "top";
+  pen.textAlign = "center";
+  pen.fillText(quantity, left + width / 2, top - 1);
+  const low = microscopeNumber(10 ** range[0], 1), high = microscopeNumber(10 ** range[1], 1);
+  pen.textAlign = "left";
+  pen.fillText(range[0] < -307 ? microscopePower(Math.round(range[0])) : low, left, top + 26);
+  pen.textAlign = "right";
+  pen.fillText(range[1] < -307 ? microscopePower(Math.round(range[1])) : high, left + width, top + 26);
+}

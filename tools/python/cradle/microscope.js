@@ -65,17 +65,22 @@ function cradleMicroscope(element, data) {
   function colouring() {
     const value = state.quantity === "speed" ? world.logSpeed : world.lost, { chart, view } = camera, sample = [];
     if (chart) {
-      for (let i = 0, skip = Math.ceil(chart.contacts.length / 2000); i < chart.contacts.length; i += skip)
-        if (Math.abs(chart.tau[i] - view.tau) < view.T / 2 &&
-            Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2) sample.push(value[chart.contacts[i]]);
+      let before = -Infinity;  // of the contacts within a pixel one counts
+      for (let i = 0, skip = Math.ceil(chart.contacts.length / 4000); i < chart.contacts.length; i += skip) {
+        const tau = chart.tau[i], xi = chart.xi[i] - view.V * tau - view.xi;
+        if (Math.abs(tau - view.tau) > view.T / 2 || Math.abs(xi) > view.X / 2) continue;
+        if (chart.contacts.length < 4000 && tau - before < view.T / 400) continue;
+        before = tau;
+        sample.push(value[chart.contacts[i]]);
+      }
     } else {
       const t = (view.anchor.e < 0 ? world.start : world.time[view.anchor.e]) + view.tau;
       const first = microscopeFirstAfter(world.time, t - view.T / 2), last = microscopeFirstAfter(world.time, t + view.T / 2);
       for (let e = first, skip = Math.ceil((last - first) / 2000); e < last; e += skip) sample.push(value[e]);
     }
-    const real = sample.filter(v => v > -350).sort((a, b) => a - b);
+    const real = sample.filter(v => v > -350).sort((a, b) => a - b), shown = chart ? null : state.shown;
     if (!real.length) return { value, range: state.range || [-1, 0], empty: true };
-    let low = real[Math.floor(0.02 * (real.length - 1))], high = real[Math.ceil(0.98 * (real.length - 1))];
+    let [low, high] = shown || [real[Math.floor(0.02 * (real.length - 1))], real[Math.ceil(0.98 * (real.length - 1))]];
     if (high - low < 0.5) [low, high] = [(low + high) / 2 - 0.25, (low + high) / 2 + 0.25];
     const old = state.range, near = old && Math.abs(old[0] - low) + Math.abs(old[1] - high) < 3 && state.moving;
     state.range = near ? [old[0] + 0.2 * (low - old[0]), old[1] + 0.2 * (high - old[1])] : [low, high];
@@ -106,7 +111,10 @@ function cradleMicroscope(element, data) {
     } else {
       const scale = state.moving ? ratio / quality : ratio;
       const image = microscopeRaster(world, view, Math.round(box.width * scale), Math.round(box.height * scale), value,
-                                     range, colours.ink.split(",").map(Number), state.moving ? 3e5 : 3e6, stores.raster);
+                                     range, colours.ink.split(",").map(Number), state.moving ? 1.5e5 : 3e6, stores.raster);
+      const shown = microscopeShown(stores.raster), known = state.shown;
+      state.shown = shown;
+      if (shown && (!known || Math.abs(shown[0] - known[0]) + Math.abs(shown[1] - known[1]) > 0.3)) request();
       offscreen.width = image.width;
       offscreen.height = image.height;
       offscreen.getContext("2d").putImageData(image, 0, 0);
@@ -196,7 +204,7 @@ function cradleMicroscope(element, data) {
     deepest: () => visit(world.depth.reduce((best, d, e) => d > -330 && d < world.depth[best] ? e : best, 0)),
     colours: () => {
       state.quantity = state.quantity === "speed" ? "lost" : "speed";
-      state.range = null;
+      state.range = state.shown = null;
       request();
     },
     play: () => {
@@ -220,7 +228,7 @@ function cradleMicroscope(element, data) {
     view: () => ({ ...camera.view, exact: Boolean(camera.chart), box: { ...box }, depth: camera.view.X }),
     // Shows contact `event`, or the first one as deep as that, with so much space (depth, in l) in sight.
     zoomTo: ({ event, depth, time }) => {
-      const found = world.depth.findIndex(d => d <= Math.log10(depth / 6));
+      const found = world.depth.findIndex(d => d > -330 && d <= Math.log10(depth / 3));
       const e = event === undefined ? (found < 0 ? world.n - 1 : found) : event;
       camera.goTo(e, time || depth / (1.3 * world.speed[e]), depth);
       changed();

@@ -14,12 +14,8 @@ function microscopeCamera(world) {
       low = Math.min(low, world.x[e]);
       high = Math.max(high, world.x[e]);
     }
-    // The bodies at the start too, if that does not make the picture much larger.
-    const first = world.x0[0], last = world.x0[world.bodies - 1];
-    if (!world.n || last - first < 4 * (high - low)) {
-      low = Math.min(low, first);
-      high = Math.max(high, last);
-    }
+    low = Math.min(low, world.x0[0]);
+    high = Math.max(high, world.x0[world.bodies - 1]);
     const anchor = world.n ? { e: 0, a: world.left[0] } : { e: -1, a: Math.floor((world.bodies - 1) / 2) };
     const x = anchor.e < 0 ? world.x0[anchor.a] : world.x[0], lab = microscopeAnchor(world, anchor).lab;
     limits.T = 1.06 * span;
@@ -32,7 +28,10 @@ function microscopeCamera(world) {
   // Looks at contact e, with given spans; the frame moves with the bodies there where the lab's would tilt it.
   camera.goTo = (e, T, X) => {
     const anchor = { e, a: world.left[e] };
-    camera.view = { anchor, lab: microscopeAnchor(world, anchor).lab, tau: 0, xi: 0, T, X, V: 0 };
+    // Where the run ends soon after, the end stands at four fifths of the picture.
+    const ends = microscopeFlight(world, e, world.n - 1) + Math.max(0, world.end - world.time[world.n - 1]);
+    const tau = Math.min(0, ends - 0.3 * T);
+    camera.view = { anchor, lab: microscopeAnchor(world, anchor).lab, tau, xi: 0, T, X, V: 0 };
     camera.chart = null;
     camera.settle();
     camera.view.V = camera.frame();
@@ -60,25 +59,19 @@ function microscopeCamera(world) {
     return Math.min(X, limits.X);
   };
 
-  // Velocity of the frame that suits the view: the lab's while that tilts little, else that of the bodies in sight.
+  // Velocity of the frame that suits the view: the lab's while that tilts little, else that of the centre of mass of
+  // the bodies in sight at the anchor, which contacts among them leave alone.
   camera.frame = () => {
     const { view, chart } = camera;
-    let local = 0, weight = 0;
-    if (chart) {
-      const early = view.tau - view.T / 2, late = view.tau + view.T / 2;
-      for (const line of chart.lines) {
-        const from = Math.max(early, line.from[0]), to = Math.min(late, line.to[0]);
-        if (!(to > from)) continue;
-        const a = microscopeAlong(chart, line, from), b = microscopeAlong(chart, line, to);
-        const middle = (a + b) / 2 - view.V * (from + to) / 2 - view.xi;
-        if (Math.abs(middle) > view.X / 2) continue;
-        local += b - a;
-        weight += to - from;
-      }
+    let momentum = 0, mass = 0;
+    for (const { body, xi, u } of chart ? chart.around : []) {
+      if (Math.abs(xi) > view.X / 2) continue;
+      const m = microscopeMass(world, body, view.anchor.e);
+      momentum += m * u;
+      mass += m;
     }
-    local = weight > 0 ? local / weight : 0;
-    const tilt = Math.abs(view.lab + local) * view.T / view.X;
-    return local + (tilt <= 0.5 ? 1 : 0.5 / tilt) * (-view.lab - local);
+    const local = mass > 0 ? momentum / mass : 0, tilt = Math.abs(view.lab + local) * view.T / view.X;
+    return local + (tilt <= 0.5 ? 1 : (0.5 / tilt) ** 2) * (-view.lab - local);
   };
 
   // Zooms time and space by factors about a place [tau, xi] of the picture (xi in the view's frame); more is nearer.

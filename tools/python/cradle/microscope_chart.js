@@ -3,7 +3,8 @@
 // An anchor is {e, a}: contact e, or e = -1, the start, and the body a with its right neighbour. In a chart tau is the
 // time since then and xi the distance from there in the frame in which these two have no momentum. Both are local sums.
 
-const MICROSCOPE_CHART = { bodies: 1500, contacts: 30000 };
+// Up to so many bodies and contacts are followed: few where positions serve as well, many where they do not.
+const MICROSCOPE_CHART = { bodies: 1500, contacts: 8000, deep: 60000 };
 
 // The anchor's two bodies and what is known of them: {a, b, after, speedA, speedB}: velocities right after it, in its
 // own frame, and the velocity of that frame in the lab.
@@ -95,12 +96,14 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
   const ends = Math.max(world.n ? microscopeFlight(world, anchor.e, world.n - 1) : 0, world.end - t);
   from = Math.max(from, begins);
   to = Math.min(Math.max(to, from), ends);
+  const deep = high - low < 1e-9 * Math.max(Math.abs(world.x0[0]), Math.abs(world.x0[world.bodies - 1]));
+  const most = 2 * (deep ? MICROSCOPE_CHART.deep : MICROSCOPE_CHART.contacts);
   const first = microscopeContactAt(world, anchor.e, from) + 1, last = microscopeContactAt(world, anchor.e, to);
   const reach = Math.max(Math.abs(low), Math.abs(high)), more = [2, 2];
   for (let attempt = 0; attempt < 12; ++attempt) {
     const around = microscopeAround(world, anchor, reach, more);
     if (!around) return null;
-    const chart = microscopeFollow(world, anchor, around, from, to, first, last);
+    const chart = microscopeFollow(world, anchor, around, from, to, first, last, most);
     if (!chart) return null;
     // Bodies further out may come in where the outermost ones do.
     const comesIn = (line, side) => [line.from, line.to, ...line.points.map(i => [chart.tau[i], chart.xi[i]])]
@@ -110,7 +113,7 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
     const left = !ring && order.previous(around[0].body) >= 0 && comesIn(outer(around[0].body), -1);
     const right = !ring && order.next(around[around.length - 1].body) >= 0 &&
                   comesIn(outer(around[around.length - 1].body), 1);
-    if (!left && !right) return Object.assign(chart, { low, high, drift, begins, ends });
+    if (!left && !right) return Object.assign(chart, { around, low, high, drift, begins, ends });
     if (left) more[0] = 2 * more[0] + around.length;
     if (right) more[1] = 2 * more[1] + around.length;
   }
@@ -118,12 +121,12 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
 }
 
 // Follows the bodies around an anchor through contacts first .. last, forwards and backwards.
-function microscopeFollow(world, anchor, around, from, to, first, last) {
+function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   const { left, right, list, begin, event } = world, e = anchor.e, all = [];
   for (const { body } of around)
     for (let slot = microscopeSlotAfter(world, body, first - 1); slot < begin[body + 1] && list[slot] <= last; ++slot) {
       all.push(list[slot]);
-      if (all.length > 2 * MICROSCOPE_CHART.contacts) return null;
+      if (all.length > most) return null;
     }
   const sorted = Int32Array.from(all).sort(), contacts = sorted.filter((k, i) => i === 0 || k !== sorted[i - 1]);
   const tau = microscopeTimes(world, e, contacts), xi = new Float64Array(contacts.length), byBody = new Map();

@@ -1,14 +1,14 @@
 // What stands for very many contacts: a picture made of one sample of a world line per column and of the mean colour
 // of the contacts in a pixel; and the strip that shows the depth of every contact, for finding one's way.
 
-// The picture of a view in positions, as ImageData of width x height pixels: world lines in `ink` and contacts coloured
+// The picture of a view in positions, as ImageData (little-endian, as all machines with a browser are) of width x height pixels: world lines in `ink` and contacts coloured
 // by `value` over `range`. At most about `budget` samples of lines, and of contacts.
 function microscopeRaster(world, view, width, height, value, range, ink, budget, store) {
   if (!store.image || store.image.width !== width || store.image.height !== height) {
     Object.assign(store, { image: new ImageData(width, height), lines: new Float32Array(width * height),
                            tint: new Float32Array(width * height), count: new Float32Array(width * height) });
   }
-  const { lines, tint, count, image } = store, { list, begin, time, x, velocity, left, ring } = world;
+  const { lines, tint, count, image } = store, { begin, time, x, velocity, slotTime, slotPlace } = world;
   lines.fill(0);
   tint.fill(0);
   count.fill(0);
@@ -23,30 +23,26 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   const lastColumn = Math.min(width - 1, Math.floor((world.end - begins) / perColumn));
   for (let body = lowest; body <= highest; body += step) {
     let slot = begin[body], next = begin[body + 1], before = NaN;
-    const t1 = begins + firstColumn * perColumn, end = begin[body + 1];
+    const t1 = begins + firstColumn * perColumn, none = begin[body], end = begin[body + 1];
     while (slot < next) {
       const middle = (slot + next) >> 1;
-      if (time[list[middle]] <= t1) slot = middle + 1; else next = middle;
+      if (slotTime[middle] <= t1) slot = middle + 1; else next = middle;
     }
-    const gone = world.keepsOrder || end === begin[body] ? Infinity : microscopeGoneAt(world, body);
+    const gone = world.keepsOrder || end === none ? Infinity : microscopeGoneAt(world, body);
     for (let column = firstColumn; column <= lastColumn; ++column) {
       const t = begins + column * perColumn;
       // Steps that double find the next contact also where there are many to a column.
-      if (slot < end && time[list[slot]] <= t) {
-        let jump = 1;
-        while (slot + jump < end && time[list[slot + jump]] <= t) jump *= 2;
-        let low = slot + (jump >> 1), high = Math.min(end, slot + jump);
-        while (low < high) {
-          const middle = (low + high) >> 1;
-          if (time[list[middle]] <= t) low = middle + 1; else high = middle;
+      for (let jump = 1; slot < end && slotTime[slot] <= t; jump *= 2) {
+        if (slot + jump < end && slotTime[slot + jump] <= t) slot += jump;
+        else {
+          ++slot;
+          jump = 0.5;
         }
-        slot = low;
       }
       if (t > gone) break;
-      const last = slot - 1, contact = last >= begin[body] ? list[last] : -1;
-      const turned = ring && contact >= 0 && left[contact] !== body ? world.turn[contact] * ring : 0;
-      const place = contact < 0 ? world.x0[body] + world.v0[body] * (t - world.start)
-                                : x[contact] + turned + velocity[last] * (t - time[contact]);
+      const last = slot - 1;
+      const place = last < none ? world.x0[body] + world.v0[body] * (t - world.start)
+                                : slotPlace[last] + velocity[last] * (t - slotTime[last]);
       const y = row(place, t), from = Math.min(before, y), to = Math.max(before, y);
       before = y;
       if (!(to - from > 1.5)) {
@@ -59,41 +55,56 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
         lines[k * width + column] += 1;
     }
   }
-  // Contacts in sight: by time from the sorted list.
+  // Contacts in sight: by time from the sorted list. Each is shared by two pixels, so that regular ones make no moiré.
   const first = microscopeFirstAfter(time, begins), last = microscopeFirstAfter(time, begins + view.T);
   const skip = Math.max(1, Math.ceil((last - first) / budget));
   for (let k = first; k < last; k += skip) {
-    const column = Math.floor((time[k] - begins) / perColumn), at = Math.floor(row(x[k], time[k]) + 0.5);
-    if (at < 0 || at >= height || column < 0 || column >= width) continue;
-    const place = at * width + column;
-    count[place] += skip;
-    tint[place] += skip * value[k];
-  }
-  const [red, green, blue] = ink, bytes = image.data, span = range[1] - range[0];
-  const table = new Uint8Array(768);
-  for (let k = 0; k < 256; ++k) table.set(microscopeColour(k / 255), 3 * k);
-  for (let k = 0, at = 0; k < lines.length; ++k, at += 4) {
-    const line = lines[k], met = count[k];
-    if (line === 0 && met === 0) {
-      bytes[at + 3] = 0;
-      continue;
+    const column = Math.floor((time[k] - begins) / perColumn), y = row(x[k], time[k]), at = Math.floor(y);
+    if (column < 0 || column >= width || at < -1 || at >= height) continue;
+    const place = at * width + column, below = skip * (y - at), above = skip - below, logarithm = value[k];
+    if (at >= 0) {
+      count[place] += above;
+      tint[place] += above * logarithm;
     }
-    const shown = line * step, opacity = 0.75 * shown / (shown + 0.6);
-    if (met === 0) {
-      bytes[at] = red;
-      bytes[at + 1] = green;
-      bytes[at + 2] = blue;
-      bytes[at + 3] = 255 * opacity;
-      continue;
+    if (at + 1 < height) {
+      count[place + width] += below;
+      tint[place + width] += below * logarithm;
     }
-    const part = Math.round(255 * Math.min(1, Math.max(0, (tint[k] / met - range[0]) / span)));
-    const share = 0.55 + 0.45 * met / (met + 2);
-    bytes[at] = table[3 * part];
-    bytes[at + 1] = table[3 * part + 1];
-    bytes[at + 2] = table[3 * part + 2];
-    bytes[at + 3] = 255 * Math.max(share, opacity);
   }
+  const crowd = Math.min(1, 2 * (highest - lowest) / height);
+  microscopeTone(store, range, ink, step, 0.75 - 0.35 * crowd);
   return image;
+}
+
+// From sums to pixels: world lines in ink, up to `opacity`, and over them the mean colour of the contacts.
+function microscopeTone({ image, lines, tint, count }, range, [red, green, blue], step, opacity) {
+  const pixels = new Uint32Array(image.data.buffer), table = new Uint32Array(256);
+  const scale = 255 / (range[1] - range[0]), low = range[0], paint = blue << 16 | green << 8 | red;
+  for (let k = 0; k < 256; ++k) {
+    const colour = microscopeColour(k / 255);
+    table[k] = colour[2] << 16 | colour[1] << 8 | colour[0];
+  }
+  for (let k = 0; k < pixels.length; ++k) {
+    const line = step * lines[k], met = count[k];
+    const alpha = line > 0 ? opacity * line / (line + 0.6) : 0;
+    if (met > 0) {
+      const share = Math.max(0.9 * met / (met + 0.4), alpha), part = (tint[k] / met - low) * scale;
+      pixels[k] = (255 * share) << 24 | table[part < 0 ? 0 : part > 255 ? 255 : part | 0];
+    } else {
+      pixels[k] = (255 * alpha) << 24 | paint;
+    }
+  }
+}
+
+// Range of the logarithms that a raster shows, by the share of the picture, not of the contacts; null where there are
+// none.
+function microscopeShown({ count, tint }) {
+  const shown = [];
+  for (let k = 0, skip = Math.max(1, Math.floor(count.length / 40000)); k < count.length; k += skip)
+    if (count[k] > 0.3) shown.push(tint[k] / count[k]);
+  if (shown.length < 20) return null;
+  shown.sort((a, b) => a - b);
+  return [shown[Math.floor(0.02 * shown.length)], shown[Math.floor(0.98 * shown.length)]];
 }
 
 // First contact after a time.

@@ -154,16 +154,16 @@ function microscopeAxes(pen, view, box, colours, origin, anchorName) {
     pen.textBaseline = "middle";
     for (const [offset, label] of space.ticks)
       pen.fillText(label, box.left - 6, box.top + box.height * (0.5 - offset / view.X));
-    const unit = (axis, letter) => axis.power ? `  in ${microscopePower(axis.power)} ${letter}` : `  in ${letter}`;
+    const unit = (axis, letter) => axis.power ? `, in ${microscopePower(axis.power)} ${letter}` : `, in ${letter}`;
     pen.textAlign = "center";
     pen.textBaseline = "top";
-    pen.fillText((time.absolute ? "time t" : `t − t(${anchorName})`) + unit(time, "t"), box.left + box.width / 2,
+    pen.fillText((time.absolute ? "time" : `t − t(${anchorName})`) + unit(time, "t"), box.left + box.width / 2,
                  bottom + 21);
     pen.save();
     pen.translate(13, box.top + box.height / 2);
     pen.rotate(-Math.PI / 2);
     pen.textBaseline = "middle";
-    pen.fillText((space.absolute ? "position x" : `x − x(${anchorName})`) + unit(space, "l") +
+    pen.fillText((space.absolute ? "position" : `x − x(${anchorName})`) + unit(space, "l") +
                  (origin.moving ? ", moving with the bodies" : ""), 0, 0);
     pen.restore();
   };
@@ -171,14 +171,17 @@ function microscopeAxes(pen, view, box, colours, origin, anchorName) {
 
 // Bars of a round length of time and of space, and what the colours mean.
 function microscopeLegend(pen, view, box, colours, range, quantity) {
-  const right = box.left + box.width - 14, bottom = box.top + box.height - 14;
-  const time = microscopeStep(view.T, 6), space = microscopeStep(view.X, 6);
+  const right = box.left + box.width - 12, bottom = box.top + box.height - 12;
+  const time = microscopeStep(view.T, 12), space = microscopeStep(view.X, 8);
   const across = box.width * time / view.T, up = box.height * space / view.X;
+  const labels = [microscopeNumber(time, 1) + " t", microscopeNumber(space, 1) + " l"];
+  const widths = labels.map(label => pen.measureText(label).width);
   const plate = (x, y, width, height) => {
     pen.fillStyle = colours.plate;
     pen.fillRect(x, y, width, height);
   };
-  plate(right - across - 98, bottom - up - 8, across + 106, up + 16);
+  plate(right - across - widths[0] - 12, bottom - 9, across + widths[0] + 18, 18);
+  plate(right - widths[1] - 12, bottom - up - 9, widths[1] + 18, 18);
   pen.strokeStyle = pen.fillStyle = colours.text;
   pen.lineWidth = 1.5;
   pen.beginPath();
@@ -187,10 +190,9 @@ function microscopeLegend(pen, view, box, colours, range, quantity) {
   pen.lineTo(right - across, bottom);
   pen.stroke();
   pen.textAlign = "right";
-  pen.textBaseline = "bottom";
-  pen.fillText(microscopeNumber(time, 1) + " t", right - 6, bottom - 3);
   pen.textBaseline = "middle";
-  pen.fillText(microscopeNumber(space, 1) + " l", right - 6, bottom - up + 6);
+  pen.fillText(labels[0], right - across - 6, bottom);
+  pen.fillText(labels[1], right - 6, bottom - up + 2);
   if (!range) return;
   const width = 120, top = box.top + 12, left = box.left + box.width - width - 14;
   plate(left - 8, top - 6, width + 16, 46);

@@ -78,6 +78,7 @@ function microscopeReplay(world) {
   const fill = begin.slice(), slotLeft = new Int32Array(n), slotRight = new Int32Array(n);
   const time = new Float64Array(n), low = new Float64Array(n), x = new Float64Array(n), after = new Float64Array(n);
   const kickLeft = new Float64Array(n), depth = new Float32Array(n), velocity = new Float64Array(2 * n);
+  const slotTime = new Float64Array(2 * n), slotPlace = new Float64Array(2 * n);  // together, for quick pictures
   const mass = world.mass0 ? world.mass0.slice() : new Float64Array(bodies).fill(1);
   const merges = event.includes(MICROSCOPE.merge) || law.type !== "inelastic";
   const equal = !world.mass0 && !merges;
@@ -86,7 +87,7 @@ function microscopeReplay(world) {
   const v = world.v0.slice(), place = world.x0.slice(), since = new Float64Array(bodies).fill(world.start);
   const sinceLow = new Float64Array(bodies);
   Object.assign(world, { begin, list, slotLeft, slotRight, time, low, x, after, kickLeft, kickRight, share, depth,
-                         velocity, lost, turn, keepsOrder: !merges });
+                         velocity, slotTime, slotPlace, lost, turn, keepsOrder: !merges });
   let t = world.start, rest = 0;
   for (let e = 0; e < n; ++e) {
     const a = left[e], b = right[e], dt = interval[e] + rest, sum = t + dt;
@@ -126,6 +127,9 @@ function microscopeReplay(world) {
     slotLeft[e] = fill[a]++;
     slotRight[e] = fill[b]++;
     list[slotLeft[e]] = list[slotRight[e]] = e;
+    slotTime[slotLeft[e]] = slotTime[slotRight[e]] = t;
+    slotPlace[slotLeft[e]] = place[a];
+    slotPlace[slotRight[e]] = place[b];
     velocity[slotLeft[e]] = v[a];
     velocity[slotRight[e]] = v[b];
     // Depth: the gap that has closed since one of the two had its last contact.

@@ -15,8 +15,8 @@ function cradleMicroscope(element, data) {
   element.replaceChildren();
   const bar = make("div", "microscope-bar", element), stage = make("div", "microscope-stage", element);
   const canvas = make("canvas", "microscope-canvas", stage), readout = make("div", "microscope-readout", element);
-  make("div", "microscope-help", element, "drag: move · wheel, + −: zoom (shift: time only, alt: space only; the axes " +
-       "zoom alone) · n, p: next, previous contact · d: deepest · 0: all · c: colours · space: play");
+  make("div", "microscope-help", element, "drag: move · click, then wheel, or + −: zoom (shift: time only, alt: space " +
+       "only; over an axis: that one) · n, p: next, previous contact · d: deepest · 0: all · c: colours · space: play");
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", "world lines of the bodies in space and time");
@@ -45,7 +45,8 @@ function cradleMicroscope(element, data) {
     const m = MICROSCOPE_MARGIN, below = world.n ? m.strip : 0;
     box = { left: m.left, top: m.top, width: Math.max(40, width - m.left - m.right),
             height: Math.max(40, height - m.top - m.bottom - below) };
-    strip = world.n ? { left: m.left, top: box.top + box.height + m.bottom + 6, width: box.width, height: below - 30 } : null;
+    const under = box.top + box.height + m.bottom + 6;
+    strip = world.n ? { left: m.left, top: under, width: box.width, height: below - 30 } : null;
     const names = ["paper", "plate", "line", "grid", "frame", "text", "accent", "ink"];
     colours = Object.fromEntries(names.map(name => [name, style("--microscope-" + name)]));
     stores.strip = {};
@@ -75,7 +76,7 @@ function cradleMicroscope(element, data) {
       }
     } else {
       const t = (view.anchor.e < 0 ? world.start : world.time[view.anchor.e]) + view.tau;
-      const first = microscopeFirstAfter(world.time, t - view.T / 2), last = microscopeFirstAfter(world.time, t + view.T / 2);
+      const [first, last] = [-0.5, 0.5].map(part => microscopeFirstAfter(world.time, t + part * view.T));
       for (let e = first, skip = Math.ceil((last - first) / 2000); e < last; e += skip) sample.push(value[e]);
     }
     const real = sample.filter(v => v > -350).sort((a, b) => a - b), shown = chart ? null : state.shown;
@@ -108,10 +109,12 @@ function cradleMicroscope(element, data) {
     if (chart) {
       microscopeLines(pen, chart, view, box, colours);
       microscopeDots(pen, chart, view, box, value, range);
+      microscopeNames(pen, chart, view, box, colours, number);
     } else {
       const scale = state.moving ? ratio / quality : ratio;
-      const image = microscopeRaster(world, view, Math.round(box.width * scale), Math.round(box.height * scale), value,
-                                     range, colours.ink.split(",").map(Number), state.moving ? 1.5e5 : 3e6, stores.raster);
+      const width = Math.round(box.width * scale), height = Math.round(box.height * scale);
+      const image = microscopeRaster(world, view, width, height, value, range, colours.ink.split(",").map(Number),
+                                     state.moving ? 1.5e5 : 3e6, stores.raster);
       const shown = microscopeShown(stores.raster), known = state.shown;
       state.shown = shown;
       if (shown && (!known || Math.abs(shown[0] - known[0]) + Math.abs(shown[1] - known[1]) > 0.3)) request();
@@ -126,7 +129,8 @@ function cradleMicroscope(element, data) {
                      state.quantity === "speed" ? "closing speed, l/t" : "energy lost, m l²/t²");
     if (strip) microscopeStrip(pen, world, view, strip, colours, stores.strip);
     state.drawn = performance.now() - begun;
-    if (state.moving && !chart) quality = Math.min(4, Math.max(1, quality * (state.drawn > 14 ? 1.1 : state.drawn < 7 ? 0.95 : 1)));
+    const coarser = state.drawn > 14 ? 1.1 : state.drawn < 7 ? 0.95 : 1;
+    if (state.moving && !chart) quality = Math.min(4, Math.max(1, quality * coarser));
     tell();
   }
 
@@ -137,7 +141,8 @@ function cradleMicroscope(element, data) {
     const n = value => microscopeNumber(value, Math.min(6, world.digits));
     const view_ = `${where}: ${microscopeNumber(view.T, 3)} t across, ${microscopeNumber(view.X, 3)} l high`;
     const place = state.pointer && placeOf(state.pointer.x, state.pointer.y);
-    if (!place) return say(view_ + (world.total > world.n && world.n ? `; the first ${world.n} contacts are here` : ""));
+    const cut = world.total > world.n && world.n ? `; the first ${world.n} contacts are here` : "";
+    if (!place) return say(view_ + cut);
     const contact = contactAt(state.pointer, 10);
     if (contact) {
       const k = contact.e, time = world.time[k];
@@ -148,8 +153,9 @@ function cradleMicroscope(element, data) {
     const pair = microscopeGapAt(camera, place);
     if (!pair) return say(view_);
     const moves = pair.w > 0 ? `closing at ${n(pair.w)} l/t` : `opening at ${n(-pair.w)} l/t`;
-    say(`bodies ${number(pair.below)} and ${number(pair.above)}: gap ${n(pair.gap)} l, ${moves}` +
-        (pair.next < 0 ? "; no further contact" : `; contact ${pair.next + 1} (${pairName(pair.next)}) in ${n(pair.until)} t`));
+    const then = pair.next >= 0 ? `contact ${pair.next + 1} (${pairName(pair.next)}) in ${n(pair.until)} t` :
+      pair.until > 0 ? `they would meet in ${n(pair.until)} t` : "no further contact of theirs";
+    say(`bodies ${number(pair.below)} and ${number(pair.above)}: gap ${n(pair.gap)} l, ${moves}; ${then}`);
   }
   const power = log => log < -350 ? "0" : log > -307 ? microscopeNumber(10 ** log, 3) :
     `${(10 ** (log - Math.floor(log))).toFixed(2)}×${microscopePower(Math.floor(log))}`;
@@ -159,7 +165,8 @@ function cradleMicroscope(element, data) {
   function placeOf(x, y) {
     if (x < box.left || x > box.left + box.width || y < box.top || y > box.top + box.height) return null;
     const { view } = camera;
-    return [view.tau + view.T * ((x - box.left) / box.width - 0.5), view.xi - view.X * ((y - box.top) / box.height - 0.5)];
+    return [view.tau + view.T * ((x - box.left) / box.width - 0.5),
+            view.xi - view.X * ((y - box.top) / box.height - 0.5)];
   }
   function contactAt({ x, y }, within) {
     const { view, chart } = camera, place = placeOf(x, y);
@@ -170,11 +177,6 @@ function cradleMicroscope(element, data) {
 
   // What hands do
 
-  const nearestContact = place => {
-    const { view, chart } = camera;
-    const found = chart ? camera.nearest(place[0], place[1], view.T, view.X) : camera.nearestInPositions();
-    return found ? found.e : view.anchor.e;
-  };
   function zoom(factor, at, only) {
     const { view } = camera;
     let place = at ? placeOf(at.x, at.y) : [view.tau, view.xi];
@@ -183,7 +185,7 @@ function cradleMicroscope(element, data) {
     if (caught) place = [caught.tau, caught.xi - view.V * caught.tau];
     if (only === "time") camera.zoom(factor, 1, place);
     else if (only === "space") camera.zoom(1, factor, place);
-    else camera.zoom(factor, 1, place, camera.follow(caught ? caught.e : nearestContact(place)));
+    else camera.zoom(factor, 1, place, camera.follow(camera.guide(place)));
     changed();
   }
   function pan(dx, dy) {
@@ -210,7 +212,7 @@ function cradleMicroscope(element, data) {
     play: () => {
       state.playing = !state.playing;
       playButton.textContent = state.playing ? "Pause" : "Play";
-      if (state.playing) microscopePlay(camera, state, () => { changed(); draw(); }, () => state.playing && actions.play());
+      if (state.playing) microscopePlay(camera, state, changed, () => state.playing && actions.play());
     },
   };
   const playButton = button("Play", "fly on (space)", actions.play);
@@ -267,8 +269,9 @@ function cradleMicroscope(element, data) {
     } else {
       const choice = make("select", "microscope-choice", bar);
       data.snapshots.forEach((shot, i) => { make("option", "", choice, `t = ${shot.time}`).value = i; });
-      choice.addEventListener("change", async () => start(await microscopeSnapshot(data, data.snapshots[choice.value])));
-      start(await microscopeSnapshot(data, data.snapshots[0]));
+      const look = async () => start(await microscopeSnapshot(data, data.snapshots[choice.value]));
+      choice.addEventListener("change", look);
+      await look();
     }
     microscopeHands(canvas, { zoom, pan, visit, actions, contactAt, camera: () => camera, state, request,
                               box: () => box, strip: () => strip, deepest: () => stores.strip.deepest });

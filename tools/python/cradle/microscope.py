@@ -65,7 +65,8 @@ def _contacts(file, scene):
     collapse = file["collapse"].attrs if "collapse" in file else None
     return {
         "kind": "contacts", "start": _number(scene["run"].get("start", 0)), "first": first, "length": start["length"],
-        "end": _number(scene["run"]["until"]) if reached else None, "total": total, "digits": int(digits * 0.30103), "contacts": count,
+        "end": _number(scene["run"]["until"]) if reached else None, "contacts": count, "total": total,
+        "digits": int(digits * 0.30103),
         "collapse": None if collapse is None else {"time": float(collapse["time"])},
         "x": pack(start["x"][part]), "v": pack(start["v"][part]), "gap": pack(start["gap"][first:end]),
         "mass": None if np.all(start["m"] == 1) else pack(start["m"][part]),
@@ -271,7 +272,8 @@ def _random_bits(seed, replica, index):
     words = [index & low, index >> half, np.full_like(index, replica & 0xFFFFFFFF), np.full_like(index, replica >> 32)]
     for _ in range(10):
         a, b = np.uint64(0xD2511F53) * words[0], np.uint64(0xCD9E8D57) * words[2]
-        words = [(b >> half) ^ words[1] ^ np.uint64(key[0]), b & low, (a >> half) ^ words[3] ^ np.uint64(key[1]), a & low]
+        words = [(b >> half) ^ words[1] ^ np.uint64(key[0]), b & low,
+                 (a >> half) ^ words[3] ^ np.uint64(key[1]), a & low]
         key = [(key[0] + 0x9E3779B9) & 0xFFFFFFFF, (key[1] + 0xBB67AE85) & 0xFFFFFFFF]
     return words[0] | words[1] << half
 

@@ -48,7 +48,8 @@ function microscopeCamera(world) {
       for (let k = 0; k < 3; ++k) {
         const next = side > 0 ? order.next(body) : order.previous(body);
         if (next < 0) break;
-        const { gap, w } = side > 0 ? microscopeRelative(world, body, next, e) : microscopeRelative(world, next, body, e);
+        const [left, right] = side > 0 ? [body, next] : [next, body];
+        const { gap, w } = microscopeRelative(world, left, right, e);
         xi += gap;
         u -= side * w;
         if (xi > X) break;
@@ -104,6 +105,23 @@ function microscopeCamera(world) {
     }
     const wanted = Math.log(camera.natural(e, T) / X) - change;
     return X * Math.exp(change + clamp(0.3 * wanted, 0.9 * change, -0.9 * change));
+  };
+
+  // The contact that says what space goes with the time in sight: near a place, but not so near that it is of the next
+  // scale in a collapse.
+  camera.guide = ([tau, xi]) => {
+    const { view, chart } = camera;
+    if (!chart) return camera.nearestInPositions()?.e ?? view.anchor.e;
+    let best = view.anchor.e, least = Infinity;
+    for (let i = 0; i < chart.contacts.length; ++i) {
+      const apart = Math.abs(chart.tau[i] - tau) / view.T;
+      const distance = Math.hypot(apart, (chart.xi[i] - view.V * chart.tau[i] - xi) / view.X) + (apart < 0.1 ? 10 : 0);
+      if (distance < least) {
+        least = distance;
+        best = chart.contacts[i];
+      }
+    }
+    return best;
   };
 
   camera.pan = (byTime, bySpace) => {

@@ -92,13 +92,14 @@ function microscopeTimes(world, e, contacts) {
 //   lines     [{body, points: [place in contacts], speeds: [velocity after each], from: [tau, xi], to: [tau, xi]}]
 function microscopeChart(world, anchor, from, to, low, high, drift) {
   const begins = -microscopeFlight(world, -1, anchor.e);
-  const t = anchor.e < 0 ? world.start : world.time[anchor.e] + world.low[anchor.e];
-  const ends = Math.max(world.n ? microscopeFlight(world, anchor.e, world.n - 1) : 0, world.end - t);
+  const final = world.n - 1, beyond = world.end - (final < 0 ? world.start : world.time[final]);
+  const ends = microscopeFlight(world, anchor.e, final) + Math.max(0, beyond);
   from = Math.max(from, begins);
   to = Math.min(Math.max(to, from), ends);
   const deep = high - low < 1e-9 * Math.max(Math.abs(world.x0[0]), Math.abs(world.x0[world.bodies - 1]));
   const most = 2 * (deep ? MICROSCOPE_CHART.deep : MICROSCOPE_CHART.contacts);
-  const first = microscopeContactAt(world, anchor.e, from) + 1, last = microscopeContactAt(world, anchor.e, to);
+  const first = microscopeContactAt(world, anchor.e, from) + 1;
+  const last = to < ends ? microscopeContactAt(world, anchor.e, to) : final;
   const reach = Math.max(Math.abs(low), Math.abs(high)), more = [2, 2];
   for (let attempt = 0; attempt < 12; ++attempt) {
     const around = microscopeAround(world, anchor, reach, more);
@@ -131,7 +132,8 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   const sorted = Int32Array.from(all).sort(), contacts = sorted.filter((k, i) => i === 0 || k !== sorted[i - 1]);
   const tau = microscopeTimes(world, e, contacts), xi = new Float64Array(contacts.length), byBody = new Map();
   const line = (body, at, place, speed) => {
-    const made = { body, points: [], speeds: [], tau: at, xi: place, u: speed, from: [at, place], to: [at, place], gone: false };
+    const made = { body, points: [], speeds: [], tau: at, xi: place, u: speed, from: [at, place], to: [at, place],
+                   gone: false };
     byBody.set(body, made);
     return made;
   };

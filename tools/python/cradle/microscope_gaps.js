@@ -10,8 +10,14 @@ function microscopeRelative(world, a, b, e) {
   const future = microscopeFromFuture(world, a, b, e);
   if (past && future) return past.path <= future.path ? past : future;
   if (past || future) return past || future;
-  return { gap: Math.max(0, microscopePlace(world, b, e) - microscopePlace(world, a, e)), path: Infinity,
+  const apart = microscopeAhead(world, microscopePlace(world, b, e) - microscopePlace(world, a, e));
+  return { gap: Math.max(0, apart), path: Infinity,
            w: microscopeVelocity(world, a, e) - microscopeVelocity(world, b, e) };
+}
+
+// A distance to the right: on a ring, what is behind is also ahead.
+function microscopeAhead({ ring }, distance) {
+  return ring ? distance - ring * Math.floor(distance / ring) : distance;
 }
 
 function microscopeFromPast(world, a, b, e) {
@@ -34,7 +40,7 @@ function microscopeFromPast(world, a, b, e) {
     gap = world.gap0[a];
     w = world.w0[a];
   } else {
-    gap = world.x0[b] - world.x0[a];
+    gap = microscopeAhead(world, world.x0[b] - world.x0[a]);
     w = world.v0[a] - world.v0[b];
   }
   let path = gap, at = from;

@@ -16,7 +16,8 @@ function microscopeHands(canvas, scope) {
   };
   const inside = ({ x, y }) => {
     const box = scope.box();
-    return { x: Math.min(box.left + box.width, Math.max(box.left, x)), y: Math.min(box.top + box.height, Math.max(box.top, y)) };
+    return { x: Math.min(box.left + box.width, Math.max(box.left, x)),
+             y: Math.min(box.top + box.height, Math.max(box.top, y)) };
   };
 
   canvas.addEventListener("wheel", event => {
@@ -92,7 +93,8 @@ function microscopePlay(camera, state, frame, stop) {
   const { world } = camera, last = world.n - 1;
   let before = performance.now();
   const inSight = () => {
-    const { view, chart } = camera, tau = last < 0 || view.anchor.e < 0 ? NaN : microscopeFlight(world, view.anchor.e, last);
+    const { view, chart } = camera, { e } = view.anchor;
+    const tau = last < 0 || e < 0 ? NaN : microscopeFlight(world, e, last);
     if (!chart || !(Math.abs(tau - view.tau) <= 0.5 * view.T)) return null;
     const i = chart.contacts.length - 1;
     return i >= 0 && chart.contacts[i] === last && Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2
@@ -106,12 +108,14 @@ function microscopePlay(camera, state, frame, stop) {
     const { view } = camera, aim = world.collapse ? inSight() : null;
     if (aim) {
       // The collapse is led to where three quarters of the picture are behind it.
-      camera.pan((aim[0] - view.tau - 0.25 * view.T) * Math.min(1, 2 * passed), (aim[1] - view.xi) * Math.min(1, 2 * passed));
+      const part = Math.min(1, 2 * passed);
+      camera.pan((aim[0] - view.tau - 0.25 * view.T) * part, (aim[1] - view.xi) * part);
       const to = inSight();
       if (!to || camera.view.T < 6 * world.interval[last]) return stop();
-      camera.zoom(Math.exp(6 * passed), 1, to, camera.follow(microscopeAhead(camera)));
+      camera.zoom(Math.exp(6 * passed), 1, to, camera.follow(camera.guide(to)));
     } else {
-      const end = microscopeBetween(world, view.anchor.e, last) + (world.n ? world.end - world.time[last] : world.end - world.start);
+      const after = world.end - (world.n ? world.time[last] : world.start);
+      const end = (world.n ? microscopeBetween(world, view.anchor.e, last) : 0) + after;
       if (view.tau > end) return stop();
       camera.pan(view.T * passed / 10, 0);
     }
@@ -119,12 +123,6 @@ function microscopePlay(camera, state, frame, stop) {
     requestAnimationFrame(step);
   };
   requestAnimationFrame(step);
-}
-
-// The contact nearest to the left third of the picture: what sets the span of space while a collapse is flown into.
-function microscopeAhead(camera) {
-  const { view } = camera, found = camera.nearest(view.tau - view.T / 4, view.xi, view.T, 1e3 * view.X);
-  return found ? found.e : view.anchor.e;
 }
 
 // The two bodies below and above a place [tau, xi] of the picture: {below, above, gap, w, next, until}: gap and closing

@@ -1,8 +1,9 @@
 // What stands for very many contacts: a picture made of one sample of a world line per column and of the mean colour
 // of the contacts in a pixel; and the strip that shows the depth of every contact, for finding one's way.
 
-// The picture of a view in positions, as ImageData (little-endian, as all machines with a browser are) of width x height pixels: world lines in `ink` and contacts coloured
-// by `value` over `range`. At most about `budget` samples of lines, and of contacts.
+// The picture of a view in positions, as ImageData of width x height pixels: world lines in `ink` and contacts coloured
+// by `value` over `range`. At most about `budget` samples of lines, and of contacts. (Pixels are written as words, in
+// the order of bytes that all machines with a browser have.)
 function microscopeRaster(world, view, width, height, value, range, ink, budget, store) {
   if (!store.image || store.image.width !== width || store.image.height !== height) {
     Object.assign(store, { image: new ImageData(width, height), lines: new Float32Array(width * height),
@@ -130,7 +131,8 @@ function microscopeVisible(world, view, row, height) {
   const t0 = view.anchor.e < 0 ? world.start : world.time[view.anchor.e];
   for (let k = 0; k <= 24; ++k) {
     const t = Math.min(world.end, Math.max(world.start, t0 + view.tau + view.T * (k / 24 - 0.5)));
-    const contact = microscopeFirstAfter(world.time, t) - 1, since = t - (contact < 0 ? world.start : world.time[contact]);
+    const contact = microscopeFirstAfter(world.time, t) - 1;
+    const since = t - (contact < 0 ? world.start : world.time[contact]);
     const above = edge => {  // how many bodies are left of what is shown at this row
       let low = 0, high = world.bodies;
       while (low < high) {

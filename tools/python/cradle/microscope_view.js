@@ -42,7 +42,8 @@ function microscopeTicks(centre, span, count, origin) {
   for (let k = Math.ceil((base - span / 2) / step); k <= Math.floor((base + span / 2) / step); ++k) {
     const decimals = Math.max(0, -Math.floor(Math.log10(plain ? step : step / 10 ** power) + 1e-9));
     const scaled = plain ? k * step : power > -300 ? k * step / 10 ** power : k * (step * 1e200) / 10 ** (power + 200);
-    ticks.push([k * step - base, scaled.toFixed(Math.min(decimals, 9)).replace("-", "−").replace(/^−(0\.?0*)$/, "$1")]);
+    const label = scaled.toFixed(Math.min(decimals, 9)).replace(/^-(0\.?0*)$/, "$1").replace("-", "−");
+    ticks.push([k * step - base, label]);
   }
   return { ticks, power: plain ? 0 : power, absolute };
 }
@@ -102,12 +103,14 @@ function microscopeDots(pen, chart, view, box, value, range) {
   let seen = 0, lastX = NaN, lastY = NaN;
   for (let i = 0; i < chart.contacts.length; ++i) {
     const px = x(chart.tau[i]), py = y(chart.xi[i], chart.tau[i]);
-    if (px < box.left - 5 || px > box.left + box.width + 5 || py < box.top - 5 || py > box.top + box.height + 5) continue;
+    if (px < box.left - 5 || px > box.left + box.width + 5) continue;
+    if (py < box.top - 5 || py > box.top + box.height + 5) continue;
     if (Math.abs(px - lastX) < 0.5 && Math.abs(py - lastY) < 0.5) continue;
     lastX = px;
     lastY = py;
     ++seen;
-    const bin = Math.round(15 * Math.min(1, Math.max(0, (value[chart.contacts[i]] - range[0]) / (range[1] - range[0]))));
+    const part = (value[chart.contacts[i]] - range[0]) / (range[1] - range[0]);
+    const bin = Math.round(15 * Math.min(1, Math.max(0, part)));
     if (!bins.has(bin)) bins.set(bin, []);
     bins.get(bin).push(px, py);
   }
@@ -123,7 +126,33 @@ function microscopeDots(pen, chart, view, box, value, range) {
   }
 }
 
-// Axes with ticks and what they mean. `name(what)`: how the anchor is called; times: of anchor and its place.
+// The numbers of the bodies, where there are few: at the left edge, or where a line comes into sight.
+function microscopeNames(pen, chart, view, box, colours, number) {
+  const { x, y } = microscopeScales(view, box), places = [];
+  for (const line of chart.lines) {
+    for (const part of [0.02, 0.2, 0.4, 0.6, 0.8]) {
+      const tau = Math.max(line.from[0], view.tau + view.T * (part - 0.5));
+      if (tau > line.to[0]) break;
+      const px = x(tau) + 4, py = y(microscopeAlong(chart, line, tau), tau);
+      if (px > box.left + box.width - 30) break;
+      if (py < box.top + 9 || py > box.top + box.height - 9) continue;
+      places.push([px, py, String(number(line.body))]);
+      break;
+    }
+  }
+  if (places.length > 14) return;
+  pen.textAlign = "left";
+  pen.textBaseline = "middle";
+  for (const [k, [px, py, name]] of places.entries()) {
+    if (places.some(([qx, qy], j) => j < k && Math.abs(qx - px) < 30 && Math.abs(qy - py) < 13)) continue;
+    pen.fillStyle = colours.plate;
+    pen.fillRect(px - 2, py - 7, pen.measureText(name).width + 4, 14);
+    pen.fillStyle = colours.text;
+    pen.fillText(name, px, py);
+  }
+}
+
+// Axes with ticks and what they mean, from `origin`, {t, x} of the anchor; gives what draws their labels.
 function microscopeAxes(pen, view, box, colours, origin, anchorName) {
   const time = microscopeTicks(view.tau, view.T, Math.max(3, box.width / 110), origin.t);
   const space = microscopeTicks(view.xi, view.X, Math.max(3, box.height / 70), origin.moving ? Infinity : origin.x);

@@ -90,9 +90,10 @@ function microscopeReplay(world) {
                          velocity, slotTime, slotPlace, lost, turn, keepsOrder: !merges });
   let t = world.start, rest = 0;
   for (let e = 0; e < n; ++e) {
-    const a = left[e], b = right[e], dt = interval[e] + rest, sum = t + dt;
-    rest = dt - (sum - t);  // |t| >= dt but for the first contacts, where what is lost is below the last place of t
-    t = sum;
+    const a = left[e], b = right[e], sum = t + interval[e], gained = sum - t;
+    rest += (t - (sum - gained)) + (interval[e] - gained);
+    t = sum + rest;
+    rest -= t - sum;
     time[e] = t;
     low[e] = rest;
     if (!world.speedGiven) speed[e] = v[a] - v[b];

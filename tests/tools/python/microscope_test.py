@@ -1,0 +1,710 @@
+"""The microscope, used as a person would, in headless Chromium: it loads without an error or a request, what it draws
+at depths from 1 to 1e-290 is where exact rational arithmetic has it, and mouse, wheel, keys, touch, play, dark mode and
+high resolution do what they should.
+
+Exact: collapse of three bodies in fractions; two rows of elastic bodies, whose world lines are straight lines that
+cross (a million contacts). Twin: gaps against those of the program's snapshots. Bound of positions: a hundredth of a
+pixel, where doubles that are sums of local terms are good to 1e-9 of one.
+
+`CRADLE_MICROSCOPE_PICTURES=FOLDER` writes screenshots and `CRADLE_MICROSCOPE_SPEED=1` prints frames per second.
+"""
+import base64
+import itertools
+import json
+import math
+import os
+import pathlib
+import select
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+import types
+import unittest
+from fractions import Fraction
+
+SOURCES = pathlib.Path(__file__).resolve().parents[3] / "tools" / "python"
+sys.path.insert(0, str(SOURCES))
+try:
+    import h5py
+    import numpy as np
+    from cradle import microscope
+    MISSING = ""
+except ImportError as error:
+    MISSING = f"no {error.name} (Debian: python3-h5py)"
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+PROGRAM = os.environ.get("CRADLE_PROGRAM")
+HUNDREDTH = 0.01  # of a pixel
+
+
+class Browser:
+    """A headless Chromium, spoken to in the DevTools protocol over a pipe."""
+
+    def __init__(self, width=1100, height=760):
+        self.profile = tempfile.mkdtemp()
+        to_browser, self.write_end = os.pipe()
+        self.read_end, from_browser = os.pipe()
+        command = [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
+                   "--no-first-run", "--disable-background-networking", f"--user-data-dir={self.profile}", "about:blank"]
+        # Chromium reads descriptor 3 and writes 4.
+        shell = f"exec 3<&{to_browser} 4>&{from_browser} {to_browser}<&- {from_browser}>&-; exec \"$@\""
+        if {to_browser, from_browser} & {3, 4}:
+            shell = f"exec 8<&{to_browser} 9>&{from_browser}; exec 3<&8 4>&9 8<&- 9>&-; exec \"$@\""
+        self.process = subprocess.Popen(["bash", "-c", shell, "bash", *command], pass_fds=(to_browser, from_browser),
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.number, self.buffer, self.told, self.session = 0, b"", [], None
+        target = next(target for target in self.call("Target.getTargets")["targetInfos"] if target["type"] == "page")
+        self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Network", "Log"):
+            self.call(domain + ".enable")
+        self.resolution(1, width, height)
+
+    def call(self, method, **params):
+        """The answer to a command; what the browser tells meanwhile is kept in `told`."""
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": params}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.write_end, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.receive()
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']}")
+                return answer["result"]
+            self.told.append(answer)
+
+    def receive(self):
+        while b"\0" not in self.buffer:
+            if not select.select([self.read_end], [], [], 120)[0]:
+                raise TimeoutError("no answer from the browser in two minutes")
+            part = os.read(self.read_end, 1 << 20)
+            if not part:
+                raise EOFError("the browser has ended")
+            self.buffer += part
+        message, _, self.buffer = self.buffer.partition(b"\0")
+        return json.loads(message)
+
+    def run(self, script):
+        """The value of an expression, awaited."""
+        answer = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"].get("exception", {}).get("description", str(answer)))
+        return answer["result"].get("value")
+
+    def open(self, path, dark=False):
+        self.dark(dark)
+        self.told.clear()
+        self.call("Page.navigate", url=path.as_uri())
+        self.until("document.readyState === 'complete' && Boolean(window.cradleMicroscopeTest)")
+        self.run("cradleMicroscopeTest.ready.then(() => 1)")
+
+    def until(self, condition, seconds=60):
+        end = time.monotonic() + seconds
+        while not self.run(condition):
+            if time.monotonic() > end:
+                raise TimeoutError(f"never came true: {condition}")
+            time.sleep(0.05)
+
+    def dark(self, dark):
+        self.call("Emulation.setEmulatedMedia",
+                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+
+    def resolution(self, ratio, width=1100, height=760):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=False)
+
+    def mouse(self, kind, x, y, **more):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def click(self, x, y):
+        for kind in ("mousePressed", "mouseReleased"):
+            self.mouse(kind, x, y, button="left", clickCount=1)
+
+    def key(self, key, code=None, **more):
+        text = {"text": key} if len(key) == 1 else {}
+        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, code=code or "", **text, **more)
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, code=code or "", **more)
+
+    def touch(self, kind, *points):
+        self.call("Input.dispatchTouchEvent", type=kind,
+                  touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
+
+    def picture(self, name):
+        folder = os.environ.get("CRADLE_MICROSCOPE_PICTURES")
+        if not folder:
+            return
+        time.sleep(0.4)
+        image = self.call("Page.captureScreenshot", format="png")["data"]
+        (pathlib.Path(folder) / f"microscope-{name}.png").write_bytes(base64.b64decode(image))
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+        os.close(self.write_end)
+        os.close(self.read_end)
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+
+# Results
+
+
+def rational_collapse(least_gap=Fraction(1, 10**290)):
+    """collapse3 in fractions: [(left, time, closing speed, positions, velocities after)], and the initial state."""
+    restitution = Fraction(1, 20)
+    x, v, t = [Fraction(0), Fraction(1), Fraction(3)], [Fraction(1), Fraction(0), Fraction(-1)], Fraction(0)
+    start, contacts = (list(x), list(v)), []
+    while True:
+        due = [((x[i + 1] - x[i]) / (v[i] - v[i + 1]), i) for i in (0, 1)
+               if v[i] > v[i + 1] and not (contacts and contacts[-1][0] == i)]
+        step, left = min(due)
+        t += step
+        x = [place + speed * step for place, speed in zip(x, v)]
+        w = v[left] - v[left + 1]
+        kick = (1 + restitution) * w / 2
+        v = list(v)
+        v[left] -= kick
+        v[left + 1] += kick
+        contacts.append((left, t, w, list(x), list(v)))
+        if min(x[i + 1] - x[i] for i in (0, 1) if i != left) < least_gap:
+            return start, contacts
+
+
+def write_result(path, scene, left, right, moments, intervals, speeds, outcome="reached the end", **collapse):
+    """A result file with events alone."""
+    with h5py.File(path, "w") as file:
+        file.attrs.update({"scene": json.dumps(scene), "name": scene["title"], "outcome": outcome})
+        for name, column in (("left", left), ("right", right)):
+            file[f"events/{name}"] = np.asarray(column, np.uint64)
+        file["events/time"], file["events/interval"] = np.asarray(moments), np.asarray(intervals)
+        file["events/time_low"] = np.zeros(len(moments))
+        file["events/closing_speed"] = np.asarray(speeds)
+        if collapse:
+            file.create_group("collapse").attrs.update(collapse)
+    return types.SimpleNamespace(file=h5py.File(path, "r"), scene=scene)
+
+
+def collapse_result(folder, contacts):
+    scene = {"title": "collapse3", "law": {"type": "inelastic", "restitution": 0.05, "cutoff": 0},
+             "initial": {"type": "list", "x": [0, 1, 3], "v": [1, 0, -1]}, "run": {"until": 2, "collapse": "stop"}}
+    times = [contact[1] for contact in contacts]
+    return write_result(folder / "collapse3.h5", scene, [c[0] for c in contacts], [c[0] + 1 for c in contacts],
+                        [float(t) for t in times], [float(b - a) for a, b in zip([0] + times, times)],
+                        [float(c[2]) for c in contacts], "inelastic collapse", time=12 / 7)
+
+
+def crossing_rows(half, restitution="1"):
+    """Contacts of 2 half elastic bodies in two rows at speeds 1/2 and -1/2: world lines are exchanged at contacts, so
+    that lines i and j of the two rows, straight all along, cross at (x_j - x_i); body i + j is then on the left."""
+    scene = {"title": "crossing rows", "law": {"type": "inelastic", "restitution": float(restitution), "cutoff": 0},
+             "initial": {"type": "rows", "particles": 2 * half, "speed": 0.5, "spacing": 1, "perturbation": 0.05,
+                         "seed": 7, "replica": 0}, "run": {"until": 2.0 * half}}
+    x = microscope.initial_state(scene)["x"]
+    moments = (x[None, half:] - x[:half, None]).ravel()
+    places = ((x[None, half:] + x[:half, None]) / 2).ravel()
+    # Of the left row its body i has i lines of its own row below it, and those of the right row that it has met.
+    below = (np.arange(half)[:, None] + np.arange(half)[None, :]).ravel()
+    order = np.argsort(moments, kind="stable")
+    return scene, moments[order], places[order], below[order]
+
+
+def rows_result(folder, half):
+    scene, moments, places, left = crossing_rows(half)
+    result = write_result(folder / f"rows{half}.h5", scene, left, left + 1, moments,
+                          np.diff(moments, prepend=0.0), np.ones(len(moments)))
+    return result, moments, places, left
+
+
+def write_page(folder, result, name):
+    """The smallest page with a microscope in it; (its path, the data)."""
+    data = microscope.data(result)
+    sources = SOURCES / "cradle"
+    scripts = "\n".join((sources / script).read_text("utf-8") for script in microscope.SCRIPTS)
+    styles = "\n".join((sources / style).read_text("utf-8") for style in microscope.STYLES)
+    path = folder / f"{name}.html"
+    path.write_text("<!doctype html><meta charset=utf-8><meta name=color-scheme content='light dark'><title>microscope"
+                    f"</title><style>{styles} body{{margin:12px}}</style><div id=here></div><script>{scripts}</script>"
+                    f"<script>cradleMicroscope(document.getElementById('here'), {json.dumps(data)})</script>", "utf-8")
+    return path, data
+
+
+@unittest.skipIf(MISSING, MISSING)
+class Data(unittest.TestCase):
+    """What goes into a page, without a browser."""
+
+    def test_arrays_come_back_bit_by_bit(self):
+        for array in (np.array([1e-300, -0.1, 3.0, 0.0]), np.arange(70000, dtype=np.uint32), np.zeros(0, np.uint16)):
+            back = microscope.unpack(microscope.pack(array))
+            self.assertEqual(back.dtype, array.dtype)
+            self.assertEqual(back.tobytes(), array.tobytes())
+
+    def test_rounded_mantissas_are_within_half_a_unit(self):
+        array = np.random.default_rng(1).random(1000) * 10.0 ** np.arange(-250, 250, 0.5)
+        back = microscope.unpack(microscope.pack(array, 24))
+        self.assertLessEqual(np.max(np.abs(back / array - 1)), 2.0 ** -25)
+        self.assertFalse(np.array_equal(back, array))
+
+    def test_philox_is_the_published_one(self):
+        # Random123's known answers for philox4x32-10: counter and key all zero, all ones.
+        self.assertEqual(int(microscope._random_bits(0, 0, np.array([0], np.uint64))[0]), 0xE169C58D6627E8D5)
+        ones = 2**64 - 1
+        self.assertEqual(int(microscope._random_bits(ones, ones, np.array([ones], np.uint64))[0]), 0x41C83B0E408F276D)
+
+    def test_nothing_to_show_is_none(self):
+        with tempfile.TemporaryDirectory() as folder, h5py.File(pathlib.Path(folder) / "empty.h5", "w") as file:
+            scene = {"law": {"type": "inelastic", "restitution": 0.5}, "initial": {"type": "list", "x": [0], "v": [0]}}
+            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+            file.create_group("snapshots")
+            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+            file.attrs["kind"] = "ensemble"
+            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+
+    def test_same_result_same_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result, *_ = rows_result(pathlib.Path(folder), 30)
+            with result.file:
+                self.assertEqual(json.dumps(microscope.data(result)), json.dumps(microscope.data(result)))
+
+
+@unittest.skipIf(MISSING, MISSING)
+@unittest.skipUnless(CHROMIUM, "no Chromium (Debian: chromium)")
+class InBrowser(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.start, cls.contacts = rational_collapse()
+        with collapse_result(cls.folder, cls.contacts).file as file:
+            scene = json.loads(file.attrs["scene"])
+            cls.page, cls.data = write_page(cls.folder, types.SimpleNamespace(file=file, scene=scene), "collapse3")
+        cls.browser = Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        shutil.rmtree(cls.folder)
+
+    def setUp(self):
+        self.browser.resolution(1)
+        self.browser.open(self.page)
+
+    def tearDown(self):
+        self.assert_quiet()
+
+    def assert_quiet(self):
+        """No exception, no word on the console, no request but for the page itself."""
+        for event in self.browser.told:
+            self.assertNotIn(event["method"], ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"),
+                             event)
+            if event["method"] == "Network.requestWillBeSent":
+                self.assertTrue(event["params"]["request"]["url"].startswith(("file:", "about:", "blob:", "data:")), event)
+
+    def view(self):
+        return self.browser.run("cradleMicroscopeTest.view()")
+
+    def position(self, body, contact):
+        return self.browser.run(f"cradleMicroscopeTest.position({body}, {contact})")
+
+    def middle(self):
+        """Of the picture, in pixels of the page, and the corner of the canvas."""
+        corner = self.browser.run("(r => [r.left, r.top])(document.querySelector('canvas').getBoundingClientRect())")
+        box = self.view()["box"]
+        return corner[0] + box["left"] + box["width"] / 2, corner[1] + box["top"] + box["height"] / 2, corner, box
+
+    # Where things are, exactly
+
+    def exact_place(self, view, body, time):
+        """Pixels of a body at a time (a fraction), in fractions until the last step."""
+        event = view["anchor"]["e"]
+        left, origin, _, places, after = self.contacts[event]
+        frame = (after[left] + after[left + 1]) / 2  # of the pair at the anchor
+        earlier = [contact for contact in self.contacts if contact[1] <= time]
+        since, at, speed = (earlier[-1][1], earlier[-1][3][body], earlier[-1][4][body]) if earlier else \
+            (Fraction(0), self.start[0][body], self.start[1][body])
+        x = at + speed * (time - since) - places[left] - frame * (time - origin)
+        tau, box = time - origin, view["box"]
+        across = (tau - Fraction(view["tau"])) / Fraction(view["T"]) + Fraction(1, 2)
+        up = (x - Fraction(view["V"]) * tau - Fraction(view["xi"])) / Fraction(view["X"])
+        return box["left"] + box["width"] * float(across), box["top"] + box["height"] * float(Fraction(1, 2) - up)
+
+    def assert_exact(self, view, least=3):
+        """Every contact in sight, of both its bodies, and points of all lines between, are where they should be."""
+        box, seen = view["box"], 0
+        for event, (left, time, _, _, _) in enumerate(self.contacts):
+            x, y = self.exact_place(view, left, time)
+            if not (0 < x - box["left"] < box["width"] and 0 < y - box["top"] < box["height"]):
+                continue
+            seen += 1
+            for body in (left, left + 1):
+                drawn = self.position(body, event)
+                self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
+                self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
+        self.assertGreaterEqual(seen, least)
+        last = self.contacts[-1][1]
+        for body, part in itertools.product(range(3), (0.03, 0.21, 0.4, 0.55, 0.7)):
+            column = box["left"] + part * box["width"]
+            tau = Fraction(view["tau"]) + Fraction(view["T"]) * (Fraction(column - box["left"]) / Fraction(box["width"])
+                                                                 - Fraction(1, 2))
+            time = self.contacts[view["anchor"]["e"]][1] + tau
+            if not 0 <= time <= last:
+                continue
+            y = self.exact_place(view, body, time)[1]
+            drawn = self.browser.run(f"cradleMicroscopeTest.height({body}, {column})")
+            self.assertAlmostEqual(drawn, y, delta=HUNDREDTH + 1e-9 * abs(y))
+
+    def test_drawn_positions_are_exact_at_any_depth(self):
+        for depth, name in (("1", "1"), ("1e-10", ""), ("1e-100", "1e-100"), ("1e-200", ""), ("1e-287", ""),
+                            ("1e-290", "1e-290")):
+            with self.subTest(depth=depth):
+                view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{depth: {depth}}})")
+                self.assertEqual(view["X"], float(depth))
+                self.assertTrue(view["exact"])
+                self.assert_exact(view, 1 if depth == "1e-290" else 3)
+                if name:
+                    self.browser.picture(f"collapse3-{name}-light")
+                    self.browser.dark(True)
+                    self.browser.picture(f"collapse3-{name}-dark")
+                    self.browser.dark(False)
+
+    def test_gaps_are_exact(self):
+        for event in (0, 1, 2, 57, 144, 245, 320, len(self.contacts) - 1):
+            left, _, _, places, after = self.contacts[event]
+            for a in (0, 1):
+                found = self.browser.run(f"cradleMicroscopeTest.gap({a}, {a + 1}, {event})")
+                exact, w = places[a + 1] - places[a], after[a] - after[a + 1]
+                self.assertLessEqual(abs(Fraction(found["gap"]) - exact), exact * Fraction(1, 10**11))
+                self.assertLessEqual(abs(Fraction(found["w"]) - w), abs(w) * Fraction(1, 10**11))
+                self.assertEqual(found["gap"] == 0, a == left)
+
+    def test_the_wheel_goes_down_and_stays_exact(self):
+        """A hundred and more turns over the place of the collapse; the anchor has to move with it."""
+        x, y, corner, box = self.middle()
+        self.browser.click(x, y)
+        deepest = 1.0
+        for turn in range(700):
+            target = self.browser.run("""(() => { const m = cradleMicroscopeTest, c = m.camera(), last = c.chart.contacts.length - 1;
+                const s = microscopeScales(c.view, m.view().box); return [s.x(c.chart.tau[last]),
+                s.y(c.chart.xi[last], c.chart.tau[last])]; })()""")
+            self.browser.mouse("mouseWheel", corner[0] + target[0], corner[1] + target[1], deltaX=0, deltaY=-300)
+            view = self.view()
+            deepest = min(deepest, view["X"])
+            if turn % 50 == 49 or view["X"] < 1e-280:
+                self.assertGreater(view["anchor"]["e"], 2)
+                self.assert_exact(view, 1)
+            if view["X"] < 1e-280:
+                break
+        self.assertLess(deepest, 1e-280)
+        # And out again: to the whole run.
+        for _ in range(3000):
+            self.browser.run(f"cradleMicroscopeTest.zoom(1 / 3, {{x: {box['left'] + box['width'] / 2}, y: {y - corner[1]}}})")
+            if self.view()["X"] > 1:
+                break
+        self.assert_exact(self.view(), 1)
+
+    # What hands do
+
+    def test_time_and_space_zoom_apart(self):
+        x, y, corner, box = self.middle()
+        self.browser.click(x, y)
+        before = self.view()
+        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120, modifiers=8)  # shift
+        middle = self.view()
+        self.assertLess(middle["T"], 0.9 * before["T"])
+        self.assertEqual(middle["X"], before["X"])
+        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120, modifiers=1)  # alt
+        after = self.view()
+        self.assertEqual(after["T"], middle["T"])
+        self.assertLess(after["X"], 0.9 * middle["X"])
+        self.browser.mouse("mouseWheel", x, corner[1] + box["top"] + box["height"] + 15, deltaX=0, deltaY=120)
+        self.assertEqual(self.view()["X"], after["X"])
+        self.assertGreater(self.view()["T"], after["T"])
+        self.browser.mouse("mouseWheel", corner[0] + 20, y, deltaX=0, deltaY=120)
+        self.assertGreater(self.view()["X"], after["X"])
+
+    def test_a_page_scrolls_past(self):
+        x, y, _, _ = self.middle()
+        before = self.view()
+        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120)
+        self.assertEqual(self.view(), before)
+
+    def test_dragging_moves_what_is_under_the_pointer(self):
+        x, y, _, _ = self.middle()
+        before = self.position(0, 0)
+        self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+        self.browser.mouse("mouseMoved", x + 37, y - 21, button="left", buttons=1)
+        self.browser.mouse("mouseReleased", x + 37, y - 21, button="left", clickCount=1)
+        after = self.position(0, 0)
+        self.assertAlmostEqual(after["x"] - before["x"], 37, delta=HUNDREDTH)
+        self.assertAlmostEqual(after["y"] - before["y"], -21, delta=HUNDREDTH)
+
+    def test_keys(self):
+        x, y, _, _ = self.middle()
+        self.browser.click(x, y)
+        home = self.view()
+        self.browser.key("n")
+        self.assertEqual(self.view()["anchor"]["e"], 1)
+        self.browser.key("n")
+        self.assertEqual(self.view()["anchor"]["e"], 2)
+        self.browser.key("p")
+        self.assertEqual(self.view()["anchor"]["e"], 1)
+        self.browser.key("d")
+        self.assertEqual(self.view()["anchor"]["e"], len(self.contacts) - 1)
+        self.assertLess(self.view()["X"], 1e-285)
+        self.browser.key("0")
+        self.assertEqual(self.view(), home)
+        self.browser.key("ArrowRight", "ArrowRight")
+        self.assertGreater(self.view()["tau"], home["tau"])
+        self.browser.key("ArrowUp", "ArrowUp")
+        self.assertGreater(self.view()["xi"], home["xi"])
+        self.browser.key("+", "NumpadAdd")
+        self.assertLess(self.view()["T"], home["T"])
+        colours = "cradleMicroscopeTest.state.quantity"
+        self.assertEqual(self.browser.run(colours), "speed")
+        self.browser.key("c")
+        self.assertEqual(self.browser.run(colours), "lost")
+
+    def test_two_fingers_zoom_along_the_axis_they_part(self):
+        x, y, _, _ = self.middle()
+        self.browser.click(x, y)
+        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
+        before = self.view()
+        self.browser.touch("touchStart", (x - 60, y), (x + 60, y))
+        for step in range(1, 7):
+            self.browser.touch("touchMove", (x - 60 - 10 * step, y), (x + 60 + 10 * step, y))
+        self.browser.touch("touchEnd")
+        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+        after = self.view()
+        self.assertAlmostEqual(after["T"] / before["T"], 0.5, delta=0.02)
+        self.assertEqual(after["X"], before["X"])
+
+    def test_one_finger_pans(self):
+        x, y, _, _ = self.middle()
+        self.browser.click(x, y)
+        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
+        before = self.position(0, 0)
+        self.browser.touch("touchStart", (x, y))
+        for step in (20, 40, 60):
+            self.browser.touch("touchMove", (x + step, y + step))
+        self.browser.touch("touchEnd")
+        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+        after = self.position(0, 0)
+        self.assertGreater(after["x"], before["x"] + 30)
+        self.assertGreater(after["y"], before["y"] + 30)
+
+    def test_the_strip_leads_to_a_depth(self):
+        _, _, corner, box = self.middle()
+        strip = corner[1] + box["top"] + box["height"] + 42 + 6 + 20
+        self.browser.click(corner[0] + box["left"] + 0.5 * box["width"], strip)
+        view = self.view()
+        self.assertAlmostEqual(view["anchor"]["e"] / len(self.contacts), 0.5, delta=0.01)
+        self.assert_exact(view)
+
+    def test_play_flies_into_the_collapse(self):
+        x, y, _, _ = self.middle()
+        self.browser.click(x, y)
+        self.browser.key(" ", "Space")
+        self.browser.until("cradleMicroscopeTest.view().X < 1e-30", 120)
+        self.browser.key(" ", "Space")
+        self.assertFalse(self.browser.run("cradleMicroscopeTest.state.playing"))
+        still = self.view()
+        self.assert_exact(still, 2)
+        time.sleep(0.3)
+        self.assertEqual(self.view(), still)
+
+    def test_readout(self):
+        self.browser.run("cradleMicroscopeTest.zoomTo({event: 245, depth: 1e-220})")
+        _, _, corner, box = self.middle()
+        place = self.position(1, 245)
+        self.browser.mouse("mouseMoved", corner[0] + place["x"] + 2, corner[1] + place["y"])
+        self.browser.until("cradleMicroscopeTest.readout().startsWith('contact 246, bodies 1 and 2')")
+        said = self.browser.run("cradleMicroscopeTest.readout()")
+        mantissa, exponent = f"{float(self.contacts[245][2]):.5e}".split("e-")
+        raised = "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in exponent)
+        self.assertIn(f"closing speed {mantissa.rstrip('0')}×10⁻{raised} l/t", said)
+        # Between two lines: their gap there, by fractions.
+        view = self.view()
+        column = box["left"] + 0.2 * box["width"]
+        heights = [self.browser.run(f"cradleMicroscopeTest.height({body}, {column})") for body in (0, 1)]
+        self.browser.mouse("mouseMoved", corner[0] + column, corner[1] + sum(heights) / 2)
+        self.browser.until("cradleMicroscopeTest.readout().startsWith('bodies 0 and 1: gap')")
+        gap = (heights[0] - heights[1]) / box["height"] * view["X"]
+        said = self.browser.run("cradleMicroscopeTest.readout()").split("gap ")[1].split(" l")[0]
+        number, power = said.split("×10")
+        spoken = float(number) * 10.0 ** int(power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
+        self.assertAlmostEqual(spoken / gap, 1, delta=0.01)
+
+    def pixel(self, x, y):
+        """Red, green and blue of a pixel of the canvas."""
+        return self.browser.run(f"""(() => {{ const one = document.createElement('canvas'), all = document.querySelector('canvas');
+            one.width = one.height = 1;
+            const pen = one.getContext('2d', {{ willReadFrequently: true }});
+            pen.drawImage(all, -{round(x)}, -{round(y)});
+            return [...pen.getImageData(0, 0, 1, 1).data].slice(0, 3); }})()""")
+
+    def test_dark_and_light(self):
+        self.assertGreater(min(self.pixel(3, 3)), 200)
+        self.browser.dark(True)
+        end = time.monotonic() + 30
+        while max(self.pixel(3, 3)) > 60 and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertLess(max(self.pixel(3, 3)), 60)
+        # A dot of a contact stands out in both.
+        view = self.browser.run("cradleMicroscopeTest.zoomTo({event: 100, depth: 1e-88})")
+        dot = self.position(0, 100) or self.position(1, 100)
+        colour = self.pixel(dot["x"], dot["y"])
+        self.assertGreater(max(colour) - min(colour), 40)
+        self.assertTrue(view["exact"])
+
+    def test_high_resolution(self):
+        self.browser.resolution(2)
+        self.browser.open(self.page)
+        sizes = self.browser.run("(c => [c.width, c.clientWidth, c.height, c.clientHeight])(document.querySelector('canvas'))")
+        self.assertEqual(sizes[0], 2 * sizes[1])
+        self.assertEqual(sizes[2], 2 * sizes[3])
+
+    # Many contacts
+
+    def test_a_million_contacts(self):
+        result, moments, places, left = rows_result(self.folder, 1000)
+        with result.file:
+            begun = time.monotonic()
+            page, data = write_page(self.folder, result, "million")
+            took = time.monotonic() - begun
+        self.assertEqual(data["contacts"], 1_000_000)
+        self.assertIsNone(data["speed"])  # the law gives them again
+        self.assertLess(page.stat().st_size, 15e6)
+        self.browser.open(page)
+        self.assertFalse(self.view()["exact"])
+        # What is drawn of the whole: contacts in the lens where the rows overlap, nothing beside them.
+        view = self.view()
+        box, anchor = view["box"], view["anchor"]["e"]
+
+        def colourful(t, x):  # the home view's frame is the lab's
+            across = (t - moments[anchor] - view["tau"]) / view["T"] + 0.5
+            up = (x - places[anchor] - view["xi"]) / view["X"]
+            colour = self.pixel(box["left"] + box["width"] * across, box["top"] + box["height"] * (0.5 - up))
+            return max(colour) - min(colour)
+        self.assertGreater(colourful(1000, 3.3), 30)
+        self.assertGreater(colourful(1000, -333.7), 30)
+        self.assertLess(colourful(300, 600), 15)  # a row that nobody has met
+        self.assertLess(colourful(1000, 900), 15)  # nobody
+        # Near by, contacts are where the straight lines cross.
+        for event in (12345, 500_000, 777_777):
+            view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: 4, time: 6}})")
+            self.assertTrue(view["exact"])
+            box, seen = view["box"], 0
+            for other in np.flatnonzero((np.abs(moments - moments[event]) < 3) & (np.abs(places - places[event]) < 2)):
+                # Pairs of equal elastic bodies: the frame at any contact is the lab's.
+                x = box["left"] + box["width"] * ((moments[other] - moments[event] - view["tau"]) / view["T"] + 0.5)
+                y = box["top"] + box["height"] * (0.5 - (places[other] - places[event] - view["V"] *
+                                                         (moments[other] - moments[event]) - view["xi"]) / view["X"])
+                drawn = self.position(left[other], other)
+                self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
+                self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
+                seen += 1
+            self.assertGreater(seen, 8)
+        if os.environ.get("CRADLE_MICROSCOPE_SPEED"):
+            self.report_speed(page, took)
+
+    def report_speed(self, page, took):
+        print(f"\ndata and page {took:.1f} s, {page.stat().st_size / 1e6:.1f} MB")
+        self.browser.run("cradleMicroscopeTest.actions.home()")
+        for name, act in (("moving the whole", "m.pan(n % 40 < 20 ? -6 : 6, 0)"),
+                          ("zooming in", "m.zoom(1.02, {x: 500, y: 230})"), ("moving there", "m.pan(-6, 1)")):
+            print(name, self.browser.run("""new Promise(done => { const m = cradleMicroscopeTest, spent = [];
+                let n = 0; const begun = performance.now(), step = () => { const t = performance.now();
+                %s; spent.push(m.state.drawn); ++n; if (t - begun < 4000) requestAnimationFrame(step);
+                else done(`${(n / (t - begun) * 1000).toFixed(1)} frames/s, drawing takes ` +
+                  `${spent.sort((a, b) => a - b)[n >> 1].toFixed(1)} ms (median), ${spent[Math.floor(n * 0.95)].toFixed(1)} (95 %%)`); };
+                requestAnimationFrame(step); })""" % act))
+
+    # With the program
+
+    def program_result(self, name, scene, **keys):
+        """The result of a run of the program, with its effective scene."""
+        if not PROGRAM:
+            self.skipTest("no program (CRADLE_PROGRAM)")
+        path = self.folder / f"{name}.h5"
+        sets = [f"--set={key}={value}" for key, value in keys.items()]
+        subprocess.run([PROGRAM, "run", scene, "--quiet", "-o", str(path), *sets], check=False, stdout=subprocess.DEVNULL)
+        file = h5py.File(path, "r")
+        self.addCleanup(file.close)
+        return types.SimpleNamespace(file=file, scene=tomllib.loads(file.attrs["scene"]))
+
+    def assert_gaps_of_snapshots(self, result, bound):
+        """The gaps right after the contact before a snapshot, flown until then, are the snapshot's."""
+        page, data = write_page(self.folder, result, "snapshots")
+        self.assertEqual(data["kind"], "contacts")
+        self.browser.open(page)
+        moments = result.file["events/time"][:] + result.file["events/time_low"][:]
+        compared = 0
+        for shot in result.file["snapshots"].values():
+            last = int(np.searchsorted(moments, shot.attrs["time"], side="right")) - 1
+            index, gaps, speeds = shot["index"][:], shot["gap"][:], shot["closing_speed"][:]
+            found = self.browser.run(f"""(() => {{ const m = cradleMicroscopeTest, i = {index.tolist()};
+                return i.map((a, k) => [a, i[(k + 1) % i.length]]).slice(0, {len(gaps)}).map(([a, b]) => {{
+                    const g = m.gap(a, b, {last}); return [g.gap, g.w]; }}); }})()""")
+            gap, w = np.array(found).T
+            flown = gap - w * (shot.attrs["time"] - (moments[last] if last >= 0 else 0))
+            scale = np.abs(gaps) + np.abs(w) * 1e-3
+            self.assertLess(np.max(np.abs(flown - gaps) / scale), bound)
+            self.assertLess(np.max(np.abs(w - speeds) / (np.abs(speeds) + 1e-3)), bound)
+            compared += len(gaps)
+        self.assertGreater(compared, 100)
+
+    def test_gaps_are_those_of_snapshots_rows(self):
+        self.assert_gaps_of_snapshots(self.program_result("rows", "fig2", **{
+            "initial.particles": 400, "law.restitution": 0.98, "run.until": 250, "output.events": "true",
+            "output.snapshots": "[0, 50, 150, 250]", "output.profiles.times": "[10]"}), 1e-9)
+
+    def test_gaps_are_those_of_snapshots_wet(self):
+        self.assert_gaps_of_snapshots(self.program_result("wet", "fig6", **{
+            "initial.particles": 300, "run.until": 250, "output.events": "true",
+            "output.snapshots": "[0, 50, 150, 250]", "output.profiles.times": "[10]"}), 1e-7)
+
+    def test_gaps_are_those_of_snapshots_ring(self):
+        for law in ({"law.type": "inelastic", "law.restitution": 0.8, "law.cutoff": 0.01}, {"law.type": "sticky"},
+                    {"law.type": "wet", "law.loss": 0.03}):
+            with self.subTest(law=law["law.type"]):
+                self.assert_gaps_of_snapshots(self.program_result("ring" + law["law.type"], "cooling", **law, **{
+                    "initial.particles": 200, "initial.perturbation": 0.2, "run.until": 20, "output.events": "true",
+                    "output.snapshots": "[0, 1, 5, 20]"}), 1e-8)
+
+    def test_snapshots_alone(self):
+        result = self.program_result("shots", "fig2", **{
+            "initial.particles": 400, "run.until": 300, "output.snapshots": "[100, 200, 300]",
+            "output.profiles.times": "[10]"})
+        page, data = write_page(self.folder, result, "shots")
+        self.assertEqual(data["kind"], "snapshots")
+        self.browser.open(page)
+        self.browser.picture("snapshots")
+        shot = result.file["snapshots/0000"]
+        found = self.browser.run("""(() => { const w = cradleMicroscopeTest.world();
+            return [[...w.x0], [...w.v0], w.start]; })()""")
+        self.assertLess(np.max(np.abs(np.array(found[0]) - shot["x"][:])), 1e-6)
+        self.assertLess(np.max(np.abs(np.array(found[1]) - shot["v"][:])), 1e-6)
+        self.browser.run("(s => { s.value = 2; s.dispatchEvent(new Event('change')); })(document.querySelector('select'))")
+        self.browser.until("cradleMicroscopeTest.world().start === 300")
+        self.assertTrue(math.isfinite(self.view()["X"]))
+
+    def test_pictures_of_a_core(self):
+        if not os.environ.get("CRADLE_MICROSCOPE_PICTURES"):
+            self.skipTest("no pictures wanted (CRADLE_MICROSCOPE_PICTURES)")
+        result = self.program_result("core", "fig2", **{
+            "initial.particles": 400, "law.restitution": 0.98, "run.until": 290, "output.events": "true",
+            "output.profiles.times": "[10]"})
+        page, _ = write_page(self.folder, result, "core")
+        self.browser.open(page)
+        self.browser.picture("core-whole")
+        count = len(result.file["events/left"])
+        for depth in ("1e-3", "1e-9"):
+            event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.7 * count} && x > -12 &&
+                x < Math.log10({depth} / 6)))(cradleMicroscopeTest.world().depth)""")
+            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}}})")
+            self.browser.picture(f"core-{depth}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -379,14 +379,13 @@ class InBrowser(unittest.TestCase):
                 self.assertEqual(found["gap"] == 0, a == left)
 
     def test_the_wheel_goes_down_and_stays_exact(self):
-        """A hundred and more turns over the place of the collapse; the anchor has to move with it."""
+        """Hundreds of turns over the place of the collapse, the pointer at rest; the anchor has to move with it."""
         x, y, corner, box = self.middle()
         self.browser.click(x, y)
-        deepest = 1.0
+        deepest, target = 1.0, self.browser.run("""(() => { const m = cradleMicroscopeTest, c = m.camera(),
+            last = c.chart.contacts.length - 1, s = microscopeScales(c.view, m.view().box);
+            return [s.x(c.chart.tau[last]), s.y(c.chart.xi[last], c.chart.tau[last])]; })()""")
         for turn in range(700):
-            target = self.browser.run("""(() => { const m = cradleMicroscopeTest, c = m.camera(), last = c.chart.contacts.length - 1;
-                const s = microscopeScales(c.view, m.view().box); return [s.x(c.chart.tau[last]),
-                s.y(c.chart.xi[last], c.chart.tau[last])]; })()""")
             self.browser.mouse("mouseWheel", corner[0] + target[0], corner[1] + target[1], deltaX=0, deltaY=-300)
             view = self.view()
             deepest = min(deepest, view["X"])
@@ -654,6 +653,49 @@ class InBrowser(unittest.TestCase):
             compared += len(gaps)
         self.assertGreater(compared, 100)
 
+    def assert_charts_are_where_positions_are(self, result):
+        """Contacts and lines of charts with some width, against places in the lab: every body that is drawn at a time
+        is there once, and where it should be."""
+        page, _ = write_page(self.folder, result, "charts")
+        self.browser.open(page)
+        count = len(result.file["events/left"])
+        for event in (0, count // 3, count // 2, count - 2):
+            for span, depth in ((8, 4), (30, 10), (1, 12)):
+                worst, seen = self.browser.run(f"""(() => {{ const m = cradleMicroscopeTest, w = m.world();
+                    m.zoomTo({{event: {event}, depth: {depth}, time: {span}}});
+                    const {{ chart, view }} = m.camera(), e = view.anchor.e;
+                    const round = x => w.ring ? x - w.ring * Math.round(x / w.ring) : x;
+                    let worst = 0, seen = 0;
+                    if (!chart) return [1, 0];
+                    chart.contacts.forEach((k, i) => {{ ++seen;
+                      worst = Math.max(worst, Math.abs(round(w.x[k] - w.x[e] - view.lab * chart.tau[i] - chart.xi[i]))); }});
+                    for (const part of [-0.45, -0.2, 0.01, 0.3]) {{
+                      const tau = view.tau + part * view.T, k = microscopeContactAt(w, e, tau), drawn = new Set();
+                      for (const line of chart.lines) if (line.from[0] < tau && line.to[0] > tau) {{
+                        const since = tau - microscopeBetween(w, e, k), there = microscopePlace(w, line.body, k) +
+                          microscopeVelocity(w, line.body, k) * since;
+                        const off = round(there - w.x[e] - view.lab * tau - microscopeAlong(chart, line, tau));
+                        // On a ring a body may be in sight again, a turn away.
+                        const turn = w.ring ? Math.round((there - microscopeAlong(chart, line, tau)) / w.ring) : 0;
+                        const image = `${{line.body}} ${{turn}}`;
+                        worst = Math.max(worst, Math.abs(off), drawn.has(image) ? 1 : 0);
+                        drawn.add(image); ++seen;
+                      }} }}
+                    return [worst, seen]; }})()""")
+                self.assertLess(worst, 1e-9, f"contact {event}, {span} x {depth}")
+                self.assertGreater(seen, 3)
+
+    def test_charts_are_where_positions_are(self):
+        rows = {"initial.particles": 200, "output.events": "true", "output.snapshots": "[]",
+                "output.profiles.times": "[10]", "run.until": 120}
+        ring = {"initial.particles": 100, "initial.perturbation": 0.2, "run.until": 15, "output.events": "true"}
+        for name, scene, keys in (
+                ("inelastic rows", "fig2", rows | {"law.restitution": 0.95}), ("wet rows", "fig6", rows),
+                ("inelastic ring", "cooling", ring | {"law.type": "inelastic", "law.restitution": 0.8}),
+                ("sticky ring", "cooling", ring), ("wet ring", "cooling", ring | {"law.type": "wet", "law.loss": 0.03})):
+            with self.subTest(name):
+                self.assert_charts_are_where_positions_are(self.program_result(name.replace(" ", "-"), scene, **keys))
+
     def test_gaps_are_those_of_snapshots_rows(self):
         self.assert_gaps_of_snapshots(self.program_result("rows", "fig2", **{
             "initial.particles": 400, "law.restitution": 0.98, "run.until": 250, "output.events": "true",
@@ -693,17 +735,19 @@ class InBrowser(unittest.TestCase):
         if not os.environ.get("CRADLE_MICROSCOPE_PICTURES"):
             self.skipTest("no pictures wanted (CRADLE_MICROSCOPE_PICTURES)")
         result = self.program_result("core", "fig2", **{
-            "initial.particles": 400, "law.restitution": 0.98, "run.until": 290, "output.events": "true",
+            "initial.particles": 400, "law.restitution": 0.98, "run.until": 325, "output.events": "true",
             "output.profiles.times": "[10]"})
         page, _ = write_page(self.folder, result, "core")
         self.browser.open(page)
         self.browser.picture("core-whole")
         count = len(result.file["events/left"])
-        for depth in ("1e-3", "1e-9"):
-            event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.7 * count} && x > -12 &&
-                x < Math.log10({depth} / 6)))(cradleMicroscopeTest.world().depth)""")
-            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}}})")
-            self.browser.picture(f"core-{depth}")
+        for depth in (1e-3, 1e-9):
+            event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.9 * count} && x > -12 &&
+                x < {math.log10(depth / 20)}))(cradleMicroscopeTest.world().depth)""")
+            view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}}})")
+            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}, time: {view['T'] / 8}}})")
+            self.assertTrue(self.view()["exact"], depth)
+            self.browser.picture(f"core-{depth:.0e}".replace("-0", "-"))
 
 
 if __name__ == "__main__":

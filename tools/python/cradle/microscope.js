@@ -136,7 +136,7 @@ function cradleMicroscope(element, data) {
 
   // The readout: the contact or the gap under the pointer, else where the view is.
   function tell() {
-    const { view } = camera, where = view.anchor.e < 0 ? `at the start, beside body ${number(view.anchor.a)}` :
+    const { view } = camera, where = view.anchor.e < 0 ? `t = ${world.start}, beside body ${number(view.anchor.a)}` :
       `at contact ${view.anchor.e + 1} of ${world.total}, bodies ${pairName(view.anchor.e)}`;
     const n = value => microscopeNumber(value, Math.min(6, world.digits));
     const view_ = `${where}: ${microscopeNumber(view.T, 3)} t across, ${microscopeNumber(view.X, 3)} l high`;
@@ -181,7 +181,7 @@ function cradleMicroscope(element, data) {
     const { view } = camera;
     let place = at ? placeOf(at.x, at.y) : [view.tau, view.xi];
     if (!place) return;
-    const caught = at && factor > 1 ? contactAt(at, 20) : null;  // on the way in a contact near by is held fast
+    const caught = at && factor > 1 && camera.chart ? camera.deepest(place, 14 / box.width, 14 / box.height) : null;
     if (caught) place = [caught.tau, caught.xi - view.V * caught.tau];
     if (only === "time") camera.zoom(factor, 1, place);
     else if (only === "space") camera.zoom(1, factor, place);
@@ -232,6 +232,7 @@ function cradleMicroscope(element, data) {
     zoomTo: ({ event, depth, time }) => {
       const found = world.depth.findIndex(d => d > -330 && d <= Math.log10(depth / 3));
       const e = event === undefined ? (found < 0 ? world.n - 1 : found) : event;
+      if (!(e >= 0 && e < world.n)) throw new Error(`no such contact (${e}): give one from 0 to ${world.n - 1}`);
       camera.goTo(e, time || depth / (1.3 * world.speed[e]), depth);
       changed();
       state.moving = 0;
@@ -240,10 +241,9 @@ function cradleMicroscope(element, data) {
     },
     // Where a contact of a body is drawn, in pixels of the canvas; null where it is not in the chart.
     position: (body, event) => {
-      const line = camera.chart && camera.chart.byBody.get(body - world.first), { chart, view } = camera;
-      const i = line ? line.points.find(k => chart.contacts[k] === event) : undefined;
-      if (i === undefined) return null;
-      const scales = microscopeScales(view, box);
+      const { chart, view } = camera, found = chart && microscopeThrough(chart, body - world.first, event);
+      if (!found) return null;
+      const i = found[0].points[found[1]], scales = microscopeScales(view, box);
       return { x: scales.x(chart.tau[i]), y: scales.y(chart.xi[i], chart.tau[i]) };
     },
     // Where a body's world line is drawn at a pixel column.

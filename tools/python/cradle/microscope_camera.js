@@ -147,6 +147,18 @@ function microscopeCamera(world) {
     const { chart, view } = camera, { best, distance } = microscopeNearest(chart, tau, xi, spanTau, spanXi, view.V);
     return best < 0 ? null : { e: chart.contacts[best], tau: chart.tau[best], xi: chart.xi[best], distance };
   };
+  // The deepest contact within parts of the picture of a place: what is held fast on the way in, so that the wheel over
+  // the tip of a collapse follows it.
+  camera.deepest = ([tau, xi], partOfT, partOfX) => {
+    const { chart, view } = camera;
+    let best = -1;
+    for (let i = 0; i < chart.contacts.length; ++i) {
+      if (Math.abs(chart.tau[i] - tau) > partOfT * view.T) continue;
+      if (Math.abs(chart.xi[i] - view.V * chart.tau[i] - xi) > partOfX * view.X) continue;
+      if (best < 0 || world.depth[chart.contacts[i]] < world.depth[chart.contacts[best]]) best = i;
+    }
+    return best < 0 ? null : { e: chart.contacts[best], tau: chart.tau[best], xi: chart.xi[best] };
+  };
   camera.nearestInPositions = () => {
     const { view } = camera, { e } = view.anchor, t0 = e < 0 ? world.start : world.time[e];
     const x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e], middle = microscopeFirstAfter(world.time, t0 + view.tau);
@@ -214,6 +226,6 @@ function microscopeAlong(chart, line, tau) {
 // Velocity in the chart's frame of the pair of another contact in it: that of one of its bodies right after it, less
 // what that one has against the pair.
 function microscopeSpeedAt(chart, world, anchor, pair) {
-  const line = chart.byBody.get(pair.a), at = line.points.findIndex(i => chart.contacts[i] === anchor.e);
+  const [line, at] = microscopeThrough(chart, pair.a, anchor.e);
   return line.speeds[at] - pair.speedA;
 }

@@ -90,6 +90,7 @@ function microscopeTimes(world, e, contacts) {
 // are too many bodies or contacts for it.
 //   contacts  Int32Array, rising; tau, xi of each
 //   lines     [{body, points: [place in contacts], speeds: [velocity after each], from: [tau, xi], to: [tau, xi]}]
+//   byBody    the lines of the bodies around the anchor, by body
 function microscopeChart(world, anchor, from, to, low, high, drift) {
   const begins = -microscopeFlight(world, -1, anchor.e);
   const final = world.n - 1, beyond = world.end - (final < 0 ? world.start : world.time[final]);
@@ -121,86 +122,113 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
   return null;
 }
 
-// Follows the bodies around an anchor through contacts first .. last, forwards and backwards.
+// Follows the bodies around an anchor through contacts first .. last, forwards and backwards. A body that is not among
+// them is known where it meets one of them, from its contact before to its next one: a line of its own each time.
 function microscopeFollow(world, anchor, around, from, to, first, last, most) {
-  const { left, right, list, begin, event } = world, e = anchor.e, all = [];
+  const { left, right, list, begin, event, slotLeft, slotRight } = world, e = anchor.e, all = [];
   for (const { body } of around)
     for (let slot = microscopeSlotAfter(world, body, first - 1); slot < begin[body + 1] && list[slot] <= last; ++slot) {
       all.push(list[slot]);
       if (all.length > most) return null;
     }
   const sorted = Int32Array.from(all).sort(), contacts = sorted.filter((k, i) => i === 0 || k !== sorted[i - 1]);
-  const tau = microscopeTimes(world, e, contacts), xi = new Float64Array(contacts.length), byBody = new Map();
-  const line = (body, at, place, speed) => {
-    const made = { body, points: [], speeds: [], tau: at, xi: place, u: speed, from: [at, place], to: [at, place],
-                   gone: false };
-    byBody.set(body, made);
+  const tau = microscopeTimes(world, e, contacts), xi = new Float64Array(contacts.length), lines = [];
+  const timeOf = (body, slot) => slot < begin[body] ? -Infinity : slot >= begin[body + 1] ? Infinity :
+    microscopeBetween(world, e, list[slot]);
+  const at = (one, time) => one.xi + one.u * (time - one.tau);
+  // `slot`: of the contact that the line has come to, forwards or backwards.
+  const line = (body, slot, now, place, u) => {
+    const made = { body, points: [], speeds: [], slot, tau: now, xi: place, u, from: null, to: null };
+    lines.push(made);
     return made;
   };
-  for (const { body, xi: place, u } of around) line(body, 0, place, u);
+  const endLine = one => {
+    const end = Math.min(to, timeOf(one.body, one.slot + 1), world.valid ? world.valid[one.body] : Infinity);
+    one.to = [Math.max(end, one.tau), at(one, Math.max(end, one.tau))];
+  };
+  const beginLine = one => {
+    const start = Math.min(one.tau, Math.max(from, timeOf(one.body, one.slot - 1)));
+    one.from = [start, at(one, start)];
+  };
+  // One way through the contacts. `known`: the lines that go on, by body. `step`: 1 forwards, -1 backwards.
+  const follow = (known, begins, ends, step, before, after, endHere, beginHere) => {
+    for (let i = begins; i !== ends; i += step) {
+      const k = contacts[i], now = tau[i];
+      let [a, b] = [[left[k], slotLeft[k]], [right[k], slotRight[k]]].map(([body, slot]) => {
+        const one = known.get(body);
+        if (!one || one.slot + step === slot) return one;
+        endHere(one);  // it has met others meanwhile
+        return null;
+      });
+      // All around a ring a body is in sight twice: the one further out is the one that is let go.
+      if (world.ring && a && b && Math.abs(at(a, now) - at(b, now)) > world.ring / 2) {
+        const outer = Math.abs(at(a, now)) > Math.abs(at(b, now)) ? a : b;
+        endHere(outer);
+        if (outer === a) a = null; else b = null;
+      }
+      const w = before(k);
+      const speedA = a ? a.u : b.u + w, speedB = b ? b.u : a.u - w;
+      xi[i] = a && b ? (at(a, now) + at(b, now)) / 2 : at(a || b, now);
+      for (const [old, body, slot, speed, kick] of [[a, left[k], slotLeft[k], speedA, -step * world.kickLeft[k]],
+                                                    [b, right[k], slotRight[k], speedB, step * world.kickRight[k]]]) {
+        let one = old;
+        if (!one) {
+          one = line(body, slot, now, xi[i], speed);
+          beginHere(one, k);
+        }
+        known.set(body, one);
+        one.points.push(i);
+        one.speeds.push(step > 0 ? speed + kick : speed);
+        Object.assign(one, { slot, tau: now, xi: xi[i], u: speed + kick });
+      }
+      after(k, known);
+    }
+    known.forEach(endHere);
+  };
   let split = 0;
   while (split < contacts.length && contacts[split] <= e) ++split;
-  const at = (one, time) => one.xi + one.u * (time - one.tau);
-  for (let i = split; i < contacts.length; ++i) {
-    const k = contacts[i], now = tau[i];
-    let a = byBody.get(left[k]), b = byBody.get(right[k]);
-    const speedA = a ? a.u : b.u + world.speed[k], speedB = b ? b.u : a.u - world.speed[k];
-    xi[i] = a && b ? (at(a, now) + at(b, now)) / 2 : at(a || b, now);
-    // One that comes in by a contact with one that is known.
-    a = a || line(left[k], now, xi[i], speedA);
-    b = b || line(right[k], now, xi[i], speedB);
-    for (const [one, speed] of [[a, speedA - world.kickLeft[k]], [b, speedB + world.kickRight[k]]]) {
-      one.points.push(i);
-      one.speeds.push(speed);
-      one.tau = now;
-      one.xi = xi[i];
-      one.u = speed;
-    }
-    if (event[k] === MICROSCOPE.merge) byBody.get(microscopeGone(world, k)).gone = true;
+  const middle = around.map(({ body, xi: place, u }) =>
+    line(body, microscopeSlotAfter(world, body, e) - 1, 0, place, u));
+  const came = new Set();  // slots at which bodies came in forwards: known from the contact before on
+  const merged = k => event[k] === MICROSCOPE.merge;
+  follow(new Map(middle.map(one => [one.body, one])), split, contacts.length, 1, k => world.speed[k], (k, known) => {
+    if (!merged(k)) return;
+    const one = known.get(microscopeGone(world, k));
+    one.to = [one.tau, one.xi];
+    known.delete(one.body);
+  }, endLine, one => {
+    beginLine(one);
+    came.add(one.slot);
+  });
+  // Backwards from the anchor; the points of both ways together.
+  const ahead = middle.map(({ points, speeds }) => ({ points, speeds }));
+  around.forEach(({ body, xi: place, u }, i) => Object.assign(middle[i], {
+    points: [], speeds: [], slot: microscopeSlotAfter(world, body, e), tau: 0, xi: place, u }));
+  const earlier = lines.length;
+  follow(new Map(middle.map(one => [one.body, one])), split - 1, -1, -1, k => world.after[k], () => {},
+         beginLine, (one, k) => {
+           const gone = merged(k) && microscopeGone(world, k) === one.body;
+           if (gone || came.has(one.slot + 1)) one.to = [one.tau, one.xi];
+           else endLine(one);
+         });
+  lines.forEach((one, k) => {
+    if (k >= middle.length && k < earlier) return;
+    one.points.reverse();
+    one.speeds.reverse();
+    if (k >= middle.length) return;
+    one.points.push(...ahead[k].points);
+    one.speeds.push(...ahead[k].speeds);
+  });
+  return { anchor, from, to, contacts, tau, xi, lines, byBody: new Map(middle.map(one => [one.body, one])) };
+}
+
+// The line of a chart that goes through contact k of a body, and the place of k in its points: [line, place].
+function microscopeThrough(chart, body, k) {
+  for (const line of chart.lines) {
+    const place = line.body === body ? line.points.findIndex(i => chart.contacts[i] === k) : -1;
+    if (place >= 0) return [line, place];
   }
-  for (const one of byBody.values()) {
-    one.to = one.gone ? [one.tau, one.xi] : [to, at(one, to)];
-  }
-  // Backwards from the anchor: the state right before each contact.
-  for (const { body, xi: place, u } of around) Object.assign(byBody.get(body), { tau: 0, xi: place, u });
-  const before = new Map(), known = new Set(around.map(({ body }) => body));
-  for (let i = split - 1; i >= 0; --i) {
-    const k = contacts[i], now = tau[i], merged = event[k] === MICROSCOPE.merge;
-    let a = known.has(left[k]) ? byBody.get(left[k]) : null, b = known.has(right[k]) ? byBody.get(right[k]) : null;
-    xi[i] = a && b ? (at(a, now) + at(b, now)) / 2 : at(a || b, now);
-    const speedA = a ? a.u : b.u + world.after[k], speedB = b ? b.u : a.u - world.after[k];
-    const came = body => {
-      const made = byBody.get(body) || line(body, now, xi[i], 0);
-      if (!known.has(body) && !made.points.length) {
-        made.to = [now, xi[i]];
-        made.gone = merged;
-      }
-      known.add(body);
-      return made;
-    };
-    a = a || came(left[k]);
-    b = b || came(right[k]);
-    for (const [one, speed, late] of [[a, speedA + world.kickLeft[k], speedA],
-                                      [b, speedB - world.kickRight[k], speedB]]) {
-      if (!before.has(one)) before.set(one, { points: [], speeds: [] });
-      before.get(one).points.push(i);
-      before.get(one).speeds.push(late);
-      one.tau = now;
-      one.xi = xi[i];
-      one.u = speed;
-    }
-  }
-  for (const [one, { points, speeds }] of before) {
-    one.points = points.reverse().concat(one.points);
-    one.speeds = speeds.reverse().concat(one.speeds);
-  }
-  for (const one of byBody.values()) {
-    // Who came in later is known before that contact too, as far as it flew.
-    const start = known.has(one.body) ? from : one.points.length ? tau[one.points[0]] : from;
-    one.from = [start, known.has(one.body) ? at(one, start) : one.xi];
-    if (!known.has(one.body)) one.from = [tau[one.points[0]], xi[one.points[0]]];
-  }
-  return { anchor, from, to, contacts, tau, xi, byBody, lines: [...byBody.values()] };
+  return null;
 }
 
 // The contact of a chart that is nearest to a place, in spans of time and space; its number there, -1 for none.

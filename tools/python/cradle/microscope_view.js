@@ -90,7 +90,7 @@ function microscopeLines(pen, chart, view, box, colours) {
     for (const i of line.points) step(chart.tau[i], chart.xi[i], false);
     step(...line.to, true);
   }
-  const dense = chart.lines.length > 60 ? 0.75 : 1;
+  const dense = chart.lines.length > 150 ? 0.75 : 1;
   pen.lineWidth = dense;
   pen.lineJoin = "round";
   pen.strokeStyle = colours.line;

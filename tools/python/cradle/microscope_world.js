@@ -61,9 +61,9 @@ async function microscopeSnapshot(data, snapshot) {
     start: snapshot.time, total: 0, digits: 9, collapse: null, name: data.name, speedGiven: true,
   };
   microscopeReplay(world);
-  // As far as most world lines are known; what goes on longer is drawn so far.
+  // As far as nine in ten of the world lines are known.
   const known = valid.filter(Number.isFinite).sort();
-  world.end = snapshot.time + (known.length ? 2 * known[Math.floor(0.9 * (known.length - 1))] : 1);
+  world.end = snapshot.time + (known.length ? known[Math.floor(0.9 * (known.length - 1))] : 1);
   return world;
 }
 

@@ -368,6 +368,21 @@ class InBrowser(unittest.TestCase):
                     self.browser.picture(f"collapse3-{name}-dark")
                     self.browser.dark(False)
 
+    def test_what_doubles_do_not_hold_is_left_out_and_told(self):
+        """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
+        self.contacts = rational_collapse(Fraction(1, 10**700))[1]
+        with collapse_result(self.folder, self.contacts).file as file:
+            scene = json.loads(file.attrs["scene"])
+            page, data = write_page(self.folder, types.SimpleNamespace(file=file, scene=scene), "deeper")
+        self.assertLess(data["contacts"], data["total"])
+        self.assertGreater(data["contacts"], 325)
+        self.contacts = self.contacts[:data["contacts"]]
+        self.browser.open(page)
+        self.browser.run("cradleMicroscopeTest.actions.deepest()")
+        self.browser.until(f"cradleMicroscopeTest.readout().endsWith('the first {data['contacts']} contacts are here')")
+        self.assertEqual(self.view()["anchor"]["e"], data["contacts"] - 1)
+        self.assert_exact(self.view(), 1)
+
     def test_gaps_are_exact(self):
         for event in (0, 1, 2, 57, 144, 245, 320, len(self.contacts) - 1):
             left, _, _, places, after = self.contacts[event]
@@ -745,8 +760,8 @@ class InBrowser(unittest.TestCase):
             event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.9 * count} && x > -12 &&
                 x < {math.log10(depth / 20)}))(cradleMicroscopeTest.world().depth)""")
             view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}}})")
-            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}, time: {view['T'] / 8}}})")
-            self.assertTrue(self.view()["exact"], depth)
+            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}, time: {view['T'] * 0.06}}})")
+            self.assertEqual(self.view()["exact"], depth < 1e-6)  # where positions serve, they do
             self.browser.picture(f"core-{depth:.0e}".replace("-0", "-"))
 
 

@@ -114,7 +114,7 @@ function cradleMicroscope(element, data) {
       const scale = state.moving ? ratio / quality : ratio;
       const width = Math.round(box.width * scale), height = Math.round(box.height * scale);
       const image = microscopeRaster(world, view, width, height, value, range, colours.ink.split(",").map(Number),
-                                     state.moving ? 1.5e5 : 3e6, stores.raster);
+                                     state.moving ? 3e5 / quality : 3e6, stores.raster);
       const shown = microscopeShown(stores.raster), known = state.shown;
       state.shown = shown;
       if (shown && (!known || Math.abs(shown[0] - known[0]) + Math.abs(shown[1] - known[1]) > 0.3)) request();

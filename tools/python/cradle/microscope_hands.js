@@ -70,13 +70,13 @@ function microscopeHands(canvas, scope) {
   canvas.addEventListener("keydown", event => {
     if (event.ctrlKey || event.metaKey) return;
     const box = scope.box(), step = MICROSCOPE_KEYS[event.key], here = scope.camera().view.anchor.e;
-    const middle = state.pointer && inside(state.pointer);
+    const middle = state.pointer && inside(state.pointer), corner = { x: box.left, y: box.top };
     // Alt and a key are other letters on some keyboards: the key's own name tells.
     const key = event.code === "Equal" || event.code === "NumpadAdd" || event.key === "+" ? "+" :
       event.code === "Minus" || event.code === "NumpadSubtract" ? "-" : event.key;
     const acts = {
-      "+": () => zoom(1.35, middle, event.code === "Equal" && event.key === "+" ? undefined : only(event, box)),
-      "-": () => zoom(1 / 1.35, middle, only(event, box)),
+      "+": () => zoom(1.35, middle, event.code === "Equal" && event.key === "+" ? undefined : only(event, corner)),
+      "-": () => zoom(1 / 1.35, middle, only(event, corner)),
       n: () => visit(here + 1), p: () => visit(here - 1), 0: actions.home, Home: actions.home, d: actions.deepest,
       c: actions.colours, " ": actions.play,
     };

@@ -72,7 +72,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
       tint[place + width] += below * logarithm;
     }
   }
-  const crowd = Math.min(1, 2 * (highest - lowest) / height);
+  const crowd = Math.min(1, (highest - lowest) / height);
   microscopeTone(store, range, ink, step, 0.75 - 0.35 * crowd);
   return image;
 }
@@ -88,8 +88,8 @@ function microscopeTone({ image, lines, tint, count }, range, [red, green, blue]
   for (let k = 0; k < pixels.length; ++k) {
     const line = step * lines[k], met = count[k];
     const alpha = line > 0 ? opacity * line / (line + 0.6) : 0;
-    if (met > 0) {
-      const share = Math.max(0.9 * met / (met + 0.4), alpha), part = (tint[k] / met - low) * scale;
+    if (met > 0.25) {
+      const share = Math.max(0.95 * met / (met + 0.25), alpha), part = (tint[k] / met - low) * scale;
       pixels[k] = (255 * share) << 24 | table[part < 0 ? 0 : part > 255 ? 255 : part | 0];
     } else {
       pixels[k] = (255 * alpha) << 24 | paint;

@@ -3,7 +3,7 @@
 // The view is {anchor, lab, tau, xi, T, X, V}: the middle of the picture at tau after the anchor's contact and xi from
 // it, its spans of time and space, and the velocity V of its frame against the anchor's (lab: the anchor's in the lab).
 
-const MICROSCOPE_MARGIN = { left: 66, right: 14, top: 12, bottom: 42, strip: 92 };
+const MICROSCOPE_MARGIN = { left: 72, right: 14, top: 12, bottom: 42, strip: 92 };
 const MICROSCOPE_PALETTE = [[58, 82, 164], [41, 138, 171], [86, 175, 128], [226, 170, 52], [214, 73, 58]];
 
 // Colour from the palette at 0 .. 1: [red, green, blue].
@@ -36,7 +36,7 @@ function microscopeStep(span, count) {
 // Where an axis has its ticks: values from the middle at `centre` over `span`, with an absolute `origin` where that is
 // resolved, else in powers of ten from the anchor. {ticks: [[offset from the centre, label]], power}.
 function microscopeTicks(centre, span, count, origin) {
-  const step = microscopeStep(span, count), absolute = Math.abs(origin) + span < 1e6 * span;
+  const step = microscopeStep(span, count), absolute = Math.abs(origin) + span < 2e4 * span;
   const base = absolute ? origin + centre : centre, power = Math.floor(Math.log10(span));
   const plain = absolute && span >= 1e-3 && span < 1e6, ticks = [];
   for (let k = Math.ceil((base - span / 2) / step); k <= Math.floor((base + span / 2) / step); ++k) {
@@ -189,7 +189,7 @@ function microscopeAxes(pen, view, box, colours, origin, anchorName) {
     pen.fillText((time.absolute ? "time" : `t − t(${anchorName})`) + unit(time, "t"), box.left + box.width / 2,
                  bottom + 21);
     pen.save();
-    pen.translate(13, box.top + box.height / 2);
+    pen.translate(10, box.top + box.height / 2);
     pen.rotate(-Math.PI / 2);
     pen.textBaseline = "middle";
     pen.fillText((space.absolute ? "position" : `x − x(${anchorName})`) + unit(space, "l") +

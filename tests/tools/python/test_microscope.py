@@ -47,7 +47,8 @@ class Browser:
         to_browser, self.write_end = os.pipe()
         self.read_end, from_browser = os.pipe()
         command = [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
-                   "--no-first-run", "--disable-background-networking", f"--user-data-dir={self.profile}", "about:blank"]
+                   "--no-first-run", "--disable-background-networking", f"--user-data-dir={self.profile}",
+                   "about:blank"]
         # Chromium reads descriptor 3 and writes 4.
         shell = f"exec 3<&{to_browser} 4>&{from_browser} {to_browser}<&- {from_browser}>&-; exec \"$@\""
         if {to_browser, from_browser} & {3, 4}:
@@ -115,7 +116,8 @@ class Browser:
                   features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
 
     def resolution(self, ratio, width=1100, height=760):
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=False)
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
+                  mobile=False)
 
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
@@ -299,7 +301,8 @@ class InBrowser(unittest.TestCase):
             self.assertNotIn(event["method"], ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"),
                              event)
             if event["method"] == "Network.requestWillBeSent":
-                self.assertTrue(event["params"]["request"]["url"].startswith(("file:", "about:", "blob:", "data:")), event)
+                address = event["params"]["request"]["url"]
+                self.assertTrue(address.startswith(("file:", "about:", "blob:", "data:")), address)
 
     def view(self):
         return self.browser.run("cradleMicroscopeTest.view()")
@@ -332,8 +335,8 @@ class InBrowser(unittest.TestCase):
     def assert_exact(self, view, least=3):
         """Every contact in sight, of both its bodies, and points of all lines between, are where they should be."""
         box, seen = view["box"], 0
-        for event, (left, time, _, _, _) in enumerate(self.contacts):
-            x, y = self.exact_place(view, left, time)
+        for event, (left, moment, _, _, _) in enumerate(self.contacts):
+            x, y = self.exact_place(view, left, moment)
             if not (0 < x - box["left"] < box["width"] and 0 < y - box["top"] < box["height"]):
                 continue
             seen += 1
@@ -347,10 +350,10 @@ class InBrowser(unittest.TestCase):
             column = box["left"] + part * box["width"]
             tau = Fraction(view["tau"]) + Fraction(view["T"]) * (Fraction(column - box["left"]) / Fraction(box["width"])
                                                                  - Fraction(1, 2))
-            time = self.contacts[view["anchor"]["e"]][1] + tau
-            if not 0 <= time <= last:
+            moment = self.contacts[view["anchor"]["e"]][1] + tau
+            if not 0 <= moment <= last:
                 continue
-            y = self.exact_place(view, body, time)[1]
+            y = self.exact_place(view, body, moment)[1]
             drawn = self.browser.run(f"cradleMicroscopeTest.height({body}, {column})")
             self.assertAlmostEqual(drawn, y, delta=HUNDREDTH + 1e-9 * abs(y))
 
@@ -412,7 +415,8 @@ class InBrowser(unittest.TestCase):
         self.assertLess(deepest, 1e-280)
         # And out again: to the whole run.
         for _ in range(3000):
-            self.browser.run(f"cradleMicroscopeTest.zoom(1 / 3, {{x: {box['left'] + box['width'] / 2}, y: {y - corner[1]}}})")
+            at = f"{{x: {box['left'] + box['width'] / 2}, y: {y - corner[1]}}}"
+            self.browser.run(f"cradleMicroscopeTest.zoom(1 / 3, {at})")
             if self.view()["X"] > 1:
                 break
         self.assert_exact(self.view(), 1)
@@ -551,7 +555,8 @@ class InBrowser(unittest.TestCase):
 
     def pixel(self, x, y):
         """Red, green and blue of a pixel of the canvas."""
-        return self.browser.run(f"""(() => {{ const one = document.createElement('canvas'), all = document.querySelector('canvas');
+        return self.browser.run(f"""(() => {{
+            const all = document.querySelector('canvas'), one = document.createElement('canvas');
             one.width = one.height = 1;
             const pen = one.getContext('2d', {{ willReadFrequently: true }});
             pen.drawImage(all, -{round(x)}, -{round(y)});
@@ -574,7 +579,8 @@ class InBrowser(unittest.TestCase):
     def test_high_resolution(self):
         self.browser.resolution(2)
         self.browser.open(self.page)
-        sizes = self.browser.run("(c => [c.width, c.clientWidth, c.height, c.clientHeight])(document.querySelector('canvas'))")
+        sizes = self.browser.run("""(c => [c.width, c.clientWidth, c.height, c.clientHeight])(
+            document.querySelector('canvas'))""")
         self.assertEqual(sizes[0], 2 * sizes[1])
         self.assertEqual(sizes[2], 2 * sizes[3])
 
@@ -630,8 +636,8 @@ class InBrowser(unittest.TestCase):
             print(name, self.browser.run("""new Promise(done => { const m = cradleMicroscopeTest, spent = [];
                 let n = 0; const begun = performance.now(), step = () => { const t = performance.now();
                 %s; spent.push(m.state.drawn); ++n; if (t - begun < 4000) requestAnimationFrame(step);
-                else done(`${(n / (t - begun) * 1000).toFixed(1)} frames/s, drawing takes ` +
-                  `${spent.sort((a, b) => a - b)[n >> 1].toFixed(1)} ms (median), ${spent[Math.floor(n * 0.95)].toFixed(1)} (95 %%)`); };
+                else { spent.sort((a, b) => a - b); done(`${(n / (t - begun) * 1000).toFixed(1)} frames/s, drawing takes ` +
+                  `${spent[n >> 1].toFixed(1)} ms (median), ${spent[Math.floor(n * 0.95)].toFixed(1)} (95 %%)`); } };
                 requestAnimationFrame(step); })""" % act))
 
     # With the program
@@ -642,7 +648,8 @@ class InBrowser(unittest.TestCase):
             self.skipTest("no program (CRADLE_PROGRAM)")
         path = self.folder / f"{name}.h5"
         sets = [f"--set={key}={value}" for key, value in keys.items()]
-        subprocess.run([PROGRAM, "run", scene, "--quiet", "-o", str(path), *sets], check=False, stdout=subprocess.DEVNULL)
+        subprocess.run([PROGRAM, "run", scene, "--quiet", "-o", str(path), *sets], check=False,
+                       stdout=subprocess.DEVNULL)
         file = h5py.File(path, "r")
         self.addCleanup(file.close)
         return types.SimpleNamespace(file=file, scene=tomllib.loads(file.attrs["scene"]))
@@ -683,7 +690,8 @@ class InBrowser(unittest.TestCase):
                     let worst = 0, seen = 0;
                     if (!chart) return [1, 0];
                     chart.contacts.forEach((k, i) => {{ ++seen;
-                      worst = Math.max(worst, Math.abs(round(w.x[k] - w.x[e] - view.lab * chart.tau[i] - chart.xi[i]))); }});
+                      const there = w.x[k] - w.x[e] - view.lab * chart.tau[i];
+                      worst = Math.max(worst, Math.abs(round(there - chart.xi[i]))); }});
                     for (const part of [-0.45, -0.2, 0.01, 0.3]) {{
                       const tau = view.tau + part * view.T, k = microscopeContactAt(w, e, tau), drawn = new Set();
                       for (const line of chart.lines) if (line.from[0] < tau && line.to[0] > tau) {{
@@ -707,7 +715,8 @@ class InBrowser(unittest.TestCase):
         for name, scene, keys in (
                 ("inelastic rows", "fig2", rows | {"law.restitution": 0.95}), ("wet rows", "fig6", rows),
                 ("inelastic ring", "cooling", ring | {"law.type": "inelastic", "law.restitution": 0.8}),
-                ("sticky ring", "cooling", ring), ("wet ring", "cooling", ring | {"law.type": "wet", "law.loss": 0.03})):
+                ("sticky ring", "cooling", ring),
+                ("wet ring", "cooling", ring | {"law.type": "wet", "law.loss": 0.03})):
             with self.subTest(name):
                 self.assert_charts_are_where_positions_are(self.program_result(name.replace(" ", "-"), scene, **keys))
 
@@ -742,7 +751,8 @@ class InBrowser(unittest.TestCase):
             return [[...w.x0], [...w.v0], w.start]; })()""")
         self.assertLess(np.max(np.abs(np.array(found[0]) - shot["x"][:])), 1e-6)
         self.assertLess(np.max(np.abs(np.array(found[1]) - shot["v"][:])), 1e-6)
-        self.browser.run("(s => { s.value = 2; s.dispatchEvent(new Event('change')); })(document.querySelector('select'))")
+        self.browser.run("""(s => { s.value = 2; s.dispatchEvent(new Event('change')); })(
+            document.querySelector('select'))""")
         self.browser.until("cradleMicroscopeTest.world().start === 300")
         self.assertTrue(math.isfinite(self.view()["X"]))
 
@@ -760,7 +770,8 @@ class InBrowser(unittest.TestCase):
             event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.9 * count} && x > -12 &&
                 x < {math.log10(depth / 20)}))(cradleMicroscopeTest.world().depth)""")
             view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}}})")
-            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}, time: {view['T'] * 0.06}}})")
+            span = 0.06 * view["T"]
+            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}, time: {span}}})")
             self.assertEqual(self.view()["exact"], depth < 1e-6)  # where positions serve, they do
             self.browser.picture(f"core-{depth:.0e}".replace("-0", "-"))
 

@@ -50,7 +50,8 @@ function cradleMicroscope(element, data) {
     const names = ["paper", "plate", "line", "grid", "frame", "text", "accent", "ink"];
     colours = Object.fromEntries(names.map(name => [name, style("--microscope-" + name)]));
     stores.strip = {};
-    request();
+    cancelAnimationFrame(due);
+    draw();  // at once: a canvas that has a new size is empty
   }
   function request() {
     if (!due) due = requestAnimationFrame(draw);
@@ -277,7 +278,6 @@ function cradleMicroscope(element, data) {
                               box: () => box, strip: () => strip, deepest: () => stores.strip.deepest });
     new ResizeObserver(layout).observe(stage);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", layout);
-    draw();
   })().catch(error => {
     say(`The microscope cannot show this run (${error.message}): make the report again, or use a newer browser`);
     throw error;

@@ -40,7 +40,8 @@ template <class Run> void put_state(char kind, Run&& run) {
 int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "seeds FOLDER\n"), 2;
   folder = argv[1];
-  for (const auto& [name, text] : tools::bundled_scenes()) put("scene", std::string(name), std::string(text));
+  for (const auto& [name, text] : tools::bundled_scenes())
+    put("scene", std::filesystem::path(name).filename().string(), std::string(text));
   put("list", "two", "x,v\n0,1\n1,-1\n");
   put("list", "three", "# masses too\nx,v,m\n0,1,2\r\n 1e-3 , -1, 0.5\n");
   put("set", "a",

@@ -98,6 +98,24 @@ INSTANTIATE_TEST_SUITE_P(
              "cradle run cooling --set initial.particles=500 --set run.until=100 --set output.series.points=20 "
              "--set output.snapshots=[10,100] --set output.masses=[10,100]",
              {"field", "masses"}},
+        Kind{"Blast",
+             "cradle ensemble classics/blast --replicas 2 --set initial.particles=400 --set run.until=60 "
+             "--set output.series.points=20 --set output.profiles.times=[20,60] --set output.profiles.range=[-80,80]",
+             {}},
+        Kind{"Domino", "cradle run classics/domino --set run.until=40", {}},
+        Kind{"Splash",
+             "cradle sweep classics/splash --vary initial.seed=1,2 --replicas 2 --set initial.particles=200 "
+             "--set run.until=200 --set output.series.points=20 --set output.profiles.times=[20,50,100,200] "
+             "--set output.profiles.range=[0,200]",
+             {}},
+        Kind{"CollapseNumber",
+             "cradle sweep classics/collapse_number --vary initial.particles=6,10,14 --replicas 5 "
+             "--set law.restitution=0.5",
+             {}},
+        Kind{"Universality",
+             "cradle sweep classics/universality --set initial.particles=200 --set run.until=50 "
+             "--set output.series.points=20",
+             {}},
         Kind{"Ensemble",
              "cradle ensemble fig2 --replicas 4 --set initial.particles=40 --set law.restitution=0.6 "
              "--set law.cutoff=0 --set run.until=30 --set output.snapshots=[] --set output.series.points=20 "

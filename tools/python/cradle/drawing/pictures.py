@@ -6,13 +6,14 @@ import os
 import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
-from . import (beyond, bodies, certificate, clusters, cooling, energy, ensemble, scenarios, shock, spacetime, sticky,
-               structure, sweep, trust, walls, zone)
+from . import (beyond, blast, bodies, certificate, clusters, cooling, domino, energy, ensemble, onset, scenarios, shock,
+               spacetime, splash, sticky, structure, sweep, trust, walls, zone)
 from .reading import read_result
 from .style import Units, style
 
+CLASSICS = (onset, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
-ALONE = (trust, scenarios, sweep, ensemble, walls, spacetime, bodies)
+ALONE = (trust, *CLASSICS, scenarios, sweep, ensemble, spacetime, bodies)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 
 

@@ -67,7 +67,9 @@ def label_of(point):
     """The law with its parameter."""
     parameter, symbol = {"wet": ("loss", r"E_\mathrm{loss}"), "inelastic": ("restitution", r"\epsilon")}.get(
         point.law, ("", ""))
-    return point.law + (rf", ${symbol}={point.setting('law', parameter):.4g}$" if parameter else "")
+    cutoff, exponent = point.setting("law", "cutoff", 0.0), point.setting("law", "cutoff_exponent")
+    slow = "" if exponent is None else rf", $\delta={cutoff:.4g}$, $\sigma={exponent:.4g}$"
+    return point.law + (rf", ${symbol}={point.setting('law', parameter):.4g}$" if parameter else "") + slow
 
 
 def draw_cooling(result, axes=None):

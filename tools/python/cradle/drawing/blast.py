@@ -1,0 +1,79 @@
+"""A blast in a cold gas: places of the front against (A E t^2/rho)^(1/3), and profiles over x/R beside the exact solution
+of Euler's equations for gamma = 3 (derived in core/theory/blast.hpp; arXiv:2010.15868)."""
+import numpy as np
+
+from .style import BLUE, GREY, power, shades, subplots
+
+AMPLITUDE = 1071 / 152
+
+
+def pictures(result, _theory, _units):
+    if result.text("initial", "type") != "cold" or result.text("initial", "place") == "left":
+        return []
+    if result.setting("initial", "hot", 1) < 2 or result.setting("law", "restitution") != 1:
+        return []
+    return [("blast", lambda axes=None: draw(result, axes))]
+
+
+def gas(result):
+    """E and rho, mass per length."""
+    masses = [float(mass) for mass in result.scene["initial"].get("masses", [1])]
+    return result.setting("initial", "energy"), np.mean(masses) / result.setting("initial", "spacing", 1.0)
+
+
+def solution(size=400):
+    """xi, density, velocity over that of the front and temperature over its square, from V = 1/3 to 1/2."""
+    v = 1 / 3 + np.linspace(1e-3, 1, size) ** 3 / 6
+    xi = (6 * v - 2) ** 0.4 * (2 * v) ** (-2 / 3) * (3 - 4 * v) ** (-11 / 15)
+    density = 2 * (2 - 2 * v) ** 2 * (6 * v - 2) ** 0.2 * (3 - 4 * v) ** (-11 / 5)
+    return xi, density, xi * v, (xi * v) ** 2 * (1 - v) / (3 * v - 1)
+
+
+def draw(result, axes=None):
+    energy, rho = gas(result)
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6), layout="constrained")
+    draw_front(axes[0, 0], result, energy, rho)
+    xi, density, velocity, temperature = solution()
+    spread = {round(p["time"], 9): p for p in result.profile_statistics}
+    for profile, colour in zip(result.profiles, shades(len(result.profiles))):
+        time = profile["time"]
+        front = np.cbrt(AMPLITUDE * energy * time ** 2 / rho)
+        speed = 2 * front / (3 * time)
+        place = profile["x"] / front
+        shown = np.abs(place) < 1.3
+        for ax, name, unit in ((axes[0, 1], "mass_density", rho), (axes[1, 0], "velocity", speed),
+                               (axes[1, 1], "temperature", speed ** 2)):
+            mean = profile[name] / unit
+            ax.plot(place[shown], mean[shown], color=colour, lw=0.9, label=f"$t={power(time)}$")
+            known = spread.get(round(time, 9), {}).get(name, {})
+            if isinstance(known, dict) and "sem" in known:
+                error = known["sem"] / unit
+                ax.fill_between(place[shown], (mean - error)[shown], (mean + error)[shown], color=colour, alpha=0.2, lw=0)
+    for ax, exact, sign, label, top in ((axes[0, 1], density, 1, r"density $\rho\,/\,\rho_0$", 2.4),
+                                        (axes[1, 0], velocity, -1, r"velocity $u\,/\,\dot R$", 0.75),
+                                        (axes[1, 1], temperature, 1, r"temperature $\theta\,/\,\dot R^2$", 1.5)):
+        for side in (1, -1):
+            ax.plot(side * xi, exact if side == 1 else sign * exact, "k--", lw=1, zorder=3,
+                    label="Euler, exact" if side == 1 else None)
+        ax.set(xlabel=r"$x\,/\,R(t)$", ylabel=label, xlim=(-1.3, 1.3), ylim=(-top if sign < 0 else 0, top))
+    axes[0, 1].legend(loc="upper center", ncol=2)
+    return figure
+
+
+def draw_front(ax, result, energy, rho):
+    """R^3 rho/(E t^2) from both fronts, which is A when the gas has forgotten how it began."""
+    series = result.series
+    later = series["time"] > 0
+    time = series["time"][later]
+    front = (series["front_right"][later] - series["front_left"][later]) / 2
+    value = front ** 3 * rho / (energy * time ** 2)
+    seen = np.isfinite(value) & (value < 4 * AMPLITUDE)
+    ax.semilogx(time[seen], value[seen], color=BLUE, lw=1.4, label="outermost bodies")
+    if "front_right" in result.statistics:
+        sem = np.hypot(result.statistics["front_right"]["sem"], result.statistics["front_left"]["sem"])[later] / 2
+        error = 3 * value * sem / front
+        ax.fill_between(time[seen], (value - error)[seen], (value + error)[seen], color=BLUE, alpha=0.25, lw=0)
+    ax.axhline(AMPLITUDE, color="k", ls="--", label="$A=1071/152$")
+    ax.axhspan(0.98 * AMPLITUDE, 1.02 * AMPLITUDE, color=GREY, alpha=0.3, lw=0, label=r"$\pm 2\,\%$")
+    ax.set(xlabel="time $t$", ylabel=r"$R^3\rho_0\,/\,(Et^2)$", ylim=(0, 2.5 * AMPLITUDE))
+    ax.legend(loc="upper right")

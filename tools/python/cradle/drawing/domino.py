@@ -1,0 +1,63 @@
+"""Dominoes of two masses: when each heavy body is first hit, against the closed form t = n - 1 + 1/(2c), c = m/(m + mu),
+where the ratio of the masses makes the front ballistic (derived in core/theory/domino.hpp; arXiv:2605.16125)."""
+from decimal import Decimal, getcontext
+
+import numpy as np
+
+from .style import BLUE, GREY, ORANGE, stacked
+
+
+def pictures(result, _theory, _units):
+    initial = result.scene.get("initial", {})
+    if initial.get("type") != "cold" or initial.get("place") != "left" or len(initial.get("masses", ())) != 2:
+        return []
+    if not len(result.events.get("time", ())) or order(result) == 0:
+        return []
+    return [("domino", lambda axes=None: draw(result, axes))]
+
+
+def order(result):
+    """k with m/mu = c/(1 - c), c = cos(pi/(2k + 1)); 0 where there is none."""
+    heavy, light = (float(mass) for mass in result.scene["initial"]["masses"])
+    turns = np.pi / np.arccos(heavy / (heavy + light))
+    k = int(turns // 2)
+    return k if k > 0 and abs(turns - (2 * k + 1)) < 1e-6 * turns else 0
+
+
+def first_hits(result):
+    """Heavy bodies and how much later than the closed form each is first hit, in times of a body to the next."""
+    getcontext().prec = 120
+    events, initial = result.events, result.scene["initial"]
+    heavy, light = (Decimal(str(mass)) for mass in initial["masses"])
+    step = Decimal(str(initial.get("spacing", 1))) / Decimal(str(initial.get("speed", 1)))
+    right = events["right"].astype(np.int64)
+    before = np.maximum.accumulate(np.concatenate([[0], right[:-1]]))
+    first = np.flatnonzero((right > before) & (right % 2 == 0))
+    delay = 1 - (heavy + light) / (2 * heavy)
+    late = [(Decimal(float(events["time"][e])) + Decimal(float(events["time_low"][e]))) / step
+            - (int(right[e]) - delay) for e in first]
+    return right[first], np.array([float(x) for x in late])
+
+
+def draw(result, axes=None):
+    body, late = first_hits(result)
+    figure, (top, below) = stacked(axes, 2, height=2.6)
+    events = result.events
+    some = events["right"] <= 24
+    top.plot(events["time"][some], events["right"][some], "o", ms=3, color=GREY, label="contacts")
+    shown = body <= 24
+    top.plot((body - late)[shown] - delay_of(result), body[shown], "x", ms=5, color=ORANGE, label="closed form")
+    top.set(xlabel=r"time $t\,u/a$", ylabel="body on the right")
+    top.legend(loc="upper left")
+    size = np.abs(late)
+    below.loglog(body[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=str(result.attributes.get("precision", "")))
+    below.set(xlabel="heavy body $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
+    exact = int((size == 0).sum())
+    below.set_title(f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept", loc="right", fontsize=8)
+    below.legend(loc="upper left")
+    return figure
+
+
+def delay_of(result):
+    heavy, light = (float(mass) for mass in result.scene["initial"]["masses"])
+    return 1 - (heavy + light) / (2 * heavy)

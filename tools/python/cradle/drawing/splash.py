@@ -1,0 +1,61 @@
+"""A splash: a cold gas on a half-line whose outermost body is kicked. Front and energy left at x > 0 against time, the
+exponents fitted for every point of a sweep over seeds, and those published (arXiv:2203.11097)."""
+import numpy as np
+
+from .style import BLUE, ORANGE, subplots
+
+FRONT, ENERGY = 0.62906, -0.11281
+LAST = 0.1  # exponents are fitted over the last decade of time
+
+
+def pictures(result, _theory, _units):
+    points = [p for p in (result.points or [result]) if is_splash(p)]
+    return [("splash", lambda axes=None: draw(points, axes))] if points else []
+
+
+def is_splash(point):
+    initial = point.scene.get("initial", {})
+    one_bin = len(point.profiles) > 2 and all(len(p["x"]) == 1 and p["x"][0] > 0 for p in point.profiles)
+    return initial.get("type") == "cold" and initial.get("place") == "left" and one_bin
+
+
+def energies(point):
+    """Times and M (theta + u^2)/2 of all that is in the one bin, from x = 0 on."""
+    time = np.array([p["time"] for p in point.profiles])
+    width = np.array([2 * p["x"][0] for p in point.profiles])
+    mass, speed, temperature = (np.array([p[name][0] for p in point.profiles])
+                                for name in ("mass_density", "velocity", "temperature"))
+    return time, mass * width * (temperature + speed ** 2) / 2
+
+
+def fit(time, value):
+    late = (time >= LAST * time[-1]) & (time > 0) & (value > 0)
+    return np.polyfit(np.log(time[late]), np.log(value[late]), 1)[0]
+
+
+def draw(points, axes=None):
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), layout="constrained", sharex="col", width_ratios=(1.6, 1))
+    fronts = [(p.series["time"], p.series["front_right"]) for p in points]
+    inside = [energies(p) for p in points]
+    for row, (curves, known, label, colour) in enumerate(((fronts, FRONT, "front $R$", BLUE),
+                                                          (inside, ENERGY, "energy at $x>0$", ORANGE))):
+        left, right = axes[row]
+        for time, value in curves:
+            seen = (time > 0) & np.isfinite(value) & (value > 0)
+            left.loglog(time[seen], value[seen], ".-" if row else "-", color=colour, lw=0.7, ms=3, alpha=0.6)
+        time = np.geomspace(*(curves[0][0][-1] * np.array([1e-3, 1])), 50)
+        left.plot(time, curves[0][1][-1] * (time / time[-1]) ** known, "k--", lw=1, label=f"$t^{{{known}}}$")
+        left.set_ylabel(label)
+        left.legend(loc="lower right" if row == 0 else "upper right")
+        slopes = np.array([fit(*curve) for curve in curves])
+        mean = slopes.mean()
+        error = slopes.std(ddof=1) / np.sqrt(len(slopes)) if len(slopes) > 1 else np.nan
+        right.plot(np.arange(len(slopes)), slopes, "o", ms=4, color=colour)
+        right.axhline(known, color="k", ls="--", lw=1)
+        if np.isfinite(error):
+            right.axhspan(mean - 2 * error, mean + 2 * error, color=colour, alpha=0.2, lw=0)
+        right.set_title(f"{mean:.5f} ± {error:.5f}" if np.isfinite(error) else f"{mean:.5f}", fontsize=8)
+        right.set_ylabel("exponent, last decade")
+    axes[1, 0].set_xlabel("time $t$")
+    axes[1, 1].set_xlabel("ensemble")
+    return figure

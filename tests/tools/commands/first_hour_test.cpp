@@ -61,9 +61,10 @@ TEST_F(FirstHour, NewSceneTellsOfEveryKeyThatItCouldUse) {
   EXPECT_EQ(made.out, "wrote shock.toml: change it, then `cradle run shock.toml`\n");
   const std::string text = contents(folder / "shock.toml");
   tools::Scene scene = tools::read_scene((folder / "shock.toml").string(), {});
-  for (const tools::Field& field : tools::scene_fields())
-    if (field.when->holds(scene))
-      EXPECT_NE(text.find("# " + std::string(field.doc) + " (" + facts(field) + ")\n"), std::string::npos) << field.key;
+  for (const tools::Field& field : tools::scene_fields()) {
+    if (!field.when->holds(scene)) continue;
+    EXPECT_NE(text.find("# " + std::string(field.doc) + " (" + facts(field) + ")\n"), std::string::npos) << field.key;
+  }
   EXPECT_EQ(shell("cradle run shock.toml --quiet").status, 0);
 }
 

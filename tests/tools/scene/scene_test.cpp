@@ -102,7 +102,7 @@ TEST(Scene, OnlyTheContractsKeysAreRequired) {
   EXPECT_EQ(parse(least).initial.particles, 8000U);
   EXPECT_EQ(message(with_line(2, "")), "s.toml: law.type: missing: give one of inelastic, wet, sticky");
   EXPECT_EQ(message(with_line(3, "")), "s.toml: law.restitution: missing: give a number from 0 to 1");
-  EXPECT_EQ(message(with_line(5, "")), "s.toml: initial.type: missing: give one of rows, ring, list, clusters");
+  EXPECT_EQ(message(with_line(5, "")), "s.toml: initial.type: missing: give one of rows, ring, list, clusters, cold");
   EXPECT_EQ(message(with_line(8, "")), "s.toml: run.until: missing: give a number of run.start = 0 or more");
   EXPECT_EQ(message("law.type = 'wet'\ninitial.type = 'ring'\nrun.until = 1"),
             "s.toml: law.loss: missing: give a number of 0 or more");

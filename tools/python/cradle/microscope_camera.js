@@ -182,6 +182,27 @@ function microscopeCamera(world) {
     camera.chartFor();
   };
 
+  // Whether there are far too many contacts for a chart, told quickly from positions; false where these do not tell.
+  camera.crowded = () => {
+    const { view } = camera, { e } = view.anchor;
+    const t0 = e < 0 ? world.start : world.time[e], x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e];
+    if (!world.n || !world.keepsOrder || world.ring || view.X < 1e-6 * limits.X) return false;
+    const row = (place, t) => 0.5 - (place - x0 - (view.lab + view.V) * (t - t0) - view.xi) / view.X;
+    const [lowest, highest] = microscopeVisible(world, view, row, 1), { slotTime, begin } = world;
+    const before = (body, t) => {  // slots of the body before t
+      let low = begin[body], high = begin[body + 1];
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        if (slotTime[middle] < t) low = middle + 1; else high = middle;
+      }
+      return low;
+    };
+    let count = 0;
+    for (let body = lowest; body <= highest && count < 2 * MICROSCOPE_CHART.contacts; ++body)
+      count += before(body, t0 + view.tau + view.T / 2) - before(body, t0 + view.tau - view.T / 2);
+    return count >= MICROSCOPE_CHART.contacts / 4;  // a chart is for nine times what is in sight
+  };
+
   camera.chartFor = () => {
     const { view, chart, built } = camera;
     const early = view.tau - view.T / 2, late = view.tau + view.T / 2;
@@ -195,7 +216,7 @@ function microscopeCamera(world) {
     const next = { anchor: view.anchor, early: view.tau - 1.5 * view.T, late: view.tau + 1.5 * view.T, T: view.T,
                    low: view.xi - 1.5 * view.X, high: view.xi + 1.5 * view.X, V: view.V };
     camera.built = next;
-    camera.chart = microscopeChart(world, view.anchor, next.early, next.late, next.low, next.high, next.V);
+    camera.chart = camera.crowded() ? null : microscopeChart(world, view.anchor, next.early, next.late, next.low, next.high, next.V);
   };
 
   camera.limits = limits;

@@ -6,6 +6,7 @@ import base64
 import fcntl
 import json
 import os
+import select
 import shutil
 import subprocess
 import tempfile
@@ -61,6 +62,8 @@ class Browser:
 
     def message(self):
         while b"\0" not in self.left:
+            if not select.select([self.reading], [], [], 120)[0]:
+                raise TimeoutError("no answer from the browser in two minutes")
             piece = os.read(self.reading.fileno(), 1 << 20)
             if not piece:
                 raise RuntimeError("the browser has ended")

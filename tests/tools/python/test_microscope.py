@@ -14,7 +14,6 @@ import json
 import math
 import os
 import pathlib
-import select
 import shutil
 import subprocess
 import sys
@@ -26,7 +25,9 @@ import unittest
 from fractions import Fraction
 
 SOURCES = pathlib.Path(__file__).resolve().parents[3] / "tools" / "python"
-sys.path.insert(0, str(SOURCES))
+sys.path[:0] = [str(SOURCES), os.path.dirname(__file__)]
+import browser  # noqa: E402, beside this file
+
 try:
     import h5py
     import numpy as np
@@ -34,74 +35,26 @@ try:
     MISSING = ""
 except ImportError as error:
     MISSING = f"no {error.name} (Debian: python3-h5py)"
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 PROGRAM = os.environ.get("CRADLE_PROGRAM")
 HUNDREDTH = 0.01  # of a pixel
 
 
-class Browser:
-    """A headless Chromium, spoken to in the DevTools protocol over a pipe."""
+class Microscope(browser.Browser):
+    """The browser, with the hands that a person has."""
 
     def __init__(self, width=1100, height=760):
-        self.profile = tempfile.mkdtemp()
-        to_browser, self.write_end = os.pipe()
-        self.read_end, from_browser = os.pipe()
-        command = [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
-                   "--no-first-run", "--disable-background-networking", f"--user-data-dir={self.profile}",
-                   "about:blank"]
-        # Chromium reads descriptor 3 and writes 4.
-        shell = f"exec 3<&{to_browser} 4>&{from_browser} {to_browser}<&- {from_browser}>&-; exec \"$@\""
-        if {to_browser, from_browser} & {3, 4}:
-            shell = f"exec 8<&{to_browser} 9>&{from_browser}; exec 3<&8 4>&9 8<&- 9>&-; exec \"$@\""
-        self.process = subprocess.Popen(["bash", "-c", shell, "bash", *command], pass_fds=(to_browser, from_browser),
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.number, self.buffer, self.told, self.session = 0, b"", [], None
-        target = next(target for target in self.call("Target.getTargets")["targetInfos"] if target["type"] == "page")
-        self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Network", "Log"):
-            self.call(domain + ".enable")
-        self.resolution(1, width, height)
-
-    def call(self, method, **params):
-        """The answer to a command; what the browser tells meanwhile is kept in `told`."""
-        self.number += 1
-        message = {"id": self.number, "method": method, "params": params}
-        if self.session:
-            message["sessionId"] = self.session
-        os.write(self.write_end, json.dumps(message).encode() + b"\0")
-        while True:
-            answer = self.receive()
-            if answer.get("id") == self.number:
-                if "error" in answer:
-                    raise RuntimeError(f"{method}: {answer['error']}")
-                return answer["result"]
-            self.told.append(answer)
-
-    def receive(self):
-        while b"\0" not in self.buffer:
-            if not select.select([self.read_end], [], [], 120)[0]:
-                raise TimeoutError("no answer from the browser in two minutes")
-            part = os.read(self.read_end, 1 << 20)
-            if not part:
-                raise EOFError("the browser has ended")
-            self.buffer += part
-        message, _, self.buffer = self.buffer.partition(b"\0")
-        return json.loads(message)
+        super().__init__(width, height)
 
     def run(self, script):
         """The value of an expression, awaited."""
-        answer = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
-        if "exceptionDetails" in answer:
-            raise RuntimeError(answer["exceptionDetails"].get("exception", {}).get("description", str(answer)))
-        return answer["result"].get("value")
+        return self.evaluate(script)
 
     def open(self, path, dark=False):
         self.dark(dark)
-        self.told.clear()
-        self.call("Page.navigate", url=path.as_uri())
-        self.until("document.readyState === 'complete' && Boolean(window.cradleMicroscopeTest)")
+        self.complaints.clear()
+        self.requests.clear()
+        self.load(path)
+        self.until("Boolean(window.cradleMicroscopeTest)")
         self.run("cradleMicroscopeTest.ready.then(() => 1)")
 
     def until(self, condition, seconds=60):
@@ -112,8 +65,7 @@ class Browser:
             time.sleep(0.05)
 
     def dark(self, dark):
-        self.call("Emulation.setEmulatedMedia",
-                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.emulate("dark" if dark else "light")
 
     def resolution(self, ratio, width=1100, height=760):
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
@@ -142,13 +94,6 @@ class Browser:
         time.sleep(0.4)
         image = self.call("Page.captureScreenshot", format="png")["data"]
         (pathlib.Path(folder) / f"microscope-{name}.png").write_bytes(base64.b64decode(image))
-
-    def close(self):
-        self.process.terminate()
-        self.process.wait()
-        os.close(self.write_end)
-        os.close(self.read_end)
-        shutil.rmtree(self.profile, ignore_errors=True)
 
 
 # Results
@@ -272,7 +217,7 @@ class Data(unittest.TestCase):
 
 
 @unittest.skipIf(MISSING, MISSING)
-@unittest.skipUnless(CHROMIUM, "no Chromium (Debian: chromium)")
+@unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
 class InBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -281,11 +226,11 @@ class InBrowser(unittest.TestCase):
         with collapse_result(cls.folder, cls.contacts).file as file:
             scene = json.loads(file.attrs["scene"])
             cls.page, cls.data = write_page(cls.folder, types.SimpleNamespace(file=file, scene=scene), "collapse3")
-        cls.browser = Browser()
+        cls.browser = Microscope()
 
     @classmethod
     def tearDownClass(cls):
-        cls.browser.close()
+        cls.browser.__exit__()
         shutil.rmtree(cls.folder)
 
     def setUp(self):
@@ -297,12 +242,9 @@ class InBrowser(unittest.TestCase):
 
     def assert_quiet(self):
         """No exception, no word on the console, no request but for the page itself."""
-        for event in self.browser.told:
-            self.assertNotIn(event["method"], ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"),
-                             event)
-            if event["method"] == "Network.requestWillBeSent":
-                address = event["params"]["request"]["url"]
-                self.assertTrue(address.startswith(("file:", "about:", "blob:", "data:")), address)
+        self.assertEqual(self.browser.complaints, [])
+        for address in self.browser.requests:
+            self.assertTrue(address.startswith(("file:", "about:", "blob:", "data:")), address)
 
     def view(self):
         return self.browser.run("cradleMicroscopeTest.view()")

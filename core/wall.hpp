@@ -72,8 +72,8 @@ template <Real T> class Walls {
 
   bool any() const { return has(End::left) || has(End::right); }
   bool has(End end) const { return walls_[at(end)] != nullptr; }
-  // Whether one is at this end of the gap right of a body.
-  bool left_of(std::int64_t gap) const { return gap < 0; }
+  // Whether one is at this end of the gap right of a body. (Copies of a ring's parts number bodies beyond its ends.)
+  bool left_of(std::int64_t gap) const { return gap < 0 && has(End::left); }
   bool right_of(std::int64_t gap) const { return gap == last_ && has(End::right); }
   bool beside(std::int64_t gap) const { return left_of(gap) || right_of(gap); }
 

@@ -63,7 +63,8 @@ TEST_F(FirstHour, NewSceneTellsOfEveryKeyThatItCouldUse) {
   tools::Scene scene = tools::read_scene((folder / "shock.toml").string(), {});
   for (const tools::Field& field : tools::scene_fields()) {
     if (!field.when->holds(scene)) continue;
-    EXPECT_NE(text.find("# " + std::string(field.doc) + " (" + facts(field) + ")\n"), std::string::npos) << field.key;
+    const std::string told = "# " + std::string(field.doc) + " (" + facts(field) + ")\n";
+    EXPECT_NE(text.find(told), std::string::npos) << field.key;
   }
   EXPECT_EQ(shell("cradle run shock.toml --quiet").status, 0);
 }
@@ -156,7 +157,7 @@ TEST_F(FirstHour, WithoutPythonPicturesAndReportsSayWhatIsMissing) {
 TEST_F(FirstHour, ExportWritesWhatIsThereAsAResult) {
   ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5").status, 0);
   EXPECT_EQ(shell("cradle export it.h5 --result copy.h5").out, "copy.h5\n");
-  EXPECT_EQ(contents(folder / "copy.h5"), contents(folder / "it.h5"));
+  EXPECT_EQ(shell("cradle diff it.h5 copy.h5").status, 0);
   const Printed nothing = shell("cradle export it.h5");
   EXPECT_EQ(nothing.status, 2);
   EXPECT_EQ(nothing.err, "cradle: nothing to export to: give --to DIR, --result FILE or both\n");

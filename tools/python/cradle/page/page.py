@@ -4,6 +4,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
+import importlib.util
 import json
 import os
 import re
@@ -89,12 +90,14 @@ def pictures(result: Result) -> str:
 
 def microscope(result: Result) -> str:
     """The canvas in which world lines are flown through, where the result has what it takes."""
+    if importlib.util.find_spec("cradle.microscope") is None:
+        return ""
     from .. import microscope as module
     data = module.data(result)
     if data is None:
         return ""
-    style = beside(os.path.join("..", "microscope.css"))
-    script = "\n".join(beside(os.path.join("..", name)) for name in module.SCRIPTS)
+    style, script = ("\n".join(beside(os.path.join("..", name)) for name in names)
+                     for names in (module.STYLES, module.SCRIPTS))
     content = json.dumps(data, separators=(",", ":"), sort_keys=True).replace("<", "\\u003c")
     return (f'<style>\n{style}</style>\n<div id="microscope-canvas"></div>\n'
             f'<script type="application/json" id="microscope-data">{content}</script>\n<script>\n{script}\n'

@@ -3,7 +3,8 @@
 # build the program (and its tests) is there: it looks for what is missing and installs that with apt, as root or
 # through sudo. Where that cannot be done it lists what is missing with Debian's names and stops. If nothing is missing
 # nothing is installed and no network, root or apt is needed. MPI is optional: it is installed where that needs no
-# password, and else left out. `step` runs a command and, if it fails, stops with what to do.
+# password, and else left out; so is Chromium, in which tests look at reports. `step` runs a command and, if it fails,
+# stops with what to do.
 # Tried on bare Debian 12 and Debian 13.
 
 preset=release
@@ -32,6 +33,7 @@ tests   | rapidcheck            | header rapidcheck.h          | librapidcheck-d
 tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev
 option  | MPI compiler          | command mpicc                | libopenmpi-dev
 option  | MPI launcher          | command mpirun               | openmpi-bin
+look    | Chromium              | command chromium             | chromium
 TABLE
 }
 
@@ -97,10 +99,10 @@ look_for() {
   local group what probe package
   missing=() debian=() optional=()
   while IFS='|' read -r group what probe package; do
-    if [[ $1 == program && ${group// /} == tests ]]; then continue; fi
+    if [[ $1 == program && ${group// /} =~ ^(tests|look)$ ]]; then continue; fi
     # shellcheck disable=SC2086  # a probe is a word and its argument
     if has $probe; then continue; fi
-    if [[ ${group// /} == option ]]; then
+    if [[ ${group// /} =~ ^(option|look)$ ]]; then
       optional+=("${package// /}")
       continue
     fi
@@ -145,7 +147,8 @@ install_optional() {
     echo "== installing with apt: ${optional[*]}"
     apt_get update && apt_get install -y --no-install-recommends "${optional[@]}" && return
   fi
-  echo "== not found, left out: ${optional[*]} (Debian's names; ensembles then run in one process)"
+  echo "== not found, left out: ${optional[*]} (Debian's names; without MPI ensembles
+run in one process, without Chromium tests do not look at reports)"
 }
 
 # set_up program|tests

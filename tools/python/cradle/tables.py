@@ -96,8 +96,8 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
         return getattr(ufunc, method)(*plain, **options)
 
     def __getattr__(self, name: str):
-        if name.startswith("_"):
-            raise AttributeError(name)
+        if name.startswith("_") or not hasattr(np.ndarray, name):
+            raise AttributeError(f"{name}: neither of a column nor of an array")
         return getattr(self.values, name)  # max(), mean(), sum(): what arrays can do
 
     def __len__(self) -> int:

@@ -1,0 +1,22 @@
+"""README's Python, and the manual's, as they stand: every block is run, one after the other, beside a fig2.h5."""
+import os
+import unittest
+
+import cradle
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
+
+
+def blocks(name):
+    with open(os.path.join(ROOT, name), encoding="utf-8") as file:
+        return [part.split("```", 1)[0] for part in file.read().split("```python\n")[1:]]
+
+
+class Readme(unittest.TestCase):
+    def test_every_block_runs(self):
+        cradle.run("fig2").close()
+        found = blocks("README.md") + blocks("tools/README.md")
+        self.assertGreaterEqual(len(found), 3)
+        for text in found:
+            with self.subTest(text):
+                exec(compile(text, "README.md", "exec"), {})

@@ -1,4 +1,4 @@
-"""run.py FILE: the unittest cases of a file test_*.py, or a script as it is. Status 77 where all cases were skipped."""
+"""run.py FILE: the unittest cases of a file test_*.py or *_test.py, or a script as it is. Status 77 where all cases were skipped."""
 import importlib
 import os
 import runpy
@@ -6,7 +6,7 @@ import sys
 import unittest
 
 name = os.path.basename(sys.argv[1])
-if not name.startswith("test_"):
+if not name.startswith("test_") and not name.endswith("_test.py"):
     sys.argv = sys.argv[1:]
     runpy.run_path(sys.argv[0], run_name="__main__")
     sys.exit(0)

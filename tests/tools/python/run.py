@@ -6,7 +6,7 @@ import sys
 import unittest
 
 name = os.path.basename(sys.argv[1])
-if not name.startswith("test_") and not name.endswith("_test.py"):
+if not name.startswith("test_"):
     sys.argv = sys.argv[1:]
     runpy.run_path(sys.argv[0], run_name="__main__")
     sys.exit(0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import importlib.util
 import json
 import os
 import re
@@ -90,8 +89,6 @@ def pictures(result: Result) -> str:
 
 def microscope(result: Result) -> str:
     """The canvas in which world lines are flown through, where the result has what it takes."""
-    if importlib.util.find_spec("cradle.microscope") is None:
-        return ""
     from .. import microscope as module
     data = module.data(result)
     if data is None:

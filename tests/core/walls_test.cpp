@@ -122,6 +122,27 @@ TEST(Walls, MakeTheContactsOfExactArithmetic) {
     }
 }
 
+// A wall of the bodies' own restitution at x = 0 is a mirror: N bodies beside it and 2 N in free space are the same.
+TEST(Walls, AreMirrorsOfTheBodies) {
+  using R = Rational;
+  const R eps = R(3) / 5, until = R(20);
+  const std::vector<R> x{R(1), R(5) / 2, R(3), R(5)}, v{R(-1), R(-1) / 2, R(-2), R(-3)};
+  std::vector<R> places, speeds;
+  for (std::size_t b = x.size(); b-- > 0;) places.push_back(-x[b]), speeds.push_back(-v[b]);
+  places.insert(places.end(), x.begin(), x.end()), speeds.insert(speeds.end(), v.begin(), v.end());
+  auto run = gap_run<R>(walled<R>(list(x, v), Wall<R>{R(0), R(0), eps}, {}), Inelastic<R>(eps));
+  auto mirrored = gap_run<R>(list(places, speeds), Inelastic<R>(eps));
+  std::uint64_t at_wall = 0;
+  run.advance(until, [&](const Contact<R>& c) { at_wall += c.left < 0; });
+  mirrored.advance(until);
+  EXPECT_GT(at_wall, 4U);
+  EXPECT_EQ(mirrored.counts().contacts, 2 * run.counts().contacts - at_wall);
+  const auto here = configuration_at(run, until), there = configuration_at(mirrored, until);
+  EXPECT_EQ(here.x, std::vector<R>(there.x.begin() + 4, there.x.end()));
+  EXPECT_EQ(here.v, std::vector<R>(there.v.begin() + 4, there.v.end()));
+  EXPECT_EQ(R(2) * run.energy_lost(), mirrored.energy_lost());
+}
+
 TEST(Walls, ABodyBetweenThemGoesToAndFro) {
   const auto bodies = walled<double>(list<double>({.25}, {1}), Wall<double>{0.}, Wall<double>{1.});
   auto run = gap_run<double>(bodies, Inelastic<double>(1));
@@ -146,7 +167,6 @@ TEST(Walls, APistonKicks) {
   EXPECT_EQ(now.energy_lost, 0);
 }
 
-// N bodies that hit a wall together: of restitution above the bound of independent collisions they come off again.
 TEST(Walls, InelasticBodiesAtAWallLoseWhatTheLedgerSays) {
   const auto bodies = walled<double>(rmix<double>(60), Wall<double>{-1., 0., .9}, Wall<double>{61., -.01, .8});
   auto run = gap_run<double>(bodies, Inelastic<double>(.95, 1e-3));

@@ -1,7 +1,7 @@
 # Files that the program carries: they become string literals in a source file of the build tree, written again when one
 # of them changes, comes or goes.
 #   embed_scenes(TARGET FOLDER)             bundled_scenes() of tools/scene/scene.hpp, from the TOML files of a folder
-#                                           and of those in it, FOLDER/NAME.toml as NAME and FOLDER/SUB/NAME.toml as SUB/NAME
+#                                           and those in it: FOLDER/NAME.toml as NAME, FOLDER/SUB/NAME.toml as SUB/NAME
 #   embed_package(TARGET FOLDER FUNCTION HEADER)  std::span<const EmbeddedFile> FUNCTION() of tools/HEADER, from what a
 #                                           Python package in FOLDER is made of, by its names from the folder above
 # The same file is the script that writes them:

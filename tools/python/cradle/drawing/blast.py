@@ -1,5 +1,5 @@
-"""A blast in a cold gas: places of the front against (A E t^2/rho)^(1/3), and profiles over x/R beside the exact solution
-of Euler's equations for gamma = 3 (derived in core/theory/blast.hpp; arXiv:2010.15868)."""
+"""A blast in a cold gas: places of the front against (A E t^2/rho)^(1/3), and profiles over x/R beside the exact
+solution of Euler's equations for gamma = 3 (derived in core/theory/blast.hpp; arXiv:2010.15868)."""
 import numpy as np
 
 from .style import BLUE, GREY, power, shades, subplots
@@ -48,7 +48,8 @@ def draw(result, axes=None):
             known = spread.get(round(time, 9), {}).get(name, {})
             if isinstance(known, dict) and "sem" in known:
                 error = known["sem"] / unit
-                ax.fill_between(place[shown], (mean - error)[shown], (mean + error)[shown], color=colour, alpha=0.2, lw=0)
+                ax.fill_between(place[shown], (mean - error)[shown], (mean + error)[shown], color=colour, alpha=0.2,
+                                lw=0)
     for ax, exact, sign, label, top in ((axes[0, 1], density, 1, r"density $\rho\,/\,\rho_0$", 2.4),
                                         (axes[1, 0], velocity, -1, r"velocity $u\,/\,\dot R$", 0.75),
                                         (axes[1, 1], temperature, 1, r"temperature $\theta\,/\,\dot R^2$", 1.5)):

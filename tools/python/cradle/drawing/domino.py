@@ -1,5 +1,5 @@
-"""Dominoes of two masses: when each heavy body is first hit, against the closed form t = n - 1 + 1/(2c), c = m/(m + mu),
-where the ratio of the masses makes the front ballistic (derived in core/theory/domino.hpp; arXiv:2605.16125)."""
+"""Dominoes of two masses: when each heavy body is first hit, against the closed form t = n - 1 + 1/(2c), c =
+m/(m + mu), where the ratio of the masses makes the front ballistic (derived in core/theory/domino.hpp; arXiv:2605.16125)."""
 from decimal import Decimal, getcontext
 
 import numpy as np
@@ -50,7 +50,8 @@ def draw(result, axes=None):
     top.set(xlabel=r"time $t\,u/a$", ylabel="body on the right")
     top.legend(loc="upper left")
     size = np.abs(late)
-    below.loglog(body[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=str(result.attributes.get("precision", "")))
+    precision = str(result.attributes.get("precision", ""))
+    below.loglog(body[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=precision)
     below.set(xlabel="heavy body $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
     exact = int((size == 0).sum())
     below.set_title(f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept", loc="right", fontsize=8)

@@ -1,5 +1,5 @@
-"""How many bodies collapse: the part of the replicas of a ring that does, against their number, for each restitution of a
-sweep; and where half of them do, beside McNamara and Young's estimate and the exact number of bodies in free space."""
+"""How many bodies collapse: the part of the replicas of a ring that does, against their number, for each restitution of
+a sweep; and where half of them do, beside McNamara and Young's estimate and the exact number of bodies in free space."""
 import numpy as np
 
 from .scenarios import wilson

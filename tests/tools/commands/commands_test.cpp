@@ -60,7 +60,9 @@ TEST_F(Commands, ScenesAreListedAndPrinted) {
     EXPECT_EQ(text.status, 0) << text.err;
   }
   EXPECT_EQ(shell("cradle scenes nothing").status, 2);
-  EXPECT_NE(list.out.find("collapse_times  collapse times of"), std::string::npos) << list.out;
+  const auto line = list.out.find("\ncollapse_times  "),
+             title = list.out.find("  collapse times of the inelastic shock\n");
+  EXPECT_TRUE(line < title && list.out.find('\n', line + 1) > title) << list.out;
 }
 
 TEST_F(Commands, CheckTellsEffectiveValuesAndCost) {

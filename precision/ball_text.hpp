@@ -76,8 +76,12 @@ template <class M> Enclosure<double> in_doubles(const Ball<M>& x) {
   Enclosure<double> ends{to_double(x.middle()), to_double(x.middle())};
   const auto radius = static_cast<double>(x.radius());
   ends.low -= radius, ends.high += radius;
-  while (ends.low > -none && !(Ball<M>(ends.low) < x)) ends.low = std::nextafter(ends.low, -none);
-  while (ends.high < none && !(x < Ball<M>(ends.high))) ends.high = std::nextafter(ends.high, none);
+  // About 0 the next double may be nearer than the order of balls can tell: steps double, so that few will do.
+  constexpr double least = std::numeric_limits<double>::denorm_min();
+  for (double by = least; ends.low > -none && !(Ball<M>(ends.low) < x); by += by)
+    ends.low = std::nextafter(ends.low - by, -none);
+  for (double by = least; ends.high < none && !(x < Ball<M>(ends.high)); by += by)
+    ends.high = std::nextafter(ends.high + by, none);
   return ends;
 }
 

@@ -233,6 +233,18 @@ TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
   }
 }
 
+// A body at rest has the velocity 0, exactly: to find doubles on either side of it must not take for ever.
+TYPED_TEST(Balls, DoublesAreFoundAroundZero) {
+  using N = Ball<TypeParam>;
+  for (const N& x : {N(0), N(TypeParam(0), 5e-324), N(TypeParam(0), 1e-300), N(TypeParam(0), 1e-30)}) {
+    const auto doubles = in_doubles(x);
+    EXPECT_LT(doubles.low, 0);
+    EXPECT_GT(doubles.high, 0);
+    EXPECT_TRUE(N(doubles.low) < x && x < N(doubles.high));
+    EXPECT_LT(doubles.high - doubles.low, 3 * static_cast<double>(x.radius()) + 1e-280);
+  }
+}
+
 TYPED_TEST(Balls, LiteralsAreEnclosed) {
   using B = Ball<TypeParam>;
   for (const auto& [text, numerator, denominator] :

@@ -104,6 +104,13 @@ const std::string scenes[] = {
     dry(list, between_walls),
     dry(rows, "coordinates = 'absolute'\n" + between_walls),
     dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3\n" + between_walls),
+    dry("initial = { type = 'rows', particles = 80, perturbation = 0.05, masses = [1, 4.2, 2] }\n", ""),
+    dry("initial = { type = 'ring', particles = 30, perturbation = 0.1, masses = [1, 4.2] }\n", ""),
+    dry("initial = { type = 'cold', particles = 300, hot = 6, energy = 8, masses = [1, 2], perturbation = 0.2 }\n", ""),
+    dry("initial = { type = 'cold', particles = 300, place = 'left', speed = 2, masses = [4.2, 1] }\n",
+        "coordinates = 'absolute'"),
+    "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-2, cutoff_exponent = 3.5 }\n" + rows + looked_at +
+        to_100,
 };
 
 Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }
@@ -184,7 +191,7 @@ TEST_P(Resume, EndsInTheSameBytesWhereverItIsCut) {
   }
 }
 
-// 20 scenes, six types, four cuts each with another one behind it.
+// 25 scenes, six types, four cuts each with another one behind it.
 INSTANTIATE_TEST_SUITE_P(
     Runs, Resume,
     testing::Values(case_of("DryRows", 0), case_of("DryRowsPositions", 1), case_of("ContactTime", 2),
@@ -193,7 +200,9 @@ INSTANTIATE_TEST_SUITE_P(
                     case_of("GeneralRows", 9), case_of("WetRows", 10), case_of("WetRing", 11),
                     case_of("WetGeneralRows", 12), case_of("StickyContacts", 13), case_of("Sticky", 14),
                     case_of("StickyRing", 15), case_of("Collapse", 16), case_of("Walls", 17),
-                    case_of("WallsPositions", 18), case_of("WallsContactTime", 19),
+                    case_of("WallsPositions", 18), case_of("WallsContactTime", 19), case_of("PatternRows", 20),
+                    case_of("PatternRing", 21), case_of("Cold", 22), case_of("ColdPositions", 23),
+                    case_of("SpeedDependent", 24),
                     Case{"LargeWalls", large_walls.c_str(), {"double", "double-double"}, 2, 3},
                     Case{"LargeDry", large_dry.c_str(), {"double", "double-double"}, 1, 1},
                     Case{"LargeDryFromTwoThreadsToOne", large_dry.c_str(), {"double", "long double", "mpfr"}, 2, 1},

@@ -72,7 +72,10 @@ template <class T> std::optional<T> collapse_onset_bodies(const T& restitution) 
 
 /// McNamara and Young's estimate of how many bodies it takes to stop one that runs into them, N =
 /// ln(4/(1-eps))/(1-eps): of a gas between walls that collapses, N_c = 36.9, 87.6, 599 at eps = .9, .95, .99. eps < 1.
-inline double cushion_bodies(double restitution) { return std::log(4 / (1 - restitution)) / (1 - restitution); }
+inline double cushion_bodies(double restitution) {
+  using std::log;
+  return log(4 / (1 - restitution)) / (1 - restitution);
+}
 
 /// Where a collapse stands just after contact j = `contact`, counted from 0.
 template <class T> struct CollapseContact {

@@ -63,7 +63,7 @@ int execute(const std::vector<std::string>& words, bool silent) {
 // would take longer than some pictures.
 std::string find_python() {
   std::vector<std::string> candidates{"python3", "/usr/bin/python3"};
-  if (const char* chosen = std::getenv("CRADLE_PYTHON")) candidates.insert(candidates.begin(), chosen);
+  if (const char* chosen = std::getenv("CRADLE_PYTHON")) candidates = {chosen};
   const std::string probe = "import sys; from importlib.util import find_spec; "
                             "sys.exit(not all(map(find_spec, ('h5py', 'matplotlib', 'numpy'))))";
   for (const auto& python : candidates)

@@ -166,17 +166,22 @@ template <Real T> class SceneRun {
     const std::uint64_t contacts = engine_.counts().contacts;
     const auto active = static_cast<std::uint64_t>(std::max<BodyIndex>(engine_.collided_bodies(), 16));
     const std::uint64_t between = contacts_between_guards / (time < plan_.stops.back() ? 1 : 2);
-    if (contacts >= guarded_at_ + between * active && active <= most_guarded) look_at_all(time);
+    const bool put_off = guarded_at_ > contacts && time < plan_.stops.back();
+    const bool due = guarded_at_ > contacts ? contact_before_ < engine_.last_contact_time()  // the end is looked at
+                                            : contacts >= guarded_at_ + between * active;
+    if (!put_off && due && active <= most_guarded) look_at_all(time);
   }
   void look_at_all(const T& time) {
     const std::uint64_t contacts = engine_.counts().contacts;
     const Account<T>& account = engine_.account();
+    const Configuration<T> now = engine_.configuration(time);
     const GuardLook<T> look =
-        guarded(engine_.configuration(time), *bodies_, contacts, T(energy_ - engine_.energy_lost()),
-                T(time - number<T>(scene_.run.start)), engine_.last_contact_time(), contact_before_,
-                account.order_lost + account.unresolved == 0);
+        guarded(now, *bodies_, contacts, T(energy_ - engine_.energy_lost()), T(time - number<T>(scene_.run.start)),
+                engine_.last_contact_time(), contact_before_, account.order_lost + account.unresolved == 0);
     if (look.broken) throw Error(guard_message(told(*look.broken, time)), Exit::lost);
-    guarded_at_ = contacts;
+    // A look goes over all bodies that have merged, too: the next one, but for that at the end, is put off by as many.
+    const auto merged = static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size();
+    guarded_at_ = contacts + contacts_between_guards * merged;
     contact_before_ = engine_.last_contact_time();
     seen_.gap_min = to_double(look.gap_min);
     seen_.closure_gap = to_double(look.closure_gap);

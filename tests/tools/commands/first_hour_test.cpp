@@ -143,12 +143,9 @@ TEST_F(FirstHour, ReportOfWhatIsNoResultIsOneMessage) {
 }
 
 TEST_F(FirstHour, WithoutPythonPicturesAndReportsSayWhatIsMissing) {
-  ASSERT_EQ(
-      shell("cradle run fig5 --quiet -o it.h5 && mkdir bare && ln -s \"$(command -v cradle)\" bare/cradle").status, 0);
-  if (std::filesystem::exists("/usr/bin/python3"))
-    GTEST_SKIP() << "there is /usr/bin/python3, which is looked at by its name";
+  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5").status, 0);
   for (const auto* command : {"plot", "report"}) {
-    const Printed run = shell(std::string("PATH=$PWD/bare cradle ") + command + " it.h5");
+    const Printed run = shell(std::string("CRADLE_PYTHON=$PWD/none cradle ") + command + " it.h5");
     EXPECT_EQ(run.status, 4);
     EXPECT_NE(run.err.find("no Python with h5py and matplotlib"), std::string::npos) << run.err;
   }

@@ -6,6 +6,7 @@ import os
 import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
+from ..files import whole
 from . import (beyond, blast, bodies, certificate, clusters, cooling, domino, energy, ensemble, onset, scenarios, shock,
                spacetime, splash, sticky, structure, sweep, trust, walls, zone)
 from .reading import read_result
@@ -70,16 +71,10 @@ def make(result, base, extension, theory):
 def save(figure, path):
     """Written beside its place and renamed, so that no half a picture is left; no time stamps."""
     extension = os.path.splitext(path)[1][1:].lower()
-    part = f"{path}.part"
     try:
-        write(figure, part, extension)
-        os.replace(part, path)
-    except OSError as error:
-        raise Error(f"{path} cannot be written ({error.strerror or error}): choose another place with -o",
-                    BAD_FILE) from None
+        with whole(path) as part:
+            write(figure, part, extension)
     finally:
-        if os.path.exists(part):
-            os.remove(part)
         plt.close(figure)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from builtins import open as builtins_open  # hidden by ours
 
-from ..errors import BAD_FILE, Error
+from ..files import whole
 from ..result import Result, open, without_part
 
 
@@ -20,15 +20,6 @@ def report(result: Result | str | os.PathLike, output: str | os.PathLike | None 
     output = os.fspath(output) if output is not None else os.path.splitext(without_part(opened.path))[0] + ".html"
     from .page import page  # matplotlib, late
     text = page(opened)
-    part = output + ".part"
-    try:
-        with builtins_open(part, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        os.replace(part, output)
-    except OSError as error:
-        raise Error(f"{output} cannot be written ({error.strerror or error}): choose another place with -o",
-                    BAD_FILE) from None
-    finally:
-        if os.path.exists(part):
-            os.remove(part)
+    with whole(output) as part, builtins_open(part, "w", encoding="utf-8", newline="\n") as file:
+        file.write(text)
     return output

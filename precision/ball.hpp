@@ -175,7 +175,6 @@ template <class M> class Ball {
     explicit Share(const Ball& c)
         : c_(c), size_(c.size()), rest_((Ball(1) - c).size()),
           rounding_(up((Of::sum_error() + Of::product_error() * 2) * size_)) {}
-    const Ball& value() const { return c_; }
 
    private:
     friend Ball;

@@ -155,6 +155,14 @@ TEST_F(Plots, WhatCannotBeDrawnIsOneMessage) {
   }
 }
 
+TEST_F(Plots, AreMadeWhereNobodyReadsTheirNames) {
+  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5").status, 0);
+  const Printed plot = shell("(sleep 0.5; cradle plot it.h5; echo $? >status) | true; cat status");
+  EXPECT_EQ(plot.out, "0\n");
+  EXPECT_EQ(plot.err, "");
+  EXPECT_TRUE(std::filesystem::exists(folder / "it.png"));
+}
+
 TEST_F(Plots, LeaveNoFilesBehind) {
   ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5 && mkdir temporary").status, 0);
   EXPECT_EQ(shell("TMPDIR=$PWD/temporary cradle plot it.h5").status, 0);

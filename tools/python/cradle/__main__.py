@@ -34,6 +34,9 @@ def main(words: list[str] | None = None) -> int:
     try:
         options = parser.parse_args(words)
         (plot if options.command == "plot" else report)(options)
+        sys.stdout.flush()
+    except BrokenPipeError:  # nobody reads the names of what was made: `cradle plot FILE | head -1`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except Error as error:
         print(f"{parser.prog}: {error.message}", file=sys.stderr)
         return error.status

@@ -25,6 +25,7 @@ struct Column {
   std::size_t width = 1;       // numbers in a row
   bool names = false;          // they name something, bodies for instance: a mean of them would mean nothing
   std::uint64_t left_out = 0;  // rows of the file that were not read, between the first and the last one
+  std::size_t longest = 0;     // bytes, of texts among these
 
   std::size_t rows() const {
     return std::visit([](const auto& v) { return v.size(); }, values) / width + left_out;

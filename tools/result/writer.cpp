@@ -78,7 +78,7 @@ Handle make_column(hid_t group, const Column& column, std::uint64_t rows, Placed
                   no_room);
   };
   if (const auto* texts = std::get_if<Texts>(&column.values))
-    return make(hdf5::text_type(longest(*texts), column.name));
+    return make(hdf5::text_type(std::max(longest(*texts), column.longest), column.name));
   return make(std::holds_alternative<std::vector<double>>(column.values) ? H5T_IEEE_F64LE : H5T_STD_U64LE);
 }
 

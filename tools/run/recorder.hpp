@@ -3,11 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <iterator>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "cradle/core/observe/clusters.hpp"
@@ -20,48 +23,103 @@
 
 namespace cradle::tools {
 
-/// Columns of a table, or some of them.
-using Columns = std::vector<Numbers>;
-template <class... Values> Columns columns(Values&&... values) {
-  Columns all;
+template <Real T> T none() { return std::numeric_limits<T>::quiet_NaN(); }
+
+/// Columns of a table, or some of them: numbers of the run's type, and others, which have no more digits than a double.
+template <Real T> using Columns = std::vector<std::variant<std::vector<T>, Numbers>>;
+template <Real T, class... Values> Columns<T> columns(Values&&... values) {
+  Columns<T> all;
   (all.emplace_back(std::forward<Values>(values)), ...);
   return all;
 }
 
-inline void append(Columns& all, Columns&& more) { std::move(more.begin(), more.end(), std::back_inserter(all)); }
+template <class Item> void append(std::vector<Item>& all, std::vector<Item>&& more) {
+  std::move(more.begin(), more.end(), std::back_inserter(all));
+}
+
+/// Below which those numbers stand that a double does not hold; of doubles there are none.
+template <Real T> inline constexpr std::string_view exact_part = std::same_as<T, double> ? "" : exact_folder;
+
+/// Rows of a table as the run has them.
+template <Real T> struct Recorded {
+  Group table;  // without numbers
+  Columns<T> columns;
+  std::vector<std::pair<std::string, T>> attributes;
+};
+
+/// The same numbers as decimals, all digits of them, below /exact.
+template <Real T> Group as_decimals(const Recorded<T>& rows) {
+  Group exact{std::string(exact_part<T>) + rows.table.name, {}, {}};
+  for (const auto& [name, value] : rows.attributes) exact.attributes.emplace_back(name, to_text(value));
+  for (std::size_t k = 0; k < rows.columns.size(); ++k) {
+    const auto* values = std::get_if<std::vector<T>>(&rows.columns[k]);
+    if (values == nullptr) continue;
+    std::vector<std::string> texts;
+    for (const T& value : *values) texts.push_back(to_text(value));
+    Column& column = exact.columns.emplace_back(rows.table.columns.at(k));
+    column.values = std::move(texts);
+  }
+  return exact;
+}
+
+/// Rounded to float64: here, at the last moment.
+template <Real T> Group as_doubles(Recorded<T>&& rows) {
+  const auto rounded = [](auto& values) -> Numbers {
+    if constexpr (std::same_as<std::decay_t<decltype(values)>, Numbers> || std::same_as<T, double>) {
+      return std::move(values);
+    } else {
+      std::vector<double> doubles;
+      doubles.reserve(values.size());
+      // Types have NaN of either sign.
+      for (const T& value : values) doubles.push_back(value == value ? to_double(value) : none<double>());
+      return doubles;
+    }
+  };
+  std::vector<Numbers> all;
+  for (auto& column : rows.columns) all.push_back(std::visit(rounded, column));
+  for (const auto& [name, value] : rows.attributes) rows.table.attributes.emplace_back(name, to_double(value));
+  return filled(std::move(rows.table), std::move(all));
+}
+
+/// What a result holds of them; `exact`: with decimals where the type has more digits than a double.
+template <Real T> std::vector<Group> tables(Recorded<T>&& rows, bool exact) {
+  std::vector<Group> all;
+  if (!exact_part<T>.empty() && exact) all.push_back(as_decimals(rows));
+  all.push_back(as_doubles(std::move(rows)));
+  return all;
+}
 
 /// What was in it, which is empty afterwards.
 template <class Numbers> Numbers taken(Numbers& numbers) { return std::exchange(numbers, Numbers()); }
 
-/// The time series. Numbers are rounded to float64 here, at the last moment.
+/// The time series.
 template <Real T> class SeriesRecorder {
  public:
   void add(const Sample<T>& s) {
-    time_.push_back(to_double(s.time));
-    energy_.push_back(to_double(s.energy));
-    lost_.push_back(to_double(s.energy_lost));
-    given_.push_back(to_double(s.given));
+    time_.push_back(s.time);
+    energy_.push_back(s.energy);
+    lost_.push_back(s.energy_lost);
+    given_.push_back(s.given);
     contacts_.push_back(s.counts.contacts);
     below_.push_back(s.counts.below_cutoff);
     merges_.push_back(s.counts.merges);
     bodies_.push_back(static_cast<std::uint64_t>(s.bodies));
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    left_.push_back(s.front_left ? to_double(*s.front_left) : none);
-    right_.push_back(s.front_right ? to_double(*s.front_right) : none);
+    left_.push_back(s.front_left.value_or(none<T>()));
+    right_.push_back(s.front_right.value_or(none<T>()));
   }
 
   std::size_t rows() const { return time_.size(); }
   /// The rows since it was called last, of the columns that every series has; `walled`: and what walls have given.
-  Columns take(bool walled) {
-    Columns all = columns(taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_), taken(merges_),
-                          taken(bodies_), taken(left_), taken(right_));
-    std::vector<double> given = taken(given_);
-    if (walled) append(all, columns(std::move(given)));
+  Columns<T> take(bool walled) {
+    Columns<T> all = columns<T>(taken(time_), taken(energy_), taken(lost_), taken(contacts_), taken(below_),
+                                taken(merges_), taken(bodies_), taken(left_), taken(right_));
+    std::vector<T> given = taken(given_);
+    if (walled) append(all, columns<T>(std::move(given)));
     return all;
   }
 
  private:
-  std::vector<double> time_, energy_, lost_, given_, left_, right_;
+  std::vector<T> time_, energy_, lost_, given_, left_, right_;
   std::vector<std::uint64_t> contacts_, below_, merges_, bodies_;
 };
 
@@ -70,23 +128,24 @@ template <Real T> class CloudRecorder {
  public:
   void add(const Cloud<T>& cloud) {
     for (const auto* cluster : {&cloud.left, &cloud.right}) {
-      mass_.push_back(*cluster ? to_double((*cluster)->mass) : none);
-      x_.push_back(*cluster ? to_double((*cluster)->x) : none);
-      v_.push_back(*cluster ? to_double((*cluster)->v) : none);
+      mass_.push_back(*cluster ? (*cluster)->mass : none<T>());
+      x_.push_back(*cluster ? (*cluster)->x : none<T>());
+      v_.push_back(*cluster ? (*cluster)->v : none<T>());
       index_.push_back(*cluster ? static_cast<std::uint64_t>((*cluster)->index) : no_body);
     }
-    cloud_mass_.push_back(to_double(cloud.mass));
-    cloud_width_.push_back(to_double(cloud.width));
+    cloud_mass_.push_back(cloud.mass);
+    cloud_width_.push_back(cloud.width);
   }
 
   /// Of the series, and the table below it, since they were called last.
-  Columns take() { return columns(taken(cloud_mass_), taken(cloud_width_)); }
-  Group take_heaviest() { return filled(heaviest_table(), taken(mass_), taken(x_), taken(v_), taken(index_)); }
+  Columns<T> take() { return columns<T>(taken(cloud_mass_), taken(cloud_width_)); }
+  Recorded<T> take_heaviest() {
+    return {heaviest_table(), columns<T>(taken(mass_), taken(x_), taken(v_), taken(index_)), {}};
+  }
 
  private:
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr std::uint64_t no_body = std::numeric_limits<std::uint64_t>::max();
-  std::vector<double> mass_, x_, v_, cloud_mass_, cloud_width_;
+  std::vector<T> mass_, x_, v_, cloud_mass_, cloud_width_;
   std::vector<std::uint64_t> index_;
 };
 
@@ -104,14 +163,15 @@ template <Real T> class CoreRecorder {
     gap_.push_back(core.gap);
     StickyGas<T> sticky(bodies_, start_);  // anew: what it gives must not depend on when it was looked at before
     sticky.advance(c.time);
-    excess_.push_back(to_double(T(energy - (bodies_->kinetic_energy() - sticky.energy_lost()))));
+    excess_.push_back(T(energy - (bodies_->kinetic_energy() - sticky.energy_lost())));
   }
-  Columns take() { return columns(taken(mass_), taken(width_), taken(window_), taken(gap_), taken(excess_)); }
+  Columns<T> take() { return columns<T>(taken(mass_), taken(width_), taken(window_), taken(gap_), taken(excess_)); }
 
  private:
   std::shared_ptr<const cradle::Bodies<T>> bodies_;
   T start_;
-  std::vector<double> mass_, width_, window_, gap_, excess_;
+  std::vector<double> mass_, width_, window_, gap_;
+  std::vector<T> excess_;
 };
 
 /// How many clusters there are of which mass.
@@ -125,26 +185,18 @@ template <Real T> Group masses_table(const Configuration<T>& c, const T& least_m
   return table;
 }
 
-template <Real T> std::vector<double> as_doubles(const std::vector<T>& values) {
-  std::vector<double> doubles;
-  doubles.reserve(values.size());
-  for (const T& value : values) doubles.push_back(to_double(value));
-  return doubles;
-}
-
 /// All active bodies at a time.
-template <Real T> Group snapshot_table(const Configuration<T>& c, const std::string& name) {
+template <Real T> Recorded<T> snapshot_rows(const Configuration<T>& c, const std::string& name) {
   std::vector<std::uint64_t> index(c.index.begin(), c.index.end());
-  Group table = filled(snapshot_table(name), as_doubles(c.x), as_doubles(c.v), as_doubles(c.m), std::move(index),
-                       as_doubles(c.gap), as_doubles(c.closing_speed));
-  table.attributes = {{"time", to_double(c.time)}};
-  if (c.x.size() < 2) return table;
+  Recorded<T> rows{
+      snapshot_table(name), columns<T>(c.x, c.v, c.m, std::move(index), c.gap, c.closing_speed), {{"time", c.time}}};
+  if (c.x.size() < 2) return rows;
   const GapStatistics<T> gaps = gap_statistics(c);
-  table.attributes.emplace_back("gap_min", to_double(gaps.least));
-  table.attributes.emplace_back("gap_median", to_double(gaps.median));
-  if (c.closure_gap) table.attributes.emplace_back("closure_gap", to_double(*c.closure_gap));
-  if (c.closure_speed) table.attributes.emplace_back("closure_speed", to_double(*c.closure_speed));
-  return table;
+  rows.attributes.emplace_back("gap_min", gaps.least);
+  rows.attributes.emplace_back("gap_median", gaps.median);
+  if (c.closure_gap) rows.attributes.emplace_back("closure_gap", *c.closure_gap);
+  if (c.closure_speed) rows.attributes.emplace_back("closure_speed", *c.closure_speed);
+  return rows;
 }
 
 inline Group profile_table(Profile&& p, const std::string& name) {
@@ -162,17 +214,18 @@ template <Real T> class EventRecorder {
     left_.push_back(static_cast<std::uint64_t>(c.left));
     right_.push_back(static_cast<std::uint64_t>(c.right));
     const T time = c.time.value();
-    high_.push_back(to_double(time));
+    time_.push_back(time);
     low_.push_back(to_double(difference(c.time, Pair<T>{T(rounded(time)), T(0)})));
-    interval_.push_back(to_double(c.interval));
-    speed_.push_back(to_double(c.closing_speed));
+    interval_.push_back(c.interval);
+    speed_.push_back(c.closing_speed);
   }
 
   std::size_t rows() const { return left_.size(); }
   /// The rows since it was called last.
-  Group take() {
-    return filled(events_table(), taken(left_), taken(right_), taken(high_), taken(low_), taken(interval_),
-                  taken(speed_));
+  Recorded<T> take() {
+    return {events_table(),
+            columns<T>(taken(left_), taken(right_), taken(time_), taken(low_), taken(interval_), taken(speed_)),
+            {}};
   }
 
  private:
@@ -185,7 +238,8 @@ template <Real T> class EventRecorder {
   }
 
   std::vector<std::uint64_t> left_, right_;
-  std::vector<double> high_, low_, interval_, speed_;
+  std::vector<T> time_, interval_, speed_;
+  std::vector<double> low_;
 };
 
 }  // namespace cradle::tools

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <type_traits>
 
 #include "cradle/tools/result/result_bytes.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/run/tables.hpp"
 #include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {
@@ -57,6 +59,8 @@ void keep_ends(Column& column) {
         const auto width = static_cast<std::ptrdiff_t>(column.width);
         const auto rows = static_cast<std::ptrdiff_t>(values.size()) / width;
         if (rows <= 2) return;
+        if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<std::string>>)
+          for (const std::string& text : values) column.longest = std::max(column.longest, text.size());
         values.erase(values.begin() + width, values.end() - width);
         column.left_out += static_cast<std::uint64_t>(rows - 2);
       },
@@ -95,14 +99,17 @@ void GrowingTables::add(Group&& rows) {
 }
 
 std::vector<Group> GrowingTables::in_order() && {
-  const auto rank = [](const Group& table) {
+  const auto rank = [](const Group& table) -> std::ptrdiff_t {
     static const std::array<std::string, 9> order{"series", "series/heaviest", "snapshots/", "profiles/", "masses/",
                                                   "zone",   "scenario",        "events",     "collapse"};
-    return std::find_if(order.begin(), order.end(),
-                        [&](const std::string& name) {
-                          return name.ends_with('/') ? table.name.starts_with(name) : table.name == name;
-                        }) -
-           order.begin();
+    std::string_view of = table.name;
+    const bool exact = of.starts_with(exact_folder);
+    if (exact) of.remove_prefix(exact_folder.size());
+    const auto place =
+        std::find_if(order.begin(), order.end(),
+                     [&](const std::string& name) { return name.ends_with('/') ? of.starts_with(name) : of == name; }) -
+        order.begin();
+    return place + (exact ? std::ptrdiff_t{order.size()} + 1 : 0);
   };
   std::stable_sort(tables_.begin(), tables_.end(), [&](const Group& a, const Group& b) { return rank(a) < rank(b); });
   return std::move(tables_);

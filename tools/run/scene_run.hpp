@@ -39,17 +39,16 @@ template <Real T> class SceneRun {
 
   RunOutcome operator()() {
     if (options_.interrupt != nullptr) options_.interrupt->heed();
-    if (scene_.output.events) observer_ = [this](const Contact<T>& c) { record_contact(c); };
+    const auto also = [this](const Observer<T>& look) {
+      observer_ = observer_ ? [before = observer_, look](const Contact<T>& c) { before(c), look(c); } : look;
+    };
+    if (scene_.output.events) also([this](const Contact<T>& c) { record_contact(c); });
     if (scene_.output.scenario)
-      observer_ = [this, record = std::move(observer_)](const Contact<T>& c) {
-        if (record) record(c);
+      also([this](const Contact<T>& c) {
         scenario_.contact(c.left, c.right, to_double(T(c.time.value())), engine_.counts().merges);
-      };
+      });
     if (options_.witness != nullptr)
-      observer_ = [this, record = std::move(observer_)](const Contact<T>& c) {
-        if (record) record(c);
-        options_.witness->contact(c.left, c.right, to_double(T(c.time.value())));
-      };
+      also([this](const Contact<T>& c) { options_.witness->contact(c.left, c.right, to_double(T(c.time.value()))); });
     if (options_.keeper != nullptr && options_.keeper->loaded_from() != nullptr) load(*options_.keeper->loaded_from());
     Status status = Status::reached;
     for (const T& stop : plan_.stops) {
@@ -75,9 +74,6 @@ template <Real T> class SceneRun {
   void loaded() const { require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone"); }
 
  private:
-  static bool holds(const std::vector<T>& times, const T& time) {
-    return std::binary_search(times.begin(), times.end(), time);
-  }
   // ---- what is kept while the run goes on
 
   void load(StateReader& from) {
@@ -98,7 +94,7 @@ template <Real T> class SceneRun {
     guarded_at_ = guarded_at;
     progress_.go_on_from(to_double(engine_.last_contact_time()), engine_.counts().contacts);
   }
-  std::string shape() const { return engine_.shape() + state_shape<SceneRun>(); }
+  std::string shape() const { return engine_.shape() + state_shape<SceneRun>() + std::string(exact_part<T>); }
 
   // Rows that have been recorded go to the keeper, and now and then the state, which then follows from nothing else.
   void keep(const T& time, bool state_too) {
@@ -117,12 +113,16 @@ template <Real T> class SceneRun {
         state_too);
   }
   void put_rows() {
-    Columns series = series_.take(scene_.walls.any());
+    Columns<T> series = series_.take(scene_.walls.any());
     if (has_clouds(scene_)) append(series, cloud_.take());
     if (core_) append(series, core_->take());
-    put(filled(series_table(scene_), std::move(series)));
+    put(Recorded<T>{series_table(scene_), std::move(series), {}});
     if (has_clouds(scene_)) put(cloud_.take_heaviest());
     if (scene_.output.events) put(events_.take());
+  }
+  // Decimals only where somebody keeps them: ensembles and proofs have no use for them.
+  void put(Recorded<T>&& rows) {
+    for (Group& table : tables(std::move(rows), options_.keeper != nullptr)) put(std::move(table));
   }
   void put(Group&& rows) {
     if (options_.keeper != nullptr)
@@ -148,7 +148,7 @@ template <Real T> class SceneRun {
                masses = holds(plan_.masses, time), zone = holds(plan_.zone, time);
     if (snapshot || profiled || masses || zone) {
       const Configuration<T> now = engine_.configuration(time);
-      if (snapshot) put(snapshot_table(now, numbered("snapshots", snapshots_)));
+      if (snapshot) put(snapshot_rows(now, numbered("snapshots", snapshots_)));
       if (profiled) record_profile(now, time);
       if (masses) put(masses_table(now, bodies_->least_mass(), numbered("masses", masses_)));
       if (zone) zone_->add(now, *bodies_, T(time - number<T>(scene_.run.start)));
@@ -225,7 +225,7 @@ template <Real T> class SceneRun {
   void record_end(const T& time) {
     if (options_.witness != nullptr) tell_witness(time, true);
     record_sample(time);
-    put(snapshot_table(engine_.configuration(time), numbered("snapshots", snapshots_)));
+    put(snapshot_rows(engine_.configuration(time), numbered("snapshots", snapshots_)));
   }
 
   static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
@@ -261,7 +261,7 @@ template <Real T> class SceneRun {
     std::vector<Group>& groups = end.result.groups;
     groups = std::move(tables_).in_order();
     // There also where there was no contact.
-    if (scene_.output.events && options_.keeper != nullptr) groups.push_back(events_.take());
+    if (scene_.output.events && options_.keeper != nullptr) append(groups, tables(events_.take(), true));
     if (zone_) {
       const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single bodies
       const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);

@@ -18,6 +18,10 @@ template <Real T> struct Schedule {
   std::vector<T> stops;                                      // their union
 };
 
+template <Real T> bool holds(const std::vector<T>& times, const T& time) {
+  return std::binary_search(times.begin(), times.end(), time);
+}
+
 /// Logarithmic spacing starts at this share of the run: six points per decade would need 36 for it.
 inline constexpr double first_log_share = 1e-6;
 

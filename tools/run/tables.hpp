@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,9 @@
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
+
+/// Below which the numbers of types wider than double stand as decimals.
+inline constexpr std::string_view exact_folder = "exact/";
 
 struct RunTables {
   std::vector<Group> series;         // "series" and what stands below it

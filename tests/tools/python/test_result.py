@@ -125,6 +125,19 @@ class Others(unittest.TestCase):
                 self.assertEqual(mpmath.nstr(low.mpmath()[0], 390), mpmath.nstr(mpmath.mpf(str(low[0])), 390))
             self.assertEqual(mpmath.mp.dps, 15)
 
+    def test_wide_runs_have_all_their_digits(self):
+        # Bodies that meet at t = 1 and part with a tenth of their closing speed, .2.
+        scene = {"law": {"type": "inelastic", "restitution": 0.1},
+                 "initial": {"type": "list", "x": [0, 2], "v": [1, -1]},
+                 "run": {"until": 4, "precision": "mpfr", "digits": 80},
+                 "output": {"series": {"points": 2}, "snapshots": [4], "events": True}}
+        with cradle.run(scene, output="wide.h5") as result:
+            self.assertLess(abs(result.exact.series.energy.fractions()[1] - Fraction(1, 100)), Fraction(1, 10 ** 79))
+            gap = result.exact.snapshots["0000"].gap.fractions()[0]
+            self.assertLess(abs(gap - Fraction(6, 10)), Fraction(1, 10 ** 79))
+            self.assertGreater(abs(Fraction(result.snapshots.at(4).gap[0]) - Fraction(6, 10)), Fraction(1, 10 ** 20))
+            self.assertEqual(float(result.exact.events.closing_speed.fractions()[0]), 2)
+
     def test_trust_has_a_table_for_each_precision(self):
         with cradle.open(small.trust()) as result:
             self.assertEqual(result.kind, "trust")

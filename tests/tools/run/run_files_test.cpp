@@ -166,13 +166,16 @@ TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   for (std::uint64_t k = 0; k < 50; ++k) {
     std::vector<double> time, place;
     std::vector<std::uint64_t> contacts;
+    std::vector<std::string> digits;  // longest in the middle
     for (std::uint64_t j = 0; j <= k; ++j) {
       time.push_back(static_cast<double>(100 * k + j));
       contacts.push_back(j);
+      digits.emplace_back(k == 20 ? 40 - j : j % 7, '3');
       place.insert(place.end(), {1. / static_cast<double>(j + 1), static_cast<double>(k)});
     }
     pieces.push_back({"series", {}, {{"time", "t", "a time", time}, {"contacts", "1", "so many", contacts}}});
     pieces.push_back({"series/heaviest", {}, {{"x", "l", "two", place, 2}}});
+    pieces.push_back({"exact/series", {}, {{"time", "t", "a time", digits}}});
   }
   pieces.push_back({"snapshots/0000", {{"time", 3.}}, {{"x", "l", "none", std::vector<double>()}}});
   GrowingTables all, ends(Reading::ends);
@@ -196,7 +199,7 @@ TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   EXPECT_TRUE(contents(folder / "pieces.h5") == contents(folder / "otherwise.h5")) << "bytes follow the clock";
   write_result(whole, path("whole.h5"));
   const Result one = read_result(path("pieces.h5")), other = read_result(path("whole.h5"));
-  ASSERT_EQ(one.groups.size(), 3U);
+  ASSERT_EQ(one.groups.size(), 4U);
   for (std::size_t k = 0; k < one.groups.size(); ++k) {
     EXPECT_EQ(one.groups[k].name, other.groups[k].name);
     ASSERT_EQ(one.groups[k].columns.size(), other.groups[k].columns.size());

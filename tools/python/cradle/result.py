@@ -241,7 +241,8 @@ class Result:
 
     @cached_property
     def exact(self) -> Table:
-        """What a proof knows as decimal texts: `result.exact.series.energy_low.fractions()`."""
+        """Decimal texts: all digits of a run in a type wider than double, `result.exact.series.energy.mpmath()`, and
+        what a proof knows, `result.exact.series.energy_low.fractions()`."""
         return self._table("exact")
 
     def table(self, name: str) -> Table:

@@ -1,0 +1,172 @@
+// The decimals below /exact, for each type that is wider than double: they are all digits of the numbers whose doubles
+// stand in the tables, and these are known to the digits of the type.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <gtest/gtest.h>
+
+#include "cradle/precision/text.hpp"
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/run/run.hpp"
+
+namespace exact_test {
+
+using namespace cradle::tools;
+using Rational = boost::multiprecision::cpp_rational;
+using Texts = std::vector<std::string>;
+
+// A decimal as it stands.
+Rational exactly(const std::string& text) {
+  const auto e = text.find('e'), dot = text.find('.');
+  std::string digits = text.substr(0, e);
+  int power = e == text.npos ? 0 : std::stoi(text.substr(e + 1));
+  if (dot < digits.size()) {
+    power -= static_cast<int>(digits.size() - dot - 1);
+    digits.erase(dot, 1);
+  }
+  const bool negative = digits.front() == '-';
+  digits.erase(0, digits.find_first_not_of("-+0"));  // a leading 0 would be octal
+  const Rational whole(boost::multiprecision::cpp_int(digits.empty() ? "0" : digits)),
+      tens(pow(boost::multiprecision::cpp_int(10), static_cast<unsigned>(std::abs(power))));
+  return (negative ? -1 : 1) * (power < 0 ? Rational(whole / tens) : Rational(whole * tens));
+}
+
+// Of the type's number, which may be a tie between doubles, the decimal is off by a little.
+bool rounds_to(const std::string& text, double value) {
+  const double size = std::abs(value), ulp = std::nextafter(size, 1e300) - size;
+  return abs(Rational(exactly(text) - Rational(value))) <= Rational(ulp) * Rational(513, 1024);
+}
+
+const std::map<std::string, int>& digits_of_types() {
+  static const std::map<std::string, int> types{
+      {"long double", 18}, {"double-double", 30}, {"float128", 32}, {"cpp_bin_float", 49}, {"mpfr", 100}};
+  return types;
+}
+
+class Exact : public cradle::tests::ProgramTest {
+ protected:
+  // Nothing where this build has not that type.
+  std::vector<Result> run(const std::string& scene, const std::string& precision) {
+    std::string text = scene + "[run]\nuntil = 5\nprecision = \"" + precision + "\"\n";
+    if (precision == "mpfr") text += "digits = 100\n";
+    const Scene parsed = parse_scene(text, "scene.toml");
+    try {
+      check_built(parsed);
+    } catch (const Error&) {
+      return {};
+    }
+    write("scene.toml", text);
+    const auto ran = shell("cradle run scene.toml --quiet -o a.h5");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return {read_result((folder / "a.h5").string())};
+  }
+};
+
+class ExactIn : public Exact, public testing::WithParamInterface<const char*> {};
+
+const std::string everything = "output = { series.points = 9, snapshots = [2, 4], events = true, core = true }\n";
+const std::string shock = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\ninitial = { type = 'rows', "
+                          "particles = 20, perturbation = 0.1 }\n" +
+                          everything,
+                  wet = "law = { type = 'wet', loss = 0.03 }\ninitial = { type = 'rows', particles = 20, "
+                        "perturbation = 0.1 }\n" +
+                        everything;
+
+TEST_P(ExactIn, DoublesAreTheDecimalsRounded) {
+  for (const std::string& scene : {shock, wet}) {
+    SCOPED_TRACE(scene);
+    const std::vector<Result> results = run(scene, GetParam());
+    if (results.empty()) return;
+    std::size_t exact_groups = 0;
+    for (const Group& exact : results[0].groups) {
+      if (!exact.name.starts_with("exact/")) continue;
+      ++exact_groups;
+      const Group* rounded = results[0].find(exact.name.substr(6));
+      ASSERT_NE(rounded, nullptr) << exact.name;
+      std::size_t more = 0;  // than the double says
+      for (const Column& column : exact.columns) {
+        SCOPED_TRACE(exact.name + "/" + column.name);
+        const auto twin = std::find_if(rounded->columns.begin(), rounded->columns.end(),
+                                       [&](const Column& other) { return other.name == column.name; });
+        ASSERT_NE(twin, rounded->columns.end());
+        EXPECT_EQ(column.unit, twin->unit);
+        EXPECT_EQ(column.width, twin->width);
+        const auto& texts = std::get<Texts>(column.values);
+        const auto& doubles = std::get<std::vector<double>>(twin->values);
+        ASSERT_EQ(texts.size(), doubles.size());
+        for (std::size_t k = 0; k < texts.size(); ++k) {
+          if (texts[k] == "nan") {
+            EXPECT_TRUE(std::isnan(doubles[k]));
+            continue;
+          }
+          EXPECT_TRUE(rounds_to(texts[k], doubles[k])) << texts[k] << " " << doubles[k];
+          more += texts[k] != cradle::to_text(doubles[k]);
+        }
+      }
+      EXPECT_GT(more, 0U) << exact.name;
+    }
+    // series, two snapshots, events; wet: the heaviest clusters too
+    EXPECT_EQ(exact_groups, scene == wet ? 5U : 4U);
+    const Group* snapshot = results[0].find("exact/snapshots/0001");
+    ASSERT_NE(snapshot, nullptr);
+    EXPECT_EQ(attribute<std::string>(snapshot->attributes, "time", "a.h5"), "4");
+    Texts names;
+    for (const Column& column : snapshot->columns) names.push_back(column.name);
+    EXPECT_EQ(names, (Texts{"x", "v", "m", "gap", "closing_speed"}));
+  }
+}
+
+// Two bodies at 0 and 1 with 0.3 and -0.4 and a restitution of 0.7 meet at t = 1/.7 and part with .49: their velocities
+// are then -.05 -+ .245.
+TEST_P(ExactIn, DecimalsHaveTheDigitsOfTheType) {
+  const std::vector<Result> results =
+      run("law = { type = 'inelastic', restitution = 0.7 }\ninitial = { type = 'list', x = [0, 1], v = [0.3, -0.4] }\n"
+          "output = { series.points = 2, snapshots = [5], events = true }\n",
+          GetParam());
+  if (results.empty()) return;
+  const auto near = [&](const char* group, const char* name, std::size_t row, const Rational& expected) {
+    SCOPED_TRACE(std::string(group) + "/" + name);
+    const Group* table = results[0].find(group);
+    ASSERT_NE(table, nullptr);
+    for (const Column& column : table->columns) {
+      if (column.name != name) continue;
+      const Rational off = exactly(std::get<Texts>(column.values).at(row)) - expected;
+      EXPECT_LT(abs(off), Rational(1, pow(boost::multiprecision::cpp_int(10),
+                                          static_cast<unsigned>(digits_of_types().at(GetParam())))))
+          << std::get<Texts>(column.values).at(row);
+      return;
+    }
+    ADD_FAILURE() << "no such column";
+  };
+  const Rational left(-295, 1000), right(195, 1000), met(10, 7), place(3, 7);
+  near("exact/series", "time", 1, 5);
+  near("exact/series", "energy", 1, (left * left + right * right) / 2);
+  near("exact/series", "front_left", 1, place + left * (5 - met));
+  near("exact/snapshots/0000", "x", 1, place + right * (5 - met));
+  near("exact/snapshots/0000", "v", 0, left);
+  near("exact/snapshots/0000", "gap", 0, Rational(49, 100) * (5 - met));
+  near("exact/events", "time", 0, met);
+  near("exact/events", "closing_speed", 0, Rational(7, 10));
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, ExactIn,
+                         testing::Values("long double", "double-double", "float128", "cpp_bin_float", "mpfr"),
+                         [](const auto& type) {
+                           std::string name = type.param;
+                           std::erase_if(name, [](char c) { return c == ' ' || c == '-' || c == '_'; });
+                           return name;
+                         });
+
+TEST_F(Exact, DoublesNeedNone) {
+  const std::vector<Result> results = run(shock, "double");
+  ASSERT_EQ(results.size(), 1U);
+  for (const Group& group : results[0].groups) EXPECT_FALSE(group.name.starts_with("exact")) << group.name;
+}
+
+}  // namespace exact_test

@@ -73,14 +73,10 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
     const auto* taken = std::get_if<std::vector<double>>(&table.columns.front().values);
     return taken != nullptr && !taken->empty() && !std::binary_search(planned.begin(), planned.end(), taken->back());
   };
-  const auto of_series = [](std::string_view name) {
-    if (name.starts_with(exact_folder)) name.remove_prefix(exact_folder.size());
-    return name.starts_with("series");
-  };
   if (std::any_of(groups.begin(), groups.end(), one_too_many))
     for (Group& table : groups)
       for (Column& column : table.columns)
-        if (of_series(table.name))
+        if (rounded_name(table.name).starts_with("series"))
           std::visit([&](auto& v) { v.resize(v.size() - std::min(v.size(), column.width)); }, column.values);
   return groups;
 }

@@ -102,9 +102,8 @@ std::vector<Group> GrowingTables::in_order() && {
   const auto rank = [](const Group& table) -> std::ptrdiff_t {
     static const std::array<std::string, 9> order{"series", "series/heaviest", "snapshots/", "profiles/", "masses/",
                                                   "zone",   "scenario",        "events",     "collapse"};
-    std::string_view of = table.name;
-    const bool exact = of.starts_with(exact_folder);
-    if (exact) of.remove_prefix(exact_folder.size());
+    const std::string_view of = rounded_name(table.name);
+    const bool exact = of != table.name;
     const auto place =
         std::find_if(order.begin(), order.end(),
                      [&](const std::string& name) { return name.ends_with('/') ? of.starts_with(name) : of == name; }) -

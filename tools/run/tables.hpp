@@ -18,6 +18,10 @@ namespace cradle::tools {
 
 /// Below which the numbers of types wider than double stand as decimals.
 inline constexpr std::string_view exact_folder = "exact/";
+/// The name of the table whose decimals a table is; of others their own.
+inline std::string_view rounded_name(std::string_view name) {
+  return name.starts_with(exact_folder) ? name.substr(exact_folder.size()) : name;
+}
 
 struct RunTables {
   std::vector<Group> series;         // "series" and what stands below it

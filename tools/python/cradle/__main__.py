@@ -51,8 +51,8 @@ def plot(options) -> None:
     from cradle.drawing.reading import Theory
     from cradle.plot import saved
     out = options.out or os.path.splitext(options.file)[0] + ".png"
-    for path in saved(cradle.open(options.file), out, Theory(options.theory) if options.theory else Theory()):
-        print(path)
+    paths = saved(cradle.open(options.file), out, Theory(options.theory) if options.theory else Theory())
+    print(*paths, sep="\n")  # at the end: all are made before anybody can stop reading
 
 
 def report(options) -> None:

@@ -114,7 +114,7 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
         return [[Fraction(v) for v in row] if np.ndim(row) else Fraction(row) for row in self.values.tolist()]
 
     def mpmath(self, digits: int | None = None) -> list:
-        """The same as mpmath.mpf (NaN is one), with so many digits, by default those of the longest text (17 for float64).
+        """The same as mpmath.mpf, with so many digits, by default those of the longest text (17 for float64).
 
         They are rounded when they are made; mpmath rounds sums and products to mpmath.mp.dps, which stays as it is.
         """

@@ -21,7 +21,7 @@ Exit resume(const ResumeArguments& options) {
   std::string file = options.file;
   for (const std::string_view ending : {".part", ".checkpoint"})
     if (file.ends_with(ending)) file.resize(file.size() - ending.size());
-  if (options.until && !canonical_decimal(*options.until))
+  if (options.until && !plain_decimal(*options.until))
     throw Error({"--until", 0, ""}, "not a number", *options.until, "give a time");
   if (JournalReader::kind(RunFiles::journal_of(file)) == JournalOf::replicas) {
     if (options.until)

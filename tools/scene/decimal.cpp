@@ -97,6 +97,10 @@ std::optional<std::string> canonical_decimal(std::string_view written) {
   return result.append(text);
 }
 
+std::optional<std::string> plain_decimal(std::string_view text) {
+  return text.find('_') == text.npos ? canonical_decimal(text) : std::nullopt;
+}
+
 std::strong_ordering compare_decimals(std::string_view a_text, std::string_view b_text) {
   const Parts a = parts_of(a_text);
   const Parts b = parts_of(b_text);

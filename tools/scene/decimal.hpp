@@ -19,6 +19,9 @@ namespace cradle::tools {
 /// ("+1_000" gives "1000", ".5" gives "0.5"); else as written. Nothing where `text` is not one (inf and nan included).
 std::optional<std::string> canonical_decimal(std::string_view text);
 
+/// The same where TOML has no say, in CSV and on the command line: without underscores.
+std::optional<std::string> plain_decimal(std::string_view text);
+
 /// Exact comparison of two canonical decimals.
 std::strong_ordering compare_decimals(std::string_view a, std::string_view b);
 

@@ -67,7 +67,7 @@ class Reader {
   Place place(const char* column) const { return {file_, line_, column}; }
 
   std::string number(std::string_view cell, const char* column) const {
-    auto literal = canonical_decimal(cell);
+    auto literal = plain_decimal(cell);
     if (!literal)
       throw Error(place(column), is_not_finite(cell) ? "not finite" : "not a decimal number",
                   fmt::format("\"{}\"", cell), "give a decimal number");

@@ -13,9 +13,10 @@ namespace {
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view literal_characters = "0123456789abcdefABCDEFinoxINOX_+-.";
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 bool is_decimal_character(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0 ||
-         std::string_view("+-_.eE").find(c) != std::string_view::npos;
+  return is_digit(c) || std::string_view("+-_.eE").find(c) != std::string_view::npos;
 }
 
 // End of the comment or string that begins at `i`; `i` where none does.
@@ -35,6 +36,26 @@ std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
     }
   }
   return text.size();
+}
+
+// Whether it is a decimal number in TOML: digits, underscores between them, on both sides of a point, no zero in front.
+bool is_toml_number(std::string_view text) {
+  const auto digits = [&text] {
+    std::size_t n = 0;
+    while (n < text.size() && (is_digit(text[n]) || (text[n] == '_' && n > 0 && text[n - 1] != '_'))) ++n;
+    const bool good = n > 0 && text[n - 1] != '_';
+    text.remove_prefix(n);
+    return good;
+  };
+  const auto skip = [&text](std::string_view any_of) {
+    const bool there = !text.empty() && any_of.find(text.front()) != any_of.npos;
+    text.remove_prefix(there ? 1 : 0);
+    return there;
+  };
+  skip("+-");
+  const bool leading_zero = text.size() > 1 && text[0] == '0' && (text[1] == '_' || is_digit(text[1]));
+  return !leading_zero && digits() && (!skip(".") || digits()) && (!skip("eE") || (skip("+-"), digits())) &&
+         text.empty();
 }
 
 // toml++ refuses literals beyond int64, the range of double or its buffer: it gets those in quotation marks, which
@@ -64,8 +85,7 @@ std::string quote_wide_literals(std::string_view text) {
                           (after == text.npos || std::string_view(",]}#\r\n").find(text[after]) != text.npos);
     const auto exponent = literal.find_first_of("eE");
     const bool wide = literal.size() > 15 || (exponent != literal.npos && literal.size() - exponent > 3);
-    const bool number = std::any_of(literal.begin(), literal.end(), [](char c) { return c >= '0' && c <= '9'; });
-    if (is_value && wide && number) {
+    if (is_value && wide && is_toml_number(literal)) {
       result.append("\x22").append(literal).append("\x22");
     } else {
       result += literal;

@@ -27,7 +27,7 @@ std::string message(const std::string& text) {
 
 TEST(ListFile, AcceptsWhatEditorsWrite) {
   const std::string digits(60, '3');
-  const ListedBodies bodies = parse("\xEF\xBB\xBF# bodies\r\n\r\n x , v , m \r\n-1e-400, +1_0 ,2\r\n# middle\r\n0." +
+  const ListedBodies bodies = parse("\xEF\xBB\xBF# bodies\r\n\r\n x , v , m \r\n-1e-400, +10 ,2\r\n# middle\r\n0." +
                                     digits + ",-0.5,1e-7\r\n\r\n");
   ASSERT_EQ(bodies.x.size(), 2U);
   EXPECT_EQ(bodies.x[0], "-1e-400");
@@ -61,6 +61,18 @@ TEST(ListFile, OrderIsDecidedExactly) {
             "b.csv:4: x: coincident bodies (found 1." + zeros + " after 1): give the bodies in order of increasing x");
   EXPECT_EQ(message("x,v\n-1,0\n-1e1,0\n"),
             "b.csv:3: x: not increasing (found -1e1 after -1): give the bodies in order of increasing x");
+}
+
+// What other readers take for some number or other.
+TEST(ListFile, NumbersAreDecimalsAndNothingElse) {
+  for (const char* cell :
+       {"1_0", "0x10", "0x1p3", "1 0", "1e 5", "--5", "+-5",   "-+5", "1e+-5",     "1e5_0",
+        "1d5", "1e",   "e5",    ".",   "",     "5f",  "1'000", "١",   "1\xC2\xA0", "1e0000000000000000005"})
+    EXPECT_EQ(message(std::string("x,v\n0,") + cell + "\n"),
+              std::string("b.csv:2: v: not a decimal number (found \"") + cell + "\"): give a decimal number");
+  for (const char* cell : {"inf", "-Infinity", "NaN", "+nan"})
+    EXPECT_EQ(message(std::string("x,v\n0,") + cell + "\n"),
+              std::string("b.csv:2: v: not finite (found \"") + cell + "\"): give a decimal number");
 }
 
 TEST(ListFile, NumbersAreSuchThatThePrecisionHoldsThem) {

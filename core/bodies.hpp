@@ -66,7 +66,8 @@ template <Real T> class Bodies {
   // What can be lost of it, the energy in the frame of the centre of mass, as well as the type tells the two apart.
   virtual T energy_to_lose() const {
     const T energy = kinetic_energy(), least = energy * T(std::numeric_limits<T>::epsilon()) * T(1024);
-    const T own = energy - momentum() * momentum() / (T(2) * total_mass());
+    const T p = momentum(), square = p * p, twice = T(2) * total_mass();
+    const T own = energy - (is_finite(square) ? T(square / twice) : T(p * (p / twice)));
     return own < least ? least : own;
   }
   // Bounds the square of any speed to come, by a factor 2: energy is never gained, but from walls.
@@ -83,12 +84,25 @@ template <Real T> void require_finite(const T& x, const std::string& what) {
                                 "): give a number within the range of the scalar type");
 }
 
+// Throws std::invalid_argument where mass, momentum or energy of all bodies together is beyond the type's range.
+template <Real T> void require_sums(const Bodies<T>& bodies) {
+  const auto require = [](const T& sum, const char* what) {
+    if (!is_finite(sum))
+      throw std::invalid_argument(std::string(what) + " of all bodies overflows (found no finite number): give "
+                                                      "smaller masses or speeds, or a scalar type of a wider range");
+  };
+  require(bodies.total_mass(), "the mass");
+  require(bodies.momentum(), "the momentum");
+  require(bodies.kinetic_energy(), "the kinetic energy");
+}
+
 // What every chain asks of its bodies. Throws std::invalid_argument.
 template <Real T> void require_bodies(const Bodies<T>& bodies, const T& start) {
   if (bodies.count() < 1)
     throw std::invalid_argument("a chain without bodies (" + std::to_string(bodies.count()) +
                                 "): give it at least one");
   require_finite(start, "time of the start");
+  require_sums(bodies);
 }
 
 }  // namespace cradle

@@ -107,7 +107,7 @@ template <Real T> class Cold final : public Bodies<T> {
   T velocity(BodyIndex body) const override { return hot_.velocity(body); }
   T position(BodyIndex body) const override {
     const BodyIndex half_steps = left_ ? 2 * body : 2 * (body - hot_.first) + 1 - hot_.count();
-    return T(half_steps * (displacement_unit / 2) + displacement_(body)) * unit_;
+    return place_of<T>(half_steps, displacement_(body)) * unit_;
   }
   T gap(BodyIndex body) const override {
     return T(displacement_unit + displacement_(body + 1) - displacement_(body)) * unit_;

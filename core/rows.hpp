@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -33,6 +34,14 @@ template <Real T> struct CentralBody {
 using Displacement = std::function<std::int64_t(BodyIndex)>;
 
 inline constexpr std::int64_t displacement_unit = std::int64_t{1} << 28;
+
+// The place of a body that is so many half spacings from the origin, and displaced, in units of 2^-28 of the spacing.
+// 64 bits hold it up to 3e10 spacings; beyond, both factors are exact in any type of 53 bits, and so is the product.
+template <Real T> T place_of(std::int64_t half_steps, std::int64_t displacement) {
+  constexpr std::int64_t half = displacement_unit / 2, most = std::numeric_limits<std::int64_t>::max() / half - 1;
+  if (-most <= half_steps && half_steps <= most) return T(half_steps * half + displacement);
+  return T(half_steps) * T(half) + T(displacement);
+}
 
 // Uniform in plus/minus `perturbation` spacings, 0 <= perturbation < 1/2.
 inline Displacement uniform_displacement(double perturbation, std::uint64_t seed, std::uint64_t replica) {
@@ -88,7 +97,7 @@ template <Real T> class Rows final : public Bodies<T> {
 
   T position(BodyIndex body) const override {
     if (is_centre(body)) return T(0);
-    return body < left_.count ? T(T(place(body)) * left_unit_) : T(T(place(body)) * right_unit_);
+    return place_of<T>(half_steps(body), displacement_(body)) * (body < left_.count ? left_unit_ : right_unit_);
   }
 
   T gap(BodyIndex body) const override {
@@ -98,7 +107,8 @@ template <Real T> class Rows final : public Bodies<T> {
       return T(units) * (from_left ? left_unit_ : right_unit_);
     }
     // Across the centre both distances from the origin are positive: their sum does not cancel.
-    if (left_.spacing == right_.spacing && !centre_) return T(place(body + 1) - place(body)) * left_unit_;
+    if (left_.spacing == right_.spacing && !centre_)
+      return T(displacement_unit + displacement_(body + 1) - displacement_(body)) * left_unit_;
     return position(body + 1) - position(body);
   }
 
@@ -128,11 +138,9 @@ template <Real T> class Rows final : public Bodies<T> {
   T right_mass() const { return masses_.total(count() - right_.count, count()); }
   bool is_centre(BodyIndex body) const { return centre_ && body == left_.count; }
 
-  // Position in units of 2^-28 of the row's spacing.
-  std::int64_t place(BodyIndex body) const {
-    const BodyIndex half_steps =
-        body < left_.count ? 2 * (body - left_.count) + 1 : 2 * (body - left_.count - (centre_ ? 1 : 0)) + 1;
-    return half_steps * (displacement_unit / 2) + displacement_(body);
+  // From the origin.
+  BodyIndex half_steps(BodyIndex body) const {
+    return body < left_.count ? 2 * (body - left_.count) + 1 : 2 * (body - left_.count - (centre_ ? 1 : 0)) + 1;
   }
 
   Row<T> left_, right_;

@@ -32,14 +32,17 @@ template <Real T> class StickyGas {
  public:
   using Scalar = T;
 
-  StickyGas(std::shared_ptr<const Bodies<T>> bodies, const T& start)
-      : bodies_(std::move(bodies)), ring_(bodies_->on_ring()), start_(start), time_(start),
+  // Throws std::invalid_argument as chains do. Of the policy, what the caller wants done on the way.
+  StickyGas(std::shared_ptr<const Bodies<T>> bodies, const T& start, Policy<T> policy = {})
+      : bodies_(std::move(bodies)), policy_(std::move(policy)), ring_(bodies_->on_ring()), start_(start), time_(start),
         lost_(bodies_->energy_to_lose()) {
+    require_bodies(*bodies_, start);
     const GapRange moving = ring_ ? GapRange{0, bodies_->count() - 2} : bodies_->gaps_in_motion();
     for (BodyIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }
 
-  // Goes on to the state at a time not before the last one: all that meet up to then have merged.
+  // Goes on to the state at a time not before the last one: all that meet up to then have merged. Interrupted, it goes
+  // on where the same time is asked for again, to the same bits: what is held is in order already.
   Status advance(const T& time) {
     time_ = time;
     elapsed_ = time - start_;
@@ -47,8 +50,7 @@ template <Real T> class StickyGas {
     if (ring_) cut();
     std::deque<Lump> before = std::exchange(held_, {});
     for (const Lump& lump : before) push_right(lump);
-    if (!ring_) take_in_rows();
-    return Status::reached;
+    return ring_ ? Status::reached : take_in_rows();
   }
 
   const Counts& counts() const { return counts_; }
@@ -178,14 +180,17 @@ template <Real T> class StickyGas {
     return {from, to};
   }
 
-  void take_in_rows() {
+  Status take_in_rows() {
+    std::uint64_t taken = 0;
     for (bool more = true; more;) {
+      if (++taken % (1 << 14) == 0 && policy_.ask(time_, counts_) != Status::reached) return Status::interrupted;
       more = false;
       const BodyIndex left = held_.front().first - 1, right = held_.back().first + held_.back().count;
       const bool reaches_left = held_.front().count > 1 && left >= 0;
       if (held_.back().count > 1 && right < bodies_->count()) push_right(single(right)), more = true;
       if (reaches_left) push_left(single(left)), more = true;
     }
+    return Status::reached;
   }
 
   // Turns the ring so that it is cut between two clusters.
@@ -214,6 +219,7 @@ template <Real T> class StickyGas {
   }
 
   std::shared_ptr<const Bodies<T>> bodies_;
+  Policy<T> policy_;
   bool ring_;
   T start_, time_, elapsed_{0};
   std::deque<Lump> held_;  // from left to right

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <exception>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -57,10 +59,16 @@ inline double mean(double sum, double weight) {
 
 }  // namespace detail
 
+// What leaves a walk over bodies that its caller has stopped: what it was to fill is not whole.
+struct WalkStopped : std::exception {
+  const char* what() const noexcept override { return "a walk over bodies was stopped"; }
+};
+
 // Calls visit(x, v, m) for every body in a range, also for those that the fronts have not reached: they fly as at the
-// start.
+// start. These can be more than anybody waits for: `stopped` is called now and then, and true throws WalkStopped.
 template <Real T, class Visit>
-void for_each_body(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range, Visit visit) {
+void for_each_body(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range, Visit visit,
+                   const std::function<bool()>& stopped = {}) {
   for (std::size_t j = 0; j < c.x.size(); ++j) {
     const double x = to_double(c.x[j]);
     if (x >= range.from && x < range.to) visit(x, to_double(c.v[j]), to_double(c.m[j]));
@@ -69,14 +77,27 @@ void for_each_body(const Configuration<T>& c, const Bodies<T>& bodies, const T& 
     return to_double(T(bodies.position(body) + bodies.velocity(body) * elapsed));
   };
   const auto visit_free = [&](BodyIndex body, double x) {
-    if (x >= range.from && x < range.to) visit(x, to_double(bodies.velocity(body)), to_double(bodies.mass(body)));
+    constexpr BodyIndex between_stops = 1 << 14;
+    if (body % between_stops == 0 && stopped && stopped()) throw WalkStopped();
+    visit(x, to_double(bodies.velocity(body)), to_double(bodies.mass(body)));
   };
-  for (BodyIndex body = c.from - 1; body >= 0; --body) {
+  // They fly in order: the first of [low, high) that is not to the left of a place.
+  const auto first_from = [&](BodyIndex low, BodyIndex high, double place) {
+    while (low < high) {
+      const BodyIndex middle = low + (high - low) / 2;
+      if (fly(middle) < place)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low;
+  };
+  for (BodyIndex body = first_from(0, c.from, range.to) - 1; body >= 0; --body) {
     const double x = fly(body);
     if (x < range.from) break;
     visit_free(body, x);
   }
-  for (BodyIndex body = c.to + 1; body < bodies.count(); ++body) {
+  for (BodyIndex body = first_from(c.to + 1, bodies.count(), range.from); body < bodies.count(); ++body) {
     const double x = fly(body);
     if (x >= range.to) break;
     visit_free(body, x);
@@ -90,16 +111,17 @@ inline std::vector<double> bin_centres(BinRange range, std::size_t bins) {
   return x;
 }
 
-// Throws std::invalid_argument for an empty range or no bins.
+// Throws std::invalid_argument for a range that is empty or not finite, or no bins; WalkStopped, see for_each_body.
 template <Real T>
-Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range,
-                std::size_t bins) {
-  if (!(range.from < range.to) || bins == 0)
+Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range, std::size_t bins,
+                const std::function<bool()>& stopped = {}) {
+  if (!(range.from < range.to) || !std::isfinite(range.to - range.from) || bins == 0)
     throw std::invalid_argument("profile without extent: give a range that increases and at least one bin");
   const double width = (range.to - range.from) / static_cast<double>(bins);
   std::vector<detail::Bin> sums(bins);
-  for_each_body(c, bodies, elapsed, range,
-                [&](double x, double v, double m) { sums[detail::bin_at((x - range.from) / width, bins)].add(v, m); });
+  for_each_body(
+      c, bodies, elapsed, range,
+      [&](double x, double v, double m) { sums[detail::bin_at((x - range.from) / width, bins)].add(v, m); }, stopped);
 
   Profile p;
   p.time = to_double(c.time);

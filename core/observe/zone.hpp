@@ -41,17 +41,23 @@ class ZoneAverage {
       throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 16 samples at least");
   }
 
-  template <Real T> void add(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed) {
-    Part& part = part_.at(taken_ * parts / samples_);
-    ++taken_;
-    ++part.samples;
-    for_each_body(c, bodies, elapsed, {-reach_, reach_}, [&](double x, double v, double m) {
+  // As it was where the walk is stopped (WalkStopped, see for_each_body).
+  template <Real T>
+  void add(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed,
+           const std::function<bool()>& stopped = {}) {
+    const std::size_t at = taken_ * parts / samples_;
+    Part part = part_.at(at);
+    const auto count = [&](double x, double v, double m) {
       const std::size_t bin = detail::bin_at((x + reach_) / (2 * reach_) * static_cast<double>(bins_), bins_);
       part.mass[bin] += m;
       if (m != row_mass_ || v == 0) return;
       (v > 0 ? part.right : part.left)[bin] += 1;
       (v > 0 ? part.right_speed : part.left_speed)[bin] += v;
-    });
+    };
+    for_each_body(c, bodies, elapsed, {-reach_, reach_}, count, stopped);
+    ++part.samples;
+    part_[at] = std::move(part);
+    ++taken_;
   }
 
   std::size_t samples() const { return taken_; }

@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/cold.hpp"
 #include "cradle/core/ring.hpp"
+#include "cradle/core/sticky_gas.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace misuse_test {
@@ -42,6 +44,35 @@ TEST(Misuse, UnequalMassesInAChainForIdenticalOnes) {
   expect_refused([&] { GapChain<double>(bodies, 0.0); }, "unequal masses", "body 2 has 5");
   EXPECT_NO_THROW((GapChain<double, IndividualMasses<double>>(bodies, 0.0)));
   EXPECT_NO_THROW(GapChain<double>(list<double>({0, 1, 2}, {1, 0, -1}, {3, 3, 3}), 0.0));
+}
+
+// Sums that the type does not hold are refused, by chains and by the gas that has none.
+TEST(Misuse, MassesAndSpeedsWhoseSumsOverflow) {
+  const auto still_rows = [](double speed, double mass) {
+    return std::make_shared<Rows<double>>(
+        symmetric_rows(8, speed, 1.0, Displacement(still), MassPattern<double>({mass})));
+  };
+  const std::pair<const char*, std::shared_ptr<const Bodies<double>>> cases[] = {
+      {"the kinetic energy", list<double>({0, 1, 2}, {1e160, -1e160, -2e160})},
+      {"the kinetic energy", still_rows(1e160, 1)},
+      {"the kinetic energy", still_rows(1e100, 1e150)},
+      {"the kinetic energy", std::make_shared<Ring<double>>(8, 8., 1e160, gaussian_velocity(1, 0), still)},
+      {"the kinetic energy", std::make_shared<Cold<double>>(8, 1., HotPlace::left, kicked(0, 1e160), still)},
+      {"the mass", list<double>({0, 1}, {0, -1e-300}, {1e308, 1e308})},
+      {"the mass", still_rows(1e-300, 1e308)},
+      {"the momentum", list<double>({0, 1}, {1e10, -1e10}, {1e300, 1e300})},
+  };
+  for (const auto& [what, bodies] : cases) {
+    const std::string message = std::string(what) + " of all bodies overflows";
+    const auto& all = bodies;
+    expect_refused([&] { GapChain<double, IndividualMasses<double>>(all, 0.0); }, message, "no finite number");
+    expect_refused([&] { ClusterChain<double>(all, 0.0); }, message, "no finite number");
+    expect_refused([&] { StickyGas<double>(all, 0.0); }, message, "no finite number");
+  }
+  // The square of a momentum is no sum that anybody needs: masses of 1e200 at unit speeds are as good as any.
+  const auto heavy = list<double>({0, 1}, {1, 0.5}, {1e200, 1e200});
+  EXPECT_NO_THROW((GapChain<double, IndividualMasses<double>>(heavy, 0.0)));
+  EXPECT_NEAR(heavy->energy_to_lose() / 6.25e198, 1, 1e-14);  // mu w^2/2, of a difference of terms ten times as large
 }
 
 TEST(Misuse, ARingInAbsolutePositions) {

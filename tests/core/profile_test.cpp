@@ -6,9 +6,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "cradle/core/cold.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/sample.hpp"
+#include "cradle/core/observe/zone.hpp"
+#include "cradle/core/state.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace profile_test {
@@ -120,6 +123,41 @@ TEST(Profile, RangeMayEndInsideARow) {
     EXPECT_EQ(p.velocity[b], -.5);
     EXPECT_EQ(p.temperature[b], 0);
   }
+}
+
+// Rows of 1e12 bodies: places beyond 2^63 units of 2^-28, exact in double.
+TEST(Profile, OfRowsThatNobodyCanWalk) {
+  constexpr BodyIndex half = 500'000'000'000;
+  const auto still = uniform_displacement(0, 1, 0);
+  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(2 * half, 0.5, 1.0, still));
+  EXPECT_EQ(rows->position(0), -499'999'999'999.5);
+  EXPECT_EQ(rows->position(2 * half - 1), 499'999'999'999.5);
+  const Cold<double> cold(2 * half, 1.0, HotPlace::left, kicked(0, 1.0), still);
+  EXPECT_EQ(cold.position(2 * half - 1), 999'999'999'999.0);
+
+  auto run = gap_run<double>(rows, Inelastic(.5));
+  const auto now = configuration_at(run, 0.);
+  const Profile far = profile(now, *rows, 0., {4e11, 4e11 + 10}, 2);  // found at once, wherever it is
+  EXPECT_EQ(far.density, (std::vector<double>{1, 1}));
+  EXPECT_EQ(profile(now, *rows, 0., {-4e11 - 10, -4e11}, 2).density, far.density);
+  // Stopped after some calls, whichever row is being walked.
+  for (const BinRange range : {BinRange{-4e11, 0}, BinRange{0, 4e11}}) {
+    int calls = 0;
+    EXPECT_THROW(profile(now, *rows, 0., range, 2, [&] { return ++calls == 5; }), WalkStopped);
+    EXPECT_EQ(calls, 5);
+    ZoneAverage zone(4e11, 4, 16, 1.);
+    const SavedState before = SavedState::of(zone);
+    EXPECT_THROW(zone.add(now, *rows, 0., [&] { return ++calls == 10; }), WalkStopped);
+    EXPECT_EQ(SavedState::of(zone), before);
+  }
+}
+
+TEST(Profile, OfARangeThatIsNotFinite) {
+  const auto bodies = list<double>({0, 1}, {0, 0});
+  const auto now = configuration_at(gap_run(bodies, Inelastic(.5)), 0.);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(profile(now, *bodies, 0., {-infinity, infinity}, 2), std::invalid_argument);
+  EXPECT_THROW(profile(now, *bodies, 0., {-1.7e308, 1.7e308}, 2), std::invalid_argument);
 }
 
 TEST(Sample, IsConsistentWithTheConfiguration) {

@@ -145,6 +145,27 @@ TEST(StickyGas, TakesInOnlyWhatIsHit) {
   EXPECT_EQ(gas.collided_bodies(), run.chain().collided_bodies());
 }
 
+// Interrupted again and again while rows are taken in, it ends in the bits of a gas that was left alone.
+TEST(StickyGas, InterruptedItContinuesToTheSameBits) {
+  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(400'000, 0.5, 1.0, rshock_displacement));
+  Policy<double> policy;
+  int asked = 0;
+  policy.interrupt = [&] { return ++asked % 3 != 0; };
+  StickyGas<double> alone(rows, 0.0), interrupted(rows, 0.0, policy);
+  for (const double t : {1e5, 3e5}) {
+    alone.advance(t);
+    int times = 0;
+    for (; interrupted.advance(t) == Status::interrupted; ++times) {
+      StickyGas<double> loaded(rows, 0.0, policy);
+      SavedState state = SavedState::of(interrupted);
+      load(state, loaded);
+      interrupted = std::move(loaded);
+    }
+    EXPECT_GE(times, 2);
+    EXPECT_EQ(SavedState::of(interrupted), SavedState::of(alone));
+  }
+}
+
 // Rows of unequal density: the cluster grows at sqrt(rho_l rho_r)(u_l - u_r) and moves at the mean velocity weighted by
 // the roots of the densities (E, Rykov and Sinai 1996, doi 10.1007/BF02101897). The lattice makes steps: the mass is
 // within a body per row of the continuum's, the velocity within 2/mass.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -22,7 +23,10 @@ Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const 
   const RunOutcome run =
       options.runner(replica_scene(ensemble.scene(), replica), {ProgressLine::Show::never, nullptr, &interrupt});
   if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
-  return {ensemble.layout().row(replica, run), ensemble.layout().values(run)};
+  Finished done{ensemble.layout().row(replica, run), ensemble.layout().values(run)};
+  if (std::any_of(done.values.begin(), done.values.end(), [](double value) { return std::isinf(value); }))
+    throw Error("a number beyond the range of a double, in which statistics are: give other units of length or speed");
+  return done;
 }
 
 std::vector<JobRange> jobs_left(const EnsembleStore& store, ReplicaRange wanted) {

@@ -1,6 +1,8 @@
 // From a scene to the bodies of the engine, every number read in the working precision.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -46,7 +48,9 @@ namespace detail {
 template <Real T> std::shared_ptr<const cradle::Bodies<T>> bodies_without_walls(const Initial& initial) {
   if (initial.type == InitialType::list)
     return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m));
-  const Displacement displacement = uniform_displacement(initial.perturbation.value, initial.seed, initial.replica);
+  // Below 1/2, whatever the nearest double is.
+  const double perturbation = std::min(initial.perturbation.value, std::nextafter(0.5, 0.));
+  const Displacement displacement = uniform_displacement(perturbation, initial.seed, initial.replica);
   if (initial.type == InitialType::cold) return cold_bodies<T>(initial, displacement);
   if (initial.type == InitialType::ring) {
     using std::sqrt;
@@ -65,7 +69,7 @@ template <Real T> std::shared_ptr<const cradle::Bodies<T>> bodies_without_walls(
     return cradle::Row<T>{static_cast<BodyIndex>(r.particles), number<T>(r.speed), T(1) / number<T>(r.density)};
   };
   std::optional<CentralBody<T>> centre;
-  if (initial.centre.mass.value > 0)
+  if (initial.centre.mass > Decimal("0"))
     centre = CentralBody<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
   return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement,
                                    mass_pattern<T>(initial));
@@ -87,6 +91,7 @@ template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initi
 template <Real T> std::shared_ptr<const cradle::Bodies<T>> initial_bodies(const Scene& scene) {
   try {
     auto bodies = detail::bodies_without_walls<T>(scene.initial);
+    require_sums(*bodies);
     if (!scene.walls.any()) return bodies;
     return std::make_shared<Walled<T>>(std::move(bodies), detail::wall_of<T>(scene.walls.left, scene.initial),
                                        detail::wall_of<T>(scene.walls.right, scene.initial));

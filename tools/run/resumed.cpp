@@ -128,7 +128,7 @@ void RunFiles::go_on(const std::optional<std::string>& until) {
   if (!state_ && header_.first_stands_for > 1)
     throw Error({state, 0, ""}, "missing", "", "take it from a copy, or remove the journal", Exit::io);
   const bool later = until && Decimal(*until) != scene_.run.until;
-  if (later && state_ && !(found.time < scene_.run.until.value))
+  if (later && state_ && !(found.time < planned_times(scene_).until))
     throw Error({file_, 0, ""}, "not written yet", "the run has reached its end",
                 fmt::format("finish it first: `cradle resume {}`", file_));
   if (later && begins_again(scene_)) {
@@ -188,7 +188,8 @@ void RunFiles::go_on_from_result(const std::optional<std::string>& until) {
   if (!exists(state)) throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);
   state_ = std::make_unique<StateReader>(state);
   const CheckpointHeader found = read_checkpoint(*state_, state);
-  if (found.run.version != version || found.run.scene != effective_toml(scene_) || found.time != scene_.run.until.value)
+  if (found.run.version != version || found.run.scene != effective_toml(scene_) ||
+      found.time != planned_times(scene_).until)
     throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
                 "run the scene with a later run.until", Exit::io);
   if (begins_again(scene_)) {

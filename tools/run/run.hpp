@@ -59,9 +59,11 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
 /// Throws Error for a scene that this build cannot run, naming the key.
 void check_built(const Scene& scene);
 
-/// The times at which a run samples its series and takes its profiles, as it writes them: rounded from its precision.
+/// The times at which a run samples its series, takes its profiles and ends, as it writes them: rounded from its
+/// precision.
 struct PlannedTimes {
   std::vector<double> series, profiles;
+  double until = 0;
 };
 PlannedTimes planned_times(const Scene& scene);
 

@@ -47,7 +47,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const std::type_identity<ClusterChain<T>> clusters;
   if (scene.law.type == LawType::wet) return simulation(Wet<T>(number<T>(scene.law.loss)), clusters);
   if (scene.law.type == LawType::sticky && !observed)  // where nobody asks for contacts none need be made
-    return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, bodies, start);
+    return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, bodies, start, policy);
   if (scene.law.type == LawType::sticky || scene.run.collapse == CollapsePolicy::merge) {
     const bool sticky = scene.law.type == LawType::sticky;
     const InelasticMerging<T> law(Inelastic<T>(sticky ? T(0) : number<T>(scene.law.restitution)),

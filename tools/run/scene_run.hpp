@@ -54,8 +54,8 @@ template <Real T> class SceneRun {
     for (const T& stop : plan_.stops) {
       if (looked_ && !(*looked_ < stop)) continue;
       status = advance(stop);
+      if (status == Status::reached && !look(stop)) status = Status::interrupted;
       if (status != Status::reached) break;
-      look(stop);
       progress_.tell(to_double(stop), engine_.counts().contacts);
     }
     const T end = status == Status::reached ? plan_.stops.back() : engine_.last_contact_time();
@@ -131,8 +131,8 @@ template <Real T> class SceneRun {
       tables_.add(std::move(rows));
   }
 
+  bool stopped() const { return options_.interrupt != nullptr && options_.interrupt->signal() != 0; }
   Status advance(const T& until) {
-    const auto stopped = [this] { return options_.interrupt != nullptr && options_.interrupt->signal() != 0; };
     if (stopped()) return Status::interrupted;
     for (;;) {
       const Status status = engine_.advance(until, observer_);
@@ -142,23 +142,32 @@ template <Real T> class SceneRun {
   }
 
   // ---- what is recorded
-  void look(const T& time) {
-    if (holds(plan_.series, time)) record_sample(time);
+  // False where a signal has stopped a walk over rows that can be longer than anybody waits for: then nothing of this
+  // time is recorded yet.
+  bool look(const T& time) {
     const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
                masses = holds(plan_.masses, time), zone = holds(plan_.zone, time);
-    if (snapshot || profiled || masses || zone) {
-      const Configuration<T> now = engine_.configuration(time);
-      if (snapshot) put(snapshot_rows(now, numbered("snapshots", snapshots_)));
-      if (profiled) record_profile(now, time);
-      if (masses) put(masses_table(now, bodies_->least_mass(), numbered("masses", masses_)));
-      if (zone) zone_->add(now, *bodies_, T(time - number<T>(scene_.run.start)));
+    std::optional<Configuration<T>> now;
+    std::optional<Profile> seen;
+    if (snapshot || profiled || masses || zone) now = engine_.configuration(time);
+    if (now) require_held(*now);
+    try {
+      if (profiled) seen = profile_at(*now, time);
+      if (zone) zone_->add(*now, *bodies_, T(time - number<T>(scene_.run.start)), [this] { return stopped(); });
+    } catch (const WalkStopped&) {
+      return false;
     }
+    if (holds(plan_.series, time)) record_sample(time);
+    if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
+    if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
+    if (masses) put(masses_table(*now, bodies_->least_mass(), numbered("masses", masses_)));
     guard(time);
     looked_ = time;
     if (options_.witness != nullptr) tell_witness(time, false);
-    if (options_.keeper == nullptr) return;
+    if (options_.keeper == nullptr) return true;
     options_.keeper->look();
     if (options_.keeper->due() || series_.rows() >= most_rows) keep(time, false);
+    return true;
   }
   // Looks at all bodies once in so many contacts of each, a hundredth of what these take, by the count of contacts and
   // not by the clock, so that a run that stops here does so always. Throws Error (Exit::lost).
@@ -192,7 +201,7 @@ template <Real T> class SceneRun {
     events_(c);
     if (options_.keeper != nullptr && events_.rows() >= most_rows) put(events_.take());
   }
-  void record_profile(const Configuration<T>& now, const T& time) {
+  Profile profile_at(const Configuration<T>& now, const T& time) const {
     const auto& wanted = scene_.output.profiles;
     const T elapsed = time - number<T>(scene_.run.start);
     BinRange range{to_double(now.x.front()), to_double(now.x.back())};
@@ -201,11 +210,28 @@ template <Real T> class SceneRun {
     else if (engine_.collided_bodies() > 0 && !engine_.on_ring())
       range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
     if (!(range.from < range.to)) range.to = range.from + 1;  // all in one place: one length around it
-    put(profile_table(profile(now, *bodies_, elapsed, range, wanted.bins), numbered("profiles", profiles_)));
+    if (!std::isfinite(range.to - range.from))
+      throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the bodies are where no double reaches",
+                  to_text(time), "give it, or remove output.profiles", Exit::lost);
+    return profile(now, *bodies_, elapsed, range, wanted.bins, [this] { return stopped(); });
+  }
+  // What follows from a number beyond the type's range is noise. Throws Error (Exit::lost).
+  void require_held(const T& number, const char* what, const T& time) const {
+    if (is_finite(number)) return;
+    throw Error({scene_.name, 0, ""}, fmt::format("{} beyond the range of {}", what, precision_name(scene_.run)),
+                "at t = " + to_text(time), "give an earlier run.until, smaller speeds or a wider run.precision",
+                Exit::lost);
+  }
+  void require_held(const Configuration<T>& now) const {
+    for (const T& x : now.x) require_held(x, "a position", now.time);
+    for (const T& v : now.v) require_held(v, "a velocity", now.time);
   }
 
   void record_sample(const T& time) {
     const Sample<T> now = sample(engine_, energy_, time);
+    require_held(now.energy, "the energy", time);
+    for (const auto& front : {now.front_left, now.front_right})
+      if (front) require_held(*front, "a front", time);
     series_.add(now);
     if (core_) core_->add(engine_.configuration(time), now.energy);
     if (!has_clouds(scene_)) return;

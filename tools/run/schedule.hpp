@@ -77,7 +77,7 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
 
 template <class T> PlannedTimes planned_in(const Scene& scene) {
   const Schedule<T> plan = schedule<T>(scene);
-  PlannedTimes times;
+  PlannedTimes times{{}, {}, to_double(plan.stops.back())};
   for (const T& time : plan.series) times.series.push_back(to_double(time));
   for (const T& time : plan.profiles) times.profiles.push_back(to_double(time));
   return times;

@@ -120,6 +120,18 @@ class Checks {
                   fmt::format("wall at {}, {} body at {:g}", wall.text, body, static_cast<double>(at)),
                   "move it outwards");
     };
+    if (initial.type == InitialType::list && !initial.x.empty()) {
+      const auto among = [&](const char* key, const std::optional<Decimal>& wall, std::string_view at, bool wall_left) {
+        if (!wall) return;
+        const auto order = compare_decimals(wall->text, at);
+        if (wall_left ? std::is_lt(order) : std::is_gt(order)) return;
+        throw Error(place(key), "a wall among the bodies, which would have met before the start",
+                    fmt::format("wall at {}, {} body at {}", wall->text, wall_left ? "first" : "last", at),
+                    "move it outwards");
+      };
+      among("walls.left.position", left.position, initial.x[0], true);
+      among("walls.right.position", right.position, initial.x.back(), false);
+    }
     if (left.position)
       if (const auto at = outermost(-1)) outside("walls.left.position", *left.position, "first", *at, -1);
     if (right.position)
@@ -177,16 +189,22 @@ class Checks {
                   range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
                                     : describe(entries_.find("output.profiles.range")->second),
                   "give two positions, the lower one first");
+    if (!(range[0].value < range[1].value) || !std::isfinite(range[1].value - range[0].value))
+      throw Error(place("output.profiles.range"), "not a range of doubles, in which profiles are",
+                  fmt::format("from {} to {}", range[0].text, range[1].text), "give ends that doubles tell apart");
   }
 
   void numbers_fit() const {
-    const NumberRange range(scene_.run);
+    const NumberRange of_type(scene_.run), of_doubles{Run()};
     for (const Field& field : scene_fields()) {
       if (!field.when->holds(scene_)) continue;
+      const NumberRange& range = is_double_anyway(field.key) ? of_doubles : of_type;
       for (const Decimal& number : numbers_of(field, scene_)) {
         range.check(number.text, place(field.key));
-        if (field.key == "initial.m" || field.key == "initial.masses")
-          range.check_positive(number.text, place(field.key));
+        // What is above 0 for the scene is so for the run; a body between the rows may be none.
+        const bool above_zero =
+            field.range.starts_with("(0,") || (field.key == "initial.centre.mass" && number > Decimal("0"));
+        if (above_zero) range.check_positive(number.text, place(field.key));
       }
     }
   }
@@ -214,6 +232,11 @@ class Checks {
   }
 
  private:
+  // Whatever the working precision: random speeds of thermal walls and what is averaged have no more digits.
+  static bool is_double_anyway(std::string_view key) {
+    return key.ends_with(".temperature") || key == "output.zone.reach";
+  }
+
   Place place(std::string_view key) const {
     const auto entry = entries_.find(key);
     return entry == entries_.end() ? Place{scene_file_, 0, std::string(key)} : entry->second.place;
@@ -228,8 +251,6 @@ class Checks {
   std::optional<bin_float> outermost(int side) const {
     const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
     const Initial& initial = scene_.initial;
-    if (initial.type == InitialType::list && initial.x.size() > 0)
-      return from_text<bin_float>(initial.x[side < 0 ? 0 : initial.x.size() - 1]);
     if (initial.type != InitialType::rows) return {};
     const Row& row = side < 0 ? initial.left : initial.right;
     const bin_float spacing = initial.general_rows() ? bin_float(1) / number(row.density) : number(initial.spacing);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
@@ -180,6 +181,64 @@ series = { every = 500 }
   EXPECT_LT(times[1], times[2]);
   EXPECT_LT(times[2], times[3]);
   EXPECT_EQ(times[3], 19500) << "100 digits reach the end";
+}
+
+const std::string overflowing = "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 1e-160\n"
+                                "initial = { type = 'list', x = [0, 1, 2], v = [1e160, -1e160, -2e160] }\n"
+                                "output.series.points = 3\n";
+
+// What the type does not hold is refused; what a double does not hold is infinite where doubles are, and has all its
+// digits below /exact.
+TEST_F(Run, EnergiesThatOverflow) {
+  write("a.toml", overflowing);
+  const Printed refused = shell("cradle run a.toml -o a.h5");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(
+      refused.err.find("a: initial: the bodies cannot be set up (found the kinetic energy of all bodies overflows "
+                       "(found no finite number): give smaller masses or speeds, or a scalar type of a wider range)"),
+      std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.h5"));
+
+  ASSERT_EQ(shell("cradle run a.toml --quiet -o a.h5 --set run.precision=mpfr").status, 0);
+  const auto result = read_result((folder / "a.h5").string());
+  const auto column = [&](const char* table) {
+    for (const auto& one : result.find(table)->columns)
+      if (one.name == "energy") return one.values;
+    throw std::out_of_range(table);
+  };
+  const auto energy = std::get<std::vector<double>>(column("series"));
+  EXPECT_EQ(energy, std::vector<double>(3, std::numeric_limits<double>::infinity()));
+  EXPECT_EQ(std::get<std::vector<std::string>>(column("exact/series"))[0].substr(0, 4), "3.00");
+  EXPECT_TRUE(std::get<std::vector<std::string>>(column("exact/series"))[0].ends_with("e320"));
+
+  const Printed ensemble = shell("cradle ensemble a.toml --replicas 2 -o e.h5 --set run.precision=mpfr");
+  EXPECT_EQ(ensemble.status, 5);
+  EXPECT_NE(ensemble.err.find("replica 0 failed: a number beyond the range of a double"), std::string::npos)
+      << ensemble.err;
+}
+
+TEST_F(Run, PositionsThatOverflowEndIt) {
+  write("a.toml", "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 1e200\n"
+                  "initial = { type = 'list', x = [0, 1], v = [0, 1e150] }\noutput.series.points = 3\n"
+                  "output.snapshots = [1e200]\n");
+  const Printed run = shell("cradle run a.toml -o a.h5");
+  EXPECT_EQ(run.status, 5);
+  EXPECT_NE(run.err.find("a: a position beyond the range of double (found at t = 1e+200): give an earlier run.until"),
+            std::string::npos)
+      << run.err;
+}
+
+// The time of a checkpoint is that of the run's precision, which has fewer digits than a double here.
+TEST_F(Run, OfFewDigitsIsGoneOnWith) {
+  ASSERT_EQ(
+      shell("cradle run fig2 --quiet --set run.precision=mpfr --set run.digits=10 --set initial.particles=20 --set "
+            "run.until=10.1 --set output.snapshots=[] --set output.profiles.times=[] -o a.h5")
+          .status,
+      0);
+  const Printed resumed = shell("cradle resume a.h5 --until 20");
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(shell("cradle resume a.h5 --until 3_0").status, 2);
 }
 
 constexpr const char* small_shock = "cradle run fig2 --quiet --set initial.particles=600 --set run.until=400 "

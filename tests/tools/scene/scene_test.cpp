@@ -116,7 +116,7 @@ TEST(Scene, LiteralsAreKeptExactly) {
   EXPECT_EQ(parse(with_line(3, "restitution = \"0.999\"")).law.restitution.text, "0.999");
   EXPECT_EQ(parse(with_line(3, "restitution = +0.99_9")).law.restitution.text, "0.999");
   EXPECT_EQ(parse(with_line(3, "restitution = '.5'")).law.restitution.text, "0.5");
-  const Scene scene = parse(good + "start = -1_0.25E-1\nstop_gap = 1e-400\n");
+  const Scene scene = parse(good + "start = -1_0.25E-1\nstop_gap = 1e-400\nprecision = 'mpfr'\n");
   EXPECT_EQ(scene.run.start.text, "-10.25e-1");
   EXPECT_EQ(scene.run.start.value, -1.025);
   ASSERT_TRUE(scene.run.stop_gap);
@@ -129,6 +129,48 @@ TEST(Scene, LiteralsAreKeptExactly) {
   EXPECT_EQ(list.title, "é 1e-999, 1e-999");
   EXPECT_EQ(texts(list.initial.x), (Strings{"-1e-500", "0", "1.5"}));
   EXPECT_EQ(texts(list.initial.v), (Strings{"1", "1e-7", "16"}));
+}
+
+// However many digits it has, a number is one that TOML has too.
+TEST(Scene, LongLiteralsAreTomlToo) {
+  for (const char* wrong : {"0000000000000000.5", ".50000000000000000", "5.000000000000000e", "1__0.00000000000000",
+                            "0_.50000000000000000", "1.e-400", ".5e-400", "--0.5000000000000000"})
+    EXPECT_TRUE(begins(message(with_line(3, std::string("restitution = ") + wrong)), "s.toml:3: not valid TOML"))
+        << wrong;
+  EXPECT_EQ(parse(with_line(3, "restitution = +0.500_000_000_000_000_1E-0_0")).law.restitution.text,
+            "0.5000000000000001e-00");
+}
+
+// What is above 0 in the scene is so in the run, and what is a double anyway is one that there is.
+TEST(Scene, NumbersThatThePrecisionTakesFor0) {
+  const std::string rows = "law = { type = 'inelastic', restitution = 0.5 }\nrun.until = 1\n"
+                           "initial = { type = 'rows', left = { particles = 2, speed = 1 }, "
+                           "right = { particles = 2, speed = -1 }, centre.mass = 1e-400 }\n";
+  const auto refused = [&](const std::string& text, const std::string& key) {
+    const std::string said = message(text);
+    EXPECT_NE(said.find(key + ": too small for the precision (found 1e-400 with \"double\")"), said.npos) << said;
+  };
+  refused(rows, "initial.centre.mass");
+  EXPECT_EQ(parse(rows + "run.precision = 'mpfr'").initial.centre.mass.text, "1e-400");
+  const std::string list = "law = { type = 'inelastic', restitution = 0.5 }\nrun.until = 1\n"
+                           "initial = { type = 'list', x = [0, 1], v = [0, 0] }\n";
+  refused(list + "run.stop_gap = 1e-400", "run.stop_gap");
+  refused(list + "output.series.every = 1e-400", "output.series.every");
+  const std::string mpfr = "run.precision = 'mpfr'\n";
+  parse(list + mpfr + "run.stop_gap = 1e-400");
+  refused(list + mpfr + "walls.left = { position = -1, temperature = 1e-400 }", "walls.left.temperature");
+  EXPECT_NE(message(list + mpfr + "output.profiles.range = [1, 1.00000000000000000001]").find("not a range of doubles"),
+            std::string::npos);
+  EXPECT_NE(message(list + mpfr + "output.profiles.range = [-1e400, 1]").find("not a range of doubles"),
+            std::string::npos);
+  // A wall beside a body by less than any binary number of a hundred digits tells.
+  const std::string close = "1." + std::string(400, '0') + "1";
+  parse(list + mpfr + "walls.right.position = " + close);
+  EXPECT_NE(
+      message("law = { type = 'inelastic', restitution = 0.5 }\nrun.until = 1\ninitial = { type = 'list', x = [0, " +
+              close + "], v = [0, 0] }\nwalls.right.position = 1\n" + mpfr)
+          .find("a wall among the bodies"),
+      std::string::npos);
 }
 
 TEST(Scene, IntegersMayBeWrittenAsFloats) {
@@ -462,7 +504,7 @@ TEST(Scene, SamplesAreCountedBeforeMemoryForThemIsTaken) {
       "--set output.series.every: too many samples (found 1e-9, which makes 6.5e+12 of them until run.until): give "
       "a longer time, 1e+07 samples at most");
   EXPECT_TRUE(
-      begins(message(good + "[output.series]\nevery = 1e-400"), "s.toml:10: output.series.every: too many samples"));
+      begins(message(good + "[output.series]\nevery = 1e-300"), "s.toml:10: output.series.every: too many samples"));
   EXPECT_EQ(parse(good, {"run.start=6499.9999999", "output.series.every=1e-9"}).output.series.every->text, "1e-9");
   EXPECT_EQ(message(good, {"output.series.points=1e8"}),
             "--set output.series.points: out of range (found 1e8): give an integer from 2 to 1e7");

@@ -102,12 +102,13 @@ TYPED_TEST(Executors, WhatTheResultStoreThrowsEndsTheEnsemble) {
 }
 
 TYPED_TEST(Executors, UseAsManyThreadsAsAskedFor) {
-  // Every replica waits until the fourth has begun: with fewer than four threads this would never end, so it gives up.
+  // Every replica waits until the fourth has begun: with fewer than four threads this would never end, so it gives up,
+  // after five minutes: longer than any machine keeps a thread waiting.
   std::atomic<int> begun = 0;
   Ensemble ensemble;
   run_replicas(TypeParam(4), {0, 4}, ensemble, [&](ReplicaIndex) {
     ++begun;
-    for (int waited = 0; begun < 4 && waited < 10000; ++waited)
+    for (int waited = 0; begun < 4 && waited < 300000; ++waited)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (begun < 4) throw std::runtime_error("waited in vain");
     return std::vector<double>{1};

@@ -14,6 +14,7 @@ namespace {
 // What a handler may touch is global, and lock-free.
 std::atomic<Interrupt*> noting = nullptr;
 std::atomic<long> first_at = 0;  // milliseconds; 0: none yet
+std::atomic<long> same = 0;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free && std::atomic<Interrupt*>::is_always_lock_free);
 
@@ -52,8 +53,6 @@ void note(int signal) {
     if (interrupt.signal() == 0) interrupt.note(signal);
     return;
   }
-  // Launchers, `timeout` and terminals that close send one signal in two ways.
-  constexpr long same = 200;
   if (now - first_at > same) end_at_once(signal, "cradle: interrupted again: what was not written yet is lost\n");
 }
 
@@ -61,9 +60,10 @@ void note(int signal) {
 
 Exit status_of_signal(int signal) { return signal == SIGINT ? Exit::interrupted : Exit::terminated; }
 
-void note_signals(Interrupt& interrupt) {
+void note_signals(Interrupt& interrupt, long same_milliseconds) {
   noting = &interrupt;
   first_at = 0;
+  same = same_milliseconds;
   for (const int signal : noted) {
     const auto before = std::signal(signal, signal == SIGHUP && hang_ups_ignored ? SIG_IGN : note);
     if (signal == SIGHUP && before == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // systems where it is not read before

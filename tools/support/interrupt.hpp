@@ -29,7 +29,8 @@ Exit status_of_signal(int signal);
 
 /// From now on SIGINT, SIGTERM, SIGUSR1 and SIGHUP are noted there, as long as the program runs. While nobody heeds
 /// them, and where a second one comes after the first, the program ends at once. SIGHUP stays ignored under nohup.
-void note_signals(Interrupt& interrupt);
+/// Launchers, `timeout` and terminals that close send one signal in two ways: within so many milliseconds it is one.
+void note_signals(Interrupt& interrupt, long same_milliseconds = 200);
 
 /// From now on they change nothing: the program ends by itself, and what is wrong has been said.
 void ignore_signals();

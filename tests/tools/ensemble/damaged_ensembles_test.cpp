@@ -128,7 +128,7 @@ TEST_F(DamagedEnsembles, ScenesAreNotRunBeforeTheyAreKnownToBeTheRightOnes) {
       scene.replace(scene.find("particles = 300"), 15, "particles = 9000000000000");
     }
   tools::write_result(changed, path("b.h5"));
-  const Printed merge = shell("timeout 20 cradle merge b.h5 -o c.h5");
+  const Printed merge = shell("timeout 300 cradle merge b.h5 -o c.h5");
   EXPECT_EQ(merge.status, 2);
   EXPECT_NE(merge.err.find("b.h5: "), std::string::npos) << merge.err;
 }

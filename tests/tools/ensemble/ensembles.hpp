@@ -1,11 +1,13 @@
 #pragma once
 // Small scenes to make ensembles of, and what their files hold.
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/ensemble/store.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
@@ -72,6 +74,8 @@ profiles = { times = [300], bins = 10, range = [-20, 20] }
 zone = { from = 200, samples = 16, bins = 8 }
 )";
 
+constexpr std::uint64_t endless_replicas = 1'000'000'000'000;
+
 class Ensembles : public ProgramTest {
  protected:
   Ensembles() {
@@ -94,6 +98,20 @@ class Ensembles : public ProgramTest {
     EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
   }
 
+  // One more than the largest number of a replica in the journals of an ensemble that was asked for without end: so
+  // many hold them all, and one that is missing.
+  std::string enough_for(const std::string& file) const {
+    // Of copies: reading the journals of ranks takes them in.
+    std::filesystem::create_directory(folder / "copies");
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().filename().string().starts_with(file + ".part"))
+        std::filesystem::copy(entry.path(), folder / "copies", std::filesystem::copy_options::overwrite_existing);
+    tools::EnsembleStore store(tools::ensemble_of(scene("shock.toml")), path("copies/" + file));
+    store.load();
+    const auto missing = store.states()[0]->replicas().missing({0, endless_replicas});
+    return std::to_string(missing.back().first + 1);
+  }
+
   static const Column& column(const Result& result, std::string_view group, std::string_view name) {
     if (const auto* found = result.find(group))
       for (const Column& c : found->columns)
@@ -112,13 +130,12 @@ class Ensembles : public ProgramTest {
   }
 };
 
-inline constexpr const char* long_one = "ensemble shock.toml --replicas 3000 --threads 2 -o ";
-
-// Runs a command until its journal has grown by some replicas, then sends it a signal.
-inline std::string until_journalled(const std::string& command, const std::string& file, const std::string& signal) {
-  return "size() { stat -c %s " + file + ".part 2>/dev/null || echo 0; }; enough=$(($(size) + 300000)); cradle " +
-         command + " & pid=$!; while [ $(size) -lt $enough ]; do sleep 0.01; done; kill -" + signal +
-         " $pid; wait $pid";
+// Runs an ensemble that does not end by itself, however quick the machine is, until its journal has grown by some
+// replicas; then sends it a signal.
+inline std::string until_journalled(const std::string& file, const std::string& signal, const std::string& more = "") {
+  return "size() { stat -c %s " + file + ".part 2>/dev/null || echo 0; }; enough=$(($(size) + 300000)); " +
+         "cradle ensemble shock.toml --replicas " + std::to_string(endless_replicas) + " --threads 2 -o " + file +
+         more + " & pid=$!; while [ $(size) -lt $enough ]; do sleep 0.01; done; kill -" + signal + " $pid; wait $pid";
 }
 
 }  // namespace cradle::tests

@@ -50,36 +50,37 @@ TEST_F(Ensembles, SplitAndMergedInAnyOrder) {
 }
 
 TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
-  run(std::string(long_one) + "whole.h5");
   for (int kill = 0; kill < 3; ++kill) {
-    EXPECT_EQ(shell(until_journalled(std::string(long_one) + "killed.h5", "killed.h5", "KILL")).status, 137);
+    EXPECT_EQ(shell(until_journalled("killed.h5", "KILL")).status, 137);
     ASSERT_TRUE(exists("killed.h5.part"));
     EXPECT_FALSE(exists("killed.h5"));
   }
-  const Printed go_on = shell("cradle " + std::string(long_one) + "killed.h5");
+  const std::string all = enough_for("killed.h5");
+  run("ensemble shock.toml --replicas " + all + " -o whole.h5");
+  const Printed go_on = shell("cradle ensemble shock.toml --replicas " + all + " --threads 2 -o killed.h5");
   EXPECT_EQ(go_on.status, 0) << go_on.err;
   EXPECT_NE(go_on.err.find("killed.h5.part: "), std::string::npos) << "says what it took from there: " << go_on.err;
-  EXPECT_EQ(go_on.out.find("3000 of them now"), std::string::npos) << "not all of them again: " << go_on.out;
+  EXPECT_EQ(go_on.out.find(all + " of them now"), std::string::npos) << "not all of them again: " << go_on.out;
   expect_same("whole.h5", "killed.h5");
   EXPECT_FALSE(exists("killed.h5.part"));
 }
 
 TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {
-  run(std::string(long_one) + "whole.h5");
   for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143), std::pair("USR1", 143)}) {
-    const Printed stopped = shell(until_journalled(std::string(long_one) + "stopped.h5", "stopped.h5", signal));
+    const Printed stopped = shell(until_journalled("stopped.h5", signal));
     EXPECT_EQ(stopped.status, status) << stopped.err;
     EXPECT_NE(stopped.err.find("stopped.h5.part"), std::string::npos) << stopped.err;
     EXPECT_FALSE(exists("stopped.h5"));
   }
-  run(std::string(long_one) + "stopped.h5");
+  const std::string all = " --replicas " + enough_for("stopped.h5");
+  run("ensemble shock.toml -o whole.h5" + all);
+  run("ensemble shock.toml -o stopped.h5" + all);
   expect_same("whole.h5", "stopped.h5");
 }
 
 TEST_F(Ensembles, DamagedJournalLosesOnlyWhatIsDamaged) {
   run("ensemble shock.toml --replicas 200 -o whole.h5");
-  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --replicas 3000 -o damaged.h5", "damaged.h5", "KILL")).status,
-            137);
+  EXPECT_EQ(shell(until_journalled("damaged.h5", "KILL")).status, 137);
   const std::string journal = contents(folder / "damaged.h5.part");
   for (const bool torn : {true, false}) {
     std::string damaged = journal.substr(0, 200000);
@@ -94,34 +95,36 @@ TEST_F(Ensembles, DamagedJournalLosesOnlyWhatIsDamaged) {
 }
 
 TEST_F(Ensembles, JournalLeftBehindAFinishedFileAddsNothing) {
-  run(std::string(long_one) + "whole.h5");
-  EXPECT_EQ(shell(until_journalled(std::string(long_one) + "a.h5", "a.h5", "KILL")).status, 137);
+  EXPECT_EQ(shell(until_journalled("a.h5", "KILL")).status, 137);
+  const std::string all = " --replicas " + enough_for("a.h5");
   // Killed between writing the file and removing the journal.
-  run("ensemble shock.toml --replicas 3000 -o finished.h5");
+  run("ensemble shock.toml -o finished.h5" + all);
   std::filesystem::copy(folder / "a.h5.part", folder / "finished.h5.part");
-  run("ensemble shock.toml --replicas 3001 -o finished.h5");
-  run("ensemble shock.toml --replicas 3001 -o whole.h5");
+  const std::string more = " --replicas " + std::to_string(std::stoull(enough_for("a.h5")) + 1);
+  run("ensemble shock.toml -o finished.h5" + more);
+  run("ensemble shock.toml -o whole.h5" + more);
   expect_same("whole.h5", "finished.h5");
   EXPECT_FALSE(exists("finished.h5.part"));
 }
 
 TEST_F(Ensembles, JournalsOfRanksThatAreGoneAreTaken) {
   // As a killed MPI job leaves them: one for each rank.
-  run("ensemble shock.toml --replicas 3000 -o whole.h5");
-  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --replicas 1500 -o a.h5", "a.h5", "KILL")).status, 137);
-  EXPECT_EQ(shell(until_journalled("ensemble shock.toml --first 1500 --replicas 1500 -o b.h5", "b.h5", "KILL")).status,
-            137);
+  EXPECT_EQ(shell(until_journalled("a.h5", "KILL")).status, 137);
+  EXPECT_EQ(shell(until_journalled("b.h5", "KILL", " --first " + enough_for("a.h5"))).status, 137);
   std::filesystem::rename(folder / "b.h5.part", folder / "a.h5.part.3");
-  const Printed go_on = shell("cradle ensemble shock.toml --replicas 3000 -o a.h5");
+  const std::string all = " --replicas " + enough_for("a.h5");
+  run("ensemble shock.toml -o whole.h5" + all);
+  const Printed go_on = shell("cradle ensemble shock.toml -o a.h5" + all);
   EXPECT_NE(go_on.err.find("a.h5.part.3: "), std::string::npos) << go_on.err;
   expect_same("whole.h5", "a.h5");
   EXPECT_FALSE(exists("a.h5.part.3"));
 }
 
 TEST_F(Ensembles, OneProgramAtATimeWritesAFile) {
-  const Printed both = shell(
-      "cradle ensemble shock.toml --replicas 100000 -o a.h5 & pid=$!; while [ ! -e a.h5.part ]; do sleep 0.01; done; "
-      "cradle ensemble shock.toml --replicas 10 -o a.h5; status=$?; kill $pid; wait $pid; exit $status");
+  const Printed both =
+      shell("cradle ensemble shock.toml --replicas 1000000000000 -o a.h5 & pid=$!; while [ ! -e a.h5.part ]; do sleep "
+            "0.01; done; "
+            "cradle ensemble shock.toml --replicas 10 -o a.h5; status=$?; kill $pid; wait $pid; exit $status");
   EXPECT_EQ(both.status, 4);
   EXPECT_NE(both.err.find("another program"), std::string::npos) << both.err;
 }

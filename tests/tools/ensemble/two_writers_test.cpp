@@ -58,7 +58,7 @@ TEST_F(Ensembles, FifosAreRefusedByNameAndLinksFollowed) {
     EXPECT_TRUE(std::filesystem::is_fifo(folder / "fifo"));
   }
   for (const auto* command : {"info fifo", "export fifo --to csv", "merge fifo fifo -o a.h5"})
-    EXPECT_EQ(shell(std::string("timeout 20 cradle ") + command).status, 4) << command;
+    EXPECT_EQ(shell(std::string("timeout 300 cradle ") + command).status, 4) << command;
   write("a.h5", "old");
   std::filesystem::create_symlink("a.h5", folder / "link.h5");
   run("run shock.toml --quiet -o link.h5");

@@ -6,6 +6,10 @@ import cradle
 SHOCK = {"initial.particles": 200, "run.until": 60, "output.snapshots": [20, 60], "output.profiles.times": [30, 60],
          "output.series.points": 20}
 
+# Of "cooling", 1e18 contacts: a run that does not end by itself, however quick the machine is.
+ENDLESS = {"law.type": "inelastic", "law.restitution": 1, "initial.particles": 2000, "run.until": "1e15",
+           "output.checkpoint.every_seconds": 0.1}
+
 
 @functools.cache
 def shock():

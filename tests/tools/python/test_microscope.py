@@ -57,7 +57,7 @@ class Microscope(browser.Browser):
         self.until("Boolean(window.cradleMicroscopeTest)")
         self.run("cradleMicroscopeTest.ready.then(() => 1)")
 
-    def until(self, condition, seconds=60):
+    def until(self, condition, seconds=500):  # before CTest ends the test
         end = time.monotonic() + seconds
         while not self.run(condition):
             if time.monotonic() > end:
@@ -465,7 +465,7 @@ class InBrowser(unittest.TestCase):
         x, y, _, _ = self.middle()
         self.browser.click(x, y)
         self.browser.key(" ", "Space")
-        self.browser.until("cradleMicroscopeTest.view().X < 1e-30", 120)
+        self.browser.until("cradleMicroscopeTest.view().X < 1e-30")
         self.browser.key(" ", "Space")
         self.assertFalse(self.browser.run("cradleMicroscopeTest.state.playing"))
         still = self.view()
@@ -507,10 +507,8 @@ class InBrowser(unittest.TestCase):
     def test_dark_and_light(self):
         self.assertGreater(min(self.pixel(3, 3)), 200)
         self.browser.dark(True)
-        end = time.monotonic() + 30
-        while max(self.pixel(3, 3)) > 60 and time.monotonic() < end:
+        while max(self.pixel(3, 3)) >= 60:
             time.sleep(0.05)
-        self.assertLess(max(self.pixel(3, 3)), 60)
         # A dot of a contact stands out in both.
         view = self.browser.run("cradleMicroscopeTest.zoomTo({event: 100, depth: 1e-88})")
         dot = self.position(0, 100) or self.position(1, 100)

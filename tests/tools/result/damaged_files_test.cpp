@@ -120,7 +120,7 @@ TEST_F(DamagedFiles, AreRefusedByName) {
     write("a.h5", tools::file_image(small_result()));
     change(folder / "a.h5", how);
     for (const auto* command : {"info a.h5", "export a.h5 --to deep/csv", "plot a.h5", "merge a.h5 -o b.h5"}) {
-      const Printed refused = shell(std::string("timeout 20 cradle ") + command);
+      const Printed refused = shell(std::string("timeout 300 cradle ") + command);
       EXPECT_EQ(refused.status, 4) << command << ", " << what << ": " << refused.err;
       EXPECT_EQ(refused.err.rfind(std::string("cradle: ") + message, 0), 0U) << what << ": " << refused.err;
     }

@@ -20,23 +20,36 @@ using namespace cradle::tools;
 
 const std::string run = "cradle run fig2 --quiet --set initial.particles=1000 --set run.until=1300 --set "
                         "output.checkpoint.every_seconds=0.05 ";
-// Goes on for longer than any test waits.
-const std::string endless = "cradle run cooling --quiet --set law.type=inelastic --set law.restitution=1 --set "
-                            "initial.particles=2000 --set run.until=1e6 --set output.checkpoint.every_seconds=0.1 "
-                            "-o a.h5";
-const std::string until_checkpoint = " & pid=$!; while [ ! -e a.h5.checkpoint ]; do sleep 0.02; done; ";
 
 class Files : public ProgramTest {
  protected:
   std::string path(const char* name) const { return (folder / name).string(); }
   bool exists(const char* name) const { return std::filesystem::exists(folder / name); }
+
+  // Leaves a run that was killed, with its state, and what it would have come to: whole.h5. One that was over before is
+  // made again, twice as long.
+  void kill_a_run() const {
+    for (double until = 1300;; until *= 2) {
+      const std::string long_run = run + "--set run.until=" + std::to_string(until) + " -o ";
+      ASSERT_EQ(shell("rm -f a.h5*; " + long_run +
+                      "a.h5 & pid=$!; until [ -e a.h5.checkpoint ]; do :; done; "
+                      "kill -9 $pid; wait $pid; [ -e a.h5.checkpoint ]")
+                    .status,
+                0);
+      if (exists("a.h5") || !exists("a.h5.part")) continue;
+      ASSERT_EQ(shell(long_run + "whole.h5").status, 0);
+      return;
+    }
+  }
 };
 
 TEST_F(Files, ARunOnItsWayCanBeLookedInto) {
-  const Printed looked = shell(endless + until_checkpoint +
-                               "sleep 2.5; cradle info a.h5.part; echo ---; cradle info a.h5.checkpoint; kill -9 $pid");
+  const Printed looked =
+      shell(endless_run("a.h5") + until_contacts("a.h5") +
+            "until cradle info a.h5.part >info && grep -q '^time.* of 1e+15' info; do sleep 0.1; done; cat info; "
+            "echo ---; cradle info a.h5.checkpoint; kill -9 $pid");
   ASSERT_EQ(looked.status, 0) << looked.err;
-  for (const char* said : {"journal of a run", "\ntime  ", " of 1000000", "\ncontacts  ", "over the last minute",
+  for (const char* said : {"journal of a run", "\ntime  ", " of 1e+15", "\ncontacts  ", "over the last minute",
                            "left at this pace", "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
     EXPECT_NE(looked.out.find(said), std::string::npos) << said << "\n" << looked.out;
   EXPECT_EQ(looked.out.find("not whole"), std::string::npos) << "a journal that is being written has no torn end";
@@ -45,8 +58,8 @@ TEST_F(Files, ARunOnItsWayCanBeLookedInto) {
 TEST_F(Files, FollowingARunEndsWithIt) {
   // A run that ends takes its journal away. This one never does, so that following it begins in time on any machine.
   const Printed followed =
-      shell(endless +
-            " & pid=$!; while [ ! -e a.h5.checkpoint ]; do sleep 0.02; done; cradle info --follow a.h5.part >told & "
+      shell(endless_run("a.h5") + until_contacts("a.h5") +
+            "cradle info --follow a.h5.part >told & "
             "follower=$!; while ! grep -q 'journal of a run' told; do sleep 0.02; done; kill -9 $pid; "
             "rm a.h5.part; wait $follower; status=$?; cat told; (exit $status)");
   EXPECT_EQ(followed.status, 0) << followed.err;
@@ -54,8 +67,7 @@ TEST_F(Files, FollowingARunEndsWithIt) {
 }
 
 TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
-  ASSERT_EQ(shell(run + "-o whole.h5").status, 0);
-  ASSERT_EQ(shell(run + "-o a.h5 & pid=$!; while [ ! -e a.h5.checkpoint ]; do :; done; kill -9 $pid; true").status, 0);
+  kill_a_run();
   const Printed again = shell("cradle resume a.h5.part");  // any of the names
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_TRUE(contents(folder / "a.h5") == contents(folder / "whole.h5"));
@@ -74,10 +86,7 @@ TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
 }
 
 TEST_F(Files, WithoutItsCheckpointARunStartsAnewAndWithADamagedOneItSaysSo) {
-  ASSERT_EQ(shell(run + "-o whole.h5; " + run +
-                  "-o a.h5 & pid=$!; while [ ! -e a.h5.checkpoint ]; do :; done; kill -9 $pid; true")
-                .status,
-            0);
+  kill_a_run();
   std::string state = contents(folder / "a.h5.checkpoint");
   state[state.size() / 2] = static_cast<char>(state[state.size() / 2] ^ 4);
   write("a.h5.checkpoint", state);

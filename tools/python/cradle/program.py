@@ -1,12 +1,14 @@
 """The program `cradle`: where it is, and calling it: what it prints, its message and its progress."""
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import selectors
 import shutil
 import signal
 import subprocess
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -51,27 +53,32 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     """
     command = [find(), *map(str, arguments)]
     terminal, theirs = (None, subprocess.PIPE) if show is None else os.openpty()  # a bar is for terminals only
+    child = None
     try:
-        # A session of its own: else a terminal's Ctrl-C would reach it twice, and the second ends it at once.
-        child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=theirs,
-                                 start_new_session=True)
-    except OSError as error:
-        if terminal is not None:
-            os.close(terminal)
-        raise Error(f"{command[0]} cannot be run ({error.strerror}): set CRADLE_PROGRAM to a program of this machine",
-                    BAD_FILE) from None
-    finally:
-        if terminal is not None:
-            os.close(theirs)
-    try:
+        try:
+            # A session of its own: else a terminal's Ctrl-C would reach it twice, and the second ends it at once.
+            with interrupts_later():
+                child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=theirs,
+                                         start_new_session=True)
+        finally:
+            if terminal is not None:
+                os.close(theirs)
         out, err = listen(child, terminal, show)
-    except BaseException:  # Ctrl-C, first of all
-        child.send_signal(signal.SIGINT)
-        child.wait()
+    except BaseException as error:  # Ctrl-C, first of all
+        if child is not None:
+            child.send_signal(signal.SIGINT)
+            child.wait()
+        elif isinstance(error, OSError):
+            raise Error(f"{command[0]} cannot be run ({error.strerror}): set CRADLE_PROGRAM to a program of this "
+                        "machine", BAD_FILE) from None
         raise
     finally:
-        child.stdout.close()
-        os.close(terminal) if terminal is not None else child.stderr.close()
+        if child is not None:
+            child.stdout.close()
+        if terminal is not None:
+            os.close(terminal)
+        elif child is not None:
+            child.stderr.close()
     status = child.wait()
     messages = messages_in(err)
     if status in accepted:
@@ -79,6 +86,23 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     said = messages.strip().removeprefix("cradle: ")
     raise Error(said or f"{' '.join(command[:2])} ended without a message (status {status}): "
                 "run it in a terminal to see more", status if status >= 0 else 128 - status)
+
+
+@contextlib.contextmanager
+def interrupts_later():
+    """Ctrl-C waits for the end of the block: one that came while a program is started would leave it running."""
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or before is None:
+        yield
+        return
+    came = []
+    signal.signal(signal.SIGINT, lambda number, frame: came.append((number, frame)))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if came and callable(before):
+        before(*came[0])
 
 
 def listen(child: subprocess.Popen, terminal: int | None, show) -> tuple[str, str]:

@@ -100,7 +100,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
   static auto state(auto& self) {
-    return std::tie(self.cells_, self.lag_, self.clock_, self.blur_, self.floor_, self.shift_, self.account_, self.lost_);
+    return std::tie(self.cells_, self.lag_, self.clock_, self.floor_, self.blur_, self.shift_, self.account_,
+                    self.lost_);
   }
   void loaded() const {
     require_state(lag_.size() == cells_.size(), "lists");
@@ -260,11 +261,10 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
  private:
-  // By how much rounding may have put a gap below zero, see `note`. A time is rounded in units of the offset, and of the
-  // one before the origin moved last where the contact was due by then (`blur_`), a way flown in units of the way; both
-  // act on the gap at its speed before or after the contact. A gap that was below zero stays so, and the contact that
-  // it has comes late, which its neighbours get at the rate of what it hands them: the order was lost, if it was, where
-  // that began.
+  // By how much rounding may have put a gap below zero, see `note`. Times are rounded in units of the offset, those due
+  // by when the origin moved last in units of the one then (`blur_`), ways flown in units of the way; either acts on
+  // the gap at its speed before or after the contact. A gap below zero stays so, and has its contact late, which its
+  // neighbours get at the rate of what it hands them: the order was lost, if it was, where that began.
   T below_zero(Slot s, const T& closing, const T& gain, const T& since, const T& struck, const T& time) const {
     const T& gap = cells_[s].gap;
     const T before = is_negative(since) ? T(gap - gain * since) : T(gap + (closing - gain) * since);
@@ -310,8 +310,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   std::vector<Cell> cells_;
   std::vector<T> lag_;
   Clock<T> clock_;
-  T blur_{0};  // what times were rounded by when the origin moved last: contacts due then may come so much later, or late
   T floor_{0};
+  T blur_{0};  // what times were rounded by when the origin moved last: so late, or later, may come what was due then
   long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
   Account<T> account_;
   Ledger<T> lost_;

@@ -81,7 +81,8 @@ TEST(Touching, ALocalTimeAheadOfTheOriginLosesNothing) {
   const auto move = [&](double by) { gaps.move_origin(by, [](const auto& each) { each(0, 1); }); };
   move(.1);
   const double now = 0x1p29;
-  gaps.kick(0, 1., [] { return 1.; }, now);
+  gaps.kick(
+      0, 1., [] { return 1.; }, now);
   move(now + 1);
   EXPECT_EQ(gaps.flown(0, 0), 1);
 }

@@ -229,8 +229,9 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   void set_floor(const T& floor) { floor_ = floor; }
   bool below_floor(Slot s) const { return cells_[s].gap < floor_; }
   // Of a gap below the floor that a contact beside it has just closed faster by `gain`: `since` is what kick said, body
-  // the one on its left, `struck` the time since the local time of the gap that had the contact.
-  Notice note(Slot s, const T& closing, const T& gain, const T& since, const T& struck, BodyIndex body, const T& time) {
+  // the one on its left, `struck` the time since the local time of the gap that had the contact. (Out of line and by
+  // value: inlined it costs the hot path 9 instructions per contact, of 410.)
+  [[gnu::noinline, gnu::cold]] Notice note(Slot s, T closing, T gain, T since, T struck, BodyIndex body, T time) {
     if (!is_positive(cells_[s].gap))
       account_.enter({clock_.time(time), body, cells_[s].gap}, below_zero(s, closing, gain, since, struck, time));
     return Notice::gap_below_floor;

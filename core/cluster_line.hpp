@@ -96,8 +96,8 @@ template <Real T> class ClusterLine {
         std::swap(l.body, r.body);
       }
     }
-    notice |= kick(p, closing_left, before_left, l.velocity, time);
-    notice |= kick(beyond, closing_right, gaps[beyond].velocity, before_right, time);
+    notice |= kick(p, closing_left, before_left, l.velocity, since, time);
+    notice |= kick(beyond, closing_right, gaps[beyond].velocity, before_right, since, time);
     return {outcome, predict(p), predict(s), beyond == n ? predict(n) : EventQueue::never, notice, p, n};
   }
 
@@ -117,12 +117,13 @@ template <Real T> class ClusterLine {
   }
 
   // A gap between bodies of which one has had a contact, by which it closes faster by as much as u_left exceeds
-  // u_right.
-  [[gnu::always_inline]] Notice kick(Slot s, const T& so_far, const T& u_left, const T& u_right, const T& time) {
+  // u_right; `struck` is the time since the local time of the gap that had it.
+  [[gnu::always_inline]] Notice kick(Slot s, const T& so_far, const T& u_left, const T& u_right, const T& struck,
+                                     const T& time) {
     const T since = gaps.kick(
         s, so_far, [&] { return T(u_left - u_right); }, time);
     if (gaps.below_floor(s)) [[unlikely]]
-      return gaps.note(s, closing(s), gaps[s].body, since, time);
+      return gaps.note(s, closing(s), T(u_left - u_right), since, struck, gaps[s].body, time);
     return Notice::none;
   }
   [[gnu::always_inline]] double predict(Slot s) { return gaps.predict(s, closing(s)); }

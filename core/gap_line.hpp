@@ -75,8 +75,8 @@ template <Real T, class MassesOf> class GapLine {
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;
     gaps.forget(s);
-    notice |= kick(p, outcome.to_left, time);
-    notice |= kick(n, outcome.to_right, time);
+    notice |= kick(p, outcome.to_left, since, time);
+    notice |= kick(n, outcome.to_right, since, time);
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
@@ -88,13 +88,14 @@ template <Real T, class MassesOf> class GapLine {
   T mass_of(Slot s, const Bodies<T>& bodies) const {
     return bodies.mass(body(s) >= 0 && body(s) < bodies.count() ? body(s) : 0);
   }
-  // Brings a gap up to date and adds to its closing speed.
-  [[gnu::always_inline]] Notice kick(Slot s, const T& gain, const T& time) {
+  // Brings a gap up to date and adds to its closing speed; `struck` is the time since the local time of the gap beside
+  // it that had the contact.
+  [[gnu::always_inline]] Notice kick(Slot s, const T& gain, const T& struck, const T& time) {
     const T since = gaps.kick(
         s, closing(s), [&]() -> const T& { return gain; }, time);
     gaps[s].closing += gain;
     if (gaps.below_floor(s)) [[unlikely]]
-      return gaps.note(s, closing(s), body(s), since, time);
+      return gaps.note(s, closing(s), gain, since, struck, body(s), time);
     return Notice::none;
   }
 };

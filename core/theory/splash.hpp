@@ -8,53 +8,50 @@
 // from the strong shock U = P = 2/(gamma+1), G = (gamma+1)/(gamma-1) at xi = 1 towards -infinity. Too small a d ends
 // where c^2 = a^2, with an infinite slope; from a critical one on there is no such place, and at that one the solution
 // passes through it smoothly: this is the d. It is 3/5 exactly for gamma = 7/5; for gamma = 3, bodies on a line,
-// .627952, and the energy's exponent -.116144. Derived here; the published values, .62906 and -.11281, are not these.
+// .6279520417, and the energy's exponent -.116143875.
+//
+// With d xi/ds = -gamma (c^2 - a^2) the equations have no infinite slope, and 1 - a^2/c^2 falls along s up to 0 for too
+// small a d, to a least value above 0 for too large a one.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace cradle::theory {
 
 namespace detail {
 
-// Whether the solution of this exponent runs into c^2 = a^2.
-inline bool splash_breaks_off(double d, double gamma) {
-  using State = std::array<double, 3>;  // U, G, P
+// Whether the solution of this exponent runs into c^2 = a^2; in steps of s by Runge and Kutta's fourth order.
+inline bool splash_breaks_off(double d, double gamma, double step) {
+  using State = std::array<double, 4>;  // xi, U, G, P
   const double k = (d - 1) / d;
-  const auto subsonic = [gamma](double xi, const State& y) {  // 1 - a^2/c^2
-    const double a = y[0] - xi;
-    return 1 - a * a * y[1] / (gamma * y[2]);
-  };
-  const auto slope = [k, gamma](double xi, const State& y) -> State {
-    const double a = y[0] - xi, c2 = gamma * y[2] / y[1];
-    const double u = k * (gamma * a * y[0] - 2 * c2) / (gamma * (c2 - a * a));
-    return {u, -y[1] * u / a, -y[1] * (k * y[0] + a * u)};
+  const auto slope = [k, gamma](const State& y) -> State {
+    const double a = y[1] - y[0], c2 = gamma * y[3] / y[2];
+    const double along = gamma * (c2 - a * a), u = k * (gamma * a * y[1] - 2 * c2);
+    return {-along, -u, y[2] * u / a, y[2] * (k * y[1] * along + a * u)};
   };
   const auto moved = [](const State& y, const State& by, double h) -> State {
-    return {y[0] + h * by[0], y[1] + h * by[1], y[2] + h * by[2]};
+    return {y[0] + h * by[0], y[1] + h * by[1], y[2] + h * by[2], y[3] + h * by[3]};
   };
-  State y{2 / (gamma + 1), (gamma + 1) / (gamma - 1), 2 / (gamma + 1)};
-  for (double xi = 1; xi > -3;) {  // Runge and Kutta's fourth order, in steps that shrink towards the place
-    const double h = -(1 + std::abs(xi)) * std::min(1e-3, 1e-2 * subsonic(xi, y)) - 1e-10;
-    const State k1 = slope(xi, y), k2 = slope(xi + h / 2, moved(y, k1, h / 2)),
-                k3 = slope(xi + h / 2, moved(y, k2, h / 2)), k4 = slope(xi + h, moved(y, k3, h));
-    for (std::size_t i = 0; i < 3; ++i) y[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
-    xi += h;
-    if (!(subsonic(xi, y) > 1e-9)) return true;
+  State y{1, 2 / (gamma + 1), (gamma + 1) / (gamma - 1), 2 / (gamma + 1)};
+  for (double before = 1;;) {
+    const State k1 = slope(y), k2 = slope(moved(y, k1, step / 2)), k3 = slope(moved(y, k2, step / 2)),
+                k4 = slope(moved(y, k3, step));
+    for (std::size_t i = 0; i < 4; ++i) y[i] += step / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    const double a = y[1] - y[0], subsonic = 1 - a * a * y[2] / (gamma * y[3]);
+    if (!(subsonic > 0)) return true;
+    if (!(subsonic < before)) return false;
+    before = subsonic;
   }
-  return false;
 }
 
 }  // namespace detail
 
-/// d of R ~ t^d, for gamma from 1.2 to 3.
-inline double splash_front_exponent(double gamma = 3) {
+/// d of R ~ t^d, for gamma from 1.2 to 3. The error falls with the fourth power of the step: 6e-11 for gamma = 3.
+inline double splash_front_exponent(double gamma = 3, double step = .0025) {
   double below = 0.55, above = 2.0 / 3;  // 2/3: of a shock whose energy is kept
-  for (int halvings = 0; halvings < 24; ++halvings) {
+  for (int halvings = 0; halvings < 48; ++halvings) {
     const double d = (below + above) / 2;
-    (detail::splash_breaks_off(d, gamma) ? below : above) = d;
+    (detail::splash_breaks_off(d, gamma, step) ? below : above) = d;
   }
   return above;
 }

@@ -17,6 +17,7 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   StudyPlan plan;
   const Exit failed = crew->together([&] { plan = make_plan(); });
   if (failed != Exit::done) return failed;
+  if (crew->rank() == 0) tell(same_replicas_warning(plan.study, plan.replicas.count));
   const std::string& output = plan.output;
   EnsembleOptions how;
   how.replicas = plan.replicas;

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -51,24 +54,36 @@ void check_digits(const Study& study) {
                   "run them one after the other");
 }
 
-std::string failure_warning(const EnsembleStates& states) {
+// As a shell takes it.
+std::string quoted(const std::string& path) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("._-+/", c) != nullptr; };
+  return std::all_of(path.begin(), path.end(), plain) ? path : "'" + path + "'";
+}
+
+// Runs that replica, with the settings of its point, as a run of its own.
+std::string alone_command(const std::string& file, const std::string& group, ReplicaIndex replica) {
+  const auto stem = std::filesystem::path(file).replace_extension().string();
+  const std::string folder = stem == file ? file + "-scenes" : stem;
+  return fmt::format("cradle export {} --to {} && cradle run {}/{}scene.toml --set initial.replica={} -o replica.h5",
+                     quoted(file), quoted(folder), quoted(folder), group.empty() ? "" : group + "/", replica);
+}
+
+std::string failure_warning(const EnsembleStates& states, const std::string& file) {
   constexpr int shown = 5;
-  std::string text;
+  std::string text, first, groups;
   int failures = 0;
-  std::uint64_t lost = 0;
   for (const auto& state : states) {
-    const std::string place = state->group().empty() ? "" : state->group() + ": ";
-    for (const auto& [replica, message] : state->failures())
-      if (++failures <= shown) text += fmt::format("{}replica {} failed: {}\n", place, replica, message);
-    const auto outcomes = state->outcomes();
-    lost += outcomes[static_cast<std::size_t>(ReplicaOutcome::order_lost)] +
-            outcomes[static_cast<std::size_t>(ReplicaOutcome::exhausted)];
+    const std::string& group = state->group();
+    const auto failed = state->failures();
+    for (const auto& [replica, message] : failed)
+      if (++failures <= shown)
+        text += fmt::format("{}replica {} failed: {}\n", group.empty() ? "" : group + ": ", replica, message);
+    if (failed.empty()) continue;
+    if (first.empty()) first = alone_command(file, group, failed.begin()->first);
+    groups += fmt::format("{}/{}replicas/failed", groups.empty() ? "" : ", ", group.empty() ? "" : group + "/");
   }
-  if (failures > shown) text += fmt::format("and {} more: see replicas/failed in the file\n", failures - shown);
-  if (lost > 0)
-    text += fmt::format("{} replicas lost the order of contacts or exhausted the resolution: see replicas/outcome in "
-                        "the file, and `cradle run SCENE --set initial.replica=K` for one of them\n",
-                        lost);
+  if (failures > shown) text += fmt::format("and {} more: see {} in {}\n", failures - shown, groups, file);
+  if (failures > 0) text += fmt::format("the first of them again, alone: {}\n", first);
   return text;
 }
 
@@ -89,17 +104,17 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew
       [&] { return crew.interrupt().signal() != 0; });
 }
 
-EnsembleOutcome told(const EnsembleStore& store) {
+EnsembleOutcome told(const EnsembleStore& store, const std::string& file) {
   EnsembleOutcome end;
   end.replicas = store.replicas();
   end.outcome = store.outcome();
-  end.warning = failure_warning(store.states());
+  end.warning = failure_warning(store.states(), file);
   if (!end.warning.empty()) end.status = Exit::lost;
   return end;
 }
 
 // Rank 0: knows the files.
-EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, Crew& crew) {
+EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const std::string& file, Crew& crew) {
   const std::vector<JobRange> jobs = jobs_left(store, options.replicas);
   const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = count(jobs);
   if (fresh > 0) store.start_journal(0, options.replicas, options.journal_bytes);
@@ -114,7 +129,7 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, Crew&
       store.finish();
     else
       store.drop_journals();
-    end = told(store);
+    end = told(store, file);
   } else {
     store.sync();
     end.status = status_of_signal(signal);
@@ -150,7 +165,7 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
   }
   crew.interrupt().heed();
   if (crew.rank() != 0) return follow(*store, options, crew);
-  EnsembleOutcome end = lead(*store, options, crew);
+  EnsembleOutcome end = lead(*store, options, file, crew);
   end.account = account;
   return end;
 }

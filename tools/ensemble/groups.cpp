@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -141,8 +142,9 @@ Group EnsembleState::replica_group() const {
 
 std::vector<Group> EnsembleState::groups() const {
   const Moments total = tree_.total();
+  const auto failed = failures();
   std::vector<Group> groups{
-      {name("ensemble"), {{"replicas", tree_.size()}, {"failed", std::uint64_t{failures_.size()}}}, {}}};
+      {name("ensemble"), {{"replicas", tree_.size()}, {"failed", std::uint64_t{failed.size()}}}, {}}};
   if (!group_.empty()) groups.back().attributes.emplace_back("scene", effective_toml(scene_));
   groups.push_back({name("ensemble/series"), {}, {layout_.time}});
   auto binned = layout_.binned.begin();
@@ -155,10 +157,10 @@ std::vector<Group> EnsembleState::groups() const {
   }
   for (std::size_t k = 0; k < spreads_.size(); ++k) groups.push_back(spread_group(k));
   groups.push_back(replica_group());
-  if (!failures_.empty()) {
+  if (!failed.empty()) {
     std::vector<std::uint64_t> index;
     std::string messages;
-    for (const auto& [replica, message] : failures_) {
+    for (const auto& [replica, message] : failed) {
       index.push_back(replica);
       messages += fmt::format("{}replica {}: {}", messages.empty() ? "" : "\n", replica, message);
     }
@@ -188,11 +190,13 @@ void EnsembleState::read(const Result& result, const std::string& file) {
     if (column.rows() != index.size())
       throw Error({file, 0, ""}, "a damaged ensemble", "columns of /replicas of different lengths", "run it again",
                   Exit::io);
+  std::set<ReplicaIndex> stopped;
   for (std::size_t k = 0; k < index.size(); ++k) {
     const auto how = static_cast<ReplicaOutcome>(std::min<std::uint64_t>(outcome[k], outcome_count - 1));
     ReplicaRow row{index[k], how, contacts[k], merges[k], {}};
     for (const auto* column : numbers) row.numbers.push_back((*column)[k]);
     table_.add(row);
+    if (how == ReplicaOutcome::failed) stopped.insert(index[k]);
   }
   check_replicas(file);
   if (const Group* failed = result.find(name("replicas/failed"))) {
@@ -201,7 +205,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
       std::string line;
       std::getline(lines, line);
       const auto colon = line.find(": ");
-      failures_.emplace(replica, colon == line.npos ? line : line.substr(colon + 2));
+      if (stopped.contains(replica)) messages_.emplace(replica, colon == line.npos ? line : line.substr(colon + 2));
     }
   }
   for (std::size_t k = 0; k < spreads_.size(); ++k) {

@@ -30,6 +30,10 @@ struct Quantity {
 enum class ReplicaOutcome : std::uint64_t { reached, collapsed, order_lost, exhausted, failed };
 inline constexpr std::size_t outcome_count = 5;
 std::string outcome_text(ReplicaOutcome outcome);
+/// Of a replica that lost the order of contacts or exhausted the resolution.
+inline bool is_lost(ReplicaOutcome outcome) {
+  return outcome == ReplicaOutcome::order_lost || outcome == ReplicaOutcome::exhausted;
+}
 
 /// One line of the table of replicas.
 struct ReplicaRow {

@@ -64,8 +64,8 @@ void EnsembleState::put_records(std::uint64_t point, const JournalWriter::Put& p
     for (std::size_t k = first; k < last; ++k) {
       const ReplicaRow row = table_[k];
       put(bytes, row);
-      const auto failure = failures_.find(row.index);
-      bytes.put(failure == failures_.end() ? std::string_view() : std::string_view(failure->second));
+      const auto failure = messages_.find(row.index);
+      bytes.put(failure == messages_.end() ? std::string_view() : std::string_view(failure->second));
     }
     put_record(bytes.bytes());
   }
@@ -119,7 +119,7 @@ void EnsembleState::apply(std::string_view record) {
       const ReplicaRow row = read_row(bytes);
       table_.add(row);
       std::string message = bytes.text();
-      if (row.outcome == ReplicaOutcome::failed) failures_.emplace(row.index, std::move(message));
+      if (row.outcome == ReplicaOutcome::failed) messages_.emplace(row.index, std::move(message));
     }
     return;
   case Kind::spread: {

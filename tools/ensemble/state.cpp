@@ -64,7 +64,7 @@ void EnsembleState::fail(ReplicaIndex replica, std::string message) {
   {
     const std::scoped_lock lock(mutex_);
     table_.add({replica, ReplicaOutcome::failed, 0, 0, {}});
-    failures_.emplace(replica, std::move(message));
+    messages_.emplace(replica, std::move(message));
   }
   tree_.add(replica, std::nullopt);
 }
@@ -74,6 +74,14 @@ EnsembleState::Outcomes EnsembleState::outcomes() const {
   Outcomes counts{};
   for (std::size_t k = 0; k < table_.size(); ++k) ++counts.at(static_cast<std::size_t>(table_[k].outcome));
   return counts;
+}
+
+std::map<ReplicaIndex, std::string> EnsembleState::failures() const {
+  const std::scoped_lock lock(mutex_);
+  std::map<ReplicaIndex, std::string> failures = messages_;
+  for (std::size_t k = 0; k < table_.size(); ++k)
+    if (is_lost(table_[k].outcome)) failures.emplace(table_[k].index, outcome_text(table_[k].outcome));
+  return failures;
 }
 
 bool EnsembleState::holds_all_of(const EnsembleState& other) const {
@@ -90,7 +98,7 @@ bool EnsembleState::holds_any_of(const EnsembleState& other) const {
 
 void EnsembleState::take(EnsembleState& other) {
   for (std::size_t k = 0; k < other.table_.size(); ++k) table_.add(other.table_[k]);
-  failures_.merge(other.failures_);
+  messages_.merge(other.messages_);
   for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].add(other.spreads_[k]);
   for (TreeNode& node : other.tree_.nodes()) tree_.add(std::move(node));
 }

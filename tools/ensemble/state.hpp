@@ -69,7 +69,9 @@ class EnsembleState {
   const MomentTree& replicas() const { return tree_; }
   Outcomes outcomes() const;
   const ReplicaTable& table() const { return table_; }
-  const std::map<ReplicaIndex, std::string>& failures() const { return failures_; }
+  /// Why, of the replicas that cannot be trusted: what stopped them, or that they lost the order of contacts or
+  /// exhausted the resolution.
+  std::map<ReplicaIndex, std::string> failures() const;
   const std::vector<Histograms>& spreads() const { return spreads_; }
 
   bool holds_all_of(const EnsembleState& other) const;
@@ -114,7 +116,7 @@ class EnsembleState {
   MomentTree tree_;
   mutable std::mutex mutex_;  // of all that follows
   ReplicaTable table_;
-  std::map<ReplicaIndex, std::string> failures_;
+  std::map<ReplicaIndex, std::string> messages_;  // of the replicas that were stopped
   std::vector<SpreadOf> spread_of_;
   std::vector<Histograms> spreads_;
 };

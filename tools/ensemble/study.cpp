@@ -5,10 +5,35 @@
 #include <algorithm>
 #include <map>
 
+#include "cradle/core/rows.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
+
+namespace {
+
+// Whether replicas differ: by displacements, which are whole numbers of units (core/rows.hpp), velocities or walls.
+bool is_random(const Scene& scene) {
+  const Initial& initial = scene.initial;
+  const bool displaced = initial.type == InitialType::rows || initial.type == InitialType::cold;
+  return initial.type == InitialType::ring || (initial.type == InitialType::cold && initial.hot > 1) ||
+         (displaced && initial.perturbation.value * static_cast<double>(displacement_unit) >= 1) ||
+         scene.walls.left.temperature || scene.walls.right.temperature;
+}
+
+}  // namespace
+
+std::string same_replicas_warning(const Study& study, std::uint64_t replicas) {
+  if (replicas < 2) return "";
+  std::string points;
+  for (const auto& [group, scene] : study.points)
+    if (!is_random(scene)) points += (points.empty() ? "" : ", ") + (group.empty() ? scene.name : group);
+  if (points.empty()) return "";
+  return fmt::format("nothing is random in {}: all {} replicas are the same run; give initial.perturbation, or "
+                     "--replicas 1\n",
+                     points, replicas);
+}
 
 std::string scene_difference(const Scene& found, const Scene& wanted) {
   const auto of_found = values(found, true), of_wanted = values(wanted, true);

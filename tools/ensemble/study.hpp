@@ -32,6 +32,10 @@ struct Study {
   std::uint64_t identity() const;
 };
 
+/// Where so many replicas of a point are one and the same run, since nothing in its scene is random: which and why, for
+/// standard error; else empty.
+std::string same_replicas_warning(const Study& study, std::uint64_t replicas);
+
 /// Replicas of all of them.
 std::uint64_t replicas_in(const EnsembleStates& states);
 

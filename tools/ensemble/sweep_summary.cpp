@@ -59,6 +59,8 @@ Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates&
     const EnsembleState& state = *states[p];
     const auto& replicas = state.table();
     table.put(p, "replicas", "1", "replicas that ended", static_cast<double>(replicas.size()));
+    table.put(p, "failed", "1", "replicas that failed, lost the order of contacts or exhausted the resolution",
+              static_cast<double>(state.failures().size()));
     const auto order = replicas.order();
     const auto mean = [&](const Column& about, auto of) {
       std::vector<double> values;

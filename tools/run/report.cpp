@@ -65,7 +65,8 @@ std::string account_warning(const ToldAccount& account, const Run& run) {
         account.first_unresolved.gap);
   if (account.simultaneous > 0)
     text += fmt::format("three bodies met within rounding ({} contacts): the tie rule decided their order; perturb the "
-                        "initial state where that matters\n",
+                        "initial state where that matters (of law.restitution = 0, which leaves bodies together, take "
+                        "a small one)\n",
                         account.simultaneous);
   return text;
 }
@@ -97,7 +98,7 @@ std::string guard_message(const ToldGuard& g) {
 
 std::string exhausted_warning(const std::string& time, std::uint64_t contacts, const Run& run) {
   return fmt::format("resolution exhausted (t = {}, {} contacts): time or a gap can get no smaller in {}; use {}a "
-                     "law.cutoff, or collapse = \"stop\"\n",
+                     "law.cutoff, or run.collapse = \"stop\"\n",
                      time, contacts, precision_name(run),
                      run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "");
 }

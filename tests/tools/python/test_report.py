@@ -1,4 +1,5 @@
 """Reports as texts: whole, of one file, the same twice, with what they must tell."""
+import html
 import html.parser
 import os
 import re
@@ -53,6 +54,27 @@ class Reports(unittest.TestCase):
             for wanted in page.wanted:
                 self.assertIn(wanted, page.ids)
             self.assertIn("default-src 'none'", text)
+
+    def test_name_replicas_that_failed_and_how_to_make_one_again(self):
+        point = {"law.restitution": 0, "law.cutoff": 0.1, "run.coordinates": "absolute"}
+        with self.assertRaises(cradle.Error) as failed:
+            cradle.sweep("fig2", points=[{"law.restitution": 0.5}, point], replicas=4, output="failed.h5", set={
+                "initial.particles": 60, "initial.perturbation": 0.15, "run.until": 200, "output.snapshots": [],
+                "output.series.points": 3, "output.profiles.times": []})
+        self.assertEqual(failed.exception.status, 5)
+        with open(cradle.report("failed.h5"), encoding="utf-8") as file:
+            page = html.unescape(file.read())
+        warned = page[page.index('<ul class="warnings">'):page.index("</ul>")]
+        self.assertIn("order of contacts lost", warned)
+        command = re.search(r"alone: <code[^>]*>([^<]*)</code>", warned)[1]
+        self.assertIn("failed/points/0001/scene.toml", command)
+        folder = os.path.dirname(os.environ["CRADLE_PROGRAM"])
+        again = subprocess.run(command, shell=True, capture_output=True, text=True,
+                               env=os.environ | {"PATH": folder + os.pathsep + os.environ["PATH"]})
+        self.assertEqual(again.returncode, 5, again.stderr)
+        replica = int(re.search("initial.replica=([0-9]+)", command)[1])
+        with cradle.open("failed.h5") as sweep, cradle.open("replica.h5") as alone:
+            self.assertEqual(alone.series.contacts[-1], sweep.points[1].replicas.contacts[replica])
 
     def test_have_every_picture_of_the_result(self):
         for make, text in self.pages():

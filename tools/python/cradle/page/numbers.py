@@ -1,6 +1,9 @@
 """The numbers that matter of a result, with the digits that are proved or trusted, and what is to be warned of."""
 from __future__ import annotations
 
+import os
+import shlex
+
 import numpy as np
 
 from ..result import Result
@@ -8,6 +11,7 @@ from ..tables import Table
 from .elements import code, enclosed, number, rows, text, unit
 
 END = {"energy": "energy at the end", "front_left": "left front at the end", "front_right": "right front at the end"}
+MOST_FAILURES = 5  # of an ensemble that are named
 COLLAPSE = {"time": "collapse", "last_contact": "last contact", "gap": "smallest gap", "interval": "last interval",
             "ratio": "ratio of intervals"}
 
@@ -124,6 +128,23 @@ def proved(result: Result) -> list[tuple[str, str, str]]:
     return entries
 
 
+def failures(result: Result, place: str = "") -> list[str]:
+    """Of an ensemble, or of a point at `place` in its file: which replicas failed, why, and how to run one again."""
+    failed = result.table("replicas/failed")
+    if not len(failed.get("index", ())):
+        return []
+    count, first = len(failed["index"]), int(failed["index"][0])
+    messages = str(failed.attributes.get("messages", "")).split("\n")
+    more = f" and {number(count - MOST_FAILURES)} more in {code(f'/{place}replicas/failed')}"
+    file = os.path.basename(result.path.removesuffix(f": {place.rstrip('/')}"))
+    folder = os.path.splitext(file)[0] if os.path.splitext(file)[1] else file + "-scenes"
+    command = (f"cradle export {shlex.quote(file)} --to {shlex.quote(folder)} && cradle run "
+               f"{shlex.quote(folder)}/{place}scene.toml --set initial.replica={first} -o replica.h5")
+    return [(f"{text(result.label)}: " if place else "") + f"{number(count)} replica{'s' * (count > 1)} failed: "
+            + ", ".join(code(told) for told in messages[:MOST_FAILURES]) + more * (count > MOST_FAILURES)
+            + f". The first of them again, alone: {code(command)}"]
+
+
 def warnings(result: Result, version: str) -> list[str]:
     """What makes numbers of this result doubtful or incomplete, HTML each; version: of the program, "" if unknown."""
     about = result.attributes
@@ -139,17 +160,14 @@ def warnings(result: Result, version: str) -> list[str]:
                      "further.")
     for name, told in (("order_lost", "contacts came too late by more than rounding"),
                        ("unresolved_gaps", "contacts beside a gap that positions do not resolve: take "
-                                           "<code>coordinates = \"gaps\"</code>"),
+                                           "<code>run.coordinates = \"gaps\"</code>"),
                        ("simultaneous_contacts", "contacts at which three bodies met within rounding, decided by the "
                                                  "tie rule")):
         if about.get(name):
             found.append(f"{number(about[name])} {told}.")
-    if about.get("failed"):
-        messages = result.table("replicas/failed").attributes.get("messages", "")
-        found.append(f"{number(about['failed'])} replicas failed: {code(messages)}")
-    for point in result.points:
-        if point.attributes.get("failed"):
-            found.append(f"{text(point.label)}: {number(point.attributes['failed'])} replicas failed.")
+    found += failures(result)
+    for place, point in enumerate(result.points):
+        found += failures(point, f"points/{place:04}/")
     if result.certificate.attributes.get("verdict") == "undecided":
         found.append("The proof is undecided: what comes after its place is not proved.")
     smallest = min((t.attributes["gap_min"] for t in result.snapshots if "gap_min" in t.attributes), default=1.0)

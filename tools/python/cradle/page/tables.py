@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..result import Result
-from ..tables import Column
+from ..tables import Column, Table
 from .elements import measured, number, rows, sortable, text, unit
 
 MOST_ROWS = 1000  # of replicas: more are told by their statistics
@@ -54,7 +54,9 @@ def replicas(result: Result) -> str:
     count = len(table["index"]) if "index" in table else 0
     heads = [head(name, table[name].unit) for name in names]
     if count <= MOST_ROWS:
-        body = ([cell(table[name].values[row]) for name in names] for row in range(count))
+        outcomes = outcome_texts(table)
+        body = ([(int(value), text(outcomes[int(value)])) if name == "outcome" and int(value) in outcomes else
+                 cell(value) for name in names for value in (table[name].values[row],)] for row in range(count))
         return sortable(f"{number(count)} replicas", heads, body)
     body = []
     for share in QUANTILES:
@@ -64,6 +66,12 @@ def replicas(result: Result) -> str:
             known = known[np.isfinite(known)]
             body[-1].append(cell(np.quantile(known, share)) if known.size else cell(np.nan))
     return sortable(f"quantiles of {number(count)} replicas (the file has all)", ["quantile", *heads[1:]], body)
+
+
+def outcome_texts(table: Table) -> dict[int, str]:
+    """How a replica ended, by the numbers of the column: "0 reached the end, 1 inelastic collapse, ..."."""
+    said = table["outcome"].description.split(", ") if "outcome" in table else []
+    return {int(word): told for word, _, told in (one.partition(" ") for one in said) if word.isdigit()}
 
 
 def points(result: Result) -> str:

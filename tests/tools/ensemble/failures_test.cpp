@@ -1,0 +1,116 @@
+// Replicas that cannot be trusted show: in the status, the messages, the file (of an ensemble, of a point of a sweep,
+// in the table of points) and the report; and the command that is given for one of them makes exactly that replica.
+#include <regex>
+
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
+
+namespace cradle::tests {
+namespace failures_test {
+
+// Absolute coordinates do not resolve a core that restitution 0 leaves.
+constexpr const char* coarse = R"(
+[law]
+type = "inelastic"
+restitution = 0.5
+cutoff = 0.1
+[initial]
+type = "rows"
+particles = 60
+speed = 0.5
+perturbation = 0.15
+seed = 1
+[run]
+until = 200
+coordinates = "absolute"
+[output]
+series = { points = 3 }
+)";
+
+class Failures : public Ensembles {
+ protected:
+  Failures() { write("coarse.toml", coarse); }
+
+  // What the file says of a point whose replicas lost the order, and that the command for the first one makes it.
+  void expect_shown(const std::string& file, const std::string& group, const Printed& made) const {
+    const Result result = this->result(file);
+    const auto below = [&](const char* name) { return group + name; };
+    const auto outcomes = numbers(result, below("replicas"), "outcome");
+    std::vector<double> lost;
+    for (std::size_t k = 0; k < outcomes.size(); ++k)
+      if (outcomes[k] == 2) lost.push_back(numbers(result, below("replicas"), "index")[k]);
+    ASSERT_FALSE(lost.empty());
+    EXPECT_EQ(attribute<std::uint64_t>(result.find(below("ensemble"))->attributes, "failed", file), lost.size());
+    EXPECT_EQ(numbers(result, below("replicas/failed"), "index"), lost);
+    const auto first = static_cast<std::size_t>(lost.front());
+    const auto& messages = attribute<std::string>(result.find(below("replicas/failed"))->attributes, "messages", file);
+    EXPECT_EQ(messages.rfind("replica " + std::to_string(first) + ": order of contacts lost", 0), 0U) << messages;
+
+    std::smatch command;
+    ASSERT_TRUE(std::regex_search(made.err, command, std::regex("the first of them again, alone: ([^\n]*)")))
+        << made.err;
+    const Printed alone = shell(command[1]);
+    EXPECT_EQ(alone.status, 5) << command[1] << "\n" << alone.err;
+    EXPECT_NE(alone.err.find("order of contacts lost"), std::string::npos) << alone.err;
+    const Result replica = this->result("replica.h5");
+    EXPECT_EQ(numbers(replica, "series", "contacts").back(), numbers(result, below("replicas"), "contacts")[first]);
+    EXPECT_EQ(numbers(replica, "series", "energy").back(), numbers(result, below("replicas"), "energy")[first]);
+  }
+};
+
+TEST_F(Failures, OfASweepShowAndCanBeMadeAgain) {
+  const Printed made = shell(
+      "cradle sweep coarse.toml --seed 1 --point law.restitution=0.5 --point law.restitution=0 --replicas 8 -o s.h5");
+  EXPECT_EQ(made.status, 5);
+  EXPECT_NE(made.err.find("points/0001: replica "), std::string::npos) << made.err;
+  expect_shown("s.h5", "points/0001/", made);
+  const Result sweep = result("s.h5");
+  EXPECT_EQ(sweep.find("points/0000/replicas/failed"), nullptr);
+  const auto failed = numbers(sweep, "sweep", "failed");
+  EXPECT_EQ(failed[0], 0);
+  EXPECT_EQ(failed[1], static_cast<double>(numbers(sweep, "points/0001/replicas/failed", "index").size()));
+
+  // Taken up again, and merged, they are the same.
+  run("sweep coarse.toml --seed 1 --point law.restitution=0.5 --point law.restitution=0 --replicas 3 -o a.h5", 5);
+  run("sweep coarse.toml --seed 1 --point law.restitution=0.5 --point law.restitution=0 --first 3 --replicas 5 -o b.h5",
+      5);
+  run("merge a.h5 b.h5 -o ab.h5");
+  expect_same("s.h5", "ab.h5");
+}
+
+TEST_F(Failures, OfAnEnsembleShowAndCanBeMadeAgain) {
+  const Printed made = shell("cradle ensemble coarse.toml --set law.restitution=0 --replicas 8 -o 'an ensemble.h5'");
+  EXPECT_EQ(made.status, 5);
+  expect_shown("an ensemble.h5", "", made);
+}
+
+TEST_F(Failures, ManyAreCountedAndFoundInTheFile) {
+  const Printed made =
+      shell("cradle ensemble coarse.toml --set law.restitution=0 --set initial.perturbation=0.3 --replicas 40 -o e.h5");
+  EXPECT_EQ(made.status, 5);
+  EXPECT_NE(made.err.find(" more: see /replicas/failed in e.h5\n"), std::string::npos) << made.err;
+}
+
+// U6 of a list: no replica differs from another.
+TEST_F(Failures, ReplicasThatAreAllTheSameAreSaid) {
+  const auto said = [&](const std::string& command) {
+    const Printed made = shell("cradle " + command + " --quiet -o it.h5; rm it.h5");
+    return made.err;
+  };
+  const std::string ensemble = "ensemble coarse.toml --set run.until=1 ", none = "--set initial.perturbation=0 ";
+  EXPECT_EQ(said(ensemble + none + "--replicas 3"),
+            "nothing is random in coarse: all 3 replicas are the same run; give initial.perturbation, or --replicas "
+            "1\n");
+  EXPECT_EQ(said(ensemble + none + "--replicas 1"), "");
+  EXPECT_EQ(said(ensemble + "--replicas 3"), "");
+  EXPECT_EQ(said("sweep coarse.toml --set run.until=1 --vary initial.perturbation=0,0.1 --replicas 2"),
+            "nothing is random in points/0000: all 2 replicas are the same run; give initial.perturbation, or "
+            "--replicas 1\n");
+  for (const char* scene : {"classics/domino --set run.until=3", "fig9 --set run.until=1", "fig5"})
+    EXPECT_EQ(said(std::string("ensemble ") + scene + " --replicas 2").rfind("nothing is random in ", 0), 0U) << scene;
+  for (const char* scene : {"cooling --set initial.particles=9", "classics/heat_wall --set initial.perturbation=0",
+                            "classics/blast --set output.profiles.range=[-8,8] --set initial.particles=40"})
+    EXPECT_EQ(said(std::string("ensemble ") + scene + " --set run.until=1 --replicas 2"), "") << scene;
+}
+
+}  // namespace failures_test
+}  // namespace cradle::tests

@@ -1,0 +1,68 @@
+// What messages and help name is there: every key of a scene is one of the table of keys, every command one of the
+// program's, and its options are options of that command.
+#include <regex>
+#include <set>
+#include <string>
+
+#include "cradle/tests/tools/program.hpp"
+
+namespace cradle::tests {
+namespace messages_test {
+
+using Names = std::set<std::string>;
+
+// All of a pattern's first groups.
+Names matches(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  Names found;
+  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match)
+    found.insert((*match)[1]);
+  return found;
+}
+
+// The texts between quotes in a source of the program, those that follow each other as one.
+std::string texts(const std::string& source) {
+  static const std::regex quoted(R"re("((?:[^"\\\n]|\\.)*)")re"), between(R"("\s*\n\s*")");
+  static const std::regex includes("#include[^\n]*");
+  const std::string joined = std::regex_replace(std::regex_replace(source, includes, ""), between, "");
+  std::string found;
+  for (std::sregex_iterator match(joined.begin(), joined.end(), quoted), end; match != end; ++match)
+    found += (*match)[1].str() + "\n";
+  return found;
+}
+
+class Messages : public ProgramTest {
+ protected:
+  Messages() {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source_folder + "/tools"))
+      if (const auto kind = entry.path().extension(); kind == ".cpp" || kind == ".hpp") all += texts(contents(entry));
+    EXPECT_GT(all.size(), 20000U);
+  }
+  std::string all;
+};
+
+TEST_F(Messages, NameKeysThatThereAre) {
+  const Names keys = matches("\n" + shell("cradle scenes --keys").out, R"(\n([a-z_.]+)  \()");
+  ASSERT_GT(keys.size(), 60U);
+  const std::string key = R"(\b((?:law|initial|run|output|walls|sweep)\.[a-z_]+(?:\.[a-z_]+)*)(?![a-z0-9]))";
+  for (const std::string& name : matches(all, key)) {
+    const auto table = keys.lower_bound(name + ".");
+    EXPECT_TRUE(keys.contains(name) || (table != keys.end() && table->starts_with(name + "."))) << name;
+  }
+}
+
+TEST_F(Messages, NameCommandsAndOptionsThatThereAre) {
+  const std::string help = shell("cradle --help").out;
+  const Names commands = matches(help, R"(\n  ([a-z]+) )");
+  ASSERT_GT(commands.size(), 15U);
+  for (const std::string& line : matches(all, R"((?:`|"|^)(cradle [a-z]+[^`\n]*))")) {
+    const std::string command = *matches(line, "^cradle ([a-z]+)").begin();
+    ASSERT_TRUE(commands.contains(command)) << line;
+    const Names options = matches(shell("cradle " + command + " --help").out, "(--[a-z]+)");
+    for (const std::string& option : matches(line.substr(0, line.find('&')), "(--[a-z]+)"))
+      EXPECT_TRUE(options.contains(option)) << line;
+  }
+}
+
+}  // namespace messages_test
+}  // namespace cradle::tests

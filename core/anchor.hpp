@@ -30,6 +30,8 @@ template <Real T> class Anchor {
     return {from_.x + T(from_.v.value() * difference(Pair<T>{time, T(0)}, since_)), from_.v};
   }
 
+  T velocity(const Bodies<T>& bodies) const { return collided_ ? from_.v.value() : bodies.velocity(body_); }
+
   // Goes over to a body that has not collided.
   void take(BodyIndex body) { body_ = body; }
   // Goes over to the last body of a line, which gains velocity in a contact now.

@@ -55,7 +55,16 @@ template <Real T> class Bodies {
 
   virtual T kinetic_energy() const = 0;
   virtual T momentum() const = 0;
+  // The same where more is known of it than the sum of rounded numbers, which need not be 0 where it is: what bodies
+  // that have come to rest against each other have left.
+  virtual T conserved_momentum() const { return momentum(); }
   virtual T total_mass() const = 0;
+  // Of bodies [from, to).
+  virtual T mass_between(BodyIndex from, BodyIndex to) const {
+    CompensatedSum<T> sum;
+    for (BodyIndex body = from; body < to; ++body) sum.add(mass(body));
+    return sum.value();
+  }
   virtual T least_mass() const = 0;
   // Position of the centre of mass; takes all bodies.
   T centre_of_mass() const {

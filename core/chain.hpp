@@ -57,9 +57,10 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
   { chain.account() } -> std::same_as<const Account<typename C::Scalar>&>;
 
-  // Energy that a contact at a gap has lost; all that was lost.
+  // Energy that a contact at a gap has lost; all that was lost; the kinetic energy that all bodies of the scene have.
   changing.lose(s, time);
   { chain.energy_lost() } -> std::convertible_to<typename C::Scalar>;
+  { chain.kinetic_energy() } -> std::convertible_to<typename C::Scalar>;
 
   // Reading, at a local time not before the last contact: a gap; the outermost bodies that have collided and how many
   // there are from one to the other; everything.

@@ -23,6 +23,7 @@
 #include "cradle/core/cluster_line.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/configuration.hpp"
+#include "cradle/core/relative_motion.hpp"
 #include "cradle/core/state.hpp"
 #include "cradle/core/window.hpp"
 
@@ -131,6 +132,9 @@ template <Real T> class ClusterChain {
     if (last() == front) return configuration(time).x.back();
     return (undisturbed_place(right(front), time) - gap_at(front, time)).value();
   }
+  // Of all bodies of the scene, now; takes all cells held. (cluster_chain_configuration.hpp)
+  T kinetic_energy() const;
+
   static auto state(auto& self) {
     return std::tie(self.line_, self.window_, self.vacated_, self.active_, self.beyond_, self.centre_, self.carried_);
   }

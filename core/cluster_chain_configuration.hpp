@@ -9,6 +9,23 @@
 
 namespace cradle {
 
+// Bodies that are not held move like the outermost one that is.
+template <Real T> T ClusterChain<T>::kinetic_energy() const {
+  const T total = bodies_->total_mass();
+  const auto moving = relative_motion(total, T(0), [&](const T& c, const auto& add) {
+    for (Slot s = first();; s = right(s)) {
+      const Cell<T>& cell = line_.gaps[s];
+      T mass = cell.mass;
+      if (s == first()) mass += bodies_->mass_between(0, window_.unheld_left());
+      if (s == last()) mass += bodies_->mass_between(count() - window_.unheld_right(), count());
+      add(mass, T(cell.velocity - c));
+      if (s == last()) break;
+    }
+  });
+  const T momentum = bodies_->conserved_momentum();
+  return momentum * momentum / (total + total) + moving.energy;
+}
+
 template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time) const {
   const bool collided = window_.has_fronts();
   const Slot from = collided && window_.front_left() > first() ? left(window_.front_left()) : first();

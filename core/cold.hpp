@@ -124,6 +124,7 @@ template <Real T> class Cold final : public Bodies<T> {
   T kinetic_energy() const override { return energy_; }
   T momentum() const override { return momentum_; }
   T total_mass() const override { return masses_.total(0, count_); }
+  T mass_between(BodyIndex from, BodyIndex to) const override { return masses_.total(from, to); }
   T least_mass() const override { return masses_.least(); }
 
  private:

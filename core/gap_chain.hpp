@@ -23,6 +23,7 @@
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/contact_memory.hpp"
 #include "cradle/core/gap_line.hpp"
+#include "cradle/core/relative_motion.hpp"
 #include "cradle/core/state.hpp"
 #include "cradle/core/window.hpp"
 
@@ -123,6 +124,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   T front_left(const T& time) const;
   T front_right(const T& time) const;
   const Walls<T>& walls() const { return walls_; }
+  // Of all bodies of the scene, now; takes all gaps held. (gap_chain_configuration.hpp)
+  T kinetic_energy() const;
 
   static auto state(auto& self) {
     return std::tie(self.line_, self.window_, self.memory_, self.left_, self.right_, self.walls_);

@@ -19,6 +19,32 @@ template <Real T, class Masses> T GapChain<T, Masses>::front_right(const T& time
   return (outermost < right_.body() ? x - gap_at(slot(outermost), time) : x).value();
 }
 
+// Bodies that are not held move like the outermost one that is. Velocities are told from a wall, where there is one:
+// its own x is known, and its own velocity. On a ring the last gap follows from the others.
+template <Real T, class Masses> T GapChain<T, Masses>::kinetic_energy() const {
+  const T total = bodies_->total_mass(), drift = bodies_->conserved_momentum() / total;
+  const BodyIndex count = bodies_->count();
+  const bool from_wall = body(first()) < 0, to_wall = !on_ring() && body(last()) + 1 == count;
+  const T left = from_wall ? T(0) : bodies_->mass_between(0, body(first()) + 1);
+  const T right = to_wall ? T(0) : bodies_->mass_between(on_ring() ? count - 1 : body(last()) + 1, count);
+  const Slot end = on_ring() ? last() : last() + 1;
+  const T known = on_ring() || walls_.any() ? T(0) : T(left_.velocity(*bodies_) - drift);
+  T at_end(0);  // the last one's x, with c = 0
+  const auto moving = relative_motion(total, known, [&](const T& c, const auto& add) {
+    EnergySum<T> slowing;
+    add(left, T(-c));
+    for (Slot s = first(); s < end; ++s) {
+      slowing.add(closing(s));
+      add(s + 1 < end ? line_.masses[s + 1] : right, less(slowing, c));
+    }
+    at_end = slowing.value();
+  });
+  const T speed = from_wall  ? T(bodies_->velocity(-1) - moving.mean)
+                  : to_wall ? T(bodies_->velocity(count) + (at_end - moving.mean))
+                            : drift;
+  return total * speed * speed / T(2) + moving.energy;
+}
+
 template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configuration(const T& time) const {
   return on_ring() ? ring_configuration(time) : line_configuration(time);
 }

@@ -2,6 +2,7 @@
 // Bodies given one by one, on a line or a ring: positions, velocities and, where they differ, masses.
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -14,9 +15,11 @@ namespace cradle {
 template <Real T> class List final : public Bodies<T> {
  public:
   // One velocity per position; masses likewise, or none where all are 1. With a circumference the bodies are on a ring.
+  // `momentum`: where more is known of it than their sum.
   // Throws std::invalid_argument when lengths differ, when a number is not finite, when positions do not increase in
   // the working precision or span the ring, or when a mass is not positive.
-  List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {}, T circumference = T(0))
+  List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {}, T circumference = T(0),
+       std::optional<T> momentum = {})
       : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)),
         circumference_(std::move(circumference)) {
     if (x_.empty()) throw std::invalid_argument("no bodies: list at least one");
@@ -42,6 +45,10 @@ template <Real T> class List final : public Bodies<T> {
                                     "): give it one");
       identical_ = identical_ && m_[i] == m_[0];
     }
+    CompensatedSum<T> total, sum;
+    for (BodyIndex body = 0; body < count(); ++body) total.add(mass(body)), sum.add(mass(body) * velocity(body));
+    total_mass_ = total.value(), momentum_ = sum.value();
+    conserved_ = momentum ? *momentum : momentum_;
     if (this->on_ring() && !(x_.back() - x_.front() < circumference_))
       throw std::invalid_argument("the bodies do not fit on the ring (from " + in_message(x_.front()) + " to " +
                                   in_message(x_.back()) + ", circumference " + in_message(circumference_) +
@@ -65,16 +72,9 @@ template <Real T> class List final : public Bodies<T> {
     for (BodyIndex body = 0; body < count(); ++body) twice.add(mass(body) * velocity(body) * velocity(body));
     return twice.value() / T(2);
   }
-  T momentum() const override {
-    CompensatedSum<T> sum;
-    for (BodyIndex body = 0; body < count(); ++body) sum.add(mass(body) * velocity(body));
-    return sum.value();
-  }
-  T total_mass() const override {
-    CompensatedSum<T> sum;
-    for (BodyIndex body = 0; body < count(); ++body) sum.add(mass(body));
-    return sum.value();
-  }
+  T momentum() const override { return momentum_; }
+  T conserved_momentum() const override { return conserved_; }
+  T total_mass() const override { return total_mass_; }
   T least_mass() const override { return m_.empty() ? T(1) : *std::min_element(m_.begin(), m_.end()); }
 
  private:
@@ -82,7 +82,7 @@ template <Real T> class List final : public Bodies<T> {
   static std::size_t at(BodyIndex body) { return static_cast<std::size_t>(body); }
 
   std::vector<T> x_, v_, m_;
-  T circumference_;
+  T circumference_, total_mass_{0}, momentum_{0}, conserved_{0};
   bool identical_ = true;
 };
 

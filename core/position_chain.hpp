@@ -14,6 +14,7 @@
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/event_queue.hpp"
 #include "cradle/core/ledger.hpp"
+#include "cradle/core/relative_motion.hpp"
 #include "cradle/core/state.hpp"
 
 namespace cradle {
@@ -53,6 +54,7 @@ template <Real T> class PositionChain {
   Slot right(Slot s) const { return s + 1; }
   bool on_ring() const { return false; }
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) - 2 + first_body_; }
+  Slot slot_of(BodyIndex body) const { return static_cast<Slot>(body - first_body_ + 2); }
   BodyIndex count() const { return static_cast<BodyIndex>(count_); }
   BodyIndex collided_bodies() const {
     return front_right_ < front_left_ ? 0 : static_cast<BodyIndex>(outermost_right() - outermost_left() + 1);
@@ -124,6 +126,15 @@ template <Real T> class PositionChain {
   T front_left(const T& time) const { return place(at(outermost_left()), time); }
   T front_right(const T& time) const { return place(at(outermost_right()), time); }
   const Walls<T>& walls() const { return walls_; }
+  // Of all bodies, now. Between walls nothing is known of their momentum but what they have.
+  T kinetic_energy() const {
+    const T total = of_walls_->total_mass(), drift = of_walls_->conserved_momentum() / total;
+    const auto moving = relative_motion(total, walls_.any() ? T(0) : drift, [&](const T& c, const auto& add) {
+      for (Slot s = slot_of(0); s < slot_of(count()); ++s) add(at(s).m, T(at(s).v - c));
+    });
+    const T speed = walls_.any() ? moving.mean : drift;
+    return total * speed * speed / T(2) + moving.energy;
+  }
 
   Configuration<T> configuration(const T& time) const {
     const bool collided = front_left_ <= front_right_;

@@ -107,6 +107,7 @@ template <Real T> class Ring final : public Bodies<T> {
   T kinetic_energy() const override { return energy_; }
   T momentum() const override { return T(0); }
   T total_mass() const override { return masses_.total(0, count_); }
+  T mass_between(BodyIndex from, BodyIndex to) const override { return masses_.total(from, to); }
   T least_mass() const override { return masses_.least(); }
 
  private:

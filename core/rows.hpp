@@ -128,6 +128,10 @@ template <Real T> class Rows final : public Bodies<T> {
     const T rows = left_mass() + right_mass();
     return centre_ ? T(rows + centre_->mass) : rows;
   }
+  T mass_between(BodyIndex from, BodyIndex to) const override {
+    const bool centre = centre_ && from <= left_.count && left_.count < to;
+    return masses_.total(from, to) + (centre ? T(centre_->mass - masses_.of(left_.count)) : T(0));
+  }
   T least_mass() const override {
     const T rows = masses_.least();
     return centre_ && centre_->mass < rows ? centre_->mass : rows;

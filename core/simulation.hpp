@@ -110,12 +110,16 @@ class Simulation {
 
   // The state at a time not before the last contact made nor after the time advanced to.
   Configuration<T> configuration(const T& time) const { return chain_.configuration(chain_.local_time(time)); }
+  // Right after the last contact made. The time of the scene that it is at is a rounded one: gaps that close within its
+  // rounding would be below zero there.
+  Configuration<T> configuration_at_last_contact() const { return chain_.configuration(last_contact_); }
   bool on_ring() const { return chain_.on_ring(); }
   BodyIndex collided_bodies() const { return chain_.collided_bodies(); }
   T front_left(const T& time) const { return chain_.front_left(chain_.local_time(time)); }
   T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return chain_.energy_lost(); }
+  T kinetic_energy() const { return chain_.kinetic_energy(); }
   // The start if there was no contact yet.
   T last_contact_time() const { return chain_.stamp(last_contact_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report; }

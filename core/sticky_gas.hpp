@@ -23,6 +23,7 @@
 #include "cradle/core/account.hpp"
 #include "cradle/core/configuration.hpp"
 #include "cradle/core/ledger.hpp"
+#include "cradle/core/relative_motion.hpp"
 #include "cradle/core/simulation.hpp"
 #include "cradle/core/state.hpp"
 
@@ -55,6 +56,20 @@ template <Real T> class StickyGas {
 
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
+  // Of all bodies of the scene; those not held move like the outermost one that is.
+  T kinetic_energy() const {
+    const T total = bodies_->total_mass(), drift = bodies_->conserved_momentum() / total;
+    const auto moving = relative_motion(total, drift, [&](const T& c, const auto& add) {
+      for (std::size_t k = 0; k < held_.size(); ++k) {
+        T mass = held_[k].mass;
+        if (!ring_ && k == 0) mass += bodies_->mass_between(0, held_[k].first);
+        if (!ring_ && k + 1 == held_.size())
+          mass += bodies_->mass_between(held_[k].first + held_[k].count, bodies_->count());
+        add(mass, T(velocity(held_[k]) - c));
+      }
+    });
+    return total * drift * drift / T(2) + moving.energy;
+  }
   T last_contact_time() const { return time_; }  // contacts have no times here: that of the state
   const Account<T>& account() const { return account_; }
   bool on_ring() const { return ring_; }
@@ -98,6 +113,8 @@ template <Real T> class StickyGas {
     }
     return c;
   }
+
+  Configuration<T> configuration_at_last_contact() const { return configuration(time_); }
 
   static auto state(auto& self) { return std::tie(self.time_, self.elapsed_, self.held_, self.counts_, self.lost_); }
   void loaded() const {

@@ -48,7 +48,9 @@ template <Real T> class Walled final : public Bodies<T> {
 
   T kinetic_energy() const override { return bodies_->kinetic_energy(); }
   T momentum() const override { return bodies_->momentum(); }
+  T conserved_momentum() const override { return bodies_->conserved_momentum(); }
   T total_mass() const override { return bodies_->total_mass(); }
+  T mass_between(BodyIndex from, BodyIndex to) const override { return bodies_->mass_between(from, to); }
   T least_mass() const override { return bodies_->least_mass(); }
   // Walls give energy: a ledger for a million times as much as comes of them at once loses 20 of its spare bits.
   T energy_to_lose() const override {

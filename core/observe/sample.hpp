@@ -1,6 +1,14 @@
 #pragma once
-// One row of the time series: the state after all contacts at times <= t, in a few numbers, at constant cost.
-// The ledger of losses holds what walls have given as a loss below zero; here the two are told apart.
+// One row of the time series: the state after all contacts at times <= t, in a few numbers. The ledger of losses holds
+// what walls have given as a loss below zero; here the two are told apart.
+//
+// The energy comes from the ledger as long as that leaves half of the energy at the start or more, at constant cost;
+// else from the velocities of all bodies (relative_motion.hpp), as it does where walls have given or taken some. Why:
+// rounding adds an energy e_c to the state at a contact c, which the ledger does not know. The energy E(t) of the state
+// contains what is left of it, the share E(t)/E(t_c) of e_c as of any other energy; the energy of the ledger misses the
+// rest of e_c, which losses have taken. So the error of the one is sum e_c E(t)/E(t_c), that of the other
+// sum e_c (1 - E(t)/E(t_c)): nothing where bodies are elastic, all of it where they have come to rest, where that is
+// more than there is left. A ledger that leaves half is moreover rounded to 2 eps of it.
 
 #include <limits>
 #include <optional>
@@ -12,7 +20,7 @@ namespace cradle {
 
 template <Real T> struct Sample {
   T time{0};
-  T energy{0};       // kinetic, of all bodies of the scene: initial energy minus the ledger of losses
+  T energy{0};       // kinetic, of all bodies of the scene
   T energy_lost{0};  // since the start, in contacts of bodies
   T given{0};        // by walls, since the start
   Counts counts;
@@ -30,11 +38,17 @@ template <class Run, Real T = typename Run::Scalar> T given_by_walls(const Run& 
     return T(0);
 }
 
+// Kinetic energy of all bodies of the scene, after the contacts made so far.
+template <class Run, Real T = typename Run::Scalar> T energy_now(const Run& run, const T& initial_energy) {
+  const T left = initial_energy - run.energy_lost();
+  return T(left + left) < initial_energy || !(given_by_walls(run) == T(0)) ? T(run.kinetic_energy()) : left;
+}
+
 // Of a Simulation or a StickyGas. `time` must not be before the last contact made nor after the time advanced to.
 template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
   const T lost = run.energy_lost(), given = given_by_walls(run);
-  Sample<T> s{time, initial_energy - lost, lost + given, given, run.counts(), run.collided_bodies(), {}, {}};
+  Sample<T> s{time, energy_now(run, initial_energy), lost + given, given, run.counts(), run.collided_bodies(), {}, {}};
   if (s.bodies > 0 && !run.on_ring()) {
     s.front_left = run.front_left(time);
     s.front_right = run.front_right(time);

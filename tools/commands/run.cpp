@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -20,8 +21,10 @@ struct RunArguments : CommonOptions {
 };
 
 std::string summary(const RunOutcome& run, std::uint64_t contacts_before, double seconds) {
-  return fmt::format("{}: t = {}, {} contacts, energy {:.10g}, {:.2f} s, {:.1f} million contacts/s\n",
-                     end_text(run.end), run.time, run.contacts, run.energy, seconds,
+  const int digits = std::clamp(static_cast<int>(run.energy_digits), 1, 10);
+  return fmt::format("{}: t = {}, {} contacts, energy {:.{}g}{}, {:.2f} s, {:.1f} million contacts/s\n",
+                     end_text(run.end), run.time, run.contacts, run.energy, digits,
+                     run.energy_digits < 1 ? " (rounding)" : "", seconds,
                      static_cast<double>(run.contacts - contacts_before) / seconds * 1e-6);
 }
 

@@ -34,6 +34,7 @@ template <Real T> class Engine {
   virtual const Counts& counts() const = 0;
   virtual const Account<T>& account() const = 0;
   virtual T energy_lost() const = 0;
+  virtual T kinetic_energy() const = 0;
   virtual T given_by_walls() const = 0;
   virtual T last_contact_time() const = 0;
   virtual const CollapseReport<T>* collapse() const = 0;  // none where no contacts are made
@@ -43,6 +44,7 @@ template <Real T> class Engine {
   virtual T front_left(const T& time) const = 0;
   virtual T front_right(const T& time) const = 0;
   virtual Configuration<T> configuration(const T& time) const = 0;
+  virtual Configuration<T> configuration_at_last_contact() const = 0;
 
   /// The state (core/state.hpp), and what its fields are.
   virtual void save(StateWriter& to) const = 0;
@@ -82,6 +84,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   const Counts& counts() const override { return run_.counts(); }
   const Account<T>& account() const override { return run_.account(); }
   T energy_lost() const override { return run_.energy_lost(); }
+  T kinetic_energy() const override { return run_.kinetic_energy(); }
   T given_by_walls() const override { return cradle::given_by_walls(run_); }
   T last_contact_time() const override { return run_.last_contact_time(); }
   const CollapseReport<T>* collapse() const override {
@@ -96,6 +99,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   T front_left(const T& time) const override { return run_.front_left(time); }
   T front_right(const T& time) const override { return run_.front_right(time); }
   Configuration<T> configuration(const T& time) const override { return run_.configuration(time); }
+  Configuration<T> configuration_at_last_contact() const override { return run_.configuration_at_last_contact(); }
 
   void save(StateWriter& to) const override { cradle::save(to, run_); }
   void load(StateReader& from) override { cradle::load(from, run_); }

@@ -46,8 +46,11 @@ std::shared_ptr<const cradle::Bodies<T>> cold_bodies(const Initial& initial, Dis
 namespace detail {
 
 template <Real T> std::shared_ptr<const cradle::Bodies<T>> bodies_without_walls(const Initial& initial) {
-  if (initial.type == InitialType::list)
-    return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m));
+  if (initial.type == InitialType::list) {
+    const auto momentum = sum_of_products(initial.v, initial.m);
+    return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m), T(0),
+                                     momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt);
+  }
   // Below 1/2, whatever the nearest double is.
   const double perturbation = std::min(initial.perturbation.value, std::nextafter(0.5, 0.));
   const Displacement displacement = uniform_displacement(perturbation, initial.seed, initial.replica);

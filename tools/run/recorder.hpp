@@ -155,7 +155,7 @@ template <Real T> class CoreRecorder {
   CoreRecorder(std::shared_ptr<const cradle::Bodies<T>> bodies, const T& start)
       : bodies_(std::move(bodies)), start_(start) {}
 
-  void add(const Configuration<T>& c, const T& energy) {
+  void add(const Configuration<T>& c, const T& lost) {
     const DenseCore core = dense_core(c);
     mass_.push_back(core.mass);
     width_.push_back(core.width);
@@ -163,7 +163,8 @@ template <Real T> class CoreRecorder {
     gap_.push_back(core.gap);
     StickyGas<T> sticky(bodies_, start_);  // anew: what it gives must not depend on when it was looked at before
     sticky.advance(c.time);
-    excess_.push_back(T(energy - (bodies_->kinetic_energy() - sticky.energy_lost())));
+    const T energy = bodies_->kinetic_energy();  // of both ledgers: what they share cancels
+    excess_.push_back(T(T(energy - lost) - (energy - sticky.energy_lost())));
   }
   Columns<T> take() { return columns<T>(taken(mass_), taken(width_), taken(window_), taken(gap_), taken(excess_)); }
 

@@ -44,6 +44,7 @@ struct RunOutcome {
   std::string collapse_time;               // where the run stopped at a collapse
   std::uint64_t contacts = 0, merges = 0;  // at the end, as are time and energy
   double time = 0, energy = 0;
+  double energy_digits = 10;  // of those that the energy is given with, as rounding leaves them
   std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
 };
 

@@ -233,7 +233,7 @@ template <Real T> class SceneRun {
     for (const auto& front : {now.front_left, now.front_right})
       if (front) require_held(*front, "a front", time);
     series_.add(now);
-    if (core_) core_->add(engine_.configuration(time), now.energy);
+    if (core_) core_->add(engine_.configuration(time), engine_.energy_lost());
     if (!has_clouds(scene_)) return;
     const Cloud<T> seen = cloud(engine_.configuration(time));
     cloud_.add(seen);
@@ -251,10 +251,24 @@ template <Real T> class SceneRun {
   void record_end(const T& time) {
     if (options_.witness != nullptr) tell_witness(time, true);
     record_sample(time);
-    put(snapshot_rows(engine_.configuration(time), numbered("snapshots", snapshots_)));
+    put(snapshot_rows(engine_.configuration_at_last_contact(), numbered("snapshots", snapshots_)));
   }
 
   static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
+
+  // Digits that rounding leaves in the energy at the end, about. C contacts of N bodies round a speed by eps each time,
+  // by eps sqrt(1 + C/N) in all, and the energy by twice that: of what they are then where closing speeds are held, of
+  // what they were at the start where velocities are.
+  double energy_digits(double energy) const {
+    const auto active = static_cast<double>(std::max<BodyIndex>(engine_.collided_bodies(), 1));
+    const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
+    const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene_.run.digits);
+    double error = 2 * std::sqrt(1 + static_cast<double>(engine_.counts().contacts) / active);
+    const bool velocities = scene_.run.coordinates == Coordinates::absolute ||
+                            scene_.law.type != LawType::inelastic || scene_.run.collapse == CollapsePolicy::merge;
+    if (velocities && energy > 0) error *= std::sqrt(std::max(1., to_double(energy_) / energy));
+    return std::max(0., held - std::log10(error));
+  }
 
   RunOutcome finish(Status status, const T& time) {
     const Counts& counts = engine_.counts();
@@ -263,14 +277,16 @@ template <Real T> class SceneRun {
     end.contacts = counts.contacts;
     end.merges = counts.merges;
     end.time = to_double(time);
-    end.energy = to_double(T(energy_ - engine_.energy_lost()));
+    end.energy = to_double(energy_now(engine_, energy_));
+    end.energy_digits = energy_digits(end.energy);
     const ToldAccount account = told(engine_.account());
     end.warning = account_warning(account, scene_.run);
     if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.contacts, scene_.run);
     end.result.attributes = provenance(scene_, precision_name(scene_.run), end_text(end.end));
     for (const Attribute& attribute :
          {Attribute("simultaneous_contacts", account.simultaneous), Attribute("order_lost", account.order_lost),
-          Attribute("unresolved_gaps", account.unresolved)})
+          Attribute("unresolved_gaps", account.unresolved), Attribute("energy_digits", end.energy_digits),
+          Attribute("ledger_error", to_double(T(energy_ - engine_.energy_lost() - engine_.kinetic_energy())))})
       end.result.attributes.push_back(attribute);
     put_tables(end);
     if (status == Status::collapsed) {

@@ -5,17 +5,25 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "cradle/core/observe/trace.hpp"
 #include "cradle/core/real.hpp"
 #include "cradle/precision/bin_float.hpp"
+#include "cradle/precision/double_double.hpp"
 #include "cradle/tools/certify/certify.hpp"
 
 namespace cradle::tools {
 
 namespace {
 
-constexpr double most_digits = 100;  // to which numbers are compared
+// To which numbers are compared, by type: those it holds, and no more than are compared at all.
+double digits_held(const Run& run) {
+  constexpr double most = 100, per_bit = 0.30102999566398120;
+  if (run.precision == Precision::double_) return std::numeric_limits<double>::digits * per_bit;
+  if (run.precision == Precision::double_double) return std::numeric_limits<double_double>::digits * per_bit;
+  return std::min(static_cast<double>(run.digits), most);
+}
 
 // One sample of a run that is compared with others: what they must agree in.
 struct TraceSample {
@@ -69,17 +77,24 @@ Traced traced(const Scene& scene, const TrustOptions& options) {
           std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
 }
 
-// Decimal digits that two numbers share: -log10 of their difference against their size or, where that is given,
-// `scale`.
-double shared_digits(const std::string& a, const std::string& b, const std::string& scale = "0") {
-  if (a == b) return most_digits;
-  if (a.empty() || b.empty()) return 0;
-  const auto x = from_text<bin_float>(a), y = from_text<bin_float>(b);
-  const bin_float size = std::max({magnitude(x), magnitude(y), magnitude(from_text<bin_float>(scale))});
+// The number that a run had. Its text is the shortest that only this number of its type is written as: of a double,
+// whose 6249.505 is 6249.5050000000001..., not the number itself.
+bin_float value(const std::string& text, const Run& run) {
+  return run.precision == Precision::double_ ? bin_float(from_text<double>(text)) : from_text<bin_float>(text);
+}
+
+// Decimal digits that numbers of two runs share: -log10 of their difference against their size or, where that is
+// given, `scale`; no more than either type has.
+double shared_digits(const std::string& a, const Run& of_a, const std::string& b, const Run& of_b,
+                     const std::string& scale = "0") {
+  const double most = std::min(digits_held(of_a), digits_held(of_b));
+  if (a.empty() || b.empty()) return a.empty() && b.empty() ? most : 0;
+  const bin_float x = value(a, of_a), y = value(b, of_b);
+  const bin_float size = std::max({magnitude(x), magnitude(y), magnitude(value(scale, of_b))});
   const bin_float apart = magnitude(bin_float(x - y));
-  if (apart == 0) return most_digits;
+  if (apart == 0) return most;
   const auto digits = -static_cast<double>(log10(bin_float(apart / size)));
-  return digits > 0 ? std::min(digits, most_digits) : 0.0;
+  return digits > 0 ? std::min(digits, most) : 0.0;
 }
 
 // Number of leading samples that agree for good: a contact just at a sample's time may fall on either side of it.
@@ -103,13 +118,16 @@ Trusted compare(const Traced& run, const Traced& reference) {
   if (same > 0) trusted.time = a[same - 1].time, trusted.contacts = a[same - 1].contacts;
   if (counted > 0) trusted.counts_time = a[counted - 1].time;
   trusted.to_end = same == a.size() && a.size() == b.size();
+  const auto shared = [&](const std::string& x, const std::string& y, const std::string& scale) {
+    return shared_digits(x, run.scene.run, y, reference.scene.run, scale);
+  };
   for (std::size_t k = 0; k < samples; ++k) {
     trusted.times.push_back(a[k].time);
-    trusted.energy_digits.push_back(shared_digits(a[k].energy, b[k].energy, b[0].energy));
-    trusted.front_digits.push_back(shared_digits(a[k].front, b[k].front));
+    trusted.energy_digits.push_back(shared(a[k].energy, b[k].energy, b[0].energy));
+    trusted.front_digits.push_back(shared(a[k].front, b[k].front, "0"));
   }
   if (!run.outcome.collapse_time.empty() && !reference.outcome.collapse_time.empty())
-    trusted.collapse_digits = shared_digits(run.outcome.collapse_time, reference.outcome.collapse_time);
+    trusted.collapse_digits = shared(run.outcome.collapse_time, reference.outcome.collapse_time, "0");
   return trusted;
 }
 
@@ -197,13 +215,13 @@ std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
 }
 
 std::string trust_table(const std::vector<Trusted>& runs) {
-  const auto digits = [](double d) { return d >= most_digits ? std::string("all") : fmt::format("{:.1f}", d); };
   std::string text =
       fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13}{:>10}{:>10}{:>9}{:>9}{:>16}\n", "precision", "in",
                   "contacts right until t", "contact", "counts until", "energy", "front", "t_c", "seconds", "proved");
   for (const auto& run : runs) {
     const bool reference = &run == &runs.back();
-    const auto last = [&](const std::vector<double>& d) { return d.empty() ? std::string("-") : digits(d.back()); };
+    const auto digits = [&](double d) { return reference || d < 0 ? std::string("-") : fmt::format("{:.1f}", d); };
+    const auto last = [&](const std::vector<double>& d) { return digits(d.empty() ? -1 : d.back()); };
     const auto proved = run.proved_to_end     ? std::string("to the end")
                         : run.proved_time > 0 ? fmt::format("until {:.8g}", run.proved_time)
                                               : "-";
@@ -212,13 +230,13 @@ std::string trust_table(const std::vector<Trusted>& runs) {
                                    : fmt::format("{:.8g}", run.time);
     text += fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13.8g}{:>10}{:>10}{:>9}{:>9.2f}{:>16}\n", run.precision,
                         run.coordinates, upto, run.contacts, run.counts_time, last(run.energy_digits),
-                        last(run.front_digits), run.collapse_digits < 0 ? "-" : digits(run.collapse_digits),
+                        last(run.front_digits), digits(run.collapse_digits),
                         run.seconds, proved);
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of contacts at every body as the "
           "reference.\n"
-          "energy (against that at the start), front: digits shared with the reference at the last sample; t_c: of the "
-          "collapse time.\nproved: until when these contacts are proved to be those of the exact system (cradle "
+          "energy (against that at the start), front: digits shared with the reference at the last sample, of those that "
+          "the type has; t_c: of the collapse time.\nproved: until when these contacts are proved to be those of the exact system (cradle "
           "certify).\n";
   return text;
 }
@@ -239,7 +257,8 @@ Result trust_result(const Scene& scene, const std::vector<Trusted>& runs) {
                         {"proved_to_end", std::uint64_t{run.proved_to_end}}};
     group.columns = {{"time", "t", "of the sample", run.times},
                      {"energy_digits", "1",
-                      "decimal digits shared with the reference, the last run here, against the energy at the start",
+                      "decimal digits shared with the reference, the last run here, of those that the type has, against the "
+                      "energy at the start",
                       run.energy_digits},
                      {"front_digits", "1", "the same of the right front", run.front_digits}};
     result.groups.push_back(std::move(group));

@@ -24,7 +24,7 @@ struct Trusted {
   bool proved_to_end = false;
   /// Counts (contacts, merges) right up to this time.
   double counts_time = 0;
-  /// Per sample: decimal digits to which energy and right front agree with the reference.
+  /// Per sample: decimal digits to which energy and right front agree with the reference, no more than the type has.
   std::vector<double> times, energy_digits, front_digits;
   double collapse_digits = -1;  // of the collapse time; -1: the run did not stop at a collapse
 };

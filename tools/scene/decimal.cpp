@@ -2,8 +2,10 @@
 #include "cradle/tools/scene/decimal.hpp"
 
 #include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <charconv>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -155,6 +157,32 @@ bool operator==(const DecimalColumn& a, const DecimalColumn& b) {
   for (std::size_t i = 0; i < a.size(); ++i)
     if (std::is_neq(compare_decimals(a[i], b[i]))) return false;
   return true;
+}
+
+std::optional<std::string> sum_of_products(const DecimalColumn& a, const DecimalColumn& b) {
+  using boost::multiprecision::cpp_int;
+  constexpr std::size_t most_terms = 100'000;
+  constexpr std::int64_t most_digits = 2000;
+  if (a.size() > most_terms) return {};
+  std::map<std::int64_t, cpp_int> sums;  // by powers of ten
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    cpp_int product = 1;
+    std::int64_t power = 0;
+    for (const DecimalColumn* column : {&a, &b}) {
+      if (column->empty()) continue;
+      const Parts parts = parts_of((*column)[i]);
+      product *= parts.digits.empty() ? cpp_int(0) : cpp_int(parts.digits);
+      if (parts.negative) product = -product;
+      power += parts.exponent - static_cast<std::int64_t>(parts.digits.size());
+    }
+    if (product != 0) sums[power] += product;
+  }
+  cpp_int sum = 0;
+  if (sums.empty()) return "0";
+  const std::int64_t lowest = sums.begin()->first;
+  if (sums.rbegin()->first - lowest > most_digits) return {};
+  for (const auto& [power, of_it] : sums) sum += of_it * pow(cpp_int(10), static_cast<unsigned>(power - lowest));
+  return sum.str() + "e" + std::to_string(lowest);
 }
 
 }  // namespace cradle::tools

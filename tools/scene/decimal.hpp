@@ -75,4 +75,8 @@ class DecimalColumn {
   std::shared_ptr<Data> data_;
 };
 
+/// The exact sum of the products of two columns, of the first one alone where the second is empty. Nothing for more
+/// than 1e5 of them or where it would have thousands of digits.
+std::optional<std::string> sum_of_products(const DecimalColumn& a, const DecimalColumn& b);
+
 }  // namespace cradle::tools

@@ -330,5 +330,65 @@ TEST_F(Run, ClosureErrorsAreWrittenWhereTheyAreMeasured) {
   }
 }
 
+// The energy that a collapse leaves is that of the proof, in any type.
+TEST_F(Run, EnergyAtACollapseHasDigits) {
+  const auto last = [&](const std::string& file) {
+    const auto result = read_result((folder / file).string());
+    return std::get<std::vector<double>>(result.find("series")->columns[1].values).back();
+  };
+  const std::string run = "cradle run collapse3 --quiet --set output.events=false ";
+  ASSERT_EQ(shell(run + "-o a.h5").status, 3);
+  const double energy = last("a.h5");
+  EXPECT_GT(energy, 1e-257);
+  EXPECT_LT(energy, 1e-254);
+  ASSERT_EQ(shell(run + "--set run.precision=double-double -o b.h5").status, 3);
+  EXPECT_NEAR(last("b.h5") / energy, 1, 1e-13);
+  const Printed proof = shell("cradle certify collapse3 --quiet -o c.h5");
+  ASSERT_EQ(proof.status, 0) << proof.err;
+  const auto proved = read_result((folder / "c.h5").string());
+  bool found = false;
+  for (const auto& group : proved.groups)
+    for (const auto& column : group.columns)
+      if (column.name == "energy_low" && std::holds_alternative<std::vector<double>>(column.values)) {
+        EXPECT_NEAR(std::get<std::vector<double>>(column.values).back() / energy, 1, 1e-12);
+        found = true;
+      }
+  EXPECT_TRUE(found);
+  // Of the run's own: digits and the ledger's difference; and the last snapshot is at the contact, not at a rounded
+  // time beside it.
+  const auto result = read_result((folder / "a.h5").string());
+  EXPECT_GT(tools::attribute<double>(result.attributes, "energy_digits", ""), 12);
+  EXPECT_LT(tools::attribute<double>(result.attributes, "energy_digits", ""), 16);
+  EXPECT_LT(std::abs(tools::attribute<double>(result.attributes, "ledger_error", "")), 1e-15);
+  EXPECT_EQ(tools::attribute<double>(result.find("snapshots/0000")->attributes, "gap_min", ""), 0);
+}
+
+// Above the threshold of collapse, and of numbers that doubles do not add up to the momentum of: 0.3 - 0.1 - 0.2.
+TEST_F(Run, EnergyIsNeverNegative) {
+  for (const std::string set : {"law.restitution=0.072", "initial.v=[0.3,-0.1,-0.2]"}) {
+    shell("cradle run collapse3 --quiet --set output.events=false --set " + set + " -o a.h5");
+    const auto result = read_result((folder / "a.h5").string());
+    const auto& energy = std::get<std::vector<double>>(result.find("series")->columns[1].values);
+    for (std::size_t k = 1; k < energy.size(); ++k) {
+      EXPECT_GE(energy[k], 0) << set;
+      EXPECT_LE(energy[k], energy[k - 1]) << set;
+    }
+    EXPECT_LT(energy.back(), 1e-10) << set;
+    if (set.front() == 'i') EXPECT_LT(energy.back(), 1e-250) << set;
+  }
+}
+
+// No type shares more digits with another run than it has.
+TEST_F(Run, TrustedDigitsAreThoseOfTheType) {
+  ASSERT_EQ(shell("cradle trust fig6 --set initial.particles=2000 --set run.until=100 --digits 16,31,50").status, 0);
+  const auto result = read_result((folder / "fig6-trust.h5").string());
+  ASSERT_EQ(result.groups.size(), 3U);
+  const double most[] = {16, 32, 50};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const auto& column : result.groups[k].columns)
+      if (column.name != "time")
+        for (const double digits : std::get<std::vector<double>>(column.values)) EXPECT_LE(digits, most[k]) << column.name;
+}
+
 }  // namespace run_test
 }  // namespace cradle::tests

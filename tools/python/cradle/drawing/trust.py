@@ -13,8 +13,7 @@ def draw_trust(result, axes=None):
                                ("digits of the energy", "digits of the front")):
         for run, colour in zip(result.trust[:-1], plt.rcParams["axes.prop_cycle"].by_key()["color"] * 4):
             line = "--" if run["coordinates"] == "absolute" else "-"
-            shown = run[name] < 100  # all digits of the comparison: nothing to draw
-            ax.plot(run["time"][shown], run[name][shown], line, color=colour,
+            ax.plot(run["time"], run[name], line, color=colour,
                     label=f"{run['precision']}, {run['coordinates']}")
             if not run["right_to_end"]:
                 ax.axvline(run["contacts_right_until"], color=colour, linestyle=line, linewidth=0.8)

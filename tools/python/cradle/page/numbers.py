@@ -26,7 +26,7 @@ def numbers(result: Result) -> str:
     if not proof and result.kind == "run" and entries:
         note = (f"<p class=note>In {text(result.attributes.get('precision', ''))}; not proved: "
                 "<code>cradle certify</code> proves contacts and encloses these numbers, <code>cradle trust</code> "
-                "tells how many of their digits are right.</p>\n")
+                "finds out how many of their digits are right.</p>\n")
     return proof + (rows(entries) if entries else "") + note
 
 
@@ -45,7 +45,11 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
     entries = [("time reached", number(time), unit("t")), ("energy at the start", number(first), unit("m l^2/t^2"))]
     lost = last(series, "energy_lost")
     share = f" · {100 * lost / (energy + lost):.4g} % lost in contacts" if lost and energy + lost > 0 else ""
-    entries.append((END["energy"], number(energy), unit("m l^2/t^2") + share))
+    digits = result.attributes.get("energy_digits")
+    about = "" if digits is None else f" · about {digits:.0f} digits, estimated from rounding" if digits >= 1 \
+        else " · rounding, no digits"
+    entries.append((END["energy"], number(energy, min(12, max(1, int(digits if digits is not None else 12)))),
+                    unit("m l^2/t^2") + about + share))
     contacts, slow = last(series, "contacts"), last(series, "contacts_below_cutoff")
     share = f"{100 * slow / contacts:.4g} % of them below the cut-off" if contacts and slow else ""
     entries.append(("contacts", number(contacts or 0), share))
@@ -62,13 +66,24 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
     return entries
 
 
+def resolved(value: float, error: float) -> int:
+    """Digits of a double that mean something beside its error: two of the error, 17 where that is less than rounding."""
+    if not (np.isfinite(error) and error > 0 and value):
+        return 17
+    return int(np.clip(np.floor(np.log10(abs(value))) - np.floor(np.log10(error)) + 2, 2, 17))
+
+
 def collapse(result: Result) -> list[tuple[str, str, str]]:
     found = result.collapse
     entries = []
     for name, label in COLLAPSE.items():
         if name in found:
-            within = f"± {number(found['uncertainty'], 2)} " if name == "time" and "uncertainty" in found else ""
-            entries.append((label, number(found[name], 17), within + {"gap": "l", "ratio": ""}.get(name, "t")))
+            shown, note = number(found[name], 17 if name == "last_contact" else 6), {"gap": "l", "ratio": ""}.get(name, "t")
+            if name == "time":
+                within = found.get("uncertainty", np.nan)
+                shown = number(found[name], resolved(found[name], within))
+                note = f"± {number(within, 2)} t, estimated" if np.isfinite(within) else note
+            entries.append((label, shown, note))
     return entries
 
 
@@ -79,7 +94,8 @@ def snapshots(result: Result) -> list[tuple[str, str, str]]:
     if not gaps:
         return []
     gap, time = min(gaps)
-    entries = [("smallest gap of the snapshots", number(gap, 6), f"l, at t = {number(time)}")]
+    held = "" if gap else ": two bodies in contact"
+    entries = [("smallest gap of the snapshots", number(gap, 6), f"l, at t = {number(time)}{held}")]
     for name, label, symbol in (("closure_gap", "closure error of gaps", "l"),
                                 ("closure_speed", "closure error of speeds", "l/t")):
         if name in result.snapshots[-1].attributes:

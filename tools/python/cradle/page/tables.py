@@ -111,6 +111,6 @@ def precisions(result: Result) -> str:
                      (about["counts_right_until"], number(about["counts_right_until"], 10)),
                      (proved, "to the end" if about.get("proved_to_end") else
                       (number(proved, 10) if proved >= 0 else "–"))]
-                    + [(value, "reference" if reference else ("all" if value >= 100 else number(value, 3)))
+                    + [(value, "reference" if reference else number(value, 3))
                        for value in digits])
     return sortable("the same run at rising precision, each compared with the last", heads, body)

@@ -125,6 +125,7 @@ template <Real T> class Cold final : public Bodies<T> {
   T momentum() const override { return momentum_; }
   T total_mass() const override { return masses_.total(0, count_); }
   T least_mass() const override { return masses_.least(); }
+  T greatest_mass() const override { return masses_.greatest(); }
 
  private:
   BodyIndex count_;

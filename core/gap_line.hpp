@@ -6,24 +6,28 @@
 #include <concepts>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 
+#include "cradle/core/certainty.hpp"
 #include "cradle/core/collision.hpp"
+#include "cradle/core/far_gap.hpp"
 #include "cradle/core/masses.hpp"
 #include "cradle/core/timed_gaps.hpp"
 
 namespace cradle {
 
-// In double 32 bytes, two to a line of the cache.
-template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap : TimedGap<T> {
-  T closing{-1};
-  static auto state(auto& self) { return std::tuple_cat(TimedGap<T>::state(self), std::tie(self.closing)); }
+// What the line keeps of all its contacts where masses are far apart; nothing where they are not.
+struct NothingMore {
+  static std::tuple<> state(auto&) { return {}; }
 };
 
 template <Real T, class MassesOf> class GapLine {
  public:
   using Scalar = T;
   using Masses = MassesOf;
-  using Gaps = TimedGaps<T, Gap<T>, true>;
+  static constexpr bool far_apart = FarApart<Masses>;
+  using Gaps = TimedGaps<T, std::conditional_t<far_apart, FarGap<T>, Gap<T>>, true>;
 
   GapLine(const Bodies<T>& bodies, const T& start) : gaps(start, bodies.energy_to_lose()), masses(bodies) {}
 
@@ -36,8 +40,11 @@ template <Real T, class MassesOf> class GapLine {
   Gaps gaps;
   Masses masses;
   BodyIndex body_of_slot_0 = 0;
+  [[no_unique_address]] std::conditional_t<far_apart, Certainty<T, Gaps>, NothingMore> certainty;
 
-  static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.body_of_slot_0); }
+  static auto state(auto& self) {
+    return std::tie(self.gaps, self.masses, self.body_of_slot_0, self.certainty);
+  }
 
   // ---- copies of a part (segments.hpp): with so many slots; slot s here is s + offset there
   void resemble(const GapLine& other, std::size_t slots, std::ptrdiff_t offset) {
@@ -50,17 +57,27 @@ template <Real T, class MassesOf> class GapLine {
     masses.copy(other.masses, from, to, count + 1);
   }
   // A gap that no contact beside it closes.
-  void block(Slot s) { gaps.put(s, {{T(1), T(0)}, T(-std::int64_t{1} << 62)}); }
+  void block(Slot s) { gaps.put(s, cell(T(1), T(0), T(-std::int64_t{1} << 62))); }
 
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) + body_of_slot_0; }
   const T& closing(Slot s) const { return gaps[s].closing; }
+  void add_closing(Slot s, CompensatedSum<T>& sum) const {
+    sum.add(closing(s));
+    if constexpr (far_apart) sum.add(gaps[s].rest);
+  }
   // Local time of the next contact of a gap that is closing.
   T due(Slot s) const { return gaps.due(s, closing(s)); }
   double queue_due(Slot s) const { return gaps.queue_due(s, closing(s)); }
 
   // As it is at the start, the gap right of a body, and the mass of a body.
   void load(Slot s, const Bodies<T>& bodies, const T& time) {
-    gaps.put(s, {{bodies.gap(body(s)), time}, bodies.closing_speed(body(s))});
+    const BodyIndex b = body(s);
+    gaps.put(s, cell(bodies.gap(b), time, bodies.closing_speed(b)));
+    if constexpr (far_apart) {
+      const BodyIndex next = bodies.on_ring() && b + 1 == bodies.count() ? 0 : b + 1;
+      add(s, difference_of(bodies.velocity(b), bodies.velocity(next), closing(s)));
+      gaps[s].off = at_start(bodies, b, next);
+    }
     gaps.foresee(s, closing(s));
   }
   void load_mass(Slot s, const Bodies<T>& bodies) { masses.set(s, mass_of(s, bodies)); }
@@ -72,27 +89,72 @@ template <Real T, class MassesOf> class GapLine {
                                              Notice notice) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
+    if constexpr (far_apart) certainty.contact(gaps, p, s, n, body(s), time, outcome, masses.of_pair(s));
+    const auto handed = this->handed(s, outcome);
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;
+    if constexpr (far_apart) gaps[s].rest = T(0);
     gaps.forget(s);
-    notice |= kick(p, outcome.to_left, time);
-    notice |= kick(n, outcome.to_right, time);
+    notice |= kick(p, handed.left, time);
+    notice |= kick(n, handed.right, time);
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
   // There is no gap beyond the last body: what stands in its slot keeps opening, whatever it is handed.
-  void seal(Slot s, const T& time, const T& handed) { gaps.put(s, {{T(1), time}, T(-(handed + handed) - T(1))}); }
+  void seal(Slot s, const T& time, const T& handed) { gaps.put(s, cell(T(1), time, T(-(handed + handed) - T(1)))); }
+
+  // What the neighbours gain in a contact at the gap s. Where masses are far apart all three closing speeds add up as
+  // before, exactly: what rounding has left over goes where more is handed, to the side of the lighter body.
+  struct Handed {
+    const T &left, &right;
+  };
+  struct HandedExactly {
+    Pair<T> left, right;
+  };
+  [[gnu::always_inline]] auto handed(Slot s, const Outcome<T>& outcome) const {
+    if constexpr (far_apart) {
+      const Pair<T> before{closing(s), gaps[s].rest};
+      const T over = (before - outcome.closing - outcome.to_left - outcome.to_right).value();
+      const bool both = outcome.to_left == outcome.to_right, left = outcome.to_right < outcome.to_left;
+      return HandedExactly{{outcome.to_left, both ? T(over / T(2)) : left ? over : T(0)},
+                           {outcome.to_right, both ? T(over / T(2)) : left ? T(0) : over}};
+    } else {
+      return Handed{outcome.to_left, outcome.to_right};
+    }
+  }
 
  private:
+  using Cell = std::remove_cvref_t<decltype(std::declval<Gaps&>()[Slot{}])>;
+  static Cell cell(const T& gap, const T& time, const T& closing) {
+    Cell made;
+    made.gap = gap;
+    made.time = time;
+    made.closing = closing;
+    return made;
+  }
+  static const T& high(const T& gain) { return gain; }
+  static const T& high(const Pair<T>& gain) { return gain.high; }
+  // u_l - u_r without error, less what there is of it.
+  static Pair<T> difference_of(const T& left, const T& right, const T& rounded) {
+    return two_sum(left, T(-right)) - rounded;
+  }
+  void add(Slot s, const Pair<T>& gain) {
+    const Pair<T> sum = Pair<T>{closing(s), gaps[s].rest} + gain.high + gain.low;
+    gaps[s].closing = sum.high;
+    gaps[s].rest = sum.low;
+  }
   // That of any body where there is none, or a wall.
   T mass_of(Slot s, const Bodies<T>& bodies) const {
     return bodies.mass(body(s) >= 0 && body(s) < bodies.count() ? body(s) : 0);
   }
   // Brings a gap up to date and adds to its closing speed.
-  [[gnu::always_inline]] Notice kick(Slot s, const T& gain, const T& time) {
+  template <class Gain> [[gnu::always_inline]] Notice kick(Slot s, const Gain& gain, const T& time) {
     const T since = gaps.kick(
-        s, closing(s), [&]() -> const T& { return gain; }, time);
-    gaps[s].closing += gain;
+        s, closing(s), [&]() -> const T& { return high(gain); }, time);
+    if constexpr (far_apart)
+      add(s, gain);
+    else
+      gaps[s].closing += gain;
     if (gaps.below_floor(s)) [[unlikely]]
       return gaps.note(s, closing(s), body(s), since, time);
     return Notice::none;

@@ -1,6 +1,7 @@
 #pragma once
 // The masses of a chain's bodies: one for all, or one for each. Identical masses cost nothing, neither memory nor the
-// divisions of the reduced mass.
+// divisions of the reduced mass. Masses that are far apart take a chain that keeps more of every closing speed, and
+// estimates what rounding does to the sequence of contacts (far_gap.hpp).
 
 #include <algorithm>
 #include <stdexcept>
@@ -50,5 +51,21 @@ template <Real T> struct IndividualMasses {
   const T& operator[](Slot s) const { return masses[s]; }
   TwoMasses<T> of_pair(Slot s) const { return {masses[s], masses[s + 1]}; }
 };
+
+template <Real T> struct MassesFarApart : IndividualMasses<T> {
+  using IndividualMasses<T>::IndividualMasses;
+  static constexpr bool far_apart = true;
+  MassesFarApart without_slots() const { return {}; }
+};
+template <class Masses>
+concept FarApart = requires {
+  requires Masses::far_apart;
+};
+
+// Whether masses are: closing speeds of bodies that share their energy then lose two digits of a heavy one's velocity,
+// the square root of the ratio.
+template <Real T> bool far_apart(const Bodies<T>& bodies) {
+  return T(10000) * bodies.least_mass() < bodies.greatest_mass();
+}
 
 }  // namespace cradle

@@ -106,6 +106,9 @@ template <Real T> Pair<T> operator+(const Pair<T>& a, const T& b) {
 }
 
 template <Real T> Pair<T> operator-(const Pair<T>& a, const T& b) { return a + T(-b); }
+template <Real T> Pair<T> operator+(const Pair<T>& a, const Pair<T>& b) { return a + b.high + b.low; }
+template <Real T> Pair<T> operator-(const Pair<T>& a) { return {T(-a.high), T(-a.low)}; }
+template <Real T> Pair<T> operator-(const Pair<T>& a, const Pair<T>& b) { return a + -b; }
 
 // (a - b) rounded once where the leading parts cancel, as they do for neighbouring times and positions.
 template <Real T> T difference(const Pair<T>& a, const Pair<T>& b) {

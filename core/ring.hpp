@@ -108,6 +108,7 @@ template <Real T> class Ring final : public Bodies<T> {
   T momentum() const override { return T(0); }
   T total_mass() const override { return masses_.total(0, count_); }
   T least_mass() const override { return masses_.least(); }
+  T greatest_mass() const override { return masses_.greatest(); }
 
  private:
   BodyIndex next(BodyIndex body) const { return body + 1 < count_ ? body + 1 : 0; }

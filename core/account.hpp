@@ -26,7 +26,7 @@ template <Real T> struct Account {
   // Positions only: gaps next to a contact below 1e6 units in the last place of the position.
   std::uint64_t unresolved = 0;
   Incident<T> first_unresolved;
-  // Masses far apart only: 1 from the first contact on that rounding may have decided (far_gap.hpp); `gap` is how far
+  // Watched masses only: 1 from the first contact on that rounding may have decided (watched_gap.hpp); `gap` is how far
   // that contact's gap may be off by then.
   std::uint64_t uncertain = 0;
   Incident<T> first_uncertain;

@@ -89,6 +89,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
   // times they are told in.
   T move_origin(const T& local) {
+    if constexpr (Line::watched) line_.certainty.begin_anew(line_.gaps, first(), last());
     line_.gaps.move_origin(local, [this](auto&& each) {
       for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
     });
@@ -120,7 +121,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 
   // The body on the left of a gap where rounding may decide whether it closes up to a local time not before the last
   // contact.
-  std::optional<BodyIndex> uncertain_at(const T& time) const requires(Line::far_apart) {
+  std::optional<BodyIndex> uncertain_at(const T& time) const requires(Line::watched) {
     for (Slot s = first(); s <= last(); ++s)
       if (line_.certainty.open(line_.gaps, s, time)) return body(s);
     return {};
@@ -244,12 +245,15 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
-    if constexpr (Line::far_apart && requires { law.cutoff(); })
+    if constexpr (Line::watched && requires { law.cutoff(); })
       line_.certainty.threshold(line_.gaps, s, body(s), time, law.cutoff());
     if constexpr (LawWithMemory<Law, T>)
       if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots()))
         return law.elastic(closing(s), line_.masses.of_pair(s));
-    return law(closing(s), line_.masses.of_pair(s));
+    const Outcome<T> outcome = law(closing(s), line_.masses.of_pair(s));
+    if constexpr (Line::watched && !requires { law.cutoff(); })
+      line_.certainty.slope(law, closing(s), line_.masses.of_pair(s), outcome);
+    return outcome;
   }
   template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
     if constexpr (LawWithMemory<Law, T>) memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());

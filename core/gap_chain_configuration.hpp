@@ -26,7 +26,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configurat
 template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_configuration(const T& time) const {
   Configuration<T> c;
   c.time = clock().time(time);
-  c.speeds_are_sums = !Line::far_apart;
+  c.speeds_are_sums = !line_.exact_sums();
   c.to = bodies_->count() - 1;
   c.collided_to = static_cast<std::size_t>(bodies_->count());
   CompensatedSum<T> way, slowing, moment, momentum;
@@ -37,7 +37,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
     c.index.push_back(body(s));
     c.m.push_back(line_.masses[s]);
     ways.push_back(way.value());
-    slowings.push_back(Line::far_apart ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
+    slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
     moment.add(c.m.back() * ways.back());
     if (c.m[heaviest] < c.m.back()) heaviest = c.m.size() - 1;
     c.gap.push_back(gap_at(s, time));
@@ -46,7 +46,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
     line_.add_closing(s, slowing);
   }
   // Where masses are far apart, from the heaviest: what the sums lose is then lost of the light ones.
-  if (Line::far_apart) {
+  if (line_.exact_sums()) {
     const Pair<T> own = slowings[heaviest];
     for (Pair<T>& each : slowings) each = each - own;
   }
@@ -73,7 +73,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
 
   Configuration<T> c;
   c.time = clock().time(time);
-  c.speeds_are_sums = !Line::far_apart;
+  c.speeds_are_sums = !line_.exact_sums();
   for (Slot s = from; s <= to + 1; ++s) {
     c.index.push_back(body(s));
     c.m.push_back(line_.masses[s]);
@@ -90,12 +90,12 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
     way.add(c.gap.back());
     line_.add_closing(s, slowing);
     ways.push_back(way.value());
-    slowings.push_back(Line::far_apart ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
+    slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
   }
   const Flight<T> left = flight(left_, time), right = flight(right_, time);
   c.closure_gap = difference(right.x, left.x) - way.value();
-  c.closure_speed = Line::far_apart ? T((left.v - right.v - slowing.pair()).value())
-                                    : T(difference(left.v, right.v) - slowing.value());
+  c.closure_speed = line_.exact_sums() ? T((left.v - right.v - slowing.pair()).value())
+                                       : T(difference(left.v, right.v) - slowing.value());
   const T stretch = way.value() > T(0) ? T(*c.closure_gap / way.value()) : T(0);
   for (std::size_t j = 0; j < n; ++j) {
     c.x.push_back((left.x + T(ways[j] + stretch * ways[j])).value());

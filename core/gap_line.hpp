@@ -11,13 +11,13 @@
 
 #include "cradle/core/certainty.hpp"
 #include "cradle/core/collision.hpp"
-#include "cradle/core/far_gap.hpp"
 #include "cradle/core/masses.hpp"
 #include "cradle/core/timed_gaps.hpp"
+#include "cradle/core/watched_gap.hpp"
 
 namespace cradle {
 
-// What the line keeps of all its contacts where masses are far apart; nothing where they are not.
+// What the line keeps of all its contacts where masses are not watched.
 struct NothingMore {
   static std::tuple<> state(auto&) { return {}; }
 };
@@ -26,25 +26,27 @@ template <Real T, class MassesOf> class GapLine {
  public:
   using Scalar = T;
   using Masses = MassesOf;
-  static constexpr bool far_apart = FarApart<Masses>;
-  using Gaps = TimedGaps<T, std::conditional_t<far_apart, FarGap<T>, Gap<T>>, true>;
+  static constexpr bool watched = Watched<Masses>;
+  using Gaps = TimedGaps<T, std::conditional_t<watched, WatchedGap<T>, Gap<T>>, true>;
 
-  GapLine(const Bodies<T>& bodies, const T& start) : gaps(start, bodies.energy_to_lose()), masses(bodies) {}
+  GapLine(const Bodies<T>& bodies, const T& start)
+      : gaps(start, bodies.energy_to_lose()), masses(bodies), exact_(cradle::far_apart(bodies)) {}
 
   // Like another one, without any gaps yet.
   explicit GapLine(const GapLine& other, std::size_t slots)
-      : gaps(other.gaps.clock().start(), T(1)), masses(other.masses.without_slots()) {
+      : gaps(other.gaps.clock().start(), T(1)), masses(other.masses.without_slots()), exact_(other.exact_) {
     resemble(other, slots, 0);
   }
 
   Gaps gaps;
   Masses masses;
   BodyIndex body_of_slot_0 = 0;
-  [[no_unique_address]] std::conditional_t<far_apart, Certainty<T, Gaps>, NothingMore> certainty;
+  [[no_unique_address]] std::conditional_t<watched, Certainty<T, Gaps>, NothingMore> certainty;
 
-  static auto state(auto& self) {
-    return std::tie(self.gaps, self.masses, self.body_of_slot_0, self.certainty);
-  }
+  static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.body_of_slot_0, self.certainty); }
+
+  // Whether closing speeds add up without error.
+  bool exact_sums() const { return watched && exact_; }
 
   // ---- copies of a part (segments.hpp): with so many slots; slot s here is s + offset there
   void resemble(const GapLine& other, std::size_t slots, std::ptrdiff_t offset) {
@@ -63,7 +65,7 @@ template <Real T, class MassesOf> class GapLine {
   const T& closing(Slot s) const { return gaps[s].closing; }
   void add_closing(Slot s, CompensatedSum<T>& sum) const {
     sum.add(closing(s));
-    if constexpr (far_apart) sum.add(gaps[s].rest);
+    if constexpr (watched) sum.add(gaps[s].rest);
   }
   // Local time of the next contact of a gap that is closing.
   T due(Slot s) const { return gaps.due(s, closing(s)); }
@@ -73,9 +75,9 @@ template <Real T, class MassesOf> class GapLine {
   void load(Slot s, const Bodies<T>& bodies, const T& time) {
     const BodyIndex b = body(s);
     gaps.put(s, cell(bodies.gap(b), time, bodies.closing_speed(b)));
-    if constexpr (far_apart) {
+    if constexpr (watched) {
       const BodyIndex next = bodies.on_ring() && b + 1 == bodies.count() ? 0 : b + 1;
-      add(s, difference_of(bodies.velocity(b), bodies.velocity(next), closing(s)));
+      if (exact_) add(s, two_sum(bodies.velocity(b), T(-bodies.velocity(next))) - closing(s));
       gaps[s].off = at_start(bodies, b, next);
     }
     gaps.foresee(s, closing(s));
@@ -89,11 +91,11 @@ template <Real T, class MassesOf> class GapLine {
                                              Notice notice) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
-    if constexpr (far_apart) certainty.contact(gaps, p, s, n, body(s), time, outcome, masses.of_pair(s));
+    if constexpr (watched) certainty.contact(gaps, p, s, n, body(s), time, outcome, masses.of_pair(s));
     const auto handed = this->handed(s, outcome);
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;
-    if constexpr (far_apart) gaps[s].rest = T(0);
+    if constexpr (watched) gaps[s].rest = T(0);
     gaps.forget(s);
     notice |= kick(p, handed.left, time);
     notice |= kick(n, handed.right, time);
@@ -103,8 +105,8 @@ template <Real T, class MassesOf> class GapLine {
   // There is no gap beyond the last body: what stands in its slot keeps opening, whatever it is handed.
   void seal(Slot s, const T& time, const T& handed) { gaps.put(s, cell(T(1), time, T(-(handed + handed) - T(1)))); }
 
-  // What the neighbours gain in a contact at the gap s. Where masses are far apart all three closing speeds add up as
-  // before, exactly: what rounding has left over goes where more is handed, to the side of the lighter body.
+  // What the neighbours gain in a contact at the gap s. Where sums are exact all three closing speeds add up as
+  // before: what rounding has left over goes where more is handed, to the side of the lighter body.
   struct Handed {
     const T &left, &right;
   };
@@ -112,12 +114,16 @@ template <Real T, class MassesOf> class GapLine {
     Pair<T> left, right;
   };
   [[gnu::always_inline]] auto handed(Slot s, const Outcome<T>& outcome) const {
-    if constexpr (far_apart) {
+    if constexpr (watched) {
       const Pair<T> before{closing(s), gaps[s].rest};
-      const T over = (before - outcome.closing - outcome.to_left - outcome.to_right).value();
+      const T over = exact_ ? T((before - outcome.closing - outcome.to_left - outcome.to_right).value()) : T(0);
       const bool both = outcome.to_left == outcome.to_right, left = outcome.to_right < outcome.to_left;
-      return HandedExactly{{outcome.to_left, both ? T(over / T(2)) : left ? over : T(0)},
-                           {outcome.to_right, both ? T(over / T(2)) : left ? T(0) : over}};
+      return HandedExactly{{outcome.to_left, both   ? T(over / T(2))
+                                             : left ? over
+                                                    : T(0)},
+                           {outcome.to_right, both   ? T(over / T(2))
+                                              : left ? T(0)
+                                                     : over}};
     } else {
       return Handed{outcome.to_left, outcome.to_right};
     }
@@ -134,14 +140,10 @@ template <Real T, class MassesOf> class GapLine {
   }
   static const T& high(const T& gain) { return gain; }
   static const T& high(const Pair<T>& gain) { return gain.high; }
-  // u_l - u_r without error, less what there is of it.
-  static Pair<T> difference_of(const T& left, const T& right, const T& rounded) {
-    return two_sum(left, T(-right)) - rounded;
-  }
   void add(Slot s, const Pair<T>& gain) {
     const Pair<T> sum = Pair<T>{closing(s), gaps[s].rest} + gain.high + gain.low;
     gaps[s].closing = sum.high;
-    gaps[s].rest = sum.low;
+    if (exact_) gaps[s].rest = sum.low;
   }
   // That of any body where there is none, or a wall.
   T mass_of(Slot s, const Bodies<T>& bodies) const {
@@ -151,7 +153,7 @@ template <Real T, class MassesOf> class GapLine {
   template <class Gain> [[gnu::always_inline]] Notice kick(Slot s, const Gain& gain, const T& time) {
     const T since = gaps.kick(
         s, closing(s), [&]() -> const T& { return high(gain); }, time);
-    if constexpr (far_apart)
+    if constexpr (watched)
       add(s, gain);
     else
       gaps[s].closing += gain;
@@ -159,6 +161,8 @@ template <Real T, class MassesOf> class GapLine {
       return gaps.note(s, closing(s), body(s), since, time);
     return Notice::none;
   }
+
+  bool exact_;
 };
 
 }  // namespace cradle

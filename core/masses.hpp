@@ -1,7 +1,7 @@
 #pragma once
 // The masses of a chain's bodies: one for all, or one for each. Identical masses cost nothing, neither memory nor the
-// divisions of the reduced mass. Masses that are far apart take a chain that keeps more of every closing speed, and
-// estimates what rounding does to the sequence of contacts (far_gap.hpp).
+// divisions of the reduced mass. Watched ones take a chain that estimates what rounding does to the sequence of
+// contacts and, if they are far apart, keeps more of every closing speed (watched_gap.hpp).
 
 #include <algorithm>
 #include <stdexcept>
@@ -52,20 +52,23 @@ template <Real T> struct IndividualMasses {
   TwoMasses<T> of_pair(Slot s) const { return {masses[s], masses[s + 1]}; }
 };
 
-template <Real T> struct MassesFarApart : IndividualMasses<T> {
+template <Real T> struct WatchedMasses : IndividualMasses<T> {
   using IndividualMasses<T>::IndividualMasses;
-  static constexpr bool far_apart = true;
-  MassesFarApart without_slots() const { return {}; }
+  static constexpr bool watched = true;
 };
 template <class Masses>
-concept FarApart = requires {
-  requires Masses::far_apart;
+concept Watched = requires {
+  requires Masses::watched;
 };
 
-// Whether masses are: closing speeds of bodies that share their energy then lose two digits of a heavy one's velocity,
-// the square root of the ratio.
+// Of bodies that share their energy, closing speeds lose the digits of the root of the ratio of masses from a heavy
+// one's velocity: here two.
 template <Real T> bool far_apart(const Bodies<T>& bodies) {
   return T(10000) * bodies.least_mass() < bodies.greatest_mass();
+}
+// Watching takes some three times the time per contact: it is done where masses are far apart, and for few bodies.
+template <Real T> bool to_be_watched(const Bodies<T>& bodies) {
+  return !bodies.identical_masses() && (bodies.count() <= 1000 || far_apart(bodies));
 }
 
 }  // namespace cradle

@@ -238,7 +238,11 @@ template <Real T> class SceneRun {
     end.merges = counts.merges;
     end.time = to_double(time);
     end.energy = to_double(T(energy_ - engine_.energy_lost()));
-    const ToldAccount account = told(engine_.account());
+    ToldAccount account = told(engine_.account());
+    if (const auto body = engine_.uncertain_at(time); body && !account.uncertain && status == Status::reached) {
+      account.uncertain_end = true;
+      account.first_uncertain = {to_text(time), to_double(time), 0, *body};
+    }
     end.warning = account_warning(account, scene_.run);
     if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.contacts, scene_.run);
     end.result.attributes = provenance(scene_, precision_name(scene_.run), end_text(end.end));
@@ -246,6 +250,8 @@ template <Real T> class SceneRun {
          {Attribute("simultaneous_contacts", account.simultaneous), Attribute("order_lost", account.order_lost),
           Attribute("unresolved_gaps", account.unresolved)})
       end.result.attributes.push_back(attribute);
+    if (account.uncertain || account.uncertain_end)
+      end.result.attributes.emplace_back("uncertain_from", account.first_uncertain.value);
     put_tables(end);
     if (status == Status::collapsed) {
       const ToldCollapse collapse = told(*engine_.collapse());

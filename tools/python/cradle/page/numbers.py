@@ -144,6 +144,9 @@ def warnings(result: Result, version: str) -> list[str]:
                                                  "tie rule")):
         if about.get(name):
             found.append(f"{number(about[name])} {told}.")
+    if "uncertain_from" in about:
+        found.append(f"Contacts are certain up to t = {number(about['uncertain_from'])} only: from there on rounding may "
+                     "have decided which one was next. More digits (<code>run.precision</code>) reach further.")
     if about.get("failed"):
         messages = result.table("replicas/failed").attributes.get("messages", "")
         found.append(f"{number(about['failed'])} replicas failed: {code(messages)}")

@@ -1,13 +1,13 @@
 #pragma once
-// The cell of a gap in a chain of gaps and closing speeds, and what it keeps beside them where masses are far apart
+// The cell of a gap in a chain of gaps and closing speeds, and what it keeps beside them where masses are watched
 // (masses.hpp).
 //
-// Exact sums. A contact with a body of 1/M of its mass changes a heavy body's velocity by 2/M of the light one's. Both
-// velocities are in one closing speed, of the size of the light one's: rounding it loses the kick, the heavy body's
-// velocity is nowhere, and what is lost adds up. So the rest that rounding leaves of a closing speed is kept,
-// w = closing + rest, with twice the digits. What a contact takes from its own closing speed it gives to the neighbours
-// exactly (gap_line.hpp). Hence the velocity of every body is what it was plus all its kicks, each rounded to the digits
-// that it has itself, whatever the masses of the others:
+// Exact sums, where masses are far apart. A contact with a body of 1/M of its mass changes a heavy body's velocity by
+// 2/M of the light one's. Both velocities are in one closing speed, of the size of the light one's: rounding it loses
+// the kick, the heavy body's velocity is nowhere, and what is lost adds up. So the rest that rounding leaves of a
+// closing speed is kept, w = closing + rest, with twice the digits. What a contact takes from its own closing speed it
+// gives to the neighbours exactly (gap_line.hpp). Hence the velocity of every body is what it was plus all its kicks,
+// each rounded to the digits that it has itself, whatever the masses of the others:
 //
 //   |dv_i| <= 2 epsilon (sum of the magnitudes of its own kicks).
 //
@@ -17,12 +17,18 @@
 // small difference. With D the deviation of a gap at a given time and d that of its closing speed,
 //
 //   flight of t         D -= d t
-//   contact at gap s    D_s -> (w'/w) D_s,  D_p += (J/m_l w) D_s,  D_n += (J/m_r w) D_s,  and d in the same way.
+//   contact at gap s    D_s -> (w'/w) D_s,  D_p += (J/m_l w) D_s,  D_n += (J/m_r w) D_s,
+//
+// and d in the same way, with dw'/dw for w'/w where the restitution depends on the speed. That all happens later by
+// tau, D = tau w for all gaps, changes no sequence; late in a collapse it would hide all else. So whenever the origin
+// of time moves, deviations are told anew from the time of the last contact, which is then right by definition; the sum
+// of these delays is kept.
 //
 // A contact is certain if `certain_by` times the larger sample changes neither that it happens (its closing speed stays
-// positive) nor its place in the sequence: the gaps g beside it stay positive at its time, which is itself off by D_s/w,
-// so |D_g - (w_g/w) D_s| < g. At the end of a run every gap must be positive with the same certainty. Then the contacts
-// are those of the exact system (core/README.md, Proofs: the same argument with errors enclosed, not estimated).
+// positive) nor its place in the sequence: the gaps g beside it stay positive at its time, which is itself off by
+// D_s/w, so |D_g - (w_g/w) D_s| < g. At the end of a run every gap must be positive with the same certainty. Then the
+// contacts are those of the exact system (core/README.md, Proofs: the same argument with errors enclosed, not
+// estimated).
 
 #include <algorithm>
 #include <array>
@@ -56,27 +62,21 @@ struct Deviation {
     for (std::size_t k = 0; k < samples; ++k) then.gap[k] -= closing[k] * time;
     return then;
   }
-  void add(const Deviation& other, double share) {
+  void add(const Deviation& other, double share, double share_of_speed) {
     for (std::size_t k = 0; k < samples; ++k) {
       gap[k] += share * other.gap[k];
-      closing[k] += share * other.closing[k];
+      closing[k] += share_of_speed * other.closing[k];
     }
   }
-  // Of a gap at a contact beside it, whose time is off by `at` as its own gap is. A difference of numbers that are 1e10
-  // times as large is not known: late in a collapse all gaps are off by the time of the collapse, which does no harm.
-  double beside(const Deviation& at, double closing_ratio) const {
-    double most = 0;
-    for (std::size_t k = 0; k < samples; ++k) {
-      const double early = closing_ratio * at.gap[k], off = std::abs(gap[k] - early);
-      if (off > 1e-10 * (std::abs(gap[k]) + std::abs(early))) most = std::max(most, off);
-    }
-    return most;
+  // As told so much later: every gap by what it closes in the meantime.
+  void shift(const std::array<double, samples>& later, double closing_speed) {
+    for (std::size_t k = 0; k < samples; ++k) gap[k] -= closing_speed * later[k];
   }
   static double largest(const std::array<double, samples>& of) { return std::max(std::abs(of[0]), std::abs(of[1])); }
   static auto state(auto& self) { return std::tie(self.gap[0], self.gap[1], self.closing[0], self.closing[1]); }
 };
 
-template <Real T> struct FarGap : Gap<T> {
+template <Real T> struct WatchedGap : Gap<T> {
   T rest{0};
   Deviation off;
   bool fits(const T& closing) const { return Gap<T>::fits(closing) && is_finite(rest); }

@@ -25,7 +25,7 @@ template <Real T, class Gaps> class Certainty {
   // gaps change.
   template <class Masses>
   void contact(Gaps& gaps, Slot p, Slot s, Slot n, BodyIndex body, const T& time, const Outcome<T>& outcome,
-               const Masses& masses) {
+               const Masses& masses, bool exact_sums) {
     const double w = to_double(gaps[s].closing);
     const double slope = std::exchange(slope_, 0);
     if (gaps.account().uncertain > 0 || !(w > 0)) return;  // slower than any double: not estimated
@@ -48,6 +48,10 @@ template <Real T, class Gaps> class Certainty {
     gaps[s].off.add(here, back, own);
     for (std::size_t k = 0; k < Deviation::samples; ++k) last_[k] = here.gap[k] / w;
     round(gaps, p, s, n, outcome, masses);
+    if (!exact_sums)
+      for (const Slot beside : {p, n})
+        for (double& off : gaps[beside].off.closing)
+          off += (std::abs(to_double(gaps[beside].closing)) + w) * roundings_.next();
     if (since < 0) gaps[s].off = gaps[s].off.after(-since);
   }
 

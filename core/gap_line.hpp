@@ -30,7 +30,8 @@ template <Real T, class MassesOf> class GapLine {
   using Gaps = TimedGaps<T, std::conditional_t<watched, WatchedGap<T>, Gap<T>>, true>;
 
   GapLine(const Bodies<T>& bodies, const T& start)
-      : gaps(start, bodies.energy_to_lose()), masses(bodies), exact_(cradle::far_apart(bodies)) {}
+      : gaps(start, bodies.energy_to_lose()), masses(bodies),
+        exact_(cradle::far_apart(bodies) && sums_can_be_exact<T>) {}
 
   // Like another one, without any gaps yet.
   explicit GapLine(const GapLine& other, std::size_t slots)
@@ -91,7 +92,7 @@ template <Real T, class MassesOf> class GapLine {
                                              Notice notice) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
-    if constexpr (watched) certainty.contact(gaps, p, s, n, body(s), time, outcome, masses.of_pair(s));
+    if constexpr (watched) certainty.contact(gaps, p, s, n, body(s), time, outcome, masses.of_pair(s), exact_);
     const auto handed = this->handed(s, outcome);
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;

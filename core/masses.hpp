@@ -4,6 +4,7 @@
 // contacts and, if they are far apart, keeps more of every closing speed (watched_gap.hpp).
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -66,6 +67,10 @@ concept Watched = requires {
 template <Real T> bool far_apart(const Bodies<T>& bodies) {
   return T(10000) * bodies.least_mass() < bodies.greatest_mass();
 }
+// Not in a type whose sums are not rounded to the nearest: a double-double has digits to spare.
+template <Real T> inline constexpr bool sums_can_be_exact = std::numeric_limits<T>::is_exact || requires {
+  requires std::numeric_limits<T>::round_style == std::round_to_nearest;
+};
 // Watching takes some three times the time per contact: it is done where masses are far apart, and for few bodies.
 template <Real T> bool to_be_watched(const Bodies<T>& bodies) {
   return !bodies.identical_masses() && (bodies.count() <= 1000 || far_apart(bodies));

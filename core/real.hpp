@@ -91,7 +91,7 @@ template <Real T> struct Pair {
   static auto state(auto& self) { return std::tie(self.high, self.low); }
 };
 
-// a + b without error.
+// a + b without error in types that round to the nearest number; in double-double, to its last digits but one.
 template <Real T> Pair<T> two_sum(const T& a, const T& b) {
   const T sum = a + b;
   const T b_seen = sum - a;

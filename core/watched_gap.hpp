@@ -11,7 +11,8 @@
 //
 //   |dv_i| <= 2 epsilon (sum of the magnitudes of its own kicks).
 //
-// Deviations. A gas of unequal masses is chaotic: errors grow, and one day they decide which contact is next. Two
+// Deviations. Errors grow, by as many digits as gaps shrink where bodies all but collapse and come apart again, and one
+// day they decide which contact is next. Two
 // samples of how far a gap and its closing speed may be from those of the exact system are carried along, in units of
 // epsilon. Random errors of the size of rounding enter at every contact; the motion carries them on as it carries any
 // small difference. With D the deviation of a gap at a given time and d that of its closing speed,

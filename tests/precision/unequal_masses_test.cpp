@@ -1,7 +1,8 @@
 // Masses from 1e-8 to 1e8 beside each other. Proves: runs of 2000 random systems (lines, rings, walls, every law that
-// bounces) make the contacts that 70 digits make wherever nothing says that rounding may have decided; guards are silent
-// on all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) come out right up to a
-// ratio of 1e12, or 1e14 in the slow test.
+// bounces) make the contacts that 70 digits make wherever nothing says that rounding may have decided; guards are
+// silent on all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) come out right up
+// to a ratio of 1e12, or 1e14 in the slow test.
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -95,6 +96,7 @@ struct Made {
   Status status = Status::reached;
   std::uint64_t contacts = 0;
   bool warned = false, broken = false;
+  std::array<double, 3> guard{};
   int missed = 0;  // planted errors that no guard has found
 };
 
@@ -117,8 +119,12 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
       made.warned = made.warned || run.chain().uncertain_at(run.chain().local_time(end));
     const T energy = bodies->kinetic_energy() - run.energy_lost();
     const auto broken = [&](const Configuration<T>& c, const T& left) {
-      return guarded(c, *bodies, made.contacts, left, end, run.last_contact_time(), T(0), account.order_lost == 0)
-          .broken.has_value();
+      const auto look =
+          guarded(c, *bodies, made.contacts, left, end, run.last_contact_time(), T(0), account.order_lost == 0);
+      if (look.broken)
+        made.guard = {static_cast<int>(look.broken->guard), to_double(look.broken->found),
+                      to_double(look.broken->bound)};
+      return look.broken.has_value();
     };
     const Configuration<T> now = run.configuration(end);
     made.broken = broken(now, energy);
@@ -144,15 +150,17 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
 template <class T> using Watching = GapChain<T, WatchedMasses<T>>;
 template <class T> using Plain = GapChain<T, IndividualMasses<T>>;
 
-template <class T> void expect_right_or_warned(std::uint64_t seed, int systems, double decades, double longest) {
+template <class T> int expect_right_or_warned(std::uint64_t seed, int systems, double decades, double longest) {
+  int warned = 0;
 #ifdef CRADLE_WITH_MPFR
   MpfrPrecision::set_bits(MpfrPrecision::bits_for(70));
   Drawing draw(seed);
-  int compared = 0, warned = 0;
+  int compared = 0;
   for (int k = 0; k < systems; ++k) {
     const System s = draw(decades, longest);
     const Made right = make<Plain<Mpfr<4>>>(s, 20000), made = make<Watching<T>>(s, 20000);
-    ASSERT_FALSE(made.broken) << "seed " << seed << ", system " << k;
+    EXPECT_FALSE(made.broken) << "seed " << seed << ", system " << k << ": guard " << made.guard[0] << ", found "
+                              << made.guard[1] << ", bound " << made.guard[2];
     EXPECT_EQ(made.missed, 0) << "seed " << seed << ", system " << k;
     if (right.status != Status::reached || made.status != Status::reached) continue;  // collapse, or too many contacts
     ++compared;
@@ -164,11 +172,13 @@ template <class T> void expect_right_or_warned(std::uint64_t seed, int systems, 
   std::printf("%d systems, seed %d: %d compared, %d of them warned of\n", systems, static_cast<int>(seed), compared,
               warned);
 #endif
+  return warned;
 }
 
 TEST(UnequalMasses, AreRightOrWarnedOf) {
   expect_right_or_warned<double>(1, 150, 8, 1.5);
-  expect_right_or_warned<double>(2, 150, 2, 3);  // chaotic
+  // So long that some collapse far below the rounding of their times, and recover.
+  EXPECT_GT(expect_right_or_warned<double>(2, 150, 2, 3), 0);
 }
 TEST(UnequalMasses, AreRightOrWarnedOfInWiderTypes) {
   expect_right_or_warned<long double>(3, 60, 8, 1.5);
@@ -178,15 +188,6 @@ TEST(SlowUnequalMasses, AreRightOrWarnedOf) {
   expect_right_or_warned<double>(5, 2000, 8, 1.5);
   expect_right_or_warned<double>(6, 500, 2, 3);
   expect_right_or_warned<double>(7, 500, .3, 3);
-}
-
-TEST(UnequalMasses, WarningsComeWhereAChaoticSystemIsDecidedByRounding) {
-  // Masses of 1 to 4 on a ring, elastic, for so long that nothing of the start is left.
-  Drawing draw(11);
-  System s = draw(.3, 1);
-  s.law = Bounce::elastic, s.restitution = 1, s.left_wall = s.right_wall = false, s.circumference = s.x.back() + 1;
-  s.until = 1000;
-  EXPECT_TRUE(make<Watching<double>>(s, 100000).warned);
 }
 
 // Galperin: a light body between a wall and one of M times its mass that comes in makes floor(pi sqrt(M)) contacts.
@@ -249,7 +250,7 @@ TEST(UnequalMasses, GuardsAreSilentOnManyBodies) {
     s.v.push_back(draw.from_to(-1, 1));
   }
   s.until = 20;
-  const Made gaps = make<Watching<double>>(s, 1U << 30), positions = make<PositionChain<double>>(s, 1U << 30);
+  const Made gaps = make<Watching<double>>(s, 300000), positions = make<PositionChain<double>>(s, 300000);
   EXPECT_FALSE(gaps.broken || positions.broken);
   EXPECT_EQ(gaps.missed + positions.missed, 0);
 }
@@ -262,8 +263,10 @@ TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
     const auto bodies = bodies_of<double>(s);
     ASSERT_FALSE(far_apart(*bodies));
     with_law<double>(s, [&](const auto& law) {
+      bool enough = false;
       Policy<double> policy;
-      policy.interrupt = [] { return true; };  // after the first review
+      policy.progress = [&](double, const Counts& counts) { enough = counts.contacts > 2000; };
+      policy.interrupt = [&] { return enough; };
       Simulation watched(law, Watching<double>(bodies, 0.), policy), plain(law, Plain<double>(bodies, 0.), policy);
       EXPECT_EQ(watched.advance(s.until), plain.advance(s.until));
       const double end = std::max(watched.last_contact_time(), plain.last_contact_time());

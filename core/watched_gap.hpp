@@ -80,7 +80,7 @@ struct Deviation {
 template <Real T> struct WatchedGap : Gap<T> {
   T rest{0};
   Deviation off;
-  bool fits(const T& closing) const { return Gap<T>::fits(closing) && is_finite(rest); }
+  bool fits(const T& speed) const { return Gap<T>::fits(speed) && is_finite(rest); }
   static auto state(auto& self) { return std::tuple_cat(Gap<T>::state(self), std::tie(self.rest, self.off)); }
 };
 

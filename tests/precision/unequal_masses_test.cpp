@@ -122,7 +122,7 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
       const auto look =
           guarded(c, *bodies, made.contacts, left, end, run.last_contact_time(), T(0), account.order_lost == 0);
       if (look.broken)
-        made.guard = {static_cast<int>(look.broken->guard), to_double(look.broken->found),
+        made.guard = {static_cast<double>(look.broken->guard), to_double(look.broken->found),
                       to_double(look.broken->bound)};
       return look.broken.has_value();
     };

@@ -26,9 +26,14 @@ template <Real T> struct Account {
   // Positions only: gaps next to a contact below 1e6 units in the last place of the position.
   std::uint64_t unresolved = 0;
   Incident<T> first_unresolved;
+  // Watched masses only: 1 from the first contact on that rounding may have decided (watched_gap.hpp); `gap` is how far
+  // that contact's gap may be off by then.
+  std::uint64_t uncertain = 0;
+  Incident<T> first_uncertain;
 
   static auto state(auto& self) {
-    return std::tie(self.simultaneous, self.order_lost, self.first_order_lost, self.unresolved, self.first_unresolved);
+    return std::tie(self.simultaneous, self.order_lost, self.first_order_lost, self.unresolved, self.first_unresolved,
+                    self.uncertain, self.first_uncertain);
   }
 
   // A gap that is not positive although no contact was made there.

@@ -34,8 +34,9 @@ template <Real T> class Anchor {
 
   // Goes over to a body that has not collided.
   void take(BodyIndex body) { body_ = body; }
-  // Goes over to the last body of a line, which gains velocity in a contact now.
-  void follow(BodyIndex body, const Bodies<T>& bodies, const Clock<T>& clock, const T& time, const T& gain) {
+  // Goes over to the last body of a line, which gains velocity in a contact now: Gain is T or Pair<T>.
+  template <class Gain>
+  void follow(BodyIndex body, const Bodies<T>& bodies, const Clock<T>& clock, const T& time, const Gain& gain) {
     body_ = body;
     from_ = flight(bodies, clock, time);
     from_.v = from_.v + gain;

@@ -38,6 +38,11 @@ template <Real T> class Bodies {
 
   virtual const Wall<T>* wall(End) const { return nullptr; }
   bool walled() const { return wall(End::left) != nullptr || wall(End::right) != nullptr; }
+  // Whether walls can give energy: one that moves, or heats.
+  bool driven() const {
+    const auto gives = [](const Wall<T>* w) { return w != nullptr && (w->temperature > 0 || !(w->speed == T(0))); };
+    return gives(wall(End::left)) || gives(wall(End::right));
+  }
   Walls<T> walls() const { return {wall(End::left), wall(End::right), count()}; }
   // All gaps that there are.
   GapRange gaps() const {
@@ -66,6 +71,9 @@ template <Real T> class Bodies {
     return sum.value();
   }
   virtual T least_mass() const = 0;
+  virtual T greatest_mass() const { return least_mass(); }
+  // The position of a body where it is a number of the scene, rounded as such; 0 where gaps are not made of positions.
+  virtual T rounded_place(BodyIndex) const { return T(0); }
   // Position of the centre of mass; takes all bodies.
   T centre_of_mass() const {
     CompensatedSum<T> moment;

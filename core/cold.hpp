@@ -126,6 +126,7 @@ template <Real T> class Cold final : public Bodies<T> {
   T total_mass() const override { return masses_.total(0, count_); }
   T mass_between(BodyIndex from, BodyIndex to) const override { return masses_.total(from, to); }
   T least_mass() const override { return masses_.least(); }
+  T greatest_mass() const override { return masses_.greatest(); }
 
  private:
   BodyIndex count_;

@@ -28,6 +28,8 @@ template <Real T> struct Configuration {
   // flight of one of the two is not known. Chains that have closing speeds spread both errors over the positions and
   // velocities given here; the others tell positions from the left.
   std::optional<T> closure_gap, closure_speed;
+  // Whether velocities are sums of closing speeds, each rounded in its own units, so that one has the errors of all.
+  bool speeds_are_sums = false;
 };
 
 // Takes out walls, which chains number -1 and `count` (wall.hpp), and the gaps to them.

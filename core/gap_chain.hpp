@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
   // times they are told in.
   T move_origin(const T& local) {
+    if constexpr (Line::watched) line_.certainty.begin_anew(line_.gaps, first(), last());
     line_.gaps.move_origin(local, [this](auto&& each) {
       for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
     });
@@ -117,6 +119,14 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
   // What times of contacts are told apart by, as times since the start.
   T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
+
+  // The body on the left of a gap where rounding may decide whether it closes up to a local time not before the last
+  // contact.
+  std::optional<BodyIndex> uncertain_at(const T& time) const requires(Line::watched) {
+    for (Slot s = first(); s <= last(); ++s)
+      if (line_.certainty.open(line_.gaps, s, time)) return body(s);
+    return {};
+  }
 
   // ---- reading, at a local time not before the last contact
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
@@ -222,7 +232,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   // The last body of a line, or the wall there, has had a contact in which it gained velocity.
-  void follow_end(End end, BodyIndex body, const T& time, const T& gain) {
+  template <class Gain> void follow_end(End end, BodyIndex body, const T& time, const Gain& gain) {
     Anchor<T>& anchor = end == End::left ? left_ : right_;
     walls_.has(end) ? anchor.take(body) : anchor.follow(body, *bodies_, clock(), time, gain);
   }
@@ -238,10 +248,15 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
+    if constexpr (Line::watched && requires { law.cutoff(); })
+      line_.certainty.threshold(line_.gaps, s, body(s), time, law.cutoff());
     if constexpr (LawWithMemory<Law, T>)
       if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots()))
         return law.elastic(closing(s), line_.masses.of_pair(s));
-    return law(closing(s), line_.masses.of_pair(s));
+    const Outcome<T> outcome = law(closing(s), line_.masses.of_pair(s));
+    if constexpr (Line::watched && !requires { law.cutoff(); })
+      line_.certainty.slope(law, closing(s), line_.masses.of_pair(s), outcome);
+    return outcome;
   }
   template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
     if constexpr (LawWithMemory<Law, T>) memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());
@@ -268,7 +283,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       if (beyond != Window::Beyond::nothing) {
         left_.take(body(s) - 1);
       } else {
-        follow_end(End::left, body(s), time, T(-outcome.to_left));
+        follow_end(End::left, body(s), time, -line_.handed(s, outcome).left);
         line_.seal(s - 1, time, outcome.to_left);
       }
     }
@@ -282,7 +297,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       if (beyond != Window::Beyond::nothing) {
         right_.take(body(s) + 2);
       } else {
-        follow_end(End::right, body(s) + 1, time, outcome.to_right);
+        follow_end(End::right, body(s) + 1, time, line_.handed(s, outcome).right);
         line_.seal(s + 1, time, outcome.to_right);
       }
     }

@@ -52,22 +52,31 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configurat
 template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_configuration(const T& time) const {
   Configuration<T> c;
   c.time = clock().time(time);
+  c.speeds_are_sums = !line_.exact_sums();
   c.to = bodies_->count() - 1;
   c.collided_to = static_cast<std::size_t>(bodies_->count());
   CompensatedSum<T> way, slowing, moment, momentum;
-  std::vector<T> ways, slowings;  // from body 0 to each one
+  std::vector<T> ways;
+  std::vector<Pair<T>> slowings;  // from body 0 to each one
+  std::size_t heaviest = 0;
   for (Slot s = first(); s <= last(); ++s) {
     c.index.push_back(body(s));
     c.m.push_back(line_.masses[s]);
     ways.push_back(way.value());
-    slowings.push_back(slowing.value());
+    slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
     moment.add(c.m.back() * ways.back());
-    momentum.add(c.m.back() * slowings.back());
+    if (c.m[heaviest] < c.m.back()) heaviest = c.m.size() - 1;
     c.gap.push_back(gap_at(s, time));
     c.closing_speed.push_back(closing(s));
     way.add(c.gap.back());
-    slowing.add(c.closing_speed.back());
+    line_.add_closing(s, slowing);
   }
+  // Where masses are far apart, from the heaviest: what the sums lose is then lost of the light ones.
+  if (line_.exact_sums()) {
+    const Pair<T> own = slowings[heaviest];
+    for (Pair<T>& each : slowings) each = each - own;
+  }
+  for (std::size_t j = 0; j < slowings.size(); ++j) momentum.add(c.m[j] * slowings[j].value());
   c.closure_gap = bodies_->circumference() - way.value();
   c.closure_speed = -slowing.value();
   const T mass = bodies_->total_mass(), drift = bodies_->momentum() / mass;
@@ -76,7 +85,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
   const T speed = drift + momentum.value() / mass;
   for (std::size_t j = 0; j < ways.size(); ++j) {
     c.x.push_back((start + T(ways[j] + stretch * ways[j])).value());
-    c.v.push_back(speed - slowings[j]);
+    c.v.push_back(speed - slowings[j].value());
   }
   fold(c, bodies_->circumference());
   return c;
@@ -90,6 +99,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
 
   Configuration<T> c;
   c.time = clock().time(time);
+  c.speeds_are_sums = !line_.exact_sums();
   for (Slot s = from; s <= to + 1; ++s) {
     c.index.push_back(body(s));
     c.m.push_back(line_.masses[s]);
@@ -98,23 +108,25 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
   c.to = body(to) + 1;
   if (collided) c.collided_from = window_.front_left() - from, c.collided_to = window_.front_right() - from + 2;
   CompensatedSum<T> way, slowing;
-  std::vector<T> ways{T(0)}, slowings{T(0)};  // from the left anchor to each body
+  std::vector<T> ways{T(0)};
+  std::vector<Pair<T>> slowings{{}};  // from the left anchor to each body
   for (Slot s = from; s <= to; ++s) {
     c.gap.push_back(gap_at(s, time));
     c.closing_speed.push_back(closing(s));
     way.add(c.gap.back());
-    slowing.add(c.closing_speed.back());
+    line_.add_closing(s, slowing);
     ways.push_back(way.value());
-    slowings.push_back(slowing.value());
+    slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
   }
   const Flight<T> left = flight(left_, time), right = flight(right_, time);
   c.closure_gap = difference(right.x, left.x) - way.value();
-  c.closure_speed = difference(left.v, right.v) - slowing.value();
+  c.closure_speed = line_.exact_sums() ? T((left.v - right.v - slowing.pair()).value())
+                                       : T(difference(left.v, right.v) - slowing.value());
   const T stretch = way.value() > T(0) ? T(*c.closure_gap / way.value()) : T(0);
   for (std::size_t j = 0; j < n; ++j) {
     c.x.push_back((left.x + T(ways[j] + stretch * ways[j])).value());
     const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(static_cast<std::int64_t>(n - 1))) : T(0);
-    c.v.push_back((left.v - T(slowings[j] + share * *c.closure_speed)).value());
+    c.v.push_back((left.v - slowings[j].low - T(slowings[j].high + share * *c.closure_speed)).value());
   }
   leave_out_walls(c, bodies_->count());
   return c;

@@ -6,38 +6,48 @@
 #include <concepts>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 
+#include "cradle/core/certainty.hpp"
 #include "cradle/core/collision.hpp"
 #include "cradle/core/masses.hpp"
 #include "cradle/core/timed_gaps.hpp"
+#include "cradle/core/watched_gap.hpp"
 
 namespace cradle {
 
-// In double 32 bytes, two to a line of the cache.
-template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap : TimedGap<T> {
-  T closing{-1};
-  static auto state(auto& self) { return std::tuple_cat(TimedGap<T>::state(self), std::tie(self.closing)); }
+// What the line keeps of all its contacts where masses are not watched.
+struct NothingMore {
+  static std::tuple<> state(auto&) { return {}; }
 };
 
 template <Real T, class MassesOf> class GapLine {
  public:
   using Scalar = T;
   using Masses = MassesOf;
-  using Gaps = TimedGaps<T, Gap<T>, true>;
+  static constexpr bool watched = Watched<Masses>;
+  using Gaps = TimedGaps<T, std::conditional_t<watched, WatchedGap<T>, Gap<T>>, true>;
 
-  GapLine(const Bodies<T>& bodies, const T& start) : gaps(start, bodies.energy_to_lose()), masses(bodies) {}
+  GapLine(const Bodies<T>& bodies, const T& start)
+      : gaps(start, bodies.energy_to_lose()), masses(bodies),
+        exact_(cradle::far_apart(bodies) && sums_can_be_exact<T>) {}
 
   // Like another one, without any gaps yet.
   explicit GapLine(const GapLine& other, std::size_t slots)
-      : gaps(other.gaps.clock().start(), T(1)), masses(other.masses.without_slots()) {
+      : gaps(other.gaps.clock().start(), T(1)), masses(other.masses.without_slots()), exact_(other.exact_) {
     resemble(other, slots, 0);
   }
 
   Gaps gaps;
   Masses masses;
   BodyIndex body_of_slot_0 = 0;
+  [[no_unique_address]] std::conditional_t<watched, Certainty<T, Gaps>, NothingMore> certainty;
 
-  static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.body_of_slot_0); }
+  static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.body_of_slot_0, self.certainty); }
+
+  // Whether closing speeds add up without error.
+  bool exact_sums() const { return watched && exact_; }
 
   // ---- copies of a part (segments.hpp): with so many slots; slot s here is s + offset there
   void resemble(const GapLine& other, std::size_t slots, std::ptrdiff_t offset) {
@@ -50,17 +60,27 @@ template <Real T, class MassesOf> class GapLine {
     masses.copy(other.masses, from, to, count + 1);
   }
   // A gap that no contact beside it closes.
-  void block(Slot s) { gaps.put(s, {{T(1), T(0)}, T(-std::int64_t{1} << 62)}); }
+  void block(Slot s) { gaps.put(s, cell(T(1), T(0), T(-std::int64_t{1} << 62))); }
 
   BodyIndex body(Slot s) const { return static_cast<BodyIndex>(s) + body_of_slot_0; }
   const T& closing(Slot s) const { return gaps[s].closing; }
+  void add_closing(Slot s, CompensatedSum<T>& sum) const {
+    sum.add(closing(s));
+    if constexpr (watched) sum.add(gaps[s].rest);
+  }
   // Local time of the next contact of a gap that is closing.
   T due(Slot s) const { return gaps.due(s, closing(s)); }
   double queue_due(Slot s) const { return gaps.queue_due(s, closing(s)); }
 
   // As it is at the start, the gap right of a body, and the mass of a body.
   void load(Slot s, const Bodies<T>& bodies, const T& time) {
-    gaps.put(s, {{bodies.gap(body(s)), time}, bodies.closing_speed(body(s))});
+    const BodyIndex b = body(s);
+    gaps.put(s, cell(bodies.gap(b), time, bodies.closing_speed(b)));
+    if constexpr (watched) {
+      const BodyIndex next = bodies.on_ring() && b + 1 == bodies.count() ? 0 : b + 1;
+      if (exact_) add(s, two_sum(bodies.velocity(b), T(-bodies.velocity(next))) - closing(s));
+      gaps[s].off = at_start(bodies, b, next);
+    }
     gaps.foresee(s, closing(s));
   }
   void load_mass(Slot s, const Bodies<T>& bodies) { masses.set(s, mass_of(s, bodies)); }
@@ -72,32 +92,80 @@ template <Real T, class MassesOf> class GapLine {
                                              Notice notice) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
+    if constexpr (watched) certainty.contact(gaps, p, s, n, body(s), time, outcome, masses.of_pair(s), exact_);
+    const auto handed = this->handed(s, outcome);
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;
+    if constexpr (watched) gaps[s].rest = T(0);
     gaps.forget(s);
-    notice |= kick(p, outcome.to_left, since, time);
-    notice |= kick(n, outcome.to_right, since, time);
+    notice |= kick(p, handed.left, since, time);
+    notice |= kick(n, handed.right, since, time);
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
   // There is no gap beyond the last body: what stands in its slot keeps opening, whatever it is handed.
-  void seal(Slot s, const T& time, const T& handed) { gaps.put(s, {{T(1), time}, T(-(handed + handed) - T(1))}); }
+  void seal(Slot s, const T& time, const T& handed) { gaps.put(s, cell(T(1), time, T(-(handed + handed) - T(1)))); }
+
+  // What the neighbours gain in a contact at the gap s. Where sums are exact all three closing speeds add up as
+  // before: what rounding has left over goes where more is handed, to the side of the lighter body.
+  struct Handed {
+    const T &left, &right;
+  };
+  struct HandedExactly {
+    Pair<T> left, right;
+  };
+  [[gnu::always_inline]] auto handed(Slot s, const Outcome<T>& outcome) const {
+    if constexpr (watched) {
+      const Pair<T> before{closing(s), gaps[s].rest};
+      const T over = exact_ ? T((before - outcome.closing - outcome.to_left - outcome.to_right).value()) : T(0);
+      const bool both = outcome.to_left == outcome.to_right, left = outcome.to_right < outcome.to_left;
+      return HandedExactly{{outcome.to_left, both   ? T(over / T(2))
+                                             : left ? over
+                                                    : T(0)},
+                           {outcome.to_right, both   ? T(over / T(2))
+                                              : left ? T(0)
+                                                     : over}};
+    } else {
+      return Handed{outcome.to_left, outcome.to_right};
+    }
+  }
 
  private:
+  using Cell = std::remove_cvref_t<decltype(std::declval<Gaps&>()[Slot{}])>;
+  static Cell cell(const T& gap, const T& time, const T& closing) {
+    Cell made;
+    made.gap = gap;
+    made.time = time;
+    made.closing = closing;
+    return made;
+  }
+  static const T& high(const T& gain) { return gain; }
+  static const T& high(const Pair<T>& gain) { return gain.high; }
+  void add(Slot s, const Pair<T>& gain) {
+    const Pair<T> sum = Pair<T>{closing(s), gaps[s].rest} + gain.high + gain.low;
+    gaps[s].closing = sum.high;
+    if (exact_) gaps[s].rest = sum.low;
+  }
   // That of any body where there is none, or a wall.
   T mass_of(Slot s, const Bodies<T>& bodies) const {
     return bodies.mass(body(s) >= 0 && body(s) < bodies.count() ? body(s) : 0);
   }
   // Brings a gap up to date and adds to its closing speed; `struck` is the time since the local time of the gap beside
   // it that had the contact.
-  [[gnu::always_inline]] Notice kick(Slot s, const T& gain, const T& struck, const T& time) {
+  template <class Gain>
+  [[gnu::always_inline]] Notice kick(Slot s, const Gain& gain, const T& struck, const T& time) {
     const T since = gaps.kick(
-        s, closing(s), [&]() -> const T& { return gain; }, time);
-    gaps[s].closing += gain;
+        s, closing(s), [&]() -> const T& { return high(gain); }, time);
+    if constexpr (watched)
+      add(s, gain);
+    else
+      gaps[s].closing += gain;
     if (gaps.below_floor(s)) [[unlikely]]
-      return gaps.note(s, closing(s), gain, since, struck, body(s), time);
+      return gaps.note(s, closing(s), high(gain), since, struck, body(s), time);
     return Notice::none;
   }
+
+  bool exact_;
 };
 
 }  // namespace cradle

@@ -174,6 +174,7 @@ template <Real T> class ContactTime {
   template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const { return law_(w, masses); }
   template <class Masses> Outcome<T> elastic(const T& w, const Masses& masses) const { return law_.elastic(w, masses); }
   const T& contact_time() const { return contact_time_; }
+  const T& cutoff() const { return law_.cutoff(); }
 
  private:
   Inelastic<T> law_;

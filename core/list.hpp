@@ -76,6 +76,8 @@ template <Real T> class List final : public Bodies<T> {
   T conserved_momentum() const override { return conserved_; }
   T total_mass() const override { return total_mass_; }
   T least_mass() const override { return m_.empty() ? T(1) : *std::min_element(m_.begin(), m_.end()); }
+  T greatest_mass() const override { return m_.empty() ? T(1) : *std::max_element(m_.begin(), m_.end()); }
+  T rounded_place(BodyIndex body) const override { return position(body); }
 
  private:
   bool is_last(BodyIndex body) const { return body + 1 == count(); }

@@ -31,6 +31,7 @@ template <Real T> class MassPattern {
   bool identical() const { return identical_; }
   T of(BodyIndex body) const { return masses_.empty() ? T(1) : masses_[static_cast<std::size_t>(body % period())]; }
   T least() const { return masses_.empty() ? T(1) : *std::min_element(masses_.begin(), masses_.end()); }
+  T greatest() const { return masses_.empty() ? T(1) : *std::max_element(masses_.begin(), masses_.end()); }
   // Of bodies [from, to): how many there are of each entry, times its mass.
   T total(BodyIndex from, BodyIndex to) const {
     if (masses_.empty()) return T(to - from);

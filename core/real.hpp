@@ -91,7 +91,7 @@ template <Real T> struct Pair {
   static auto state(auto& self) { return std::tie(self.high, self.low); }
 };
 
-// a + b without error.
+// a + b without error in types that round to the nearest number; in double-double, to its last digits but one.
 template <Real T> Pair<T> two_sum(const T& a, const T& b) {
   const T sum = a + b;
   const T b_seen = sum - a;
@@ -106,6 +106,9 @@ template <Real T> Pair<T> operator+(const Pair<T>& a, const T& b) {
 }
 
 template <Real T> Pair<T> operator-(const Pair<T>& a, const T& b) { return a + T(-b); }
+template <Real T> Pair<T> operator+(const Pair<T>& a, const Pair<T>& b) { return a + b.high + b.low; }
+template <Real T> Pair<T> operator-(const Pair<T>& a) { return {T(-a.high), T(-a.low)}; }
+template <Real T> Pair<T> operator-(const Pair<T>& a, const Pair<T>& b) { return a + -b; }
 
 // (a - b) rounded once where the leading parts cancel, as they do for neighbouring times and positions.
 template <Real T> T difference(const Pair<T>& a, const Pair<T>& b) {

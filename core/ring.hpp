@@ -109,6 +109,7 @@ template <Real T> class Ring final : public Bodies<T> {
   T total_mass() const override { return masses_.total(0, count_); }
   T mass_between(BodyIndex from, BodyIndex to) const override { return masses_.total(from, to); }
   T least_mass() const override { return masses_.least(); }
+  T greatest_mass() const override { return masses_.greatest(); }
 
  private:
   BodyIndex next(BodyIndex body) const { return body + 1 < count_ ? body + 1 : 0; }

@@ -136,6 +136,10 @@ template <Real T> class Rows final : public Bodies<T> {
     const T rows = masses_.least();
     return centre_ && centre_->mass < rows ? centre_->mass : rows;
   }
+  T greatest_mass() const override {
+    const T rows = masses_.greatest();
+    return centre_ && rows < centre_->mass ? centre_->mass : rows;
+  }
 
  private:
   T left_mass() const { return masses_.total(0, left_.count); }

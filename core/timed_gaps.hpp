@@ -236,6 +236,9 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       account_.enter({clock_.time(time), body, cells_[s].gap}, below_zero(s, closing, gain, since, struck, time));
     return Notice::gap_below_floor;
   }
+  void doubt(const Incident<T>& contact) {
+    if (account_.uncertain++ == 0) account_.first_uncertain = contact;
+  }
   const Account<T>& account() const { return account_; }
 
   // ---- energy lost in a contact at the gap; in all of those from one slot to another

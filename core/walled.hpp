@@ -52,6 +52,10 @@ template <Real T> class Walled final : public Bodies<T> {
   T total_mass() const override { return bodies_->total_mass(); }
   T mass_between(BodyIndex from, BodyIndex to) const override { return bodies_->mass_between(from, to); }
   T least_mass() const override { return bodies_->least_mass(); }
+  T greatest_mass() const override { return bodies_->greatest_mass(); }
+  T rounded_place(BodyIndex body) const override {
+    return is_wall(body) ? at(body).position : bodies_->rounded_place(body);
+  }
   // Walls give energy: a ledger for a million times as much as comes of them at once loses 20 of its spare bits.
   T energy_to_lose() const override {
     T twice_per_mass(0);

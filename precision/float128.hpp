@@ -92,6 +92,7 @@ template <> class std::numeric_limits<cradle::float128> {
 
  public:
   static constexpr bool is_specialized = true, is_signed = true, is_integer = false, is_exact = false;
+  static constexpr std::float_round_style round_style = std::round_to_nearest;
   static constexpr bool has_infinity = true, has_quiet_NaN = true, is_iec559 = true, is_bounded = true;
   static constexpr int radix = 2, digits = 113, digits10 = 33, max_digits10 = 36;
   static constexpr int min_exponent = -16381, max_exponent = 16384, min_exponent10 = -4931, max_exponent10 = 4932;

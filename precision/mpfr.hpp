@@ -167,6 +167,7 @@ template <int Limbs> class std::numeric_limits<cradle::Mpfr<Limbs>> {
 
  public:
   static constexpr bool is_specialized = true, is_signed = true, is_integer = false, is_exact = false;
+  static constexpr std::float_round_style round_style = std::round_to_nearest;
   static constexpr bool has_infinity = true, has_quiet_NaN = true, is_iec559 = false, is_bounded = true;
   static constexpr int radix = 2;
   // digits are a run-time choice: see MpfrPrecision.

@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -39,6 +40,10 @@ template <Real T> class Engine {
   virtual T last_contact_time() const = 0;
   virtual const CollapseReport<T>* collapse() const = 0;  // none where no contacts are made
 
+  /// Where rounding may decide whether there is one more contact up to a time not before the last one: the body on the
+  /// left. None where nobody estimates it.
+  virtual std::optional<BodyIndex> uncertain_at(const T& time) const = 0;
+
   virtual bool on_ring() const = 0;
   virtual BodyIndex collided_bodies() const = 0;
   virtual T front_left(const T& time) const = 0;
@@ -58,7 +63,7 @@ struct NoSegments {
 };
 template <class Run> struct SegmentsFor { using Type = NoSegments; };
 template <Real T, class Law, class Masses>
-requires(!LawWithMemory<Law, T>) struct SegmentsFor<Simulation<T, Law, GapChain<T, Masses>>> {
+requires(!LawWithMemory<Law, T> && !Watched<Masses>) struct SegmentsFor<Simulation<T, Law, GapChain<T, Masses>>> {
   using Type = Segments<Law, GapChain<T, Masses>>;
 };
 template <Real T, class Law> struct SegmentsFor<Simulation<T, Law, ClusterChain<T>>> {
@@ -92,6 +97,13 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
       return &run_.collapse();
     else
       return nullptr;
+  }
+
+  std::optional<BodyIndex> uncertain_at(const T& time) const override {
+    if constexpr (requires { run_.chain().uncertain_at(time); })
+      return run_.chain().uncertain_at(run_.chain().local_time(time));
+    else
+      return {};
   }
 
   bool on_ring() const override { return run_.on_ring(); }

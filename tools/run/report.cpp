@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cradle/tools/run/run.hpp"
 
@@ -68,6 +69,19 @@ std::string account_warning(const ToldAccount& account, const Run& run) {
                         "initial state where that matters (of law.restitution = 0, which leaves bodies together, take "
                         "a small one)\n",
                         account.simultaneous);
+  if (account.uncertain)
+    text += fmt::format(
+        "contacts are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided which "
+        "one "
+        "was next ({:.0f} digits of a length of 1 are left in {}); the contacts after it are those of a system that "
+        "starts a rounding away. Use more digits (run.precision), and `cradle trust` to see how many\n",
+        account.first_uncertain.time, account.first_uncertain.gap, place(account.first_uncertain.body),
+        std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run));
+  if (account.uncertain_end)
+    text += fmt::format(
+        "rounding may decide whether there is one more contact before the end (t = {}, {}): use more digits "
+        "(run.precision), or another run.until\n",
+        account.first_uncertain.time, place(account.first_uncertain.body));
   return text;
 }
 

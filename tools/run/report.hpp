@@ -43,17 +43,28 @@ Group collapse_table(const ToldCollapse& collapse);
 
 struct ToldIncident {
   std::string time;
+  double value = 0;  // of the time
   double gap = 0;
   BodyIndex body = -1;
 };
 struct ToldAccount {
   std::uint64_t simultaneous = 0, order_lost = 0, unresolved = 0;
   ToldIncident first_order_lost, first_unresolved;
+  bool uncertain = false, uncertain_end = false;
+  ToldIncident first_uncertain;  // of both
 };
 template <Real T> ToldAccount told(const Account<T>& account) {
-  const auto incident = [](const Incident<T>& i) { return ToldIncident{to_text(i.time), to_double(i.gap), i.body}; };
-  return {account.simultaneous, account.order_lost, account.unresolved, incident(account.first_order_lost),
-          incident(account.first_unresolved)};
+  const auto incident = [](const Incident<T>& i) {
+    return ToldIncident{to_text(i.time), to_double(i.time), to_double(i.gap), i.body};
+  };
+  return {account.simultaneous,
+          account.order_lost,
+          account.unresolved,
+          incident(account.first_order_lost),
+          incident(account.first_unresolved),
+          account.uncertain > 0,
+          false,
+          incident(account.first_uncertain)};
 }
 struct ToldGuard {
   Guard guard = Guard::order;

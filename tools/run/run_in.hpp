@@ -58,6 +58,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   // for identical masses, whose bits are the same.
   const auto bouncing = [&](const auto& any) -> std::unique_ptr<Engine<T>> {
     if (scene.run.coordinates == Coordinates::absolute) return simulation(any, std::type_identity<PositionChain<T>>{});
+    if (to_be_watched(*bodies)) return simulation(any, std::type_identity<GapChain<T, WatchedMasses<T>>>{});
     return simulation(any, std::type_identity<GapChain<T, IndividualMasses<T>>>{});
   };
   if (scene.law.cutoff_exponent)

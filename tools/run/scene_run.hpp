@@ -279,7 +279,11 @@ template <Real T> class SceneRun {
     end.time = to_double(time);
     end.energy = to_double(energy_now(engine_, energy_));
     end.energy_digits = energy_digits(end.energy);
-    const ToldAccount account = told(engine_.account());
+    ToldAccount account = told(engine_.account());
+    if (const auto body = engine_.uncertain_at(time); body && !account.uncertain && status == Status::reached) {
+      account.uncertain_end = true;
+      account.first_uncertain = {to_text(time), to_double(time), 0, *body};
+    }
     end.warning = account_warning(account, scene_.run);
     if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.contacts, scene_.run);
     end.result.attributes = provenance(scene_, precision_name(scene_.run), end_text(end.end));
@@ -288,6 +292,8 @@ template <Real T> class SceneRun {
           Attribute("unresolved_gaps", account.unresolved), Attribute("energy_digits", end.energy_digits),
           Attribute("ledger_error", to_double(T(energy_ - engine_.energy_lost() - engine_.kinetic_energy())))})
       end.result.attributes.push_back(attribute);
+    if (account.uncertain || account.uncertain_end)
+      end.result.attributes.emplace_back("uncertain_from", account.first_uncertain.value);
     put_tables(end);
     if (status == Status::collapsed) {
       const ToldCollapse collapse = told(*engine_.collapse());

@@ -181,6 +181,9 @@ def warnings(result: Result, version: str) -> list[str]:
                                                  "tie rule")):
         if about.get(name):
             found.append(f"{number(about[name])} {told}.")
+    if "uncertain_from" in about:
+        found.append(f"Contacts are certain up to t = {number(about['uncertain_from'])} only: from there on rounding may "
+                     "have decided which one was next. More digits (<code>run.precision</code>) reach further.")
     found += failures(result)
     for place, point in enumerate(result.points):
         found += failures(point, f"points/{place:04}/")

@@ -1,0 +1,279 @@
+// Masses from 1e-8 to 1e8 beside each other. Proves: runs of 2000 random systems (lines, rings, walls, every law that
+// bounces) make the contacts that 70 digits make wherever nothing says that rounding may have decided; guards are
+// silent on all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) come out right up
+// to a ratio of 1e12, or 1e14 in the slow test.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/gap_chain.hpp"
+#include "cradle/core/list.hpp"
+#include "cradle/core/observe/guards.hpp"
+#include "cradle/core/position_chain.hpp"
+#include "cradle/core/simulation.hpp"
+#include "cradle/core/walled.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/precision/every_scalar.hpp"
+
+namespace unequal_masses_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+enum class Bounce { elastic, cutoff, speed_dependent, contact_time };
+
+// All numbers are doubles, so that every type has the same system.
+struct System {
+  std::vector<double> x, v, m;
+  double circumference = 0;
+  bool left_wall = false, right_wall = false;
+  double wall_restitution = 1, restitution = 1, cutoff = 0, until = 1;
+  Bounce law = Bounce::elastic;
+};
+
+class Drawing {
+ public:
+  explicit Drawing(std::uint64_t seed) : bits_(seed) {}
+  double from_to(double from, double to) {
+    return from + (to - from) * std::ldexp(static_cast<double>(bits_() >> 33), -31);
+  }
+  std::size_t below(std::size_t end) { return bits_() % end; }
+  System operator()(double decades, double longest) {
+    System s;
+    double x = 0;
+    for (std::size_t n = 2 + below(8); n > 0; --n) {
+      s.x.push_back(x += std::ldexp(std::round(std::ldexp(from_to(.01, 2), 20)), -20));
+      s.m.push_back(std::pow(10., from_to(-decades, decades)));
+      s.v.push_back(from_to(-1, 1) / (below(2) == 0 ? 1 : std::sqrt(s.m.back())));  // or of like energies
+    }
+    if (below(3) == 0)
+      s.circumference = x + 1;
+    else
+      s.left_wall = below(2) == 0, s.right_wall = below(2) == 0;
+    s.wall_restitution = below(2) == 0 ? 1 : from_to(.5, 1);
+    s.law = static_cast<Bounce>(below(4));
+    s.restitution = s.law == Bounce::elastic ? 1 : from_to(.05, 1);
+    s.cutoff = std::pow(10., s.law == Bounce::contact_time ? from_to(-6, -2) : from_to(-4, 0));
+    s.until = std::pow(10., from_to(-1, longest));
+    return s;
+  }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+template <class T> std::shared_ptr<const Bodies<T>> bodies_of(const System& s) {
+  const auto numbers = [](const std::vector<double>& values) {
+    std::vector<T> all;
+    for (const double value : values) all.push_back(exactly<T>(value));
+    return all;
+  };
+  auto list = std::make_shared<List<T>>(numbers(s.x), numbers(s.v), numbers(s.m), exactly<T>(s.circumference));
+  if (!s.left_wall && !s.right_wall) return list;
+  const auto wall = [&](bool there, double position) -> std::optional<Wall<T>> {
+    if (!there) return {};
+    return Wall<T>{exactly<T>(position), T(0), exactly<T>(s.wall_restitution)};
+  };
+  return std::make_shared<Walled<T>>(list, wall(s.left_wall, -1), wall(s.right_wall, s.x.back() + 1));
+}
+
+// f(law) with the law of the system.
+template <class T, class F> auto with_law(const System& s, F f) {
+  const T restitution = exactly<T>(s.restitution), cutoff = exactly<T>(s.cutoff);
+  if (s.law == Bounce::speed_dependent) return f(SpeedDependent<T>(restitution, cutoff, T(2)));
+  if (s.law == Bounce::contact_time) return f(ContactTime<T>(Inelastic<T>(restitution), cutoff));
+  return f(Inelastic<T>(restitution, s.law == Bounce::elastic ? T(0) : cutoff));
+}
+
+struct Made {
+  Status status = Status::reached;
+  std::uint64_t contacts = 0;
+  bool warned = false, broken = false;
+  std::array<double, 3> guard{};
+  int missed = 0;  // planted errors that no guard has found
+};
+
+template <class Chain> Made make(const System& s, std::uint64_t most) {
+  using T = typename Chain::Scalar;
+  const auto bodies = bodies_of<T>(s);
+  return with_law<T>(s, [&](const auto& law) {
+    bool enough = false;
+    Policy<T> policy;
+    policy.progress = [&](const T&, const Counts& counts) { enough = counts.contacts > most; };
+    policy.interrupt = [&] { return enough; };
+    Simulation run(law, Chain(bodies, T(0)), policy);
+    Made made;
+    made.status = run.advance(exactly<T>(s.until));
+    made.contacts = run.counts().contacts;
+    const T end = made.status == Status::reached ? exactly<T>(s.until) : run.last_contact_time();
+    const Account<T>& account = run.account();
+    made.warned = account.uncertain + account.order_lost + account.simultaneous > 0;
+    if constexpr (requires { run.chain().uncertain_at(end); })
+      made.warned = made.warned || run.chain().uncertain_at(run.chain().local_time(end));
+    const T energy = bodies->kinetic_energy() - run.energy_lost();
+    const auto broken = [&](const Configuration<T>& c, const T& left) {
+      const auto look =
+          guarded(c, *bodies, made.contacts, left, end, run.last_contact_time(), T(0), account.order_lost == 0);
+      if (look.broken)
+        made.guard = {static_cast<double>(look.broken->guard), to_double(look.broken->found),
+                      to_double(look.broken->bound)};
+      return look.broken.has_value();
+    };
+    const Configuration<T> now = run.configuration(end);
+    made.broken = broken(now, energy);
+    // A part in a million: of the ledger's energy, of a body's energy, of the speed by which closing speeds add up.
+    const T part = T(1) / T(1000000);
+    made.missed += !broken(now, T(energy + part * bodies->kinetic_energy()));
+    std::size_t j = 0;
+    for (std::size_t k = 1; k < now.m.size(); ++k)
+      if (now.m[j] * now.v[j] * now.v[j] < now.m[k] * now.v[k] * now.v[k]) j = k;
+    Configuration<T> faster = now;
+    faster.v[j] += part * faster.v[j];
+    const bool plain = now.m[j] * now.v[j] * now.v[j] < energy / T(10);  // most of the energy may be lost by now
+    made.missed += !plain && !broken(faster, energy);
+    if (now.closure_speed) {
+      Configuration<T> open = now;
+      open.closure_speed = *now.closure_speed + part * magnitude(now.v[j]);
+      made.missed += !broken(open, energy);
+    }
+    return made;
+  });
+}
+
+template <class T> using Watching = GapChain<T, WatchedMasses<T>>;
+template <class T> using Plain = GapChain<T, IndividualMasses<T>>;
+
+template <class T> int expect_right_or_warned(std::uint64_t seed, int systems, double decades, double longest) {
+  int warned = 0;
+#ifdef CRADLE_WITH_MPFR
+  MpfrPrecision::set_bits(MpfrPrecision::bits_for(70));
+  Drawing draw(seed);
+  int compared = 0;
+  for (int k = 0; k < systems; ++k) {
+    const System s = draw(decades, longest);
+    const Made right = make<Plain<Mpfr<4>>>(s, 20000), made = make<Watching<T>>(s, 20000);
+    EXPECT_FALSE(made.broken) << "seed " << seed << ", system " << k << ": guard " << made.guard[0] << ", found "
+                              << made.guard[1] << ", bound " << made.guard[2];
+    EXPECT_EQ(made.missed, 0) << "seed " << seed << ", system " << k;
+    if (right.status != Status::reached || made.status != Status::reached) continue;  // collapse, or too many contacts
+    ++compared;
+    warned += made.warned;
+    if (made.warned) continue;
+    EXPECT_EQ(made.contacts, right.contacts) << "seed " << seed << ", system " << k;
+  }
+  EXPECT_GT(compared, systems / 2);
+  std::printf("%d systems, seed %d: %d compared, %d of them warned of\n", systems, static_cast<int>(seed), compared,
+              warned);
+#endif
+  return warned;
+}
+
+TEST(UnequalMasses, AreRightOrWarnedOf) {
+  expect_right_or_warned<double>(1, 150, 8, 1.5);
+  // So long that some collapse far below the rounding of their times, and recover.
+  EXPECT_GT(expect_right_or_warned<double>(2, 150, 2, 3), 0);
+}
+TEST(UnequalMasses, AreRightOrWarnedOfInWiderTypes) {
+  expect_right_or_warned<long double>(3, 60, 8, 1.5);
+  expect_right_or_warned<double_double>(4, 60, 8, 2);
+}
+TEST(SlowUnequalMasses, AreRightOrWarnedOf) {
+  expect_right_or_warned<double>(5, 2000, 8, 1.5);
+  expect_right_or_warned<double>(6, 500, 2, 3);
+  expect_right_or_warned<double>(7, 500, .3, 3);
+}
+
+// Galperin: a light body between a wall and one of M times its mass that comes in makes floor(pi sqrt(M)) contacts.
+System billiard(double mass) {
+  System s;
+  s.x = {1, 2}, s.v = {0, -1}, s.m = {1, mass};
+  s.left_wall = true;
+  s.until = 1000;
+  return s;
+}
+// The same and its mirror image without the wall: the light ones meet, too.
+System two_billiards(double mass) {
+  System s;
+  s.x = {0, 1, 2, 3}, s.v = {1, 0, 0, -1}, s.m = {mass, 1, 1, mass};
+  s.until = 1000;
+  return s;
+}
+template <class Chain> void expect_contacts(const System& s, std::uint64_t contacts) {
+  const Made made = make<Chain>(s, 1U << 30);
+  EXPECT_EQ(made.contacts, contacts) << s.m.back();
+  EXPECT_FALSE(made.warned) << s.m.back();
+  EXPECT_FALSE(made.broken) << s.m.back();
+  EXPECT_EQ(made.missed, 0) << s.m.back();
+}
+
+TEST(UnequalMasses, CountTheDigitsOfPi) {
+  expect_contacts<Watching<double>>(billiard(1e6), 3141);
+  expect_contacts<Watching<double>>(billiard(1e12), 3141592);
+  expect_contacts<Watching<long double>>(billiard(1e10), 314159);
+  expect_contacts<Watching<double_double>>(billiard(1e10), 314159);
+  expect_contacts<PositionChain<double>>(billiard(1e10), 314159);
+}
+TEST(SlowUnequalMasses, CountTheDigitsOfPi) {
+  expect_contacts<Watching<double>>(billiard(1e13), 9934588);
+  expect_contacts<Watching<double>>(billiard(1e14), 31415926);
+}
+TEST(UnequalMasses, GuardsAreSilentOnHeavyBodiesThatMeetBetweenNoWalls) {
+  expect_contacts<Watching<double>>(two_billiards(1e9), 149018);
+  expect_contacts<Watching<double>>(two_billiards(1e10), 471239);
+  expect_contacts<PositionChain<double>>(two_billiards(1e10), 471239);
+  expect_contacts<Watching<double_double>>(two_billiards(1e10), 471239);
+}
+TEST(UnequalMasses, GuardsAreSilentOnALightBodyThatHasBeenFast) {
+  System s;
+  s.x = {0, 1, 2.3}, s.v = {1, 0, -1}, s.m = {1e3, 1e-6, 1e3};
+  s.law = Bounce::cutoff, s.cutoff = 1e-9, s.until = 4;
+  const Made positions = make<PositionChain<double>>(s, 1U << 30), gaps = make<Watching<double>>(s, 1U << 30),
+             plain = make<Plain<double>>(s, 1U << 30);
+  EXPECT_EQ(gaps.contacts, 70248U);
+  EXPECT_EQ(positions.contacts, 70248U);
+  EXPECT_FALSE(positions.broken || gaps.broken || plain.broken || gaps.warned);
+  EXPECT_EQ(gaps.missed + positions.missed, 0);
+}
+TEST(UnequalMasses, GuardsAreSilentOnManyBodies) {
+  Drawing draw(3);
+  System s;
+  for (int k = 0; k < 520; ++k) {
+    s.x.push_back(k + draw.from_to(0, .5));
+    s.m.push_back(k % 3 == 0 ? 1e-8 : k % 3 == 1 ? 1 : 1e8);
+    s.v.push_back(draw.from_to(-1, 1));
+  }
+  s.until = 20;
+  const Made gaps = make<Watching<double>>(s, 300000), positions = make<PositionChain<double>>(s, 300000);
+  EXPECT_FALSE(gaps.broken || positions.broken);
+  EXPECT_EQ(gaps.missed + positions.missed, 0);
+}
+
+// Where masses are not far apart watching changes nothing: the bits of the chain that does not.
+TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
+  Drawing draw(17);
+  for (int k = 0; k < 50; ++k) {
+    const System s = draw(1.5, 2);
+    const auto bodies = bodies_of<double>(s);
+    ASSERT_FALSE(far_apart(*bodies));
+    with_law<double>(s, [&](const auto& law) {
+      bool enough = false;
+      Policy<double> policy;
+      policy.progress = [&](double, const Counts& counts) { enough = counts.contacts > 2000; };
+      policy.interrupt = [&] { return enough; };
+      Simulation watched(law, Watching<double>(bodies, 0.), policy), plain(law, Plain<double>(bodies, 0.), policy);
+      EXPECT_EQ(watched.advance(s.until), plain.advance(s.until));
+      const double end = std::max(watched.last_contact_time(), plain.last_contact_time());
+      EXPECT_EQ(watched.counts().contacts, plain.counts().contacts);
+      EXPECT_TRUE(identical(watched.configuration(end), plain.configuration(end))) << k;
+    });
+  }
+}
+
+}  // namespace unequal_masses_test

@@ -25,8 +25,12 @@ template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
 
 template <Real T> MassPattern<T> mass_pattern(const Initial& initial) {
   std::vector<T> masses;
-  for (const Decimal& mass : initial.masses) masses.push_back(number<T>(mass));
-  return MassPattern<T>(std::move(masses));
+  bool identical = true;
+  for (const Decimal& mass : initial.masses) {
+    masses.push_back(number<T>(mass));
+    identical = identical && mass == initial.masses.front();
+  }
+  return MassPattern<T>(std::move(masses), identical);
 }
 
 template <Real T>
@@ -65,7 +69,7 @@ template <Real T> std::shared_ptr<const cradle::Bodies<T>> bodies_without_walls(
     return cradle::Row<T>{static_cast<BodyIndex>(r.particles), number<T>(r.speed), T(1) / number<T>(r.density)};
   };
   std::optional<CentralBody<T>> centre;
-  if (initial.centre.mass.value > 0)
+  if (initial.centre.mass > Decimal("0"))
     centre = CentralBody<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
   return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement,
                                    mass_pattern<T>(initial));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,8 +17,10 @@ namespace cradle {
 template <Real T> class MassPattern {
  public:
   MassPattern() = default;
-  // Throws std::invalid_argument for masses that are not positive and finite.
-  explicit MassPattern(std::vector<T> masses) : masses_(std::move(masses)) {
+  // `identical`: whether they are all one number; nothing: as the type tells. Who has them in more digits than the type
+  // says so, since the velocities of a ring depend on it (ring.hpp). Throws std::invalid_argument for masses that are
+  // not positive and finite.
+  explicit MassPattern(std::vector<T> masses, std::optional<bool> identical = {}) : masses_(std::move(masses)) {
     for (std::size_t j = 0; j < masses_.size(); ++j) {
       require_finite(masses_[j], "mass " + std::to_string(j) + " of the pattern");
       if (!(masses_[j] > T(0)))
@@ -25,6 +28,7 @@ template <Real T> class MassPattern {
                                     in_message(masses_[j]) + "): give positive masses");
       identical_ = identical_ && masses_[j] == masses_[0];
     }
+    if (identical) identical_ = *identical;
   }
 
   BodyIndex period() const { return masses_.empty() ? 1 : static_cast<BodyIndex>(masses_.size()); }

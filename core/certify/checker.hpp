@@ -52,7 +52,7 @@
 
 namespace cradle {
 
-enum class Check { neighbours, closing, later, side, gap, before, counts };
+enum class Check { neighbours, closing, later, side, gap, before, agreement };
 
 // Where a proof ends: two quantities of which the first should be less, or on one side of the second.
 template <Enclosing N> struct Doubt {
@@ -62,14 +62,29 @@ template <Enclosing N> struct Doubt {
   N first{0}, second{0};
 };
 
+// What bounds the rounding of a run's bodies (agreement.hpp), in plain doubles.
+struct Sizes {
+  std::uint64_t bodies = 0;
+  double mass = 0, least_mass = 0, start_energy = 0, start_speed = 0, place = 0;  // speed, place: the largest
+
+  void add(double of_mass, double speed) {
+    least_mass = bodies++ == 0 ? of_mass : std::min(least_mass, of_mass);
+    mass += of_mass;
+    start_energy += of_mass * speed * speed / 2;
+    start_speed = std::max(start_speed, std::abs(speed));
+  }
+};
+
 // What is certain at a time.
 template <Enclosing N> struct CertainState {
   std::optional<Doubt<N>> doubt;
   N energy{0};
+  N time{0}, closing{0};                     // at a contact: of it
   std::optional<N> front_left, front_right;  // places of the outermost bodies that have collided, on a line
   // In powers of ten: the largest radius of a place, the smallest gap, the largest radius of one against itself.
   double widest = nothing, least_gap = -nothing, widest_of_gap = nothing;
   static constexpr double nothing = -std::numeric_limits<double>::infinity();
+  Sizes sizes;  // of the bodies held
 };
 
 template <Enclosing N> class Checker {
@@ -98,7 +113,16 @@ template <Enclosing N> class Checker {
   // All that is certain at a time since the start, up to which the run has made all contacts.
   CertainState<N> state_at(const N& time) const { return state_at(time, {}); }
   // At the last contact, of a run that ends with it: the two that have met are in one place.
-  CertainState<N> state_now() const { return state_at(last_.time, last_); }
+  CertainState<N> state_now() const {
+    CertainState<N> state = state_at(last_.time, last_);
+    state.time = last_.time, state.closing = last_.closing;
+    return state;
+  }
+  // The body or cluster that goes by the number of one of its bodies, if that is held.
+  std::optional<BodyIndex> cluster(BodyIndex body) const {
+    if (!lines_.holds(body)) return {};
+    return lines_.cluster(body);
+  }
   // f(index, mass, place, velocity) for every body or cluster held, by index.
   template <class F> void for_each(const N& time, F f) const {
     for (BodyIndex b = lines_.first(); b <= lines_.last(); ++b)
@@ -115,7 +139,7 @@ template <Enclosing N> class Checker {
  private:
   struct Meeting {
     BodyIndex l = -1, r = -1;  // clusters, as they are after it: the same after a merger
-    N time{0};
+    N time{0}, closing{0};
   };
 
   CertainState<N> state_at(const N& time, const Meeting& now) const {
@@ -123,19 +147,25 @@ template <Enclosing N> class Checker {
     const auto meets = [&](BodyIndex b) { return b == now.l || b == now.r; };
     N before{0}, present{0};
     for (BodyIndex b = lines_.first(); b <= lines_.last(); ++b) {
-      before += lines_.bodies().mass(b) * squared(lines_.bodies().velocity(b));
+      const N mass = lines_.bodies().mass(b), speed = lines_.bodies().velocity(b);
+      before += mass * squared(speed);
+      state.sizes.add(to_double(mass), to_double(speed));
       if (!lines_.is_cluster(b)) continue;
       const Line& line = lines_[b];
       present += lines_.mass(b) * squared(line.velocity);
       const N x = place_at(b, time);
       state.widest = std::max(state.widest, power_of_ten(x.radius()));
+      state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
       if (line.touched && !meets(b))
         if (const Order told = tell(line.changed, time); told != Order::less && !state.doubt)
           state.doubt = Doubt<N>{Check::before, told == Order::greater, b, b, line.changed, time};
       const BodyIndex next = lines_.right(b);
       if (next != lines_.none && next != b && !(b == now.l && next == now.r)) look_at_gap(b, next, x, time, state);
       if (lines_.on_ring() || !line.touched) continue;
-      if (lines_.left(b) == lines_.none || !lines_[lines_.left(b)].touched) state.front_left = x;
+      // Bodies that no contact has reached stay between those that one has, in the order of their numbers: the first
+      // of several separate regions begins at the front on the left, the last one ends at that on the right.
+      const bool begins = lines_.left(b) == lines_.none || !lines_[lines_.left(b)].touched;
+      if (begins && !state.front_left) state.front_left = x;
       if (next == lines_.none || !lines_[next].touched) state.front_right = x;
     }
     const bool all = lines_.first() == 0 && lines_.last() + 1 == lines_.count();
@@ -211,7 +241,7 @@ template <Enclosing N> class Checker {
     if (of_contacts_) l.changed = N::widened(at.time, after.size());
     r.changed = l.changed;
     l.touched = r.touched = true;
-    last_.l = at_l, last_.r = outcome.event == Event::merge ? at_l : at_r, last_.time = time;
+    last_.l = at_l, last_.r = outcome.event == Event::merge ? at_l : at_r, last_.time = time, last_.closing = closing;
     if (outcome.event == Event::pass) std::swap(last_.l, last_.r);
     ++proved_.contacts;
     proved_.in_doubles += !needed_balls_;

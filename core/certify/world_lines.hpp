@@ -86,6 +86,10 @@ template <Enclosing N> class WorldLines {
     while (links_[b].part_of != b) b = links_[b].part_of = links_[links_[b].part_of].part_of;
     return b;
   }
+  BodyIndex cluster(BodyIndex b) const {
+    while (linked_ && links_[b].part_of != b) b = links_[b].part_of;
+    return b;
+  }
   bool is_cluster(BodyIndex b) const { return !linked_ || links_[b].part_of == b; }
   bool holds(BodyIndex b) const { return b >= first() && b <= last(); }
   Line& operator[](BodyIndex b) { return lines_[b]; }

@@ -315,6 +315,19 @@ TEST(Certify, WhatIsProvedOfWetBodiesIsWhatFiftyDigitsGive) {
 }
 #endif
 
+TEST(Certify, FrontsAreTheOutermostOfAllRegions) {
+  const std::vector<B> places{B(0), B(1), B(10), B(11), B(20), B(21)}, speeds{B(1), B(0), B(0), B(0), B(1), B(0)};
+  CertainLaw<B> law;
+  law.restitution = B(0.5);
+  Checker<B> checker(std::make_shared<List<B>>(places, speeds), law);
+  ASSERT_FALSE(checker.contact(4, 5));
+  ASSERT_FALSE(checker.contact(0, 1));
+  const auto end = checker.state_at(B(3.5));
+  ASSERT_FALSE(end.doubt);
+  EXPECT_TRUE(holds(*end.front_left, exactly(1.625)));
+  EXPECT_TRUE(holds(*end.front_right, exactly(22.875)));
+}
+
 TEST(Certify, ATieIsOpenAndNamesTheBodies) {
   // The middle one is hit from both sides at once.
   const auto bodies = std::make_shared<List<B>>(std::vector<B>{B(-1), B(0), B(1)}, std::vector<B>{B(1), B(0), B(-1)});

@@ -25,8 +25,8 @@ struct Enclosed {
 
 /// What is certain at a time of the run.
 struct CertainSample {
-  double time = 0;
-  std::string time_text;
+  double time = 0;        // as the run has it
+  std::string time_text;  // the decimal that it stands for, and all else is of
   bool of_series = false;
   std::uint64_t contacts = 0;
   Enclosed energy;
@@ -43,6 +43,7 @@ struct ToldDoubt {
   std::uint64_t contacts = 0;  // proved before it
   std::string first, second;   // middles of the two quantities, and
   long double width = 0;       // the sum of their radii
+  std::string quantity = {};   // agreement: of the run and of the proof
 };
 /// "bodies 3 and 4 at t = 5.25: their contact is not certainly later than ...".
 std::string doubt_text(const ToldDoubt& doubt);

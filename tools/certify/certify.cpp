@@ -65,8 +65,8 @@ const char* question(Check check) {
     return "the gap between them is positive: the second exceeds the first";
   case Check::before:
     return "its last contact was before: the second time exceeds the first";
-  case Check::counts:
-    return "the run says of itself what was proved of it: first against second";
+  case Check::agreement:
+    return "the run has the number that is proved: first against second";
   }
   return "";
 }
@@ -110,12 +110,29 @@ std::string shown(const Enclosed& x) {
 
 std::string doubt_text(const ToldDoubt& d) {
   std::string where = fmt::format("at t = {:.17g}, after {} contacts", d.time, d.contacts);
+  if (d.check == Check::agreement)
+    return fmt::format("{}: the run's {} is not what is proved of it ({}; {}; its rounding explains {:.2g})", where,
+                       d.quantity, near(d.first), near(d.second), d.width);
   if (d.left >= 0)
     where += d.left == d.right ? fmt::format(", body {}", d.left) : fmt::format(", bodies {} and {}", d.left, d.right);
   std::string text = fmt::format("{}: {} whether {}", where, d.refuted ? "it is not so" : "open", question(d.check));
   if (d.check != Check::neighbours)
     text += fmt::format(" ({}; {}; known to {:.2g})", near(d.first), near(d.second), d.width);
   return text;
+}
+
+std::string Certified::undecided() const {
+  if (certificate.doubt) return doubt_text(*certificate.doubt);
+  if (outcome.end != RunEnd::exhausted) return "";
+  return fmt::format("from t = {} on, after {} contacts: the run ended there, before t = {} ({})",
+                     certificate.samples.back().time_text, certificate.contacts, scene.run.until.text,
+                     end_text(outcome.end));
+}
+
+std::string Certified::not_proved() const {
+  if (certificate.doubt || outcome.end != RunEnd::collapsed) return "";
+  return "that this is an inelastic collapse, and when it is complete; that is an estimate of the run, which ended at "
+         "the last contact that is proved";
 }
 
 Certified certify(const Scene& asked, const CertifyOptions& options) {
@@ -153,6 +170,10 @@ Certified certify(const Scene& asked, const CertifyOptions& options) {
     // Contacts that are wrong ask for digits of the run, those that are open for digits of the balls.
     const auto& doubt = certificate.doubt;
     const bool raised = doubt && doubt->refuted && raise(scene, of_balls);
+    if (doubt && doubt->check == Check::agreement && last && !raised)
+      throw Error(
+          {}, "the proof and its run do not agree in any precision, so one of them is wrong", doubt_text(*doubt),
+          "nothing of this can be called proved; report it as an error of the program, with the scene", Exit::lost);
     if (!doubt || (last && !raised))
       return {std::move(scene), std::move(outcome), std::move(certificate), std::move(attempts)};
     if (!raised) ++digits;
@@ -167,7 +188,8 @@ std::string certificate_text(const Certified& run) {
     text = fmt::format("proved: {} contacts up to t = {} are those of the exact system, all of them and no other\n",
                        c.contacts, c.samples.back().time_text);
   else
-    text = fmt::format("undecided {}\nproved up to there: {} contacts\n", doubt_text(*c.doubt), c.contacts);
+    text = fmt::format("undecided {}\nproved up to there: {} contacts\n", run.undecided(), c.contacts);
+  if (const std::string beyond = run.not_proved(); !beyond.empty()) text += fmt::format("not proved: {}\n", beyond);
   text += fmt::format("  scene     {}, checksum {:016x}\n", run.scene.name, crc64(effective_toml(run.scene)));
   text += fmt::format("  run in    {}, proved in balls around {}; {:.4g} % of contacts told by plain doubles\n",
                       precision_name(run.scene.run), c.digits_text, 100 * share);
@@ -213,11 +235,13 @@ struct Bounds {
 Result certified_result(Certified run) {
   const Certificate& c = run.certificate;
   Result result = std::move(run.outcome.result);
-  if (!run.proved()) result = {provenance(run.scene, precision_name(run.scene.run), undecided_text), {}};
+  if (c.doubt) result = {provenance(run.scene, precision_name(run.scene.run), undecided_text), {}};
   Group certificate{"certificate",
                     {{"verdict", run.proved() ? "proved" : "undecided"},
                      {"contacts", c.contacts},
-                     {"undecided", run.proved() ? "" : doubt_text(*c.doubt)},
+                     {"undecided", run.undecided()},
+                     {"proved_until", c.samples.empty() ? "" : c.samples.back().time_text},
+                     {"not_proved", run.not_proved()},
                      {"precision", precision_name(run.scene.run)},
                      {"digits", std::uint64_t{c.digits}},
                      {"contacts_in_doubles", c.in_doubles},

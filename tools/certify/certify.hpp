@@ -43,13 +43,18 @@ struct Certified {
   Certificate certificate;
   std::vector<Attempt> attempts;
 
-  bool proved() const { return !certificate.doubt.has_value(); }
+  bool proved() const { return undecided().empty(); }
+  /// Where it is undecided, in words; empty: nowhere, up to the end of the run.
+  std::string undecided() const;
+  /// What the run says of its end that no proof covers; empty: nothing.
+  std::string not_proved() const;
 };
 
 /// Throws Error for a scene that has no contacts to prove.
 void check_certifiable(const Scene& scene);
 
-/// Throws Error for a scene that cannot be run, and where it is interrupted.
+/// Throws Error for a scene that cannot be run, where it is interrupted, and where the run in no precision has the
+/// numbers that are proved of it (Exit::lost), which no scene can bring about.
 Certified certify(const Scene& scene, const CertifyOptions& options);
 
 /// A report that can be quoted.

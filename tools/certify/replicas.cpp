@@ -23,7 +23,7 @@ struct Kept {
 
 Kept kept(std::uint64_t index, const Certified& run, const std::vector<double>& times) {
   const Certificate& c = run.certificate;
-  Kept kept{{index, run.proved(), c.digits, c.contacts, {0, 0}, run.proved() ? "" : doubt_text(*c.doubt)},
+  Kept kept{{index, run.proved(), c.digits, c.contacts, {0, 0}, run.undecided()},
             std::vector<double>(times.size(), std::numeric_limits<double>::quiet_NaN())};
   if (!c.samples.empty()) kept.row.energy = c.samples.back().energy.doubles;
   for (const CertainSample& s : c.samples) {

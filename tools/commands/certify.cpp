@@ -47,7 +47,7 @@ Exit run_certify(const CertifyArguments& options) {
   const std::string text = certificate_text(run), report = run.outcome.report, warning = run.outcome.warning;
   const bool proved = run.proved();
   write_or_keep(certified_result(std::move(run)), output);
-  fmt::print("{}{}", report, text);
+  fmt::print("{}{}{}", text, report.empty() ? "" : "estimated by the run:\n", report);
   tell(warning);
   if (!options.quiet) fmt::print("wrote {}\n", output);
   return proved ? Exit::done : Exit::lost;

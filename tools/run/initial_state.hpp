@@ -27,8 +27,12 @@ template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
 
 template <Real T> MassPattern<T> mass_pattern(const Initial& initial) {
   std::vector<T> masses;
-  for (const Decimal& mass : initial.masses) masses.push_back(number<T>(mass));
-  return MassPattern<T>(std::move(masses));
+  bool identical = true;
+  for (const Decimal& mass : initial.masses) {
+    masses.push_back(number<T>(mass));
+    identical = identical && mass == initial.masses.front();
+  }
+  return MassPattern<T>(std::move(masses), identical);
 }
 
 template <Real T>

@@ -243,9 +243,29 @@ template <Real T> class SceneRun {
 
   void tell_witness(const T& time, bool at_contact) {
     const Sample<T> now = sample(engine_, energy_, time);
-    options_.witness->look({to_double(time), to_text(time), holds(plan_.series, time), holds(plan_.snapshots, time),
-                            at_contact, now.counts, to_text(now.energy),
-                            now.front_right ? to_text(*now.front_right) : std::string()});
+    const auto text = [](const std::optional<T>& x) { return x ? to_text(*x) : std::string(); };
+    RunLook look{.time = to_double(time),
+                 .time_text = to_text(time),
+                 .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
+                 .asked = at_contact ? std::vector{AskedTime{Decimal(to_text(time)), true, false, true}}
+                                     : asked_times(scene_, plan_, time),
+                 .of_series = holds(plan_.series, time),
+                 .at_contact = at_contact,
+                 .counts = now.counts,
+                 .energy = to_text(now.energy),
+                 .front_left = text(now.front_left),
+                 .front_right = text(now.front_right),
+                 .bodies = {}};
+    if (!at_contact && holds(plan_.snapshots, time)) look.bodies = looked(engine_.configuration(time));
+    options_.witness->look(look);
+  }
+  static LookedBodies looked(const Configuration<T>& c) {
+    const auto texts = [](const std::vector<T>& numbers) {
+      std::vector<std::string> all;
+      for (const T& number : numbers) all.push_back(to_text(number));
+      return all;
+    };
+    return {c.from, c.to, c.index, texts(c.x), texts(c.v), texts(c.m)};
   }
   // A run that ends early leaves its last state.
   void record_end(const T& time) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "cradle/tools/run/initial_state.hpp"
@@ -73,6 +74,47 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
   std::sort(plan.stops.begin(), plan.stops.end());
   plan.stops.erase(std::unique(plan.stops.begin(), plan.stops.end()), plan.stops.end());
   return plan;
+}
+
+/// The decimal that a sample of the series is of; nothing where no decimal of the scene says so.
+template <Real T>
+std::optional<Decimal> series_decimal(const Scene& scene, const std::vector<T>& times, const T& time) {
+  const Series& series = scene.output.series;
+  // Times that the type cannot tell apart are left out: the decimal may stand further back in its list.
+  auto k = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time) - times.begin());
+  const T start = number<T>(scene.run.start);
+  if (!series.times.empty()) {
+    while (number<T>(series.times[k]) < time) ++k;
+    return series.times[k];
+  }
+  if (series.every) {
+    const T step = number<T>(*series.every);
+    while (T(start + T(static_cast<std::int64_t>(k)) * step) < time) ++k;
+    return stepped(scene.run.start, k, *series.every);
+  }
+  if (k == 0) return scene.run.start;
+  for (const Decimal& end : {series.over.value_or(scene.run.until), scene.run.until})
+    if (number<T>(end) == time) return end;
+  return {};
+}
+
+/// The times that a run in this type stands for where it is at one of its stops.
+template <Real T> std::vector<AskedTime> asked_times(const Scene& scene, const Schedule<T>& plan, const T& time) {
+  std::vector<AskedTime> all;
+  const Decimal own(to_text(time));
+  const auto at = [&](const Decimal& decimal) -> AskedTime& {
+    for (AskedTime& asked : all)
+      if (asked.time == decimal) return asked;
+    return all.emplace_back(decimal);
+  };
+  if (holds(plan.series, time)) at(series_decimal(scene, plan.series, time).value_or(own)).of_series = true;
+  if (holds(plan.snapshots, time)) {
+    const auto first = std::lower_bound(plan.snapshots.begin(), plan.snapshots.end(), time);
+    at(scene.output.snapshots[static_cast<std::size_t>(first - plan.snapshots.begin())]).of_snapshots = true;
+  }
+  if (time == plan.stops.back()) at(scene.run.until).last = true;
+  if (all.empty()) at(own);
+  return all;
 }
 
 template <class T> PlannedTimes planned_in(const Scene& scene) {

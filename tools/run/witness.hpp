@@ -3,18 +3,38 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cradle/core/run.hpp"
+#include "cradle/tools/scene/decimal.hpp"
 
 namespace cradle::tools {
 
+/// A time that a run is recorded at: the decimal that the scene asks for or, where it asks for none, that of the run.
+struct AskedTime {
+  Decimal time;
+  bool of_series = false, of_snapshots = false;
+  bool last = false;  // the run is to reach it
+};
+
+/// Bodies of a snapshot, from the one numbered `from` at the start to the one numbered `to`, as decimals with all
+/// digits of the run's precision.
+struct LookedBodies {
+  BodyIndex from = 0, to = -1;
+  std::vector<BodyIndex> index;
+  std::vector<std::string> x, v, m;
+};
+
 struct RunLook {
   double time = 0;
-  std::string time_text;  // with all digits of the run's precision, as are energy and front
-  bool of_series = false, of_snapshots = false;
+  std::string time_text;         // with all digits of the run's precision, as are energy and fronts
+  long double epsilon = 0;       // of that precision
+  std::vector<AskedTime> asked;  // all that the run's precision cannot tell from its time
+  bool of_series = false;
   bool at_contact = false;  // the run ends here, with the contact that it made last
   Counts counts;
-  std::string energy, front_right;  // front_right: empty before the first contact
+  std::string energy, front_left, front_right;  // fronts: empty before the first contact
+  LookedBodies bodies;                          // of a snapshot
 };
 
 class Witness {

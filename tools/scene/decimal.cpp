@@ -142,6 +142,32 @@ Decimal::Decimal(std::string_view literal) {
   }
 }
 
+std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step) {
+  using Integer = boost::multiprecision::cpp_int;
+  constexpr std::int64_t most_digits = 4096;
+  const Parts a = parts_of(start.text), b = parts_of(step.text);
+  const auto unit_of = [](const Parts& p) { return p.exponent - static_cast<std::int64_t>(p.digits.size()); };
+  if (a.digits.empty() && (k == 0 || b.digits.empty())) return start;
+  const std::int64_t unit = a.digits.empty()   ? unit_of(b)
+                            : b.digits.empty() ? unit_of(a)
+                                               : std::min(unit_of(a), unit_of(b));
+  const auto in_units = [&](const Parts& p) -> Integer {
+    if (p.digits.empty()) return 0;
+    const Integer size = Integer(p.digits) * pow(Integer(10), static_cast<unsigned>(unit_of(p) - unit));
+    return p.negative ? Integer(-size) : size;
+  };
+  if (std::max(unit_of(a), unit_of(b)) - unit > most_digits) return {};
+  const Integer sum = in_units(a) + in_units(b) * k;
+  std::string digits = Integer(abs(sum)).str();
+  const std::string sign = sum < 0 ? "-" : "";
+  const auto places = static_cast<std::size_t>(std::min<std::int64_t>(-unit, 64));
+  if (unit > 0 || unit < -64) return Decimal(sign + digits + "e" + std::to_string(unit));
+  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
+  return Decimal(sign + (places == 0
+                             ? digits
+                             : digits.substr(0, digits.size() - places) + "." + digits.substr(digits.size() - places)));
+}
+
 void DecimalColumn::push_back(std::string_view literal) {
   if (!data_)
     data_ = std::make_shared<Data>();

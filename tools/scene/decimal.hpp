@@ -46,6 +46,9 @@ struct Decimal {
   }
 };
 
+/// start + k step, exactly; nothing where that has thousands of digits.
+std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step);
+
 /// Canonical decimals of many bodies, end to end in one text, since 2e7 bodies are as welcome as three. Copies share
 /// it until one of them grows.
 class DecimalColumn {

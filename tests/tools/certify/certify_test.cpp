@@ -141,6 +141,77 @@ TEST_F(Certified, ThreeThatMeetAtOneTimeAreUndecidedAndNamed) {
   EXPECT_EQ(certify("fig2 --digits 5").status, 2);
 }
 
+// Each of several separate regions has ends; the fronts are the outermost of all.
+TEST_F(Certified, FrontsOfSeparateRegionsAreTheOutermost) {
+  write("bodies.csv", "x,v\n0,1\n1,0\n10,0\n11,0\n20,1\n21,0\n");
+  write("list.toml", "law = {type = \"inelastic\", restitution = 0.5}\n"
+                     "initial = {type = \"list\", file = \"bodies.csv\"}\nrun.until = 3.5\n");
+  ASSERT_EQ(certify("list.toml").status, 0);
+  const Result r = result();
+  EXPECT_NEAR(column<double>(r, "series", "front_left_low").back(), 1.625, 1e-15);
+  EXPECT_NEAR(column<double>(r, "series", "front_right_high").back(), 22.875, 1e-14);
+  EXPECT_EQ(column<double>(r, "series", "front_left").back(), 1.625) << "the run's own";
+}
+
+// The end of the scene is a decimal that a double does not hold, and so may be those of its samples.
+TEST_F(Certified, TheEndIsThatOfTheSceneWithAllItsDigits) {
+  write("bodies.csv", "x,v\n0,3\n3.00000000000000024,0\n");
+  write("list.toml", "law = {type = \"sticky\"}\ninitial = {type = \"list\", file = \"bodies.csv\"}\n"
+                     "run.until = \"1.00000000000000011\"\noutput.series.every = 0.3\n");
+  const Printed told = certify("list.toml");
+  EXPECT_EQ(told.status, 0) << told.out << told.err;
+  EXPECT_NE(told.out.find("proved: 1 contacts up to t = 1.00000000000000011 "), std::string::npos) << told.out;
+  EXPECT_EQ(of_certificate<std::string>(result(), "proved_until"), "1.00000000000000011");
+  EXPECT_EQ(column<std::string>(result(), "exact/series", "time"),
+            (std::vector<std::string>{"0", "0.3", "0.6", "0.9"}));
+}
+
+TEST_F(Certified, AMassTooSmallForADoubleIsThere) {
+  const std::string scene = "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\nrun.until = 1\n"
+                            "initial = {type = \"rows\", left = {particles = 3, speed = 1, density = 1}, right = "
+                            "{particles = 3, speed = -1, density = 1}, centre = {mass = 1e-400, speed = 0.1}}\n";
+  write("rows.toml", scene);
+  EXPECT_EQ(certify("rows.toml").status, 2) << "a double does not hold it";
+#ifdef CRADLE_WITH_MPFR
+  const Printed told = certify("rows.toml --set run.precision=mpfr --set run.digits=50");
+  EXPECT_EQ(told.status, 0) << told.out << told.err;
+  EXPECT_EQ(told.out.find("proved: 1 contacts"), std::string::npos) << "that is the scene without it";
+#endif
+}
+
+// Equal masses are told by their decimals: whether the mean velocity of a ring is a whole number depends on it.
+TEST_F(Certified, RingsOfOneMassThatIsNoWholeNumber) {
+  const Printed told = certify("cooling --set initial.particles=40 --set initial.masses=[0.1] --set run.until=5 --set "
+                               "output.masses=[] --set output.snapshots=[] --set output.profiles.times=[]");
+  EXPECT_EQ(told.status, 0) << told.out << told.err;
+}
+
+// A contact just at the time of a snapshot leaves that one open; those after it keep their numbers.
+TEST_F(Certified, SnapshotsHaveTheNumbersOfTheRuns) {
+  write("bodies.csv", "x,v\n0,1\n1,0\n");
+  write("list.toml", "law = {type = \"inelastic\", restitution = 0.5}\n"
+                     "initial = {type = \"list\", file = \"bodies.csv\"}\nrun.until = 3\n"
+                     "output.snapshots = [1, 2]\n");
+  ASSERT_EQ(certify("list.toml").status, 0);
+  const Result r = result();
+  EXPECT_EQ(r.find("certificate/snapshots/0000"), nullptr);
+  ASSERT_NE(r.find("certificate/snapshots/0001"), nullptr);
+  EXPECT_NEAR(column<double>(r, "certificate/snapshots/0001", "x_low")[1], column<double>(r, "snapshots/0001", "x")[1],
+              1e-15);
+}
+
+TEST_F(Certified, ACollapseIsAnEstimateBesideTheProof) {
+  const Printed told = certify("collapse3");
+#ifdef CRADLE_WITH_MPFR
+  EXPECT_EQ(told.out.find("proved: 322 contacts"), 0U) << told.out;
+  EXPECT_NE(told.out.find("not proved: that this is an inelastic collapse"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("estimated by the run:\ninelastic collapse at"), std::string::npos) << told.out;
+  EXPECT_NE(of_certificate<std::string>(result(), "not_proved"), "");
+#else
+  EXPECT_EQ(told.status, 5);
+#endif
+}
+
 // Runs end at their own collapses: each replica counts at the times that it has reached, as in an ensemble.
 TEST_F(Certified, ReplicasHaveTheStatisticsOfTheirEnsemble) {
   const std::string scene = "collapse_times --set law.restitution=0.6 --set initial.particles=40 "

@@ -63,6 +63,20 @@ TEST(Decimal, Integers) {
   EXPECT_FALSE(is_whole("-121e-1"));
 }
 
+TEST(Decimal, Steps) {
+  const auto step = [](const char* start, std::uint64_t k, const char* by) {
+    return stepped(Decimal(start), k, Decimal(by)).value().text;
+  };
+  EXPECT_EQ(step("0", 3, "0.1"), "0.3");
+  EXPECT_EQ(step("0", 0, "0.1"), "0");
+  EXPECT_EQ(step("-1", 3, "0.25"), "-0.25");
+  EXPECT_EQ(step("1000000000000000000000", 7, "1e-21"), "1000000000000000000000.000000000000000000007");
+  EXPECT_EQ(step("5", 1000, "2e3"), "2000005");
+  EXPECT_EQ(step("0", 3, "1e-400"), "3e-400");
+  EXPECT_EQ(step("0", 3, "1e400"), "3e400");
+  EXPECT_EQ(stepped(Decimal("1"), 3, Decimal("1e-999999")), std::nullopt);
+}
+
 TEST(Decimal, NearestDouble) {
   EXPECT_EQ(Decimal("0.999").value, 0.999);
   EXPECT_EQ(Decimal("1e-400").value, 0.0);

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -116,6 +117,12 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
   // What times of contacts are told apart by, as times since the start.
   T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
+
+  // What comes of a contact at the speed 1, where that says what comes of any.
+  template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
+    if (walls_.beside(body(s))) return walls_.at_unit_speed(body(s), line_.masses[walls_.left_of(body(s)) ? s + 1 : s]);
+    return law(T(1), line_.masses.of_pair(s));
+  }
 
   // ---- reading, at a local time not before the last contact
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }

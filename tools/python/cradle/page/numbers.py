@@ -62,8 +62,9 @@ def collapse(result: Result) -> list[tuple[str, str, str]]:
     found = result.collapse
     entries = []
     for name, label in COLLAPSE.items():
-        if name in found:
-            within = f"± {number(found['uncertainty'], 2)} " if name == "time" and "uncertainty" in found else ""
+        if name in found and np.isfinite(found[name]):
+            error = found.get({"time": "uncertainty", "ratio": "ratio_uncertainty"}.get(name, ""), np.nan)
+            within = f"± {number(error, 2)} " if np.isfinite(error) else ""
             entries.append((label, number(found[name], 17), within + {"gap": "l", "ratio": ""}.get(name, "t")))
     return entries
 
@@ -134,6 +135,9 @@ def warnings(result: Result, version: str) -> list[str]:
         found.append("The file has no seal: it was changed since the program wrote it, or written by an older version.")
     if "inelastic collapse" in result.outcome and result.kind == "run":
         found.append("The run ended at inelastic collapse, before <code>run.until</code>.")
+    elif result.outcome == "a gap below run.stop_gap":
+        found.append("The run ended where a gap fell below <code>run.stop_gap</code>, before <code>run.until</code>; "
+                     "that it is an inelastic collapse is not proved.")
     elif result.outcome in ("order of contacts lost", "resolution exhausted"):
         found.append(f"The run ended early: {text(result.outcome)}. More digits (<code>run.precision</code>) reach "
                      "further.")

@@ -89,6 +89,13 @@ template <Real T> class Bodies {
   }
   // Bounds the square of any speed to come, by a factor 2: energy is never gained, but from walls.
   T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }
+  // Bounds the square of the speed of any two against each other, for good; far away where walls give energy. Between
+  // two bodies it is at most E over half of their reduced mass, E in the frame of the centre of mass.
+  T greatest_approach_squared() const {
+    if (walls().give_energy()) return far_away<T>();
+    const T energy = walled() ? kinetic_energy() : energy_to_lose();
+    return T(4) * energy / least_mass();
+  }
 };
 
 // A number as messages give it.

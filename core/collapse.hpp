@@ -5,17 +5,22 @@
 //   cutoff   contacts below the law's velocity cut-off are elastic (the paper's way; nothing happens here)
 //   stop     exact dynamics; stop when the collapse time is settled, or when a gap falls below a given size
 //
-// The watch extrapolates the collapse time: with d the interval since the last contact at the same gap and r its ratio
-// to the one before, t_c = t + d r/(1 - r) (Aitken's delta-squared for a geometric sequence). It is settled when the
-// intervals have shrunk by 2^20, by a steady ratio, and t_c moved by less than the chain's resolution of time, twice
-// running. Bodies squeezed between dense clusters shrink their intervals for a while too, but by a ratio that drifts. A
-// collapse of many bodies without a steady ratio is followed to the end of the type's range.
+// It is settled where two gaps side by side are proved to collapse: by the closed form of their contacts
+// (two_gaps.hpp), with bounds on what rounding has done to it, and with all other bodies too far away to come in time.
+// From then on the run follows them until the time left is less than the chain's resolution, or a gap is about to
+// underflow, for so many contacts at most. What shrinks without such a proof is no collapse that a run reports.
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 
 #include "cradle/core/bodies.hpp"
+#include "cradle/core/event_queue.hpp"
+#include "cradle/core/two_gaps.hpp"
 
 namespace cradle {
 
@@ -23,76 +28,162 @@ enum class CollapsePolicy { cutoff, stop };
 
 // What is known of a collapse when the run stops.
 template <Real T> struct CollapseReport {
-  Pair<T> time;         // extrapolated t_c
-  T uncertainty{0};     // of t_c: its last movement, at least the type's resolution
   T last_contact{0};    // time of the last contact made
-  T interval{0};        // between the last two contacts at the same gap
-  T ratio{1};           // of successive intervals there
+  T interval{0};        // since the one before at the same gap, 0 where there was none
   T gap{0};             // smallest gap beside the last contact
   BodyIndex body = -1;  // the body on the left of the gap of the last contact
-  bool extrapolated = false;
+  bool settled = false;
+  // Where it is settled: t_c, the ratio of successive intervals there in the end, and what their errors do not exceed.
+  Pair<T> time{};
+  T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
 
   static auto state(auto& self) {
-    return std::tie(self.time, self.uncertainty, self.last_contact, self.interval, self.ratio, self.gap, self.body,
-                    self.extrapolated);
+    return std::tie(self.last_contact, self.interval, self.gap, self.body, self.settled, self.time, self.uncertainty,
+                    self.ratio, self.ratio_uncertainty);
   }
 };
 
-// The contacts noticed at one gap, by what extrapolation needs of them.
-template <Real T> struct CollapseHistory {
-  std::uint64_t contacts = 0;
-  std::uint64_t steady = 0;  // so many times running the collapse time was settled
-  bool extrapolated = false;
-  Pair<T> estimate;                            // of the collapse time
-  T last{0};                                   // local time of the last contact
-  T interval{0}, first_interval{0}, ratio{1};  // since the one before; the first of those shrinking; last two of them
-
+// A collapse of two gaps side by side that is proved, as well as it is known so far.
+template <Real T> struct KnownCollapse {
+  std::uint64_t contacts = 0;  // noticed there since
+  Pair<T> time;
+  T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
   static auto state(auto& self) {
-    return std::tie(self.contacts, self.steady, self.extrapolated, self.estimate, self.last, self.interval,
-                    self.first_interval, self.ratio);
+    return std::tie(self.contacts, self.time, self.uncertainty, self.ratio, self.ratio_uncertainty);
   }
 };
 
 template <Real T> struct CollapseWatch {
-  std::unordered_map<BodyIndex, CollapseHistory<T>> histories;  // by the body on the left of the gap
-  CollapseReport<T> report;
-  static auto state(auto& self) { return std::tie(self.histories, self.report); }
+  static constexpr std::uint64_t most_followed = 1024;  // contacts, once the collapse time is known
+  static constexpr BodyIndex few = 16;
 
-  // Takes note of a contact next to a small gap; true when the collapse time is settled. `local` is the time as an
-  // offset, which resolves intervals that the full time no longer does;
-  // `resolution` is what the chain can tell times apart by at that place.
-  bool settled(BodyIndex body, const Pair<T>& time, const T& local, const T& gap, const T& resolution) {
-    CollapseHistory<T>& h = histories[body];
-    const T interval = h.contacts > 0 ? T(local - h.last) : T(0);
-    report.last_contact = time.value();
-    report.gap = gap;
-    report.body = body;
-    if (h.contacts > 1 && interval > T(0) && interval < h.interval) {
-      const T ratio = interval / h.interval;
-      const Pair<T> estimate = time + T(interval * ratio / (T(1) - ratio));
-      const T moved = magnitude(difference(estimate, h.estimate));
-      // Below the resolution of time nothing moves: what tells a collapse from a chance run of short intervals is that
-      // they have shrunk without a break by a factor of a million, by the same ratio to a part in a thousand.
-      const bool steady = h.extrapolated && moved < resolution / T(2) && magnitude(ratio - h.ratio) * T(1024) < ratio &&
-                          interval * T(1 << 20) < h.first_interval;
-      h.steady = steady ? h.steady + 1 : 0;
-      h.estimate = estimate;
-      h.ratio = ratio;
-      h.extrapolated = true;
-      report = {estimate, moved > resolution ? moved : resolution, time.value(), interval, ratio, gap, body, true};
-    } else {
-      h.extrapolated = false;
-      h.steady = 0;
-      h.first_interval = interval;
+  std::unordered_map<BodyIndex, T> last;                  // local times of contacts, by the body left of the gap
+  std::unordered_map<BodyIndex, KnownCollapse<T>> known;  // by the body left of both gaps
+  CollapseReport<T> report;
+  T fastest{0};            // closing or opening speed of a gap so far
+  T greatest_approach{0};  // of any two bodies, for good
+  static auto state(auto& self) { return std::tie(self.last, self.known, self.report, self.fastest); }
+
+  // To be called before the first contact; `least` is the smallest gap. Returns the gap below which one beside a
+  // contact is of interest: among few bodies, which round least before their first contacts, any.
+  template <class Chain> T begin(const Chain& chain, const T& least) {
+    if constexpr (provable<Chain>) {
+      using std::sqrt;
+      greatest_approach = sqrt(chain.bodies().greatest_approach_squared());
+      if (chain.bodies().count() <= few) {
+        for (Slot s = chain.first(); s <= chain.last(); ++s) moves_at(chain.closing(s));
+        return far_away<T>();
+      }
+      fastest = greatest_approach;
     }
-    h.interval = interval;
-    h.last = local;
-    ++h.contacts;
-    return h.steady >= 2;
+    return least / T(64);
+  }
+
+  // Takes note of the contact at slot s, which has left a small gap beside it; true when its collapse is settled and
+  // has been followed for long enough. `local` is its time as an offset, which resolves intervals that the full time no
+  // longer does; `contacts` is how many were made in all.
+  template <class Law, class Chain>
+  bool settled(const Law& law, const Chain& chain, Slot s, const T& local, std::uint64_t contacts) {
+    const BodyIndex body = chain.body(s);
+    const Pair<T> now = chain.stamp(local);
+    const auto before = last.find(body);
+    report = {now.value(), before == last.end() ? T(0) : T(local - before->second), chain.nearest_gap(s), body};
+    last.insert_or_assign(body, local);
+    for (const auto& gap : {left_of(chain, s), std::optional(s), right_of(chain, s)})
+      if (gap) moves_at(chain.closing(*gap));
+    if constexpr (ScaleFreeLaw<Law> && provable<Chain>)
+      if (law.scale_free())
+        for (const bool on_left : {true, false})
+          if (const KnownCollapse<T>* found = beside(law, chain, s, on_left, local, contacts)) {
+            report.settled = true;
+            report.time = found->time, report.uncertainty = found->uncertainty;
+            report.ratio = found->ratio, report.ratio_uncertainty = found->ratio_uncertainty;
+            const T left = difference(found->time, now);
+            return left < chain.time_resolution(s, local) || found->contacts >= most_followed;
+          }
+    return false;
   }
 
   void origin_moved(const T& by) {
-    for (auto& [body, history] : histories) history.last -= by;
+    for (auto& [body, time] : last) time -= by;
+  }
+
+ private:
+  // Exact types have no square roots, chains of bodies that merge no need of them.
+  template <class Chain>
+  static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
+    chain.bodies();
+  };
+
+  void moves_at(const T& closing) {
+    if (fastest < magnitude(closing)) fastest = magnitude(closing);
+  }
+
+  // The collapse of the gap at s, where a contact has just been made, and the one on its left or right; null where none
+  // is known. Each contact may tell more of it than those before.
+  template <class Law, class Chain>
+  const KnownCollapse<T>* beside(const Law& law, const Chain& chain, Slot s, bool on_left, const T& local,
+                                 std::uint64_t contacts) {
+    const auto there = on_left ? left_of(chain, s) : right_of(chain, s);
+    if (!there) return nullptr;
+    const Slot left = on_left ? *there : s, right = on_left ? s : *there;
+    const auto ahead = collapse_of(law, chain, s, *there, local, contacts);
+    auto found = known.find(chain.body(left));
+    if (ahead && (found != known.end() || alone(chain, left, right, ahead->time, local))) {
+      if (found == known.end()) found = known.try_emplace(chain.body(left)).first;
+      KnownCollapse<T>& k = found->second;
+      // The times of the contacts up to here are rounded once each.
+      const T of_time = T(static_cast<std::int64_t>(contacts + 1)) * chain.time_resolution(s, local) / T(2);
+      const T uncertainty = of_time + ahead->time.error;
+      if (k.contacts == 0 || uncertainty < k.uncertainty)
+        k = {k.contacts, chain.stamp(local) + ahead->time.value, uncertainty, ahead->ratio.value, ahead->ratio.error};
+    }
+    if (found == known.end()) return nullptr;
+    ++found->second.contacts;
+    return &found->second;
+  }
+
+  template <class Law, class Chain>
+  std::optional<CollapseAhead<T>> collapse_of(const Law& law, const Chain& chain, Slot here, Slot there, const T& local,
+                                              std::uint64_t contacts) const {
+    const auto of_here = chain.at_unit_speed(law, here), of_there = chain.at_unit_speed(law, there);
+    if (!of_here || !of_there || !is_positive(chain.closing(there))) return {};
+    const bool to_left = there == chain.left(here);
+    // Of what a contact hands over: unequal masses take quotients, and may be rounded decimals.
+    const int of_share = chain.bodies().identical_masses() ? 1 : 5;
+    const TwoGaps<T> two{T(-chain.closing(here)),
+                         chain.gap_at(there, local),
+                         chain.closing(there),
+                         T(-of_here->closing),
+                         T(-of_there->closing),
+                         to_left ? of_here->to_left : of_here->to_right,
+                         to_left ? of_there->to_right : of_there->to_left,
+                         of_share};
+    // Each contact so far has rounded speeds and ways by half a unit so often: shares, products and sums. None was
+    // larger than the fastest.
+    const T unit = T(std::numeric_limits<T>::epsilon()),
+            roundings = T((of_share + 2) * static_cast<std::int64_t>(contacts + 1)) / T(2);
+    return collapse_ahead(two, T(roundings * unit * fastest),
+                          T(roundings * (chain.time_resolution(here, local) * fastest + unit * two.gap)));
+  }
+
+  // Whether nobody else can get there before the collapse. A gap that is not held yet is nowhere.
+  template <class Chain>
+  bool alone(const Chain& chain, Slot left, Slot right, const Bounded<T>& ahead, const T& local) const {
+    const T reach = T(2) * greatest_approach * (ahead.value + ahead.error);
+    const auto far = [&](const std::optional<Slot>& outer, bool at_end) {
+      return outer ? reach < chain.gap_at(*outer, local) : at_end;
+    };
+    const GapRange all = chain.bodies().gaps();
+    return far(left_of(chain, left), chain.body(left) == all.first) &&
+           far(right_of(chain, right), chain.body(right) == all.last);
+  }
+
+  template <class Chain> static std::optional<Slot> left_of(const Chain& chain, Slot s) {
+    return chain.on_ring() || s > chain.first() ? std::optional(chain.left(s)) : std::nullopt;
+  }
+  template <class Chain> static std::optional<Slot> right_of(const Chain& chain, Slot s) {
+    return chain.on_ring() || s < chain.last() ? std::optional(chain.right(s)) : std::nullopt;
   }
 };
 

@@ -127,6 +127,11 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
       if (line_.certainty.open(line_.gaps, s, time)) return body(s);
     return {};
   }
+  // What comes of a contact at the speed 1, where that says what comes of any.
+  template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
+    if (walls_.beside(body(s))) return walls_.at_unit_speed(body(s), line_.masses[walls_.left_of(body(s)) ? s + 1 : s]);
+    return law(T(1), line_.masses.of_pair(s));
+  }
 
   // ---- reading, at a local time not before the last contact
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }

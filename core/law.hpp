@@ -78,6 +78,13 @@ concept LawWithMemory = Law<L, T> && requires(const L law, const T& w, const Two
   { law.elastic(w, two) } -> std::same_as<Outcome<T>>;
 };
 
+// A law that says whether all that comes of a contact is in proportion to the closing speed, at any speed: the others
+// are not known to be, and no collapse is proved for them (two_gaps.hpp).
+template <class L>
+concept ScaleFreeLaw = requires(const L law) {
+  { law.scale_free() } -> std::same_as<bool>;
+};
+
 template <Real T> class Inelastic {
  public:
   static constexpr bool bounces_only = true;
@@ -97,6 +104,7 @@ template <Real T> class Inelastic {
 
   const T& restitution() const { return restitution_; }
   const T& cutoff() const { return cutoff_; }
+  bool scale_free() const { return !is_positive(cutoff_); }
 
  private:
   template <class Masses> Outcome<T> outcome(const T& w, const Masses& masses, bool elastic) const {

@@ -6,6 +6,7 @@
 // their digits, which it keeps account of.
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -105,6 +106,13 @@ template <Real T> class PositionChain {
     return T(std::numeric_limits<T>::epsilon()) * magnitude(time) +
            (is_positive(slowest) ? T(T(8) * way / slowest) : way);
   }
+
+  // What comes of a contact at the speed 1, where that says what comes of any.
+  template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
+    if (walls_.beside(body(s))) return walls_.at_unit_speed(body(s), at(walls_.left_of(body(s)) ? s + 1 : s).m);
+    return law(T(1), TwoMasses<T>{at(s).m, at(s + 1).m});
+  }
+  const Bodies<T>& bodies() const { return *of_walls_; }
 
   static auto state(auto& self) {
     return std::tie(self.bodies_, self.due_, self.closing_, self.floor_, self.origin_, self.front_left_,

@@ -15,7 +15,7 @@ namespace cradle {
 
 enum class Status {
   reached,     // all contacts up to the time asked for are made
-  collapsed,   // policy stop: inelastic collapse, see collapse()
+  collapsed,   // policy stop: inelastic collapse, or a gap below the one given; see collapse()
   exhausted,   // a gap is about to underflow, or time stands still: the scalar type resolves no more
   interrupted  // the caller's `interrupt` said so
 };
@@ -47,21 +47,21 @@ template <Real T> struct Contact {
 
 template <Real T> struct Policy {
   CollapsePolicy collapse = CollapsePolicy::cutoff;
-  T stop_gap{0};  // policy stop: go on until a gap is below this; 0: until the collapse time is settled
+  T stop_gap{0};  // policy stop: continue until a gap is below this; 0: until the collapse time is settled
   // Called after a contact now and then. What they throw leaves `advance`; the run is as it would be without, and can
   // go on.
   std::function<bool()> interrupt = {};  // true ends the run there
   std::function<void(const T& time, const Counts&)> progress = {};
 
-  // What a contact beside which this gap is left makes of the run; `settled`: the collapse time is. Without one that
-  // settles (irregular collapse of many bodies) the end of the type's range is the end too.
-  Status after(const T& gap, bool settled) const {
-    const bool goes_on_to = is_positive(stop_gap);
+  // The caller wants a collapse followed, however long it takes.
+  bool follows_a_gap() const { return collapse == CollapsePolicy::stop && is_positive(stop_gap); }
+  // What a contact beside which this gap is left makes of the run; `settled`: its collapse is, `followed`: for long
+  // enough. What leaves the type's range without being settled may yet part.
+  Status after(const T& gap, bool settled, bool followed) const {
     const T underflow{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows none
-    if (collapse == CollapsePolicy::stop &&
-        ((settled && !goes_on_to) || (is_positive(gap) && gap < (goes_on_to ? stop_gap : underflow))))
-      return Status::collapsed;
-    return gap > T(0) && gap < underflow ? Status::exhausted : Status::reached;
+    const bool ends = is_positive(gap) && gap < underflow;
+    if (follows_a_gap() ? is_positive(gap) && gap < stop_gap : settled && (followed || ends)) return Status::collapsed;
+    return ends ? Status::exhausted : Status::reached;
   }
   Status ask(const T& time, const Counts& counts) const {
     if (progress) progress(time, counts);

@@ -41,7 +41,7 @@ class Simulation {
         standstill_(last_contact_), target_{chain_.start(), last_contact_, last_contact_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
-    const T floor = watched ? T(least / T(64)) : T(std::numeric_limits<T>::min());
+    const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());
     chain_.set_floor(watched && floor < policy_.stop_gap ? policy_.stop_gap : floor);
     fill_queue();
     aim();
@@ -235,7 +235,9 @@ class Simulation {
         fill_queue();
       }
     const bool move = pacing_.origin_moves(notice, counts_.contacts, last_contact_, active());
-    const bool stands_still = (move || !pacing_.in_epochs) && standstill_.at(last_contact_, counts_.contacts, active());
+    const bool stands_still =
+        (move || !pacing_.in_epochs) &&
+        standstill_.at(last_contact_, elapsed(last_contact_), counts_.contacts, active(), policy_.follows_a_gap());
     const bool moves = move && !stands_still, ask = moves || counts_.contacts >= pacing_.next_review;
     const T before = last_contact_;
     if (moves) move_origin(before);
@@ -245,13 +247,14 @@ class Simulation {
     if (stands_still) return Status::exhausted;
     return judged == Status::reached && ask ? policy_.ask(last_contact_time(), counts_) : judged;
   }
+  T elapsed(const T& local) const { return difference(chain_.stamp(local), Pair<T>{chain_.start(), T(0)}); }
   std::uint64_t active() const { return static_cast<std::uint64_t>(chain_.collided_bodies()); }
 
   // There are no more contacts in this epoch. Returns what the local time of its end is called now.
   T end_epoch() {
     const T now = move_origin(pacing_.epoch_end);
     pacing_.epoch_ended(counts_.contacts, now, active());
-    standstill_ = Standstill<T>(now, counts_.contacts);
+    standstill_.epoch_ended(now, elapsed(now), counts_.contacts);
     aim();
     return now;
   }
@@ -268,10 +271,9 @@ class Simulation {
 
   // Whether the gap that the last contact, at slot s, has left beside it ends the run.
   Status judge(Slot s) {
-    const T gap = chain_.nearest_gap(s);
-    return policy_.after(gap, policy_.collapse == CollapsePolicy::stop &&
-                                  watch_.settled(chain_.body(s), chain_.stamp(last_contact_), last_contact_, gap,
-                                                 chain_.time_resolution(s, last_contact_)));
+    const bool watched = policy_.collapse == CollapsePolicy::stop;
+    const bool followed = watched && watch_.settled(law_, chain_, s, last_contact_, counts_.contacts);
+    return policy_.after(chain_.nearest_gap(s), watched && watch_.report.settled, followed);
   }
 
   struct Target {

@@ -1,6 +1,11 @@
 #pragma once
-// Whether time goes on. Many bodies may meet at one time and place, n(n - 1)/2 contacts if they are elastic. Where more
-// follow each other without any time passing, the scalar type cannot tell their times apart, or they have no end.
+// Whether time advances. Many bodies may meet at one time and place, n(n - 1)/2 contacts if they are elastic. Where
+// more follow each other without any time passing, the scalar type cannot tell their times apart, or they have no end.
+//
+// Offsets from a moving origin tell times apart for as long as a type's exponents last, which may be for ever. So there
+// is a second bound, the same in every type: contacts at one time since the start, as the type holds it. A collapse may
+// end there by a cut-off, and n bodies can collapse only if 1 - eps is some pi/n or more: then their speeds fall by a
+// factor exp(x) within n^2 x/pi contacts, and the bound allows for a factor of 10^5000.
 
 #include <cstdint>
 #include <tuple>
@@ -10,16 +15,28 @@
 namespace cradle {
 
 template <Real T> struct Standstill {
-  explicit Standstill(const T& start, std::uint64_t contacts = 0) : time(start), contacts_then(contacts) {}
+  explicit Standstill(const T& start) : time(start) {}
 
-  T time;                       // local, at the last review
-  std::uint64_t contacts_then;  // made when time was last seen to go on
-  static auto state(auto& self) { return std::tie(self.time, self.contacts_then); }
+  T time;                           // local, at the last review
+  T elapsed{0};                     // since the start, when that was last found to advance
+  std::uint64_t contacts_then = 0;  // made when either was last found to advance
+  std::uint64_t contacts_at_elapsed = 0;
+  static auto state(auto& self) {
+    return std::tie(self.time, self.elapsed, self.contacts_then, self.contacts_at_elapsed);
+  }
 
-  // At a review: local time now, contacts made, bodies active.
-  bool at(const T& now, std::uint64_t contacts, std::uint64_t active) {
+  // At a review: local time now, time since the start, contacts made, bodies active. `endless`: contacts at one time
+  // since the start have no bound.
+  bool at(const T& now, const T& since_start, std::uint64_t contacts, std::uint64_t active, bool endless) {
     if (now > time) contacts_then = contacts;
-    return contacts - contacts_then > 64 + 4 * active * active;
+    if (since_start > elapsed) elapsed = since_start, contacts_at_elapsed = contacts;
+    return contacts - contacts_then > 64 + 4 * active * active ||
+           (!endless && contacts - contacts_at_elapsed > (1 << 20) + 4096 * active * active);
+  }
+  // An epoch has ended; the local time is called `now` since.
+  void epoch_ended(const T& now, const T& since_start, std::uint64_t contacts) {
+    time = now, contacts_then = contacts;
+    if (since_start > elapsed) elapsed = since_start, contacts_at_elapsed = contacts;
   }
 };
 

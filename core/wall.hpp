@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 
@@ -94,6 +95,17 @@ template <Real T> class Walls {
     tally.contacts += 1;
     tally.given.add(T(-lost));
     return {after, end == End::left ? T(0) : handed, end == End::left ? handed : T(0), lost};
+  }
+
+  // Of a contact at the speed 1, where what comes of any is in proportion to its speed; it is made in no run.
+  std::optional<Outcome<T>> at_unit_speed(std::int64_t gap, const T& mass) const {
+    if (walls_[at(left_of(gap) ? End::left : End::right)]->temperature > 0) return {};
+    return Walls(*this).strike(gap, T(1), mass);
+  }
+  bool give_energy() const {
+    for (const auto* wall : walls_)
+      if (wall != nullptr && (wall->temperature > 0 || wall->speed != T(0))) return true;
+    return false;
   }
 
   const WallTally<T>& tally(End end) const { return tallies_[at(end)]; }

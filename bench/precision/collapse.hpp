@@ -118,7 +118,7 @@ inline CollapseOutcome measure(const Engine& engine, const CollapseScene& scene)
       Run<Chain> run = prepare<Chain>(scene, stop);
       run.advance(T(2));
       outcome.contacts = run.counts().contacts;
-      if (!run.collapse().extrapolated) return;
+      if (!run.collapse().settled) return;
       const auto& found = run.collapse();
       outcome.extrapolated = relative_error(widen(found.time.high) + widen(found.time.low), scene.time());
       outcome.claimed = relative_error(scene.time() + widen(found.uncertainty), scene.time());

@@ -16,13 +16,12 @@ struct Reference {
   double restitution, collapse_time;
   std::uint64_t passes_e16, passes_e34, passes_e100;  // contact at which the gap is first below 1e-16, ...
   std::uint64_t plain_clock_stops;                    // last contact that moves it, in double
-  bool settles_in_positions;                          // before positions lose the gaps, which fall fastest at eps = .01
 
   friend void PrintTo(const Reference& r, std::ostream* out) { *out << "eps=" << r.restitution; }
 };
-const Reference references[] = {{.05, 12. / 7, 18, 38, 111, 31, false},
-                                {.01, 1.6736937682559527405521559675475, 11, 21, 61, 13, true},
-                                {1. / 16, 1.7377984054260977582367587110959, 22, 45, 133, 49, false}};
+const Reference references[] = {{.05, 12. / 7, 18, 38, 111, 31},
+                                {.01, 1.6736937682559527405521559675475, 11, 21, 61, 13},
+                                {1. / 16, 1.7377984054260977582367587110959, 22, 45, 133, 49}};
 
 Scene<double> three_bodies() { return list<double>({0, 1, 3}, {1, 0, -1}); }
 
@@ -53,17 +52,18 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   auto run = stopping_run(0);
   ASSERT_EQ(run.advance(1e6), Status::collapsed);
   const CollapseReport<double>& report = run.collapse();
-  ASSERT_TRUE(report.extrapolated);
-  // Settled when it moved by less than half the resolution of time twice running: each of the two steps and the
-  // remainder, which falls by lam-/lam+ < 1/2 a contact, are below one resolution together.
+  ASSERT_TRUE(report.settled);
+  // Settled by the second contact, after at most six roundings each of a gap, of speeds and of time, none of which acts
+  // on t_c by more than a factor 3: t_c = 1 + g/(w - k u), g = u = 1 and w - k u > 1.
   EXPECT_NEAR(report.time.value(), GetParam().collapse_time, 2 * epsilon * GetParam().collapse_time);
   EXPECT_LE(std::abs(report.time.value() - GetParam().collapse_time), report.uncertainty);
-  EXPECT_LE(report.uncertainty, 2 * epsilon * GetParam().collapse_time);
+  EXPECT_LE(report.uncertainty, 27 * epsilon);
   EXPECT_LE(run.counts().contacts, GetParam().plain_clock_stops);
   // Intervals between contacts at the same gap span two contacts.
   const double plus_minus = 1 + GetParam().restitution, a = plus_minus / 2;
   const double root = std::sqrt(a * a - 4 * GetParam().restitution), factor = (a - root) / (a + root);
-  EXPECT_NEAR(report.ratio, factor * factor, .01 * factor * factor);
+  EXPECT_NEAR(report.ratio, factor * factor, report.ratio_uncertainty + 4 * epsilon * factor * factor);
+  EXPECT_LE(report.ratio_uncertainty, 1e3 * epsilon * factor * factor);
   EXPECT_EQ(report.last_contact, run.last_contact_time());
   EXPECT_LE(report.last_contact, report.time.value());
 }
@@ -125,14 +125,15 @@ TEST_P(CollapsePolicies, InterruptEndsTheRunAfterTheCurrentContact) {
 TEST_P(CollapsePolicies, PositionsEndWithAnAccount) {
   for (const CollapsePolicy policy : {CollapsePolicy::cutoff, CollapsePolicy::stop}) {
     auto run = position_run(three_bodies(), law(), {policy, 0, {}});
-    const bool settles = policy == CollapsePolicy::stop && GetParam().settles_in_positions;
+    const bool settles = policy == CollapsePolicy::stop;
     ASSERT_EQ(run.advance(1e6), settles ? Status::collapsed : Status::exhausted);
     if (settles) {
-      ASSERT_TRUE(run.collapse().extrapolated);
+      ASSERT_TRUE(run.collapse().settled);
       EXPECT_NEAR(run.collapse().time.value(), GetParam().collapse_time, run.collapse().uncertainty);
       EXPECT_LE(run.collapse().uncertainty, 1e6 * epsilon);
     }
     const Account<double>& account = run.chain().account();
+    if (settles) continue;
     EXPECT_GT(account.unresolved, 0U);
     EXPECT_LT(account.first_unresolved.gap, 1e6 * epsilon * 2);
     EXPECT_GT(account.first_unresolved.time, 1);
@@ -177,14 +178,12 @@ TEST(CollapsePolicies, CutoffDoesNotEndEveryCollapse) {
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
-// Two rows at eps = .9: the first collapse comes a little after 2/(1 - (4/pi) atan sqrt eps) = 59.66 bodies are
-// engaged, one per unit of time; an independent event-driven N-body program sees the first contacts below a tiny
-// cut-off at t = 62 to 65.
-// Many bodies collapse in no steady pattern: no time settles, and the run follows them to the end of the range of
-// double.
-TEST(CollapsePolicies, StopFollowsTheCollapseOfTwoRowsToTheEndOfTheRange) {
-  auto run = gap_run(rshock<double>(100), Inelastic(.5), {CollapsePolicy::stop, 0, {}});
-  ASSERT_EQ(run.advance(1e6), Status::collapsed);
+// Many bodies collapse in no steady pattern, of which nothing is proved: the run follows them to the end of the range
+// of double, and says that it ends there.
+TEST(CollapsePolicies, WhatIsNotProvedEndsWithTheRange) {
+  auto run = gap_run(rshock<double>(100), Inelastic<double>(.5), {CollapsePolicy::stop, 0, {}});
+  ASSERT_EQ(run.advance(1e6), Status::exhausted);
+  EXPECT_FALSE(run.collapse().settled);
   EXPECT_LT(run.collapse().gap, std::numeric_limits<double>::min());
   EXPECT_GT(run.collapse().gap, 0);
   EXPECT_EQ(run.chain().account().order_lost, 0U);

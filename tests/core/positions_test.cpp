@@ -36,14 +36,14 @@ TEST(Positions, PolicyStopFindsTheCollapseWheneverTheRunStarts) {
   };
   auto first = run_from(0);
   ASSERT_NE(first.advance(100), Status::reached);
-  ASSERT_TRUE(first.collapse().extrapolated);
+  ASSERT_TRUE(first.collapse().settled);
   for (const double start : starts) {
     SCOPED_TRACE(start);
     auto later = run_from(start);
     const Seen seen = advance(later, start + 100);
     ASSERT_EQ(later.chain().account().order_lost, 0U);
     EXPECT_NEAR(seen.intervals.at(0), 1, 4e-16 * std::abs(start));
-    ASSERT_TRUE(later.collapse().extrapolated);
+    ASSERT_TRUE(later.collapse().settled);
     EXPECT_NEAR(later.collapse().time.value() - start, first.collapse().time.value(),
                 first.collapse().uncertainty + later.collapse().uncertainty);
   }

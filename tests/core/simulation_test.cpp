@@ -260,12 +260,4 @@ TEST(Cadence, StepsStopAtTheTimeAskedForLast) {
   EXPECT_FALSE(run.step()) << "there is none before that time";
 }
 
-TEST(Cadence, AHistoryOfCollapseCountsBeyondTheRangeOfInt) {
-  CollapseWatch<double> watch;
-  constexpr auto many = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
-  watch.histories[7].contacts = many;
-  watch.settled(7, {1, 0}, 1, 1e-9, 1e-16);
-  EXPECT_EQ(watch.histories[7].contacts, many + 1);
-}
-
 }  // namespace simulation_test

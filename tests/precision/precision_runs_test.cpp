@@ -99,7 +99,7 @@ template <class T> Scene<T> three_bodies(const std::vector<T>& masses) {
 
 template <class T, class Run> void expect_collapse_time(Run run, const Collapse& expected) {
   ASSERT_EQ(run.advance(T(1000)), Status::collapsed);
-  ASSERT_TRUE(run.collapse().extrapolated);
+  ASSERT_TRUE(run.collapse().settled);
   const Reference error = abs(reference(run.collapse().time) - expected.time), one(1), twelve(12), two(2);
   const Reference of_rounding = twelve * rounding<T>() * (expected.time - one) / (one - expected.ratio);
   const Reference epsilon = reference(std::numeric_limits<T>::epsilon()) * expected.time;

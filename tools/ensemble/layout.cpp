@@ -43,6 +43,7 @@ ReplicaOutcome outcome_of(const RunOutcome& run) {
   case RunEnd::reached:
     return ReplicaOutcome::reached;
   case RunEnd::collapsed:
+  case RunEnd::small_gap:
     return ReplicaOutcome::collapsed;
   case RunEnd::order_lost:
     return ReplicaOutcome::order_lost;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "cradle/tools/run/run.hpp"
 
@@ -23,29 +25,65 @@ std::string brief(const Figure& x) {
   return x.digits.substr(0, std::min<std::size_t>(exponent, 8)) + x.digits.substr(exponent);
 }
 
+// Two digits, rounded up; with the tenth of its first digit that is cut off a number printed beside it.
+std::string error_text(const Figure& error) {
+  const double more = error.value * 1.2;
+  return more > 0 ? fmt::format("{:.1e}", more) : brief(error);
+}
+
+// The decimal exponent of a number's first digit, from its digits; none of 0.
+std::optional<int> first_digit(const Figure& x) {
+  const auto exponent = x.digits.find_first_of("eE");
+  const std::string mantissa = x.digits.substr(0, exponent);
+  const auto first = mantissa.find_first_of("123456789");
+  if (first == std::string::npos) return {};
+  const auto point = std::min(mantissa.find('.'), mantissa.size());
+  const int place = static_cast<int>(point) - static_cast<int>(first) - (first < point ? 1 : 0);
+  return place + (exponent == std::string::npos ? 0 : std::stoi(x.digits.substr(exponent + 1)));
+}
+
+// "1.71428571428571428 +- 3.8e-15": the number to a tenth of the error's first digit, and no further than it goes.
+std::string within(const Figure& x, const Figure& error) {
+  const auto of_number = first_digit(x), of_error = first_digit(error);
+  if (!of_number || !of_error) return x.digits;
+  const auto exponent = x.digits.find_first_of("eE");
+  std::string mantissa = x.digits.substr(0, exponent);
+  const auto first = mantissa.find_first_of("123456789");
+  auto wanted = std::max(*of_number - *of_error + 2, 1);
+  std::size_t end = first;
+  for (; end < mantissa.size() && wanted > 0; ++end) wanted -= mantissa[end] != '.';
+  if (const auto point = mantissa.find('.'); point != std::string::npos) end = std::max(end, point);
+  mantissa.resize(std::min(end, mantissa.size()));
+  // What is cut off is less than a tenth of the error, which is printed as more than it is by so much.
+  return mantissa + (exponent == std::string::npos ? "" : x.digits.substr(exponent)) + " +- " + error_text(error);
+}
+
 }  // namespace
 
 std::string collapse_report(const ToldCollapse& r, std::uint64_t contacts) {
-  std::string text = r.extrapolated
-                         ? fmt::format("inelastic collapse at t_c = {} +- {}\n", r.time.digits, brief(r.uncertainty))
-                         : std::string("inelastic collapse: a gap fell below the smallest that is followed; no "
-                                       "collapse time could be extrapolated\n");
+  std::string text = r.settled
+                         ? fmt::format("inelastic collapse at t_c = {}\n", within(r.time, r.uncertainty))
+                         : std::string("a gap fell below run.stop_gap: the run stops there as requested; that this is "
+                                       "an inelastic collapse is not proved, and no time of it is known\n");
   text += fmt::format("  last contact   t = {}, number {}, {}\n", r.last_contact.digits, contacts, place(r.body));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));
-  if (r.extrapolated)
-    text += fmt::format("  intervals      {}, shrinking by {:.12g} from one contact there to the next\n",
-                        brief(r.interval), r.ratio);
+  if (r.interval.value != 0 || !r.interval.zero)
+    text += fmt::format("  interval       {} since the contact there before\n", brief(r.interval));
+  if (r.settled)
+    text += fmt::format("  ratio          {} of successive intervals there\n", within(r.ratio, r.ratio_uncertainty));
   text += "  to go on       give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
   return text;
 }
 
 Group collapse_table(const ToldCollapse& r) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
   return {"collapse",
-          {{"time", r.time.value},
-           {"uncertainty", r.uncertainty.value},
+          {{"time", r.settled ? r.time.value : r.last_contact.value},
+           {"uncertainty", r.settled ? r.uncertainty.value : none},
            {"last_contact", r.last_contact.value},
            {"interval", r.interval.value},
-           {"ratio", r.ratio},
+           {"ratio", r.settled ? r.ratio.value : none},
+           {"ratio_uncertainty", r.settled ? r.ratio_uncertainty.value : none},
            {"gap", r.gap.value},
            {"body", static_cast<std::uint64_t>(r.body)}},
           {}};
@@ -111,10 +149,13 @@ std::string guard_message(const ToldGuard& g) {
 }
 
 std::string exhausted_warning(const std::string& time, std::uint64_t contacts, const Run& run) {
-  return fmt::format("resolution exhausted (t = {}, {} contacts): time or a gap can get no smaller in {}; use {}a "
-                     "law.cutoff, or run.collapse = \"stop\"\n",
+  const bool stops = run.collapse == CollapsePolicy::stop;
+  return fmt::format("resolution exhausted (t = {}, {} contacts): time or a gap can get no smaller in {}{}; use {}a "
+                     "law.cutoff{}, or more digits (long double reaches gaps of 1e-4932, mpfr any)\n",
                      time, contacts, precision_name(run),
-                     run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "");
+                     stops ? ", and that this is an inelastic collapse is not proved" : "",
+                     run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "",
+                     stops ? "" : ", or collapse = \"stop\"");
 }
 
 }  // namespace cradle::tools

@@ -22,22 +22,23 @@ struct Figure {
 template <Real T> Figure figure(const T& x) { return {to_double(x), to_text(x), x == T(0)}; }
 
 struct ToldCollapse {
-  Figure time, uncertainty, last_contact, interval, gap;
-  double ratio = 1;
+  Figure last_contact, interval, gap;
   BodyIndex body = -1;
-  bool extrapolated = false;
+  bool settled = false;
+  Figure time, uncertainty, ratio, ratio_uncertainty;  // where it is
 };
 template <Real T> ToldCollapse told(const CollapseReport<T>& r) {
-  return {figure(T(r.time.value())),
-          figure(r.uncertainty),
-          figure(r.last_contact),
+  return {figure(r.last_contact),
           figure(r.interval),
           figure(r.gap),
-          to_double(r.ratio),
           r.body,
-          r.extrapolated};
+          r.settled,
+          figure(T(r.time.value())),
+          figure(r.uncertainty),
+          figure(r.ratio),
+          figure(r.ratio_uncertainty)};
 }
-/// For standard output: times with all digits of the type.
+/// For standard output: times with all digits that are known.
 std::string collapse_report(const ToldCollapse& collapse, std::uint64_t contacts);
 Group collapse_table(const ToldCollapse& collapse);
 

@@ -180,7 +180,8 @@ void RunFiles::go_on_from_result(const std::optional<std::string>& until) {
   if (!until || Decimal(*until) == scene_.run.until || outcome != end_text(RunEnd::reached)) {
     over_ =
         fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
-    for (const RunEnd end : {RunEnd::reached, RunEnd::collapsed, RunEnd::order_lost, RunEnd::exhausted})
+    for (const RunEnd end :
+         {RunEnd::reached, RunEnd::collapsed, RunEnd::small_gap, RunEnd::order_lost, RunEnd::exhausted})
       if (outcome == end_text(end)) over_status_ = status_of_end(end);
     if (outcome == undecided_text) over_status_ = Exit::lost;
     return;

@@ -42,6 +42,8 @@ std::string end_text(RunEnd end) {
     return "reached the end";
   case RunEnd::collapsed:
     return "inelastic collapse";
+  case RunEnd::small_gap:
+    return "a gap below run.stop_gap";
   case RunEnd::order_lost:
     return "order of contacts lost";
   case RunEnd::exhausted:
@@ -57,6 +59,7 @@ Exit status_of_end(RunEnd end) {
   case RunEnd::reached:
     return Exit::done;
   case RunEnd::collapsed:
+  case RunEnd::small_gap:
     return Exit::collapse;
   case RunEnd::order_lost:
   case RunEnd::exhausted:

@@ -18,7 +18,7 @@
 namespace cradle::tools {
 
 /// How a run ended.
-enum class RunEnd { reached, collapsed, order_lost, exhausted, interrupted };
+enum class RunEnd { reached, collapsed, small_gap, order_lost, exhausted, interrupted };  // small_gap: run.stop_gap
 /// Of a run that the engine has ended so; `order_lost`: by its account.
 RunEnd end_of(Status status, bool order_lost);
 /// As results say it: "reached the end".

@@ -294,6 +294,7 @@ template <Real T> class SceneRun {
     const Counts& counts = engine_.counts();
     RunOutcome end;
     end.end = end_of(status, engine_.account().order_lost > 0);
+    if (end.end == RunEnd::collapsed && !engine_.collapse()->settled) end.end = RunEnd::small_gap;
     end.contacts = counts.contacts;
     end.merges = counts.merges;
     end.time = to_double(time);
@@ -318,7 +319,7 @@ template <Real T> class SceneRun {
     if (status == Status::collapsed) {
       const ToldCollapse collapse = told(*engine_.collapse());
       end.report = collapse_report(collapse, counts.contacts);
-      end.collapse_time = collapse.time.digits;
+      end.collapse_time = (collapse.settled ? collapse.time : collapse.last_contact).digits;
       end.result.groups.push_back(collapse_table(collapse));
     }
     return end;

@@ -77,13 +77,12 @@ def collapse(result: Result) -> list[tuple[str, str, str]]:
     found = result.collapse
     entries = []
     for name, label in COLLAPSE.items():
-        if name in found:
-            shown, note = number(found[name], 17 if name == "last_contact" else 6), {"gap": "l", "ratio": ""}.get(name, "t")
-            if name == "time":
-                within = found.get("uncertainty", np.nan)
-                shown = number(found[name], resolved(found[name], within))
-                note = f"± {number(within, 2)} t, estimated" if np.isfinite(within) else note
-            entries.append((label, shown, note))
+        if name in found and np.isfinite(found[name]):
+            error = found.get({"time": "uncertainty", "ratio": "ratio_uncertainty"}.get(name, ""), np.nan)
+            known = np.isfinite(error)
+            digits = resolved(found[name], error) if known else 17 if name == "last_contact" else 6
+            within = f"± {number(error, 2)} " if known else ""
+            entries.append((label, number(found[name], digits), within + {"gap": "l", "ratio": ""}.get(name, "t")))
     return entries
 
 
@@ -171,6 +170,9 @@ def warnings(result: Result, version: str) -> list[str]:
         found.append("The file has no seal: it was changed since the program wrote it, or written by an older version.")
     if "inelastic collapse" in result.outcome and result.kind == "run":
         found.append("The run ended at inelastic collapse, before <code>run.until</code>.")
+    elif result.outcome == "a gap below run.stop_gap":
+        found.append("The run ended where a gap fell below <code>run.stop_gap</code>, before <code>run.until</code>; "
+                     "that it is an inelastic collapse is not proved.")
     elif result.outcome in ("order of contacts lost", "resolution exhausted"):
         found.append(f"The run ended early: {text(result.outcome)}. More digits (<code>run.precision</code>) reach "
                      "further.")

@@ -63,7 +63,7 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
 
 
 def resolved(value: float, error: float) -> int:
-    """Digits of a double that mean something beside its error: two of the error, 17 where that is less than rounding."""
+    """Digits of a double that mean something beside its error: two of the error, 17 at most."""
     if not (np.isfinite(error) and error > 0 and value):
         return 17
     return int(np.clip(np.floor(np.log10(abs(value))) - np.floor(np.log10(error)) + 2, 2, 17))
@@ -74,7 +74,8 @@ def collapse(result: Result) -> list[tuple[str, str, str]]:
     entries = []
     for name, label in COLLAPSE.items():
         if name in found:
-            shown, note = number(found[name], 17 if name == "last_contact" else 6), {"gap": "l", "ratio": ""}.get(name, "t")
+            shown = number(found[name], 17 if name == "last_contact" else 6)
+            note = {"gap": "l", "ratio": ""}.get(name, "t")
             if name == "time":
                 within = found.get("uncertainty", np.nan)
                 shown = number(found[name], resolved(found[name], within))

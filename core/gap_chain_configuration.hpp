@@ -39,7 +39,7 @@ template <Real T, class Masses> T GapChain<T, Masses>::kinetic_energy() const {
     }
     at_end = slowing.value();
   });
-  const T speed = from_wall  ? T(bodies_->velocity(-1) - moving.mean)
+  const T speed = from_wall ? T(bodies_->velocity(-1) - moving.mean)
                   : to_wall ? T(bodies_->velocity(count) + (at_end - moving.mean))
                             : drift;
   return total * speed * speed / T(2) + moving.energy;

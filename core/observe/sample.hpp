@@ -8,7 +8,10 @@
 // contains what is left of it, the share E(t)/E(t_c) of e_c as of any other energy; the energy of the ledger misses the
 // rest of e_c, which losses have taken. So the error of the one is sum e_c E(t)/E(t_c), that of the other
 // sum e_c (1 - E(t)/E(t_c)): nothing where bodies are elastic, all of it where they have come to rest, where that is
-// more than there is left. A ledger that leaves half is moreover rounded to 2 eps of it.
+// more than there is left. A ledger that leaves half is moreover rounded to 2 eps of it. Where much is lost in many
+// contacts losses have errors of their own: of Fig. 2 in double the ledger is off by 3e-14 at t = 2000, where 74 % is
+// left, and by 6e-13 at t = 6500, where 19 % is; the sum over velocities by 9e-15 and 7e-14 (of double-double's
+// energy).
 
 #include <limits>
 #include <optional>

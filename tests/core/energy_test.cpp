@@ -2,7 +2,8 @@
 // however little is left.
 //
 // References are sums of exact rationals over what chains hold: closing speeds, or velocities. The bound of
-// relative_motion.hpp is 8u of the energy of relative motion, and 4u are for the rest: 16u, u = 2^-53, holds in any run.
+// relative_motion.hpp is 8u of the energy of relative motion, and 4u are for the rest: 16u, u = 2^-53, holds in any
+// run.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,7 +53,8 @@ template <class Chain> Rational exact_energy(const Chain& chain) {
 
 Scene<double> moving(double drift, std::vector<double> m = {}) {
   std::vector<double> x, v;
-  for (BodyIndex b = 0; b < 12; ++b) x.push_back(double(b) + .25 * double(b % 3)), v.push_back(drift + .5 * double(b % 4) - .125 * double(b));
+  for (BodyIndex b = 0; b < 12; ++b)
+    x.push_back(double(b) + .25 * double(b % 3)), v.push_back(drift + .5 * double(b % 4) - .125 * double(b));
   return list(std::move(x), std::move(v), std::move(m));
 }
 
@@ -119,8 +121,9 @@ TEST(Energy, BetweenWalls) {
     for (const bool left : {true, false})
       for (const double until : {40., 60.}) {
         const Wall<double> wall{left ? -1. : 20., left ? -speed : speed, .5};
-        const auto bodies = std::make_shared<Walled<double>>(
-            moving(left ? -.5 : .5), left ? std::optional(wall) : std::nullopt, left ? std::nullopt : std::optional(wall));
+        const auto bodies =
+            std::make_shared<Walled<double>>(moving(left ? -.5 : .5), left ? std::optional(wall) : std::nullopt,
+                                             left ? std::nullopt : std::optional(wall));
         GapRun<double> run(Inelastic(.5, 1e-6), GapChain<double>(bodies, 0));
         run.advance(until);
         EXPECT_GT(run.chain().walls().tally(left ? End::left : End::right).contacts, 0U);
@@ -146,7 +149,8 @@ TEST(Energy, OfVelocities) {
     PositionRun<double> positions(Inelastic(.9), PositionChain<double>(rmix<double>(60), 0));
     positions.advance(until);
     EXPECT_NEAR(positions.kinetic_energy() / to_double(exact(positions, until)), 1, 64 * u);
-    Simulation<double, Wet<double>, ClusterChain<double>> wet(Wet(.01), ClusterChain<double>(gaussian_ring(100, 100), 0));
+    Simulation<double, Wet<double>, ClusterChain<double>> wet(Wet(.01),
+                                                              ClusterChain<double>(gaussian_ring(100, 100), 0));
     wet.advance(until);
     EXPECT_NEAR(wet.kinetic_energy() / to_double(exact(wet, until)), 1, 64 * u);
     StickyGas<double> sticky(gaussian_ring(100, 100), 0);

@@ -284,8 +284,8 @@ template <Real T> class SceneRun {
     const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
     const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene_.run.digits);
     double error = 2 * std::sqrt(1 + static_cast<double>(engine_.counts().contacts) / active);
-    const bool velocities = scene_.run.coordinates == Coordinates::absolute ||
-                            scene_.law.type != LawType::inelastic || scene_.run.collapse == CollapsePolicy::merge;
+    const bool velocities = scene_.run.coordinates == Coordinates::absolute || scene_.law.type != LawType::inelastic ||
+                            scene_.run.collapse == CollapsePolicy::merge;
     if (velocities && energy > 0) error *= std::sqrt(std::max(1., to_double(energy_) / energy));
     return std::max(0., held - std::log10(error));
   }

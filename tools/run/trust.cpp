@@ -230,14 +230,15 @@ std::string trust_table(const std::vector<Trusted>& runs) {
                                    : fmt::format("{:.8g}", run.time);
     text += fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13.8g}{:>10}{:>10}{:>9}{:>9.2f}{:>16}\n", run.precision,
                         run.coordinates, upto, run.contacts, run.counts_time, last(run.energy_digits),
-                        last(run.front_digits), digits(run.collapse_digits),
-                        run.seconds, proved);
+                        last(run.front_digits), digits(run.collapse_digits), run.seconds, proved);
   }
-  text += "\nTimes are those of samples (output.series). Right: the same sequence of contacts at every body as the "
-          "reference.\n"
-          "energy (against that at the start), front: digits shared with the reference at the last sample, of those that "
-          "the type has; t_c: of the collapse time.\nproved: until when these contacts are proved to be those of the exact system (cradle "
-          "certify).\n";
+  text +=
+      "\nTimes are those of samples (output.series). Right: the same sequence of contacts at every body as the "
+      "reference.\n"
+      "energy (against that at the start), front: digits shared with the reference at the last sample, of those that "
+      "the type has; t_c: of the collapse time.\nproved: until when these contacts are proved to be those of the exact "
+      "system (cradle "
+      "certify).\n";
   return text;
 }
 
@@ -255,12 +256,13 @@ Result trust_result(const Scene& scene, const std::vector<Trusted>& runs) {
                         {"right_to_end", std::uint64_t{run.to_end}},
                         {"proved_until", run.proved_time},
                         {"proved_to_end", std::uint64_t{run.proved_to_end}}};
-    group.columns = {{"time", "t", "of the sample", run.times},
-                     {"energy_digits", "1",
-                      "decimal digits shared with the reference, the last run here, of those that the type has, against the "
-                      "energy at the start",
-                      run.energy_digits},
-                     {"front_digits", "1", "the same of the right front", run.front_digits}};
+    group.columns = {
+        {"time", "t", "of the sample", run.times},
+        {"energy_digits", "1",
+         "decimal digits shared with the reference, the last run here, of those that the type has, against the "
+         "energy at the start",
+         run.energy_digits},
+        {"front_digits", "1", "the same of the right front", run.front_digits}};
     result.groups.push_back(std::move(group));
   }
   return result;

@@ -67,7 +67,7 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
 
 
 def resolved(value: float, error: float) -> int:
-    """Digits of a double that mean something beside its error: two of the error, 17 where that is less than rounding."""
+    """Digits of a double that mean something beside its error: two of the error, 17 at most."""
     if not (np.isfinite(error) and error > 0 and value):
         return 17
     return int(np.clip(np.floor(np.log10(abs(value))) - np.floor(np.log10(error)) + 2, 2, 17))

@@ -128,19 +128,23 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
     };
     const Configuration<T> now = run.configuration(end);
     made.broken = broken(now, energy);
-    // A part in a million: of the ledger's energy, of a body's energy, of the speed by which closing speeds add up.
-    const T part = T(1) / T(1000000);
-    made.missed += !broken(now, T(energy + part * bodies->kinetic_energy()));
-    std::size_t j = 0;
-    for (std::size_t k = 1; k < now.m.size(); ++k)
-      if (now.m[j] * now.v[j] * now.v[j] < now.m[k] * now.v[k] * now.v[k]) j = k;
-    Configuration<T> faster = now;
-    faster.v[j] += part * faster.v[j];
-    const bool plain = now.m[j] * now.v[j] * now.v[j] < energy / T(10);  // most of the energy may be lost by now
-    made.missed += !plain && !broken(faster, energy);
+    // A part in a million of the energy at the start, in the ledger and in the fastest of the bodies that have any;
+    // of the largest speed, in what closing speeds add up to.
+    const T part = T(1) / T(1000000), at_start = bodies->kinetic_energy();
+    made.missed += !broken(now, T(energy + part * at_start));
+    T fastest(0);
+    for (std::size_t j = 0; j < now.m.size(); ++j) {
+      const T before = bodies->velocity(now.index[j]), twice = now.m[j] * now.v[j] * now.v[j];
+      for (const T& v : {before, now.v[j]})
+        if (fastest < magnitude(v)) fastest = magnitude(v);
+      if (twice * T(1000) < at_start) continue;
+      Configuration<T> faster = now;
+      faster.v[j] += part * at_start / (now.m[j] * now.v[j]);
+      made.missed += !broken(faster, energy);
+    }
     if (now.closure_speed) {
       Configuration<T> open = now;
-      open.closure_speed = *now.closure_speed + part * magnitude(now.v[j]);
+      open.closure_speed = *now.closure_speed + part * fastest;
       made.missed += !broken(open, energy);
     }
     return made;

@@ -167,7 +167,7 @@ TEST_F(Certified, TheEndIsThatOfTheSceneWithAllItsDigits) {
 }
 
 TEST_F(Certified, AMassTooSmallForADoubleIsThere) {
-  const std::string scene = "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\nrun.until = 1\n"
+  const std::string scene = "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\nrun.until = 0.47\n"
                             "initial = {type = \"rows\", left = {particles = 3, speed = 1, density = 1}, right = "
                             "{particles = 3, speed = -1, density = 1}, centre = {mass = 1e-400, speed = 0.1}}\n";
   write("rows.toml", scene);
@@ -175,7 +175,7 @@ TEST_F(Certified, AMassTooSmallForADoubleIsThere) {
 #ifdef CRADLE_WITH_MPFR
   const Printed told = certify("rows.toml --set run.precision=mpfr --set run.digits=50");
   EXPECT_EQ(told.status, 0) << told.out << told.err;
-  EXPECT_EQ(told.out.find("proved: 1 contacts"), std::string::npos) << "that is the scene without it";
+  EXPECT_EQ(told.out.find("proved: 1 contacts"), 0U) << "without it there is none: " << told.out;
 #endif
 }
 

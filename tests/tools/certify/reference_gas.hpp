@@ -1,5 +1,6 @@
 // Proofs against a gas that shares nothing with the engine nor the checker: every pair of neighbours is tried for who
-// meets next, everybody flies there, the law acts. In rationals, exact; where a scene has roots, in 100 digits.
+// meets next, there the law acts. Places are kept as where a body would have been at 0, where rationals stay short. In
+// rationals, exact; where a scene has roots, in 100 digits.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +41,7 @@ template <class T> T decimal(const std::string& text) {
 // Bodies that are together are one; cells stand from left to right, on a ring up to the seam.
 template <class T> struct Gas {
   struct Cell {
-    T x, v, m;
+    T origin, v, m;
     std::vector<std::int64_t> bodies;
     std::optional<T> touched{};  // the time of its last contact
   };
@@ -55,7 +56,7 @@ template <class T> struct Gas {
   // All contacts up to a time, or the first `most` of all.
   void advance(const T& until, std::uint64_t most) {
     while (contacts < most && !tied && step(until)) continue;
-    if (contacts < most) fly(until);
+    if (contacts < most) time = until;
   }
   T energy() const {
     T twice(0);
@@ -77,13 +78,13 @@ template <class T> struct Gas {
       return std::find(cell.bodies.begin(), cell.bodies.end(), body) != cell.bodies.end();
     });
   }
-  T gap_after(std::size_t k) const {
-    return k + 1 < cells.size() ? T(cells[k + 1].x - cells[k].x) : T(cells[0].x + length - cells[k].x);
-  }
+  T place(const Cell& cell) const { return cell.origin + cell.v * time; }
+  T gap_after(std::size_t k) const { return place(cells[after(k)]) - place(cells[k]) + seam(k); }
   std::size_t pairs() const { return cells.size() < 2 ? 0 : length > 0 ? cells.size() : cells.size() - 1; }
 
  private:
   std::size_t after(std::size_t k) const { return k + 1 < cells.size() ? k + 1 : 0; }
+  T seam(std::size_t k) const { return k + 1 < cells.size() ? T(0) : length; }
 
   bool step(const T& until) {
     std::optional<T> first;
@@ -91,22 +92,17 @@ template <class T> struct Gas {
     for (std::size_t k = 0; k < pairs(); ++k) {
       const T w = cells[k].v - cells[after(k)].v;
       if (!(w > 0)) continue;
-      const T due = time + gap_after(k) / w;
+      const T due = (cells[after(k)].origin + seam(k) - cells[k].origin) / w;
       if (!first || due < *first) first = due, together.clear();
       if (due == *first) together.push_back(k);
     }
     if (!first || *first > until) return false;
-    fly(*first);
+    time = *first;
     for (const std::size_t a : together)
       for (const std::size_t b : together) tied = tied || (a != b && (after(a) == b || after(b) == a));
     if (!tied) collide(together.front());
     return true;
   }
-  void fly(const T& to) {
-    for (Cell& cell : cells) cell.x += cell.v * (to - time);
-    time = to;
-  }
-
   void collide(std::size_t k) {
     Cell &l = cells[k], &r = cells[after(k)];
     const T w = l.v - r.v, all = l.m + r.m, reduced = l.m * r.m / all;
@@ -114,21 +110,25 @@ template <class T> struct Gas {
     const bool memory = law == GasLaw::contact_time && (rested(l) || rested(r));
     ++contacts;
     l.touched = r.touched = time;
+    const T x_l = place(l), x_r = place(r);
     if (law == GasLaw::sticky || (law == GasLaw::merging && w < merge_speed) ||
         (law == GasLaw::wet && !(w * w > 2 * loss / reduced)))
-      return merge(k);
-    if (law == GasLaw::wet) return pass(k, after_bridge(w, reduced));
+      return merge(k, x_l);
+    if (law == GasLaw::wet) return pass(k, after_bridge(w, reduced), x_l, x_r);
     const bool below = memory || (law != GasLaw::merging && w < cutoff);
     below_cutoff += below;
     const T impulse = reduced * w * (1 + (below ? T(1) : restitution));
     l.v -= impulse / l.m;
     r.v += impulse / r.m;
+    l.origin = x_l - l.v * time;
+    r.origin = x_r - r.v * time;
   }
-  void merge(std::size_t k) {
+  void merge(std::size_t k, const T& x) {
     Cell &l = cells[k], &r = cells[after(k)];
     ++merges;
     l.v = (l.m * l.v + r.m * r.v) / (l.m + r.m);
     l.m += r.m;
+    l.origin = x - l.v * time;
     l.bodies.insert(l.bodies.end(), r.bodies.begin(), r.bodies.end());
     cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(after(k)));
   }
@@ -139,12 +139,14 @@ template <class T> struct Gas {
     else
       return T(sqrt(T(w * w - 2 * loss / reduced)));
   }
-  void pass(std::size_t k, const T& parting) {
+  void pass(std::size_t k, const T& parting, const T& x_l, const T& x_r) {
     Cell &l = cells[k], &r = cells[after(k)];
     const T centre = (l.m * l.v + r.m * r.v) / (l.m + r.m), all = l.m + r.m;
     l.v = centre + r.m * parting / all;
     r.v = centre - l.m * parting / all;
     std::swap(l.v, r.v), std::swap(l.m, r.m), std::swap(l.bodies, r.bodies), std::swap(l.touched, r.touched);
+    l.origin = x_l - l.v * time;
+    r.origin = x_r - r.v * time;
   }
 };
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
@@ -56,11 +57,6 @@ ReplicaOutcome outcome_of(const RunOutcome& run) {
 
 bool ended_early(ReplicaOutcome outcome) {
   return outcome == ReplicaOutcome::collapsed || outcome == ReplicaOutcome::exhausted;
-}
-
-// Bodies that lose energy and do not stick may collapse; elsewhere a column for it would be empty for good.
-bool may_collapse(const Scene& scene) {
-  return scene.law.type == LawType::inelastic && scene.run.collapse == CollapsePolicy::stop;
 }
 
 constexpr const char* collapse_time = "collapse_time";
@@ -130,7 +126,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
   if (tables.zone)
     add_binned(*tables.zone, "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
   layout.numbers.push_back({"energy", "m l^2/t^2", "kinetic energy at the end", {}});
-  if (may_collapse(scene))
+  if (stops_at_collapse(scene))
     layout.numbers.push_back({collapse_time, "t", "time of inelastic collapse; NaN: there was none", {}});
   for (const std::string& name : tables.summary) layout.numbers.push_back({name, "", "of the whole run", {}});
   return layout;

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run_files.hpp"
 #include "cradle/tools/run/tables.hpp"
@@ -52,7 +53,7 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
 
 // Where nobody asks for contacts the sticky gas goes from time to time, and rounds by these: with other times it is
 // begun again, which takes it no time.
-bool begins_again(const Scene& scene) { return scene.law.type == LawType::sticky && !scene.output.events; }
+bool begins_again(const Scene& scene) { return without_collisions(scene); }
 
 // What a result file holds of the run itself: rows, not what is said of the whole.
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {

@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/in_precision.hpp"
 #include "cradle/tools/support/version.hpp"
@@ -68,21 +69,8 @@ Exit status_of_end(RunEnd end) {
 }
 
 ScalarChoice scalar_choice(const Run& run) {
-  switch (run.precision) {
-  case Precision::double_:
-    return {"double", 0};
-  case Precision::long_double:
-    return {"long double", 0};
-  case Precision::double_double:
-    return {"double-double", 0};
-  case Precision::float128:
-    return {"float128", 0};
-  case Precision::cpp_bin_float:
-    return {"cpp_bin_float", 0};
-  case Precision::mpfr:
-    return {"mpfr", static_cast<unsigned>(run.digits)};
-  }
-  return {};
+  const ScalarRow& type = scalar_row(run.precision);
+  return {std::string(type.name), type.any_digits ? static_cast<unsigned>(run.digits) : 0};
 }
 
 std::string precision_name(const Run& run) {
@@ -110,9 +98,8 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
 void check_built(const Scene& scene) {
   if (scene.initial.type == InitialType::clusters && scene.run.precision != Precision::double_)
     not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
-  const bool merges = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
   if (scene.run.coordinates == Coordinates::absolute) {
-    if (merges) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
+    if (particles_merge(scene)) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
     if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   in_precision<void>(scene, [](auto) {});

@@ -10,6 +10,7 @@
 #include "cradle/core/real.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/certify/certify.hpp"
+#include "cradle/tools/model/laws.hpp"
 
 namespace cradle::tools {
 
@@ -174,7 +175,7 @@ void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& 
 std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
   std::vector<Traced> runs;
   const auto add = [&](unsigned digits) {
-    if (options.both && scene.law.type == LawType::inelastic && scene.run.collapse != CollapsePolicy::merge)
+    if (options.both && !particles_merge(scene))
       runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options));
     runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options));
   };

@@ -213,7 +213,8 @@ struct Bounds {
 Result certified_result(Certified run) {
   const Certificate& c = run.certificate;
   Result result = std::move(run.outcome.result);
-  if (!run.proved()) result = {provenance(run.scene, precision_name(run.scene.run), undecided_text), {}};
+  if (!run.proved())
+    result = {provenance(run.scene, precision_name(run.scene.run), end_row(RunEnd::undecided).text), {}};
   Group certificate{"certificate",
                     {{"verdict", run.proved() ? "proved" : "undecided"},
                      {"contacts", c.contacts},

@@ -57,8 +57,8 @@ std::string failure_warning(const EnsembleStates& states) {
     for (const auto& [replica, message] : state->failures())
       if (++failures <= shown) text += fmt::format("{}replica {} failed: {}\n", place, replica, message);
     const auto outcomes = state->outcomes();
-    lost += outcomes[static_cast<std::size_t>(ReplicaOutcome::order_lost)] +
-            outcomes[static_cast<std::size_t>(ReplicaOutcome::exhausted)];
+    lost +=
+        outcomes[static_cast<std::size_t>(RunEnd::order_lost)] + outcomes[static_cast<std::size_t>(RunEnd::exhausted)];
   }
   if (failures > shown) text += fmt::format("and {} more: see replicas/failed in the file\n", failures - shown);
   if (lost > 0)

@@ -39,45 +39,11 @@ std::size_t samples_taken(const Column& time, const std::vector<double>& planned
   return taken;
 }
 
-ReplicaOutcome outcome_of(const RunOutcome& run) {
-  switch (run.end) {
-  case RunEnd::reached:
-    return ReplicaOutcome::reached;
-  case RunEnd::collapsed:
-    return ReplicaOutcome::collapsed;
-  case RunEnd::order_lost:
-    return ReplicaOutcome::order_lost;
-  case RunEnd::exhausted:
-    return ReplicaOutcome::exhausted;
-  case RunEnd::interrupted:
-    break;
-  }
-  throw std::logic_error("a replica that was interrupted has no outcome");
-}
-
-bool ended_early(ReplicaOutcome outcome) {
-  return outcome == ReplicaOutcome::collapsed || outcome == ReplicaOutcome::exhausted;
-}
+bool ended_early(RunEnd outcome) { return outcome == RunEnd::collapsed || outcome == RunEnd::exhausted; }
 
 constexpr const char* collapse_time = "collapse_time";
 
 }  // namespace
-
-std::string outcome_text(ReplicaOutcome outcome) {
-  switch (outcome) {
-  case ReplicaOutcome::reached:
-    return end_text(RunEnd::reached);
-  case ReplicaOutcome::collapsed:
-    return end_text(RunEnd::collapsed);
-  case ReplicaOutcome::order_lost:
-    return end_text(RunEnd::order_lost);
-  case ReplicaOutcome::exhausted:
-    return end_text(RunEnd::exhausted);
-  case ReplicaOutcome::failed:
-    break;
-  }
-  return "failed";
-}
 
 Scene replica_scene(const Scene& scene, std::uint64_t index) {
   Scene replica = scene;
@@ -133,7 +99,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
 }
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  ReplicaRow row{index, outcome_of(run), run.contacts, run.merges, std::vector<double>(numbers.size(), missing)};
+  ReplicaRow row{index, run.end, run.contacts, run.merges, std::vector<double>(numbers.size(), missing)};
   const auto put = [&](const std::string& name, double value) {
     for (std::size_t k = 0; k < numbers.size(); ++k)
       if (numbers[k].name == name) return void(row.numbers[k] = value);
@@ -150,7 +116,7 @@ std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {
   std::vector<double> numbers_of_run(entries, missing);
   const std::size_t samples =
       samples_taken(get(run.result, "series", "time"), std::get<std::vector<double>>(time.values));
-  const bool early = ended_early(outcome_of(run));
+  const bool early = ended_early(run.end);
   if (!early && samples != time.rows()) throw std::logic_error("a run that reached its end has not taken all samples");
   for (const Quantity& quantity : quantities) {
     const bool series = of_series(quantity.group);

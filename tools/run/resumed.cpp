@@ -178,12 +178,10 @@ void RunFiles::go_on_from_result(const std::optional<std::string>& until) {
     throw Error({"--until", 0, ""}, "an ensemble has no later end", *until, "give it a file of its own");
   const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
   const std::string state = checkpoint_of(file_);
-  if (!until || Decimal(*until) == scene_.run.until || outcome != end_text(RunEnd::reached)) {
+  if (!until || Decimal(*until) == scene_.run.until || outcome != end_row(RunEnd::reached).text) {
     over_ =
         fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
-    for (const RunEnd end : {RunEnd::reached, RunEnd::collapsed, RunEnd::order_lost, RunEnd::exhausted})
-      if (outcome == end_text(end)) over_status_ = status_of_end(end);
-    if (outcome == undecided_text) over_status_ = Exit::lost;
+    over_status_ = status_of_text(outcome);
     return;
   }
   if (!exists(state)) throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);

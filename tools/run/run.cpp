@@ -37,37 +37,6 @@ RunEnd end_of(Status status, bool order_lost) {
   return order_lost ? RunEnd::order_lost : RunEnd::reached;
 }
 
-std::string end_text(RunEnd end) {
-  switch (end) {
-  case RunEnd::reached:
-    return "reached the end";
-  case RunEnd::collapsed:
-    return "inelastic collapse";
-  case RunEnd::order_lost:
-    return "order of contacts lost";
-  case RunEnd::exhausted:
-    return "resolution exhausted";
-  case RunEnd::interrupted:
-    return "interrupted";
-  }
-  return {};
-}
-
-Exit status_of_end(RunEnd end) {
-  switch (end) {
-  case RunEnd::reached:
-    return Exit::done;
-  case RunEnd::collapsed:
-    return Exit::collapse;
-  case RunEnd::order_lost:
-  case RunEnd::exhausted:
-    return Exit::lost;
-  case RunEnd::interrupted:
-    return Exit::interrupted;
-  }
-  return Exit::done;
-}
-
 ScalarChoice scalar_choice(const Run& run) {
   const ScalarRow& type = scalar_row(run.precision);
   return {std::string(type.name), type.any_digits ? static_cast<unsigned>(run.digits) : 0};
@@ -78,13 +47,13 @@ std::string precision_name(const Run& run) {
   return choice.digits > 0 ? fmt::format("{}, {} digits", choice.name, choice.digits) : choice.name;
 }
 
-std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, const std::string& outcome) {
+std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome) {
   return {{"format_version", std::uint64_t{1}},
           {"cradle_version", std::string(version)},
           {"scene", effective_toml(scene)},
           {"name", scene.name},
           {"precision", precision},
-          {"outcome", outcome}};
+          {"outcome", std::string(outcome)}};
 }
 
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file) {

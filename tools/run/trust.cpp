@@ -96,7 +96,7 @@ Trusted compare(const Traced& run, const Traced& reference) {
   trusted.precision = precision_name(run.scene.run);
   trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
   trusted.seconds = run.seconds;
-  trusted.outcome = end_text(run.outcome.end);
+  trusted.outcome = end_row(run.outcome.end).text;
   const std::size_t samples = std::min(a.size(), b.size());
   const std::size_t same = agreeing(samples, [&](std::size_t k) { return a[k].digest == b[k].digest; });
   const std::size_t counted =

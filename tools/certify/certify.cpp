@@ -126,7 +126,7 @@ std::string Certified::undecided() const {
   if (outcome.end != RunEnd::exhausted) return "";
   return fmt::format("from t = {} on, after {} contacts: the run ended there, before t = {} ({})",
                      certificate.samples.back().time_text, certificate.contacts, scene.run.until.text,
-                     end_text(outcome.end));
+                     end_row(outcome.end).text);
 }
 
 std::string Certified::not_proved() const {
@@ -235,7 +235,7 @@ struct Bounds {
 Result certified_result(Certified run) {
   const Certificate& c = run.certificate;
   Result result = std::move(run.outcome.result);
-  if (c.doubt) result = {provenance(run.scene, precision_name(run.scene.run), undecided_text), {}};
+  if (c.doubt) result = {provenance(run.scene, precision_name(run.scene.run), end_row(RunEnd::undecided).text), {}};
   Group certificate{"certificate",
                     {{"verdict", run.proved() ? "proved" : "undecided"},
                      {"contacts", c.contacts},

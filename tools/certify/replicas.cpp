@@ -109,7 +109,7 @@ Result replicas_result(const CertifiedReplicas& run) {
   const std::uint64_t all = std::accumulate(proved.begin(), proved.end(), std::uint64_t{0});
   Result result;
   result.attributes = provenance(run.scene, precision_name(run.scene.run),
-                                 all == run.replicas.size() ? "replicas with proofs" : undecided_text);
+                                 all == run.replicas.size() ? "replicas with proofs" : end_row(RunEnd::undecided).text);
   result.groups.push_back({"ensemble", {{"replicas", std::uint64_t{run.replicas.size()}}, {"proved", all}}, {}});
   result.groups.push_back({"ensemble/series", {}, {{"time", "t", "of the sample", run.times}}});
   const std::string unit = "m l^2/t^2";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <sstream>
 #include <utility>
@@ -42,6 +43,12 @@ Error misread(const CLI::App& program, const std::string& wrong, const std::stri
 
 }  // namespace
 
+bool CommandText::takes(const std::string& argument) const {
+  return std::any_of(options.begin(), options.end(), [&](const OptionText& option) {
+    return option.argument && option.names.front() == argument;
+  });
+}
+
 Command::Command(CLI::App& command, Action& chosen, const std::string& ending)
     : command_(command), chosen_(chosen), ending_(ending) {
   command_.footer(ending_);
@@ -51,8 +58,9 @@ void Command::argument(const std::string& name, std::string& value, const std::s
   command_.add_option(name, value, help)->required(needed == Needed::yes)->type_name("");
 }
 
-void Command::arguments(const std::string& name, std::vector<std::string>& values, const std::string& help) {
-  command_.add_option(name, values, help)->required()->type_name("");
+void Command::arguments(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                        Needed needed) {
+  command_.add_option(name, values, help)->required(needed == Needed::yes)->type_name("");
 }
 
 void Command::option(const std::string& names, std::string& value, const std::string& help, Needed needed) {

@@ -37,7 +37,8 @@ class Command {
   Command(CLI::App& command, Action& chosen, const std::string& ending);
 
   void argument(const std::string& name, std::string& value, const std::string& help, Needed needed = Needed::yes);
-  void arguments(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  void arguments(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                 Needed needed = Needed::yes);
 
   void option(const std::string& names, std::string& value, const std::string& help, Needed needed = Needed::no);
   void option(const std::string& names, std::optional<std::string>& value, const std::string& help);
@@ -69,6 +70,8 @@ struct OptionText {
 struct CommandText {
   std::string name, help;
   std::vector<OptionText> options;  // --help left out
+
+  bool takes(const std::string& argument) const;
 };
 
 /// All commands, and which of them was chosen.

@@ -23,7 +23,7 @@ struct RunArguments : CommonOptions {
 std::string summary(const RunOutcome& run, std::uint64_t contacts_before, double seconds) {
   const int digits = std::clamp(static_cast<int>(run.energy_digits), 1, 10);
   return fmt::format("{}: t = {}, {} contacts, energy {:.{}g}{}, {:.2f} s, {:.1f} million contacts/s\n",
-                     end_text(run.end), run.time, run.contacts, run.energy, digits,
+                     end_row(run.end).text, run.time, run.contacts, run.energy, digits,
                      run.energy_digits < 1 ? " (rounding)" : "", seconds,
                      static_cast<double>(run.contacts - contacts_before) / seconds * 1e-6);
 }
@@ -54,7 +54,7 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
   fmt::print("{}", end.report);
   tell(end.warning);
   if (!options.quiet) fmt::print("{}wrote {}\n", told, output);
-  return status_of_end(end.end);
+  return end_row(end.end).status;
 }
 
 namespace {

@@ -126,7 +126,7 @@ Group EnsembleState::replica_group() const {
   }
   std::string outcomes;
   for (std::size_t k = 0; k < outcome_count; ++k)
-    outcomes += fmt::format("{}{} {}", k == 0 ? "" : ", ", k, outcome_text(static_cast<ReplicaOutcome>(k)));
+    outcomes += fmt::format("{}{} {}", k == 0 ? "" : ", ", k, run_ends[k].text);
   Group group{name("replicas"),
               {},
               {{"index", "1", "initial.replica of the run", std::move(index)},
@@ -192,11 +192,11 @@ void EnsembleState::read(const Result& result, const std::string& file) {
                   Exit::io);
   std::set<ReplicaIndex> stopped;
   for (std::size_t k = 0; k < index.size(); ++k) {
-    const auto how = static_cast<ReplicaOutcome>(std::min<std::uint64_t>(outcome[k], outcome_count - 1));
+    const auto how = static_cast<RunEnd>(std::min<std::uint64_t>(outcome[k], outcome_count - 1));
     ReplicaRow row{index[k], how, contacts[k], merges[k], {}};
     for (const auto* column : numbers) row.numbers.push_back((*column)[k]);
     table_.add(row);
-    if (how == ReplicaOutcome::failed) stopped.insert(index[k]);
+    if (how == RunEnd::failed) stopped.insert(index[k]);
   }
   check_replicas(file);
   if (const Group* failed = result.find(name("replicas/failed"))) {

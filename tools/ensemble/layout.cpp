@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
@@ -38,51 +39,11 @@ std::size_t samples_taken(const Column& time, const std::vector<double>& planned
   return taken;
 }
 
-ReplicaOutcome outcome_of(const RunOutcome& run) {
-  switch (run.end) {
-  case RunEnd::reached:
-    return ReplicaOutcome::reached;
-  case RunEnd::collapsed:
-  case RunEnd::small_gap:
-    return ReplicaOutcome::collapsed;
-  case RunEnd::order_lost:
-    return ReplicaOutcome::order_lost;
-  case RunEnd::exhausted:
-    return ReplicaOutcome::exhausted;
-  case RunEnd::interrupted:
-    break;
-  }
-  throw std::logic_error("a replica that was interrupted has no outcome");
-}
-
-bool ended_early(ReplicaOutcome outcome) {
-  return outcome == ReplicaOutcome::collapsed || outcome == ReplicaOutcome::exhausted;
-}
-
-// Bodies that lose energy and do not stick may collapse; elsewhere a column for it would be empty for good.
-bool may_collapse(const Scene& scene) {
-  return scene.law.type == LawType::inelastic && scene.run.collapse == CollapsePolicy::stop;
-}
+bool ended_early(RunEnd outcome) { return end_row(outcome).status == Exit::collapse || outcome == RunEnd::exhausted; }
 
 constexpr const char* collapse_time = "collapse_time";
 
 }  // namespace
-
-std::string outcome_text(ReplicaOutcome outcome) {
-  switch (outcome) {
-  case ReplicaOutcome::reached:
-    return end_text(RunEnd::reached);
-  case ReplicaOutcome::collapsed:
-    return end_text(RunEnd::collapsed);
-  case ReplicaOutcome::order_lost:
-    return end_text(RunEnd::order_lost);
-  case ReplicaOutcome::exhausted:
-    return end_text(RunEnd::exhausted);
-  case ReplicaOutcome::failed:
-    break;
-  }
-  return "failed";
-}
 
 Scene replica_scene(const Scene& scene, std::uint64_t index) {
   Scene replica = scene;
@@ -131,14 +92,15 @@ ReplicaLayout replica_layout(const Scene& scene) {
   if (tables.zone)
     add_binned(*tables.zone, "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
   layout.numbers.push_back({"energy", "m l^2/t^2", "kinetic energy at the end", {}});
-  if (may_collapse(scene))
+  if (stops_at_collapse(scene))
     layout.numbers.push_back({collapse_time, "t", "time of inelastic collapse; NaN: there was none", {}});
   for (const std::string& name : tables.summary) layout.numbers.push_back({name, "", "of the whole run", {}});
   return layout;
 }
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  ReplicaRow row{index, outcome_of(run), run.contacts, run.merges, std::vector<double>(numbers.size(), missing)};
+  const RunEnd end = run.end == RunEnd::small_gap ? RunEnd::collapsed : run.end;
+  ReplicaRow row{index, end, run.contacts, run.merges, std::vector<double>(numbers.size(), missing)};
   const auto put = [&](const std::string& name, double value) {
     for (std::size_t k = 0; k < numbers.size(); ++k)
       if (numbers[k].name == name) return void(row.numbers[k] = value);
@@ -155,7 +117,7 @@ std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {
   std::vector<double> numbers_of_run(entries, missing);
   const std::size_t samples =
       samples_taken(get(run.result, "series", "time"), std::get<std::vector<double>>(time.values));
-  const bool early = ended_early(outcome_of(run));
+  const bool early = ended_early(run.end);
   if (!early && samples != time.rows()) throw std::logic_error("a run that reached its end has not taken all samples");
   for (const Quantity& quantity : quantities) {
     const bool series = of_series(quantity.group);

@@ -26,19 +26,10 @@ struct Quantity {
   std::size_t size() const { return rows * width; }
 };
 
-/// How a replica ended; as numbers, these are in files.
-enum class ReplicaOutcome : std::uint64_t { reached, collapsed, order_lost, exhausted, failed };
-inline constexpr std::size_t outcome_count = 5;
-std::string outcome_text(ReplicaOutcome outcome);
-/// Of a replica that lost the order of contacts or exhausted the resolution.
-inline bool is_lost(ReplicaOutcome outcome) {
-  return outcome == ReplicaOutcome::order_lost || outcome == ReplicaOutcome::exhausted;
-}
-
 /// One line of the table of replicas.
 struct ReplicaRow {
   std::uint64_t index = 0;
-  ReplicaOutcome outcome = ReplicaOutcome::reached;
+  RunEnd outcome = RunEnd::reached;
   std::uint64_t contacts = 0, merges = 0;
   std::vector<double> numbers;  // one for each of ReplicaLayout::numbers; NaN: has none
 };

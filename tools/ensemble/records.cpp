@@ -34,7 +34,7 @@ ReplicaIndex read_index(ByteReader& bytes) {
 ReplicaRow read_row(ByteReader& bytes) {
   ReplicaRow row;
   row.index = read_index(bytes);
-  row.outcome = static_cast<ReplicaOutcome>(std::min<std::uint64_t>(bytes.integer(), outcome_count - 1));
+  row.outcome = static_cast<RunEnd>(std::min<std::uint64_t>(bytes.integer(), outcome_count - 1));
   row.contacts = bytes.integer();
   row.merges = bytes.integer();
   row.numbers = bytes.numbers<double>();
@@ -119,7 +119,7 @@ void EnsembleState::apply(std::string_view record) {
       const ReplicaRow row = read_row(bytes);
       table_.add(row);
       std::string message = bytes.text();
-      if (row.outcome == ReplicaOutcome::failed) messages_.emplace(row.index, std::move(message));
+      if (row.outcome == RunEnd::failed) messages_.emplace(row.index, std::move(message));
     }
     return;
   case Kind::spread: {

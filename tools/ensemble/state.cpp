@@ -20,7 +20,7 @@ void ReplicaTable::add(const ReplicaRow& row) {
 ReplicaRow ReplicaTable::operator[](std::size_t k) const {
   const auto numbers = std::span(numbers_).subspan(k * width_, width_);
   const auto of_row = std::span(integers_).subspan(k * integers, integers);
-  return {of_row[0], static_cast<ReplicaOutcome>(of_row[1]), of_row[2], of_row[3], {numbers.begin(), numbers.end()}};
+  return {of_row[0], static_cast<RunEnd>(of_row[1]), of_row[2], of_row[3], {numbers.begin(), numbers.end()}};
 }
 
 std::vector<std::size_t> ReplicaTable::order() const {
@@ -63,7 +63,7 @@ void EnsembleState::fail(ReplicaIndex replica, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');  // a line each in result files
   {
     const std::scoped_lock lock(mutex_);
-    table_.add({replica, ReplicaOutcome::failed, 0, 0, {}});
+    table_.add({replica, RunEnd::failed, 0, 0, {}});
     messages_.emplace(replica, std::move(message));
   }
   tree_.add(replica, std::nullopt);
@@ -80,7 +80,8 @@ std::map<ReplicaIndex, std::string> EnsembleState::failures() const {
   const std::scoped_lock lock(mutex_);
   std::map<ReplicaIndex, std::string> failures = messages_;
   for (std::size_t k = 0; k < table_.size(); ++k)
-    if (is_lost(table_[k].outcome)) failures.emplace(table_[k].index, outcome_text(table_[k].outcome));
+    if (end_row(table_[k].outcome).status == Exit::lost && table_[k].outcome != RunEnd::failed)
+      failures.emplace(table_[k].index, end_row(table_[k].outcome).text);
   return failures;
 }
 
@@ -140,7 +141,7 @@ void EnsembleState::check_replicas(const std::string& file) const {
     const ReplicaRow row = table_[k];
     same = same && tree_.contains(row.index) && before != row.index;
     before = row.index;
-    in_table += row.outcome != ReplicaOutcome::failed;
+    in_table += row.outcome != RunEnd::failed;
   }
   if (!same || in_table != in_statistics)
     throw Error({file, 0, name("replicas")}, "a damaged ensemble",

@@ -109,9 +109,7 @@ std::string EnsembleStore::outcome() const {
   }
   std::string text;
   for (std::size_t k = 0; k < outcomes.size(); ++k)
-    if (outcomes[k] > 0)
-      text +=
-          fmt::format("{}{} {}", text.empty() ? "" : ", ", outcomes[k], outcome_text(static_cast<ReplicaOutcome>(k)));
+    if (outcomes[k] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", outcomes[k], run_ends[k].text);
   return text;
 }
 

@@ -155,7 +155,7 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
   end.contacts = motion.meetings().size();
   end.merges = recorder.merges();
   end.energy = recorder.energy();
-  end.result.attributes = provenance(scene, precision_name(scene.run), end_text(end.end));
+  end.result.attributes = provenance(scene, precision_name(scene.run), end_row(end.end).text);
   for (const Attribute& attribute :
        {Attribute("integrator", std::string("Dormand-Prince 5(4), steps end where the force jumps")),
         Attribute("relative_tolerance", tolerance), Attribute("absolute_tolerance", tolerance)})  // x in L, v in u0

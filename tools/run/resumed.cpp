@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run_files.hpp"
 #include "cradle/tools/run/tables.hpp"
@@ -52,7 +53,7 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
 
 // Where nobody asks for contacts the sticky gas goes from time to time, and rounds by these: with other times it is
 // begun again, which takes it no time.
-bool begins_again(const Scene& scene) { return scene.law.type == LawType::sticky && !scene.output.events; }
+bool begins_again(const Scene& scene) { return without_collisions(scene); }
 
 // What a result file holds of the run itself: rows, not what is said of the whole.
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
@@ -177,13 +178,10 @@ void RunFiles::go_on_from_result(const std::optional<std::string>& until) {
     throw Error({"--until", 0, ""}, "an ensemble has no later end", *until, "give it a file of its own");
   const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
   const std::string state = checkpoint_of(file_);
-  if (!until || Decimal(*until) == scene_.run.until || outcome != end_text(RunEnd::reached)) {
+  if (!until || Decimal(*until) == scene_.run.until || outcome != end_row(RunEnd::reached).text) {
     over_ =
         fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
-    for (const RunEnd end :
-         {RunEnd::reached, RunEnd::collapsed, RunEnd::small_gap, RunEnd::order_lost, RunEnd::exhausted})
-      if (outcome == end_text(end)) over_status_ = status_of_end(end);
-    if (outcome == undecided_text) over_status_ = Exit::lost;
+    over_status_ = status_of_text(outcome);
     return;
   }
   if (!exists(state)) throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);

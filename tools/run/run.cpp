@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/in_precision.hpp"
 #include "cradle/tools/support/version.hpp"
@@ -36,56 +37,9 @@ RunEnd end_of(Status status, bool order_lost) {
   return order_lost ? RunEnd::order_lost : RunEnd::reached;
 }
 
-std::string end_text(RunEnd end) {
-  switch (end) {
-  case RunEnd::reached:
-    return "reached the end";
-  case RunEnd::collapsed:
-    return "inelastic collapse";
-  case RunEnd::small_gap:
-    return "a gap below run.stop_gap";
-  case RunEnd::order_lost:
-    return "order of contacts lost";
-  case RunEnd::exhausted:
-    return "resolution exhausted";
-  case RunEnd::interrupted:
-    return "interrupted";
-  }
-  return {};
-}
-
-Exit status_of_end(RunEnd end) {
-  switch (end) {
-  case RunEnd::reached:
-    return Exit::done;
-  case RunEnd::collapsed:
-  case RunEnd::small_gap:
-    return Exit::collapse;
-  case RunEnd::order_lost:
-  case RunEnd::exhausted:
-    return Exit::lost;
-  case RunEnd::interrupted:
-    return Exit::interrupted;
-  }
-  return Exit::done;
-}
-
 ScalarChoice scalar_choice(const Run& run) {
-  switch (run.precision) {
-  case Precision::double_:
-    return {"double", 0};
-  case Precision::long_double:
-    return {"long double", 0};
-  case Precision::double_double:
-    return {"double-double", 0};
-  case Precision::float128:
-    return {"float128", 0};
-  case Precision::cpp_bin_float:
-    return {"cpp_bin_float", 0};
-  case Precision::mpfr:
-    return {"mpfr", static_cast<unsigned>(run.digits)};
-  }
-  return {};
+  const ScalarRow& type = scalar_row(run.precision);
+  return {std::string(type.name), type.any_digits ? static_cast<unsigned>(run.digits) : 0};
 }
 
 std::string precision_name(const Run& run) {
@@ -93,13 +47,13 @@ std::string precision_name(const Run& run) {
   return choice.digits > 0 ? fmt::format("{}, {} digits", choice.name, choice.digits) : choice.name;
 }
 
-std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, const std::string& outcome) {
+std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome) {
   return {{"format_version", std::uint64_t{1}},
           {"cradle_version", std::string(version)},
           {"scene", effective_toml(scene)},
           {"name", scene.name},
           {"precision", precision},
-          {"outcome", outcome}};
+          {"outcome", std::string(outcome)}};
 }
 
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file) {
@@ -113,9 +67,8 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
 void check_built(const Scene& scene) {
   if (scene.initial.type == InitialType::clusters && scene.run.precision != Precision::double_)
     not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
-  const bool merges = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
   if (scene.run.coordinates == Coordinates::absolute) {
-    if (merges) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
+    if (particles_merge(scene)) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
     if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   in_precision<void>(scene, [](auto) {});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cradle/core/workers.hpp"
+#include "cradle/tools/model/ends.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/keeper.hpp"
 #include "cradle/tools/run/witness.hpp"
@@ -17,16 +18,8 @@
 
 namespace cradle::tools {
 
-/// How a run ended.
-enum class RunEnd { reached, collapsed, small_gap, order_lost, exhausted, interrupted };  // small_gap: run.stop_gap
 /// Of a run that the engine has ended so; `order_lost`: by its account.
 RunEnd end_of(Status status, bool order_lost);
-/// As results say it: "reached the end".
-std::string end_text(RunEnd end);
-/// What results of proofs say that are not proved to the end.
-inline constexpr const char* undecided_text = "undecided";
-/// With which status a program ends whose run ended so.
-Exit status_of_end(RunEnd end);
 
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
@@ -52,7 +45,7 @@ struct RunOutcome {
 std::string precision_name(const Run& run);
 
 /// What every result says of where it is from: versions, the effective scene, its name and precision, how it ended.
-std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, const std::string& outcome);
+std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome);
 
 /// The scene that a result is from, as it stands there. Throws Error (Exit::io) naming the file.
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file);

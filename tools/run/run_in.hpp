@@ -11,6 +11,7 @@
 #include "cradle/core/gap_chain.hpp"
 #include "cradle/core/position_chain.hpp"
 #include "cradle/core/sticky_gas.hpp"
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/initial_state.hpp"
 #include "cradle/tools/run/scene_run.hpp"
@@ -23,7 +24,7 @@ template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& opti
   const auto loses = [](const WallAt& wall) {
     return wall.position && !wall.temperature && wall.restitution < Decimal("1");
   };
-  if (scene.run.collapse == CollapsePolicy::stop && scene.law.type == LawType::inelastic &&
+  if (stops_at_collapse(scene) &&
       (scene.law.restitution < Decimal("1") || loses(scene.walls.left) || loses(scene.walls.right)))
     policy.collapse = cradle::CollapsePolicy::stop;
   if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
@@ -46,7 +47,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   };
   const std::type_identity<ClusterChain<T>> clusters;
   if (scene.law.type == LawType::wet) return simulation(Wet<T>(number<T>(scene.law.loss)), clusters);
-  if (scene.law.type == LawType::sticky && !observed)  // where nobody asks for contacts none need be made
+  if (!law_row(scene).needs_events && !observed)  // where nobody asks for contacts none need be made
     return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, bodies, start, policy);
   if (scene.law.type == LawType::sticky || scene.run.collapse == CollapsePolicy::merge) {
     const bool sticky = scene.law.type == LawType::sticky;

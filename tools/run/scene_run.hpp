@@ -307,7 +307,7 @@ template <Real T> class SceneRun {
     }
     end.warning = account_warning(account, scene_.run);
     if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.contacts, scene_.run);
-    end.result.attributes = provenance(scene_, precision_name(scene_.run), end_text(end.end));
+    end.result.attributes = provenance(scene_, precision_name(scene_.run), end_row(end.end).text);
     for (const Attribute& attribute :
          {Attribute("simultaneous_contacts", account.simultaneous), Attribute("order_lost", account.order_lost),
           Attribute("unresolved_gaps", account.unresolved), Attribute("energy_digits", end.energy_digits),

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "cradle/core/theory/wet_zone.hpp"
+#include "cradle/tools/model/laws.hpp"
 
 namespace cradle::tools {
 
@@ -127,9 +128,7 @@ Group events_table() {
            {"closing_speed", "l/t", "closing speed before the contact", {}}}};
 }
 
-bool has_clouds(const Scene& scene) {
-  return scene.law.type != LawType::inelastic && scene.initial.type != InitialType::ring;
-}
+bool has_clouds(const Scene& scene) { return law_row(scene).merges && scene.initial.type != InitialType::ring; }
 
 ZoneAverage zone_average(const Scene& scene) {
   const Zone& zone = scene.output.zone;

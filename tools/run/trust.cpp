@@ -12,6 +12,7 @@
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/precision/double_double.hpp"
 #include "cradle/tools/certify/certify.hpp"
+#include "cradle/tools/model/laws.hpp"
 
 namespace cradle::tools {
 
@@ -110,7 +111,7 @@ Trusted compare(const Traced& run, const Traced& reference) {
   trusted.precision = precision_name(run.scene.run);
   trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
   trusted.seconds = run.seconds;
-  trusted.outcome = end_text(run.outcome.end);
+  trusted.outcome = end_row(run.outcome.end).text;
   const std::size_t samples = std::min(a.size(), b.size());
   const std::size_t same = agreeing(samples, [&](std::size_t k) { return a[k].digest == b[k].digest; });
   const std::size_t counted =
@@ -192,7 +193,7 @@ void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& 
 std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
   std::vector<Traced> runs;
   const auto add = [&](unsigned digits) {
-    if (options.both && scene.law.type == LawType::inelastic && scene.run.collapse != CollapsePolicy::merge)
+    if (options.both && !particles_merge(scene))
       runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options));
     runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options));
   };

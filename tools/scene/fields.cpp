@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "cradle/tools/model/laws.hpp"
+
 namespace cradle::tools {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr When wet{other_law, "law.type", "law.type = \"wet\"",
                    [](const Scene& s) { return s.law.type == LawType::wet; }};
 
 constexpr When merging{other_law, "law.type", "law.type = \"wet\" or \"sticky\"",
-                       [](const Scene& s) { return s.law.type != LawType::inelastic; }};
+                       [](const Scene& s) { return law_row(s).merges; }};
 constexpr When wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
                            return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
                                   !s.initial.general_rows();
@@ -102,6 +104,12 @@ template <auto... M> constexpr auto walls_of = member<&Scene::walls, M...>;
 template <auto M> constexpr auto run_of = member<&Scene::run, M>;
 template <auto M> constexpr auto sweep_of = member<&Scene::sweep, M>;
 template <auto... M> constexpr auto output_of = member<&Scene::output, M...>;
+
+const std::string scalar_names = [] {
+  std::string names;
+  for (const ScalarRow& row : scalar_rows) names.append(names.empty() ? "" : " | ").append(row.name);
+  return names;
+}();
 
 constexpr std::string_view any = "(-inf, inf)";
 constexpr std::string_view within_run = "[run.start, run.until]";
@@ -214,8 +222,7 @@ const Field all_fields[] = {
 
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},
-    {"run.precision", run_of<&Run::precision>, "", "\"double\"",
-     "double | long double | double-double | float128 | cpp_bin_float | mpfr", &always, "the working precision"},
+    {"run.precision", run_of<&Run::precision>, "", "\"double\"", scalar_names, &always, "the working precision"},
     {"run.digits", run_of<&Run::digits>, "", "50", "[10, 1000]", &mpfr, "decimal digits of mpfr numbers"},
     {"run.coordinates", run_of<&Run::coordinates>, "", "\"gaps\"", "gaps | absolute", &always,
      "gaps and closing speeds, or plain positions"},

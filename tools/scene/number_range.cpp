@@ -10,24 +10,9 @@ NumberRange::NumberRange(const Run& run) {
   Scene scene;
   scene.run = run;
   precision_ = value_text(*find_field("run.precision", scene), scene).value();
-  switch (run.precision) {
-  case Precision::double_:
-  case Precision::double_double:
-    largest_ = "1.7976931348623157e308";
-    least_ = "2.2250738585072014e-308";
-    break;
-  case Precision::long_double:
-  case Precision::float128:
-    largest_ = "1.18973149535723176502e4932";
-    least_ = "3.3621031431120935063e-4932";
-    break;
-  case Precision::cpp_bin_float:  // exponents of 32 bits
-    largest_ = "1e323228496";
-    least_ = "1e-323228496";
-    break;
-  case Precision::mpfr:
-    return;
-  }
+  const ScalarRow& type = scalar_row(run.precision);
+  if (type.largest.empty()) return;
+  largest_ = type.largest, least_ = type.least;
   lowest_ = '-' + *largest_;
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/tools/model/scalars.hpp"
 #include "cradle/tools/scene/decimal.hpp"
 #include "cradle/tools/support/errors.hpp"
 
@@ -23,7 +24,6 @@ enum class LawType { inelastic, wet, sticky };
 enum class InitialType { rows, ring, list, clusters, cold };
 enum class HotPlace { middle, left };
 enum class Velocities { gaussian, uniform };
-enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
 enum class Coordinates { gaps, absolute };
 enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Spacing { linear, log };

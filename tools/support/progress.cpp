@@ -1,9 +1,11 @@
 #include "cradle/tools/support/progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "cradle/tools/support/tell.hpp"
@@ -13,12 +15,22 @@ namespace cradle::tools {
 std::string duration(double seconds) {
   if (!(seconds < 360000)) return "more than 100 h";
   const auto s = static_cast<long>(seconds + 0.5);
-  return s >= 3600 ? fmt::format("{} h {:02} min", s / 3600, s / 60 % 60) : fmt::format("{}:{:02} min", s / 60, s % 60);
+  if (s < 60) return fmt::format("{} s", s);
+  return s >= 3600 ? fmt::format("{} h {:02} min", s / 3600, s / 60 % 60) : fmt::format("{} min {:02} s", s / 60, s % 60);
 }
 
+namespace {
+
+int callers_socket() {
+  const char* const number = std::getenv("CRADLE_PROGRESS_FD");
+  return number == nullptr ? -1 : std::atoi(number);
+}
+
+}  // namespace
+
 ProgressLine::ProgressLine(Show show)
-    : terminal_(::isatty(STDERR_FILENO) != 0),
-      active_(show == Show::always || (show == Show::on_terminal && terminal_)) {}
+    : socket_(callers_socket()), terminal_(socket_ < 0 && ::isatty(STDERR_FILENO) != 0),
+      active_(show == Show::always || (show == Show::on_terminal && (terminal_ || socket_ >= 0))) {}
 
 ProgressLine::~ProgressLine() {
   if (drawn_ && terminal_) tell("\r\033[K");
@@ -27,11 +39,14 @@ ProgressLine::~ProgressLine() {
 std::optional<double> ProgressLine::due() const {
   if (!active_) return std::nullopt;
   const double passed = std::chrono::duration<double>(Clock::now() - last_).count();
-  return passed < (terminal_ ? 0.2 : 10.0) ? std::nullopt : std::optional(passed);
+  return passed < (terminal_ || socket_ >= 0 ? 0.2 : 10.0) ? std::nullopt : std::optional(passed);
 }
 
 void ProgressLine::draw(double share, const std::string& state) {
-  if (terminal_) {
+  if (socket_ >= 0) {  // a caller that has ended or does not listen misses it
+    const std::string line = fmt::format("{:.4f}\t{}\n", share, state);
+    [[maybe_unused]] const auto sent = ::send(socket_, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  } else if (terminal_) {
     constexpr int width = 30;
     const auto full = static_cast<int>(share * width);
     tell(fmt::format("\r\033[K[{:#<{}}{: <{}}] {}", "", full, "", width - full, state));

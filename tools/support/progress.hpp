@@ -1,5 +1,6 @@
-// Progress on standard error: a bar on a terminal, a plain line now and then elsewhere (where asked for). Of a run:
-// simulated time, contacts, contacts/s, time left; of an ensemble: replicas, replicas/s, time left.
+// Progress on standard error: a bar on a terminal, a plain line now and then elsewhere (where requested). Of a run:
+// simulated time, contacts, contacts/s, time left; of an ensemble: replicas, replicas/s, time left. For programs that
+// call this one: where CRADLE_PROGRESS_FD names a socket, each line goes there as `SHARE<tab>TEXT`, SHARE from 0 to 1.
 #pragma once
 
 #include <chrono>
@@ -10,7 +11,7 @@
 
 namespace cradle::tools {
 
-/// "3:20 min", "2 h 05 min".
+/// "6 s", "3 min 20 s", "2 h 05 min".
 std::string duration(double seconds);
 
 /// One line, drawn over itself on a terminal and gone at the end.
@@ -31,6 +32,7 @@ class ProgressLine {
  private:
   using Clock = std::chrono::steady_clock;
 
+  int socket_;  // below 0: none
   bool terminal_, active_, drawn_ = false;
   Clock::time_point last_ = Clock::now();
 };

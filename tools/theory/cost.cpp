@@ -6,6 +6,7 @@
 
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/core/workers.hpp"
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {
@@ -84,6 +85,8 @@ double share_of_elastic(double s) {
   return below->share + (above->share - below->share) * (s - below->s) / (above->s - below->s);
 }
 
+}  // namespace
+
 void bouncing_rows(const Scene& scene, Cost& cost) {
   const double eps = scene.law.restitution.value, kappa = (1 - eps) / (1 + eps);
   const double particles = static_cast<double>(scene.initial.particles), half = particles / 2;
@@ -101,63 +104,41 @@ void bouncing_rows(const Scene& scene, Cost& cost) {
 }
 
 // Wet bodies that the front has reached lose their energy m u0^2/2 by E_loss a contact and half of that in the last one
-// (3 contacts a body at E_loss = .05, as counted in Fig. 11). Sticky ones merge once.
-void merging_rows(const Scene& scene, Cost& cost) {
+// (3 contacts a body at E_loss = .05, as counted in Fig. 11).
+void wet_rows(const Scene& scene, Cost& cost) {
   const double bodies = reached(scene), met = std::min(bodies, static_cast<double>(scene.initial.particles) / 2);
   const double energy = scene.initial.speed.value * scene.initial.speed.value / 2;
-  cost.contacts = scene.law.type == LawType::wet
-                      ? std::min(met * (met + 1) / 2, bodies * (energy / scene.law.loss.value + 0.5))
-                      : std::max(0.0, bodies - 1);
+  cost.contacts = std::min(met * (met + 1) / 2, bodies * (energy / scene.law.loss.value + 0.5));
 }
 
-// Time of a contact against one in gaps in double, and bytes of a number. Measured on the shock of Fig. 2 to t = 4000:
-// see bench/RESULTS.md. Multiprecision: the time is linear in the digits.
-struct Scalar {
-  double gaps, absolute, bytes;
-};
-Scalar scalar(const Run& run) {
-  const auto digits = static_cast<double>(run.digits);
-  switch (run.precision) {
-  case Precision::double_:
-    return {1, 1.2, 8};
-  case Precision::long_double:
-    return {5.3, 4, 16};
-  case Precision::double_double:
-    return {2.6, 6.6, 16};
-  case Precision::float128:
-    return {10, 30, 16};
-  case Precision::cpp_bin_float:
-    return {41, 104, 64};
-  case Precision::mpfr:
-    return {6.3 + 0.112 * digits, 22 + 0.4 * digits, 48 + digits / 2.4};
-  }
-  return {};
-}
-
-}  // namespace
+// Each merges once.
+void sticky_rows(const Scene& scene, Cost& cost) { cost.contacts = std::max(0.0, reached(scene) - 1); }
 
 Cost expected_cost(const Scene& scene) {
   Cost cost;
   cost.bodies = bodies_at_end(scene);
-  if (equal_rows(scene)) scene.law.type == LawType::inelastic ? bouncing_rows(scene, cost) : merging_rows(scene, cost);
-  const Scalar type = scalar(scene.run);
+  if (equal_rows(scene)) law_row(scene).cost_of_rows(scene, cost);
+  const ScalarRow& type = scalar_row(scene.run.precision);
+  const std::uint64_t digits = scene.run.digits;
   constexpr double fastest = 2e7;
-  cost.contacts_per_second = fastest / (scene.run.coordinates == Coordinates::gaps ? type.gaps : type.absolute);
+  cost.contacts_per_second =
+      fastest / (scene.run.coordinates == Coordinates::gaps ? type.gaps : type.absolute).at(digits);
   // Some 15 numbers a body; a sample is nine columns of doubles, and its time in the plan.
   constexpr double program = 20e6, numbers = 15, bytes_per_event = 48, bytes_per_sample = 80;
   const Series& series = scene.output.series;
   const double samples = series.every    ? span(scene) / series.every->value
                          : series.points ? static_cast<double>(*series.points)
                                          : static_cast<double>(series.times.size());
-  cost.memory = program + numbers * type.bytes * cost.bodies + (bytes_per_sample + 2 * type.bytes) * samples;
+  const double bytes = type.bytes.at(digits);
+  cost.memory = program + numbers * bytes * cost.bodies + (bytes_per_sample + 2 * bytes) * samples;
   if (scene.output.events) cost.memory += bytes_per_event * cost.contacts.value_or(0);
   return cost;
 }
 
 Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads) {
   const auto alone = [](const char* why) { return Threading{1, why}; };
-  const bool merge = scene.law.type != LawType::inelastic || scene.run.collapse == CollapsePolicy::merge;
-  if (merge && (scene.law.type == LawType::sticky || scene.initial.type != InitialType::ring))
+  const bool merge = particles_merge(scene);
+  if (merge && (!law_row(scene).needs_events || scene.initial.type != InitialType::ring))
     return alone("bodies that merge");
   if (scene.run.coordinates != Coordinates::gaps) return alone("absolute coordinates");
   if (scene.run.collapse == CollapsePolicy::contact_time) return alone("contacts with a memory");

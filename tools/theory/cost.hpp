@@ -19,6 +19,11 @@ struct Cost {
 
 Cost expected_cost(const Scene& scene);
 
+// Contacts of two equal rows, by law (tools/model/laws.hpp).
+void bouncing_rows(const Scene& scene, Cost& cost);
+void wet_rows(const Scene& scene, Cost& cost);
+void sticky_rows(const Scene& scene, Cost& cost);
+
 /// What threads do for one run: how many times as fast it gets, at its end, or why it stays on one.
 struct Threading {
   double gain = 1;

@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import selectors
 import shutil
 import signal
+import socket
 import subprocess
 import threading
 from collections.abc import Callable, Sequence
@@ -14,8 +14,6 @@ from dataclasses import dataclass
 
 from .errors import BAD_FILE, DONE, Error
 
-BAR = re.compile(r"\[(#*) *\] (.*)")  # tools/support/progress.cpp, on a terminal
-REDRAWN = re.compile(r"\r(?:\033\[K)?")
 WHERE = ((*[".."] * 3, "build", "release", "tools", "cradle"), (*[".."] * 4, "bin", "cradle"))  # from this package
 
 
@@ -52,18 +50,16 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     the program, which writes its checkpoint, and then the caller.
     """
     command = [find(), *map(str, arguments)]
-    terminal, theirs = (None, subprocess.PIPE) if show is None else os.openpty()  # a bar is for terminals only
+    ours, theirs = (None, None) if show is None else socket.socketpair()  # progress (tools/support/progress.hpp)
+    extra = {} if theirs is None else {"pass_fds": [theirs.fileno()],
+                                       "env": os.environ | {"CRADLE_PROGRESS_FD": str(theirs.fileno())}}
     child = None
     try:
-        try:
-            # A session of its own: else a terminal's Ctrl-C would reach it twice, and the second ends it at once.
-            with interrupts_later():
-                child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=theirs,
-                                         start_new_session=True)
-        finally:
-            if terminal is not None:
-                os.close(theirs)
-        out, err = listen(child, terminal, show)
+        # A session of its own: else a terminal's Ctrl-C would reach it twice, and the second ends it at once.
+        with interrupts_later():
+            child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                     start_new_session=True, **extra)
+        out, messages = listen(child, ours, show)
     except BaseException as error:  # Ctrl-C, first of all
         if child is not None:
             child.send_signal(signal.SIGINT)
@@ -73,14 +69,11 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
                         "machine", BAD_FILE) from None
         raise
     finally:
-        if child is not None:
-            child.stdout.close()
-        if terminal is not None:
-            os.close(terminal)
-        elif child is not None:
-            child.stderr.close()
+        pipes = () if child is None else (child.stdout, child.stderr)
+        for source in (*pipes, ours, theirs):
+            if source is not None:
+                source.close()
     status = child.wait()
-    messages = messages_in(err)
     if status in accepted:
         return Call(out, messages, status)
     said = messages.strip().removeprefix("cradle: ")
@@ -105,38 +98,24 @@ def interrupts_later():
         before(*came[0])
 
 
-def listen(child: subprocess.Popen, terminal: int | None, show) -> tuple[str, str]:
-    """Standard output and error until both have ended."""
-    errors = terminal if terminal is not None else child.stderr.fileno()
-    texts = {child.stdout.fileno(): bytearray(), errors: bytearray()}
+def listen(child: subprocess.Popen, progress: socket.socket | None, show) -> tuple[str, str]:
+    """Standard output and error until both have ended; lines of progress go to show(share, text)."""
+    texts = {child.stdout: bytearray(), child.stderr: bytearray()}
+    lines = b""
     with selectors.DefaultSelector() as waiting:
-        for source in texts:
+        for source in (*texts, *([progress] if progress is not None else [])):
             waiting.register(source, selectors.EVENT_READ)
-        while waiting.get_map():
+        while any(source in waiting.get_map() for source in texts):
             for key, _ in waiting.select():
-                try:
-                    piece = os.read(key.fd, 1 << 16)
-                except OSError:  # a terminal whose other end is closed
-                    piece = b""
+                piece = os.read(key.fd, 1 << 16)
                 if not piece:
-                    waiting.unregister(key.fd)
-                    continue
-                texts[key.fd] += piece
-                if show is not None and key.fd == terminal:
-                    tell(bytes(texts[key.fd][-4096:]), show)
+                    waiting.unregister(key.fileobj)
+                elif key.fileobj is not progress:
+                    texts[key.fileobj] += piece
+                else:
+                    *whole, lines = (lines + piece).split(b"\n")
+                    for line in whole:
+                        share, text = line.decode("utf-8", "replace").split("\t", 1)
+                        show(float(share), text)
     out, err = texts.values()
-    return out.decode("utf-8", "replace"), err.decode("utf-8", "replace").replace("\r\n", "\n")
-
-
-def tell(text: bytes, show: Callable[[float, str], None]) -> None:
-    """The last bar that is drawn, if it is whole."""
-    bars = [bar for bar in REDRAWN.split(text.decode("utf-8", "replace"))[1:] if "\n" not in bar]
-    if bars and (bar := BAR.fullmatch(bars[-1])):
-        width = bars[-1].index("]") - 1
-        show(len(bar[1]) / width, bar[2])
-
-
-def messages_in(text: str) -> str:
-    """What stays of it on a terminal: bars that were drawn over are gone."""
-    lines = (REDRAWN.split(line)[-1] for line in text.split("\n"))
-    return "\n".join(lines)
+    return out.decode("utf-8", "replace"), err.decode("utf-8", "replace")

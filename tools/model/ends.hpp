@@ -1,0 +1,58 @@
+// How a run, a replica or a proof ends: one table of what results say and with which status the program ends.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "cradle/tools/support/errors.hpp"
+
+namespace cradle::tools {
+
+/// The first five are outcomes of replicas too; as numbers, these are in files.
+enum class RunEnd : std::uint64_t {
+  reached,
+  collapsed,
+  order_lost,
+  exhausted,
+  failed,
+  small_gap,  // below run.stop_gap, and that it is a collapse is not proved; of replicas: collapsed
+  interrupted,
+  undecided  // of a proof
+};
+inline constexpr std::size_t outcome_count = 5;
+
+struct EndRow {
+  RunEnd end;
+  std::string_view text;
+  Exit status;
+};
+
+inline constexpr std::array<EndRow, 8> run_ends{{
+    {RunEnd::reached, "reached the end", Exit::done},
+    {RunEnd::collapsed, "inelastic collapse", Exit::collapse},
+    {RunEnd::order_lost, "order of contacts lost", Exit::lost},
+    {RunEnd::exhausted, "resolution exhausted", Exit::lost},
+    {RunEnd::failed, "failed", Exit::lost},
+    {RunEnd::small_gap, "a gap below run.stop_gap", Exit::collapse},
+    {RunEnd::interrupted, "interrupted", Exit::interrupted},
+    {RunEnd::undecided, "undecided", Exit::lost},
+}};
+
+constexpr const EndRow& end_row(RunEnd end) { return run_ends[static_cast<std::size_t>(end)]; }
+
+constexpr bool run_ends_in_order() {
+  for (const EndRow& row : run_ends)
+    if (&end_row(row.end) != &row) return false;
+  return true;
+}
+static_assert(run_ends_in_order());
+
+/// The status of a run whose result says that it ended so; done for other words.
+constexpr Exit status_of_text(std::string_view text) {
+  for (const EndRow& row : run_ends)
+    if (row.text == text) return row.status;
+  return Exit::done;
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,62 @@
+#include "cradle/tools/model/laws.hpp"
+
+#include <array>
+
+#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/theory/laws.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr std::array<LawRow, 3> laws{{
+    {.type = LawType::inelastic,
+     .merges = false,
+     .needs_events = true,
+     .provable = true,
+     .predict = predict_inelastic,
+     .cost_of_rows = bouncing_rows,
+     .misprints = "(6), first line, lacks a factor u0; (7) must carry a plus sign."},
+    {.type = LawType::wet,
+     .merges = true,
+     .needs_events = true,
+     .provable = true,
+     .predict = predict_wet,
+     .cost_of_rows = wet_rows,
+     .misprints =
+         "bodies stick below sqrt(2 E_loss/mu), not sqrt(2 E_loss)/mu;\n"
+         "  before (13) the speed lost is E_loss/(m u0), not E_loss/(m u0^2);\n"
+         "  before (14) the momentum lacks a factor m;\n"
+         "  (15): F_+ is 0 for x >= L and the force of a whole row, about n0 E_loss, for x <= -L; F_- mirrors it;\n"
+         "  (17) is right for M x'', not for d(M x')/dt."},
+    {.type = LawType::sticky,
+     .merges = true,
+     .needs_events = false,
+     .provable = true,
+     .predict = predict_sticky,
+     .cost_of_rows = sticky_rows,
+     .misprints = ""},
+}};
+
+constexpr bool in_order() {
+  for (std::size_t k = 0; k < laws.size(); ++k)
+    if (laws[k].type != static_cast<LawType>(k)) return false;
+  return true;
+}
+static_assert(in_order());
+
+}  // namespace
+
+const LawRow& law_row(const Scene& scene) { return laws.at(static_cast<std::size_t>(scene.law.type)); }
+
+bool particles_merge(const Scene& scene) {
+  return law_row(scene).merges || scene.run.collapse == CollapsePolicy::merge;
+}
+
+bool stops_at_collapse(const Scene& scene) {
+  return !law_row(scene).merges && scene.run.collapse == CollapsePolicy::stop;
+}
+
+bool without_collisions(const Scene& scene) { return !law_row(scene).needs_events && !scene.output.events; }
+
+}  // namespace cradle::tools

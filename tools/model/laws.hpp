@@ -1,0 +1,34 @@
+// What the program needs to know of each collision law, one row per law. A new law is a class in core/ (its physics),
+// its keys (tools/scene), its row here, and its line in run_in.hpp, where scenes become types.
+#pragma once
+
+#include <string_view>
+
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+class Predictions;
+struct Cost;
+
+struct LawRow {
+  LawType type;
+  bool merges;                                  // particles stick or pass through each other; else they bounce
+  bool needs_events;                            // false: the state at any time follows without collisions
+  bool provable;                                // `certify` has its map in balls (tools/certify)
+  void (*predict)(const Scene&, Predictions&);  // the paper's formulas
+  void (*cost_of_rows)(const Scene&, Cost&);    // expected collisions of two equal rows
+  std::string_view misprints;                   // of the paper's formulas for this law
+};
+
+/// The row of the scene's law.
+const LawRow& law_row(const Scene& scene);
+
+/// Particles stick or pass through each other, by the law or by the collapse policy.
+bool particles_merge(const Scene& scene);
+/// Inelastic collapse is possible and ends the run.
+bool stops_at_collapse(const Scene& scene);
+/// Nothing requires collisions: the state at each time is computed directly.
+bool without_collisions(const Scene& scene);
+
+}  // namespace cradle::tools

@@ -1,0 +1,61 @@
+// What the program needs to know of each scalar type, one row per type. A new type is a header in precision/, its place
+// in the two lists there (scalars.hpp, CMakeLists.txt), and its row here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace cradle::tools {
+
+enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
+
+struct ScalarRow {
+  // A quantity that grows with the digits of types that take any number of them.
+  struct Linear {
+    double fixed, per_digit = 0;
+    constexpr double at(std::uint64_t digits) const { return fixed + per_digit * static_cast<double>(digits); }
+  };
+
+  Precision type;
+  std::string_view name;  // as scenes and precision/ have it
+  // The time of a collision in gaps and in positions, against that in gaps in double (Fig. 2 to t = 4000,
+  // bench_precision), and the bytes of a number.
+  Linear gaps, absolute, bytes;
+  // The range of positive numbers; empty: as good as none.
+  std::string_view largest, least;
+  bool any_digits = false;
+};
+
+inline constexpr std::array<ScalarRow, 6> scalar_rows{{
+    {Precision::double_, "double", {1}, {1.2}, {8}, "1.7976931348623157e308", "2.2250738585072014e-308"},
+    {Precision::long_double,
+     "long double",
+     {5.3},
+     {4},
+     {16},
+     "1.18973149535723176502e4932",
+     "3.3621031431120935063e-4932"},
+    {Precision::double_double,
+     "double-double",
+     {2.6},
+     {6.6},
+     {16},
+     "1.7976931348623157e308",
+     "2.2250738585072014e-308"},
+    {Precision::float128, "float128", {10}, {30}, {16}, "1.18973149535723176502e4932", "3.3621031431120935063e-4932"},
+    // Exponents of 32 bits.
+    {Precision::cpp_bin_float, "cpp_bin_float", {41}, {104}, {64}, "1e323228496", "1e-323228496"},
+    {Precision::mpfr, "mpfr", {6.3, 0.112}, {22, 0.4}, {48, 1 / 2.4}, "", "", true},
+}};
+
+constexpr const ScalarRow& scalar_row(Precision type) { return scalar_rows[static_cast<std::size_t>(type)]; }
+
+constexpr bool scalar_rows_in_order() {
+  for (const ScalarRow& row : scalar_rows)
+    if (&scalar_row(row.type) != &row) return false;
+  return true;
+}
+static_assert(scalar_rows_in_order());
+
+}  // namespace cradle::tools

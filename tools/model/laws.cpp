@@ -38,12 +38,12 @@ constexpr std::array<LawRow, 3> laws{{
      .misprints = ""},
 }};
 
-constexpr bool in_order() {
+constexpr bool laws_in_order() {
   for (std::size_t k = 0; k < laws.size(); ++k)
     if (laws[k].type != static_cast<LawType>(k)) return false;
   return true;
 }
-static_assert(in_order());
+static_assert(laws_in_order());
 
 }  // namespace
 

@@ -31,7 +31,7 @@ template <Real T, class Gaps> class Certainty {
     if (gaps.account().uncertain > 0 || !(w > 0)) return;  // slower than any double: not estimated
     const double since = to_double(gaps.flown(s, time));
     Deviation here = gaps[s].off.after(since);
-    for (double& off : here.gap) off += w * (std::abs(to_double(time)) + std::abs(since)) * roundings_.next();
+    for (double& off : here.gap) off += w * (magnitude(to_double(time)) + magnitude(since)) * roundings_.next();
     if (exceeds(Deviation::largest(here.closing), w) || doubtful(gaps, p, s, time, here, w) ||
         doubtful(gaps, n, s, time, here, w))
       return doubt(gaps, body, time, Deviation::largest(here.gap));
@@ -51,7 +51,7 @@ template <Real T, class Gaps> class Certainty {
     if (!exact_sums)
       for (const Slot beside : {p, n})
         for (double& off : gaps[beside].off.closing)
-          off += (std::abs(to_double(gaps[beside].closing)) + w) * roundings_.next();
+          off += (magnitude(to_double(gaps[beside].closing)) + w) * roundings_.next();
     if (since < 0) gaps[s].off = gaps[s].off.after(-since);
   }
 
@@ -101,7 +101,7 @@ template <Real T, class Gaps> class Certainty {
     const double ratio = to_double(cell.closing) / w;
     double off = 0;
     for (std::size_t k = 0; k < Deviation::samples; ++k)
-      off = std::max(off, std::abs(there.gap[k] - ratio * here.gap[k]));
+      off = std::max(off, magnitude(there.gap[k] - ratio * here.gap[k]));
     return exceeds(off, to_double(gap)) && !(to_double(gap) == 0 && is_positive(gap));
   }
   static void doubt(Gaps& gaps, BodyIndex body, const T& time, double off) {
@@ -113,7 +113,7 @@ template <Real T, class Gaps> class Certainty {
     auto& cell = gaps[s];
     if (since < 0) return;
     cell.off = cell.off.after(since);
-    const double size = std::abs(to_double(cell.gap)) + std::abs(to_double(cell.closing) * since);
+    const double size = magnitude(to_double(cell.gap)) + magnitude(to_double(cell.closing) * since);
     for (double& off : cell.off.gap) off += size * roundings_.next();
   }
   // What a gap takes of it as of its own local time, where that is later.

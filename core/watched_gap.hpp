@@ -73,7 +73,7 @@ struct Deviation {
   void shift(const std::array<double, samples>& later, double closing_speed) {
     for (std::size_t k = 0; k < samples; ++k) gap[k] -= closing_speed * later[k];
   }
-  static double largest(const std::array<double, samples>& of) { return std::max(std::abs(of[0]), std::abs(of[1])); }
+  static double largest(const std::array<double, samples>& of) { return std::max(magnitude(of[0]), magnitude(of[1])); }
   static auto state(auto& self) { return std::tie(self.gap[0], self.gap[1], self.closing[0], self.closing[1]); }
 };
 
@@ -114,7 +114,7 @@ class Roundings {
 template <Real T> Deviation at_start(const Bodies<T>& bodies, BodyIndex body, BodyIndex next) {
   const auto half_unit = [](const T& x, std::size_t sample) {
     const double number = to_double(x);
-    return Roundings::of(number, sample) * std::abs(number) / 2;
+    return Roundings::of(number, sample) * magnitude(number) / 2;
   };
   Deviation off;
   for (std::size_t k = 0; k < Deviation::samples; ++k) {

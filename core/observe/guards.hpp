@@ -34,7 +34,7 @@
 // since errors of speeds have acted for the time t at most. Walls that move or heat give energy: with such, E is what
 // the ledger of losses is laid out for (Walled::energy_to_lose).
 //
-// An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is less: for 5e8 contacts in double where velocities
+// An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is less: for 5e8 contacts where velocities
 // are the bodies' own, for 5e8 sqrt(E/(M U^2/2)) where they are sums. One in a place is found where delta U t is less
 // than it, which masses of 1e-8 beside 1 can make 1e4 times as much as for equal ones.
 

@@ -142,9 +142,13 @@ template <Real T, class MassesOf> class GapLine {
   static const T& high(const T& gain) { return gain; }
   static const T& high(const Pair<T>& gain) { return gain.high; }
   void add(Slot s, const Pair<T>& gain) {
+    if (!exact_) {
+      gaps[s].closing += gain.high;
+      return;
+    }
     const Pair<T> sum = Pair<T>{closing(s), gaps[s].rest} + gain.high + gain.low;
     gaps[s].closing = sum.high;
-    if (exact_) gaps[s].rest = sum.low;
+    gaps[s].rest = sum.low;
   }
   // That of any body where there is none, or a wall.
   T mass_of(Slot s, const Bodies<T>& bodies) const {

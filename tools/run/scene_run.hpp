@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "cradle/core/observe/guards.hpp"
+#include "cradle/tools/record/columns.hpp"
 #include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/recorder.hpp"
 #include "cradle/tools/run/report.hpp"
@@ -32,9 +33,9 @@ template <Real T> class SceneRun {
   SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Engine<T>& engine,
            const RunOptions& options, Progress& progress)
       : scene_(scene), options_(options), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
-        engine_(engine), progress_(progress), plan_(schedule<T>(scene)), contact_before_(number<T>(scene.run.start)) {
+        engine_(engine), progress_(progress), plan_(schedule<T>(scene)), series_(scene),
+        contact_before_(number<T>(scene.run.start)) {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
-    if (scene.output.core) core_.emplace(bodies_, number<T>(scene.run.start));
   }
 
   RunOutcome operator()() {
@@ -113,11 +114,8 @@ template <Real T> class SceneRun {
         state_too);
   }
   void put_rows() {
-    Columns<T> series = series_.take(scene_.walls.any());
-    if (has_clouds(scene_)) append(series, cloud_.take());
-    if (core_) append(series, core_->take());
-    put(Recorded<T>{series_table(scene_), std::move(series), {}});
-    if (has_clouds(scene_)) put(cloud_.take_heaviest());
+    put(series_.take());
+    if (has_clouds(scene_)) put(heaviest_.take());
     if (scene_.output.events) put(events_.take());
   }
   // Decimals only where somebody keeps them: ensembles and proofs have no use for them.
@@ -228,17 +226,15 @@ template <Real T> class SceneRun {
   }
 
   void record_sample(const T& time) {
-    const Sample<T> now = sample(engine_, energy_, time);
-    require_held(now.energy, "the energy", time);
-    for (const auto& front : {now.front_left, now.front_right})
+    const Moment<T> now(engine_, bodies_, number<T>(scene_.run.start), time);
+    require_held(now.state.energy, "the energy", time);
+    for (const auto& front : {now.state.front_left, now.state.front_right})
       if (front) require_held(*front, "a front", time);
     series_.add(now);
-    if (core_) core_->add(engine_.configuration(time), engine_.energy_lost());
     if (!has_clouds(scene_)) return;
-    const Cloud<T> seen = cloud(engine_.configuration(time));
-    cloud_.add(seen);
+    heaviest_.add(now.cloud());
     if (scene_.output.scenario)
-      scenario_.look(seen, to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
+      scenario_.look(now.cloud(), to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
   }
 
   void tell_witness(const T& time, bool at_contact) {
@@ -354,9 +350,8 @@ template <Real T> class SceneRun {
   std::optional<T> looked_;                                  // the last time looked at
   std::uint64_t snapshots_ = 0, profiles_ = 0, masses_ = 0;  // tables written
   SeriesRecorder<T> series_;
-  CloudRecorder<T> cloud_;
+  HeaviestRecorder<T> heaviest_;
   std::optional<ZoneAverage> zone_;
-  std::optional<CoreRecorder<T>> core_;
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Observer<T> observer_;

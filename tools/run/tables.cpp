@@ -7,6 +7,7 @@
 
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/record/columns.hpp"
 
 namespace cradle::tools {
 
@@ -17,35 +18,9 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 Group series_table(const Scene& scene) {
-  Group table{"series",
-              {},
-              {{"time", "t", "a sample is the state after all contacts at times <= t", {}},
-               {"energy", "m l^2/t^2", "kinetic energy of all bodies of the scene", {}},
-               {"energy_lost", "m l^2/t^2", "energy lost in contacts since the start", {}},
-               {"contacts", "1", "contacts since the start, those below the cut-off and merges included", {}},
-               {"contacts_below_cutoff", "1", "contacts closing slower than the cut-off", {}},
-               {"merges", "1", "merges since the start", {}},
-               {"bodies", "1", "bodies in the active zone, between the outermost that have collided", {}},
-               {"front_left", "l", "position of the leftmost body that has collided", {}},
-               {"front_right", "l", "position of the rightmost body that has collided", {}}}};
-  if (has_clouds(scene)) {
-    table.columns.push_back({"cloud_mass", "m", "mass of all bodies that have collided", {}});
-    table.columns.push_back({"cloud_width",
-                             "l",
-                             "standard deviation of position, weighted by mass, of all that have collided but the two "
-                             "heaviest clusters",
-                             {}});
-  }
-  if (scene.walls.any())
-    table.columns.push_back({"wall_work", "m l^2/t^2", "energy that the walls have given since the start", {}});
-  if (scene.output.core) {
-    table.columns.push_back({"core_mass", "m", "mass within three core_width about the densest place", {}});
-    table.columns.push_back(
-        {"core_width", "l", "shortest length that holds more than half of the mass that has collided", {}});
-    table.columns.push_back({"core_window", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", {}});
-    table.columns.push_back({"core_gap", "l", "median gap within the core", {}});
-    table.columns.push_back({"sticky_excess", "m l^2/t^2", "energy minus that of the sticky gas that began alike", {}});
-  }
+  Group table{"series", {}, {}};
+  for (const auto& column : series_columns<double>())
+    if (column.when(scene)) table.columns.push_back({column.name, column.unit, column.text, {}});
   return table;
 }
 

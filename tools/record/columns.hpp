@@ -1,0 +1,165 @@
+// The columns of the time series: one list. A row says what a column is called, its unit, what it is, in which scenes
+// it is there, and how it is filled from a sample. To add a column is to add a row.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cradle/core/observe/clusters.hpp"
+#include "cradle/core/observe/dense_core.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/core/sticky_gas.hpp"
+#include "cradle/tools/record/recorded.hpp"
+#include "cradle/tools/run/engine.hpp"
+#include "cradle/tools/run/tables.hpp"
+
+namespace cradle::tools {
+
+/// What columns are filled from at one time. What takes all bodies is computed where a column requires it, once.
+template <Real T> class Moment {
+ public:
+  Moment(const Engine<T>& run, std::shared_ptr<const cradle::Bodies<T>> bodies, const T& start, const T& time)
+      : state(sample(run, bodies->kinetic_energy(), time)), run_(run), bodies_(std::move(bodies)), start_(start) {}
+
+  const Sample<T> state;
+
+  const Configuration<T>& configuration() const {
+    return computed(configuration_, [&] { return run_.configuration(state.time); });
+  }
+  const Cloud<T>& cloud() const {
+    return computed(cloud_, [&] { return cradle::cloud(configuration()); });
+  }
+  const DenseCore& core() const {
+    return computed(core_, [&] { return dense_core(configuration()); });
+  }
+  /// Energy minus that of the sticky gas from the same initial state; of both ledgers: what they share cancels.
+  T sticky_excess() const {
+    StickyGas<T> sticky(bodies_, start_);  // anew: what it gives must not depend on earlier samples
+    sticky.advance(state.time);
+    const T energy = bodies_->kinetic_energy();
+    return T(T(energy - run_.energy_lost()) - (energy - sticky.energy_lost()));
+  }
+
+ private:
+  template <class Value, class F> static const Value& computed(std::optional<Value>& value, F f) {
+    if (!value) value.emplace(f());
+    return *value;
+  }
+
+  const Engine<T>& run_;
+  std::shared_ptr<const cradle::Bodies<T>> bodies_;
+  T start_;
+  mutable std::optional<Configuration<T>> configuration_;
+  mutable std::optional<Cloud<T>> cloud_;
+  mutable std::optional<DenseCore> core_;
+};
+
+/// How a column is filled: what holds its numbers, and entering one. They are of the run's type, or doubles or whole
+/// numbers in every run.
+template <Real T> struct Filling {
+  using Values = std::variant<std::vector<T>, Numbers>;
+  Values (*empty)();
+  void (*enter)(const Moment<T>&, Values&);
+};
+template <Real T, auto value> constexpr Filling<T> filled_by() {
+  using Number = decltype(value(std::declval<const Moment<T>&>()));
+  using Values = typename Filling<T>::Values;
+  if constexpr (std::same_as<Number, T>)
+    return {[] { return Values(std::vector<T>()); },
+            [](const Moment<T>& at, Values& to) { std::get<std::vector<T>>(to).push_back(value(at)); }};
+  else
+    return {[] { return Values(Numbers(std::vector<Number>())); },
+            [](const Moment<T>& at, Values& to) {
+              std::get<std::vector<Number>>(std::get<Numbers>(to)).push_back(value(at));
+            }};
+}
+
+template <Real T> struct SeriesColumn {
+  const char *name, *unit, *text;
+  bool (*when)(const Scene&);
+  Filling<T> filling;
+};
+
+template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
+  using At = const Moment<T>&;
+  using Whole = std::uint64_t;
+  constexpr auto always = [](const Scene&) { return true; };
+  constexpr auto clouds = [](const Scene& scene) { return has_clouds(scene); };
+  constexpr auto walls = [](const Scene& scene) { return scene.walls.any(); };
+  constexpr auto core = [](const Scene& scene) { return scene.output.core; };
+  static const std::vector<SeriesColumn<T>> all{
+      {"time", "t", "a sample is the state after all contacts at times <= t", always,
+       filled_by<T, [](At at) { return at.state.time; }>()},
+      {"energy", "m l^2/t^2", "kinetic energy of all bodies of the scene", always,
+       filled_by<T, [](At at) { return at.state.energy; }>()},
+      {"energy_lost", "m l^2/t^2", "energy lost in contacts since the start", always,
+       filled_by<T, [](At at) { return at.state.energy_lost; }>()},
+      {"contacts", "1", "contacts since the start, those below the cut-off and merges included", always,
+       filled_by<T, [](At at) { return Whole{at.state.counts.contacts}; }>()},
+      {"contacts_below_cutoff", "1", "contacts closing slower than the cut-off", always,
+       filled_by<T, [](At at) { return Whole{at.state.counts.below_cutoff}; }>()},
+      {"merges", "1", "merges since the start", always,
+       filled_by<T, [](At at) { return Whole{at.state.counts.merges}; }>()},
+      {"bodies", "1", "bodies in the active zone, between the outermost that have collided", always,
+       filled_by<T, [](At at) { return static_cast<Whole>(at.state.bodies); }>()},
+      {"front_left", "l", "position of the leftmost body that has collided", always,
+       filled_by<T, [](At at) { return at.state.front_left.value_or(none<T>()); }>()},
+      {"front_right", "l", "position of the rightmost body that has collided", always,
+       filled_by<T, [](At at) { return at.state.front_right.value_or(none<T>()); }>()},
+      {"cloud_mass", "m", "mass of all bodies that have collided", clouds,
+       filled_by<T, [](At at) { return at.cloud().mass; }>()},
+      {"cloud_width", "l",
+       "standard deviation of position, weighted by mass, of all that have collided but the two heaviest clusters",
+       clouds, filled_by<T, [](At at) { return at.cloud().width; }>()},
+      {"wall_work", "m l^2/t^2", "energy that the walls have given since the start", walls,
+       filled_by<T, [](At at) { return at.state.given; }>()},
+      {"core_mass", "m", "mass within three core_width about the densest place", core,
+       filled_by<T, [](At at) { return at.core().mass; }>()},
+      {"core_width", "l", "shortest length that holds more than half of the mass that has collided", core,
+       filled_by<T, [](At at) { return at.core().width; }>()},
+      {"core_window", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", core,
+       filled_by<T, [](At at) { return at.core().window; }>()},
+      {"core_gap", "l", "median gap within the core", core, filled_by<T, [](At at) { return at.core().gap; }>()},
+      {"sticky_excess", "m l^2/t^2", "energy minus that of the sticky gas that began alike", core,
+       filled_by<T, [](At at) { return at.sticky_excess(); }>()},
+  };
+  return all;
+}
+
+/// The time series of a scene.
+template <Real T> class SeriesRecorder {
+ public:
+  explicit SeriesRecorder(const Scene& scene) : table_(series_table(scene)) {
+    for (const SeriesColumn<T>& column : series_columns<T>())
+      if (column.when(scene)) fillings_.push_back(column.filling), values_.push_back(column.filling.empty());
+  }
+
+  void add(const Moment<T>& at) {
+    for (std::size_t k = 0; k < values_.size(); ++k) fillings_[k].enter(at, values_[k]);
+    ++rows_;
+  }
+
+  std::size_t rows() const { return rows_; }
+  /// The rows since it was called last.
+  Recorded<T> take() {
+    Recorded<T> rows{table_, std::move(values_), {}};
+    values_.clear();
+    for (const Filling<T>& filling : fillings_) values_.push_back(filling.empty());
+    rows_ = 0;
+    return rows;
+  }
+
+ private:
+  Group table_;
+  std::vector<Filling<T>> fillings_;
+  Columns<T> values_;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace cradle::tools

@@ -67,6 +67,22 @@ template <Real T> Recorded<T> snapshot_rows(const Configuration<T>& c, const std
   return rows;
 }
 
+/// The initial state of bodies `first` to `last`.
+template <Real T> Recorded<T> initial_rows(const cradle::Bodies<T>& bodies, BodyIndex first, BodyIndex last) {
+  std::vector<std::uint64_t> index;
+  std::vector<T> x, v, m, gap;
+  for (BodyIndex body = first; body <= last; ++body) {
+    index.push_back(static_cast<std::uint64_t>(body));
+    x.push_back(bodies.position(body));
+    v.push_back(bodies.velocity(body));
+    m.push_back(bodies.mass(body));
+    gap.push_back(body + 1 < bodies.count() || bodies.on_ring() ? bodies.gap(body) : none<T>());
+  }
+  return {initial_table(),
+          columns<T>(std::move(index), std::move(x), std::move(v), std::move(m), std::move(gap)),
+          {{"circumference", bodies.circumference()}}};
+}
+
 inline Group profile_table(Profile&& p, const std::string& name) {
   Group table = filled(profile_table(name), std::move(p.x), std::move(p.velocity), std::move(p.density),
                        std::move(p.mass_density), std::move(p.temperature), std::move(p.density_right),

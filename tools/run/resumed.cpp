@@ -57,8 +57,10 @@ bool begins_again(const Scene& scene) { return without_collisions(scene); }
 
 // What a result file holds of the run itself: rows, not what is said of the whole.
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
-  std::erase_if(groups,
-                [](const Group& g) { return g.name == "zone" || g.name == "scenario" || g.name == "collapse"; });
+  std::erase_if(groups, [](const Group& g) {
+    const std::string_view name = rounded_name(g.name);
+    return name == "zone" || name == "scenario" || name == "collapse" || name == "initial";
+  });
   // Attributes come back from the file in another order than that in which they are written.
   const auto rank = [](const Attribute& attribute) {
     constexpr std::array<std::string_view, 3> first{"time", "gap_min", "gap_median"};

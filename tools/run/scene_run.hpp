@@ -327,6 +327,10 @@ template <Real T> class SceneRun {
     groups = std::move(tables_).in_order();
     // There also where there was no contact.
     if (scene_.output.events && options_.keeper != nullptr) append(groups, tables(events_.take(), true));
+    if (scene_.output.events) {
+      const Configuration<T> now = engine_.configuration_at_last_contact();
+      append(groups, tables(initial_rows(*bodies_, now.from, now.to), options_.keeper != nullptr));
+    }
     if (zone_) {
       const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single bodies
       const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);

@@ -103,6 +103,16 @@ Group events_table() {
            {"closing_speed", "l/t", "closing speed before the contact", {}}}};
 }
 
+Group initial_table() {
+  return {"initial",
+          {},
+          {{"index", "1", "number of the body, from the left", {}},
+           {"x", "l", "position at the start", {}},
+           {"v", "l/t", "velocity at the start", {}},
+           {"m", "m", "mass", {}},
+           {"gap", "l", "distance to the next body: resolves what x cannot; nan behind the last one of a line", {}}}};
+}
+
 bool has_clouds(const Scene& scene) { return law_row(scene).merges && scene.initial.type != InitialType::ring; }
 
 ZoneAverage zone_average(const Scene& scene) {

@@ -47,6 +47,8 @@ Group profile_table(const std::string& name);
 Group masses_table(const std::string& name);
 Group zone_table();
 Group events_table();
+/// The initial state of those bodies that events are about.
+Group initial_table();
 /// Of the model of two clusters.
 std::vector<Group> cluster_series_tables();
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a proof costs: each scene run on one thread, and certified. Processor seconds, least of three; contacts proved,
+# What a proof costs: each scene run on one thread, and certified. Processor seconds, least of three; collisions proved,
 # digits of the proof, and how well the energy is known at the end.
 #   bench/certify.sh [PROGRAM]      (default: build/release/tools/cradle)
 set -euo pipefail
@@ -27,18 +27,18 @@ line() {
   (($#)) && shift && digits=("$@")
   run=$(seconds "$repeats" "$cradle" run "${scene[@]}" --threads 1 -o run.h5)
   proof=$(seconds "$repeats" "$cradle" certify "${scene[@]}" "${digits[@]}" -o proof.h5)
-  local verdict contacts balls energy until
+  local verdict collisions balls energy until
   grep -qE '^(proved|undecided)' last || { echo "$name: no verdict" >&2; cat last >&2; exit 1; }
   verdict=$(grep -oE '^(proved|undecided)' last | head -1)
-  contacts=$(grep -oE '[0-9]+ contacts' last | head -1)
+  collisions=$(grep -oE '[0-9]+ collisions' last | head -1)
   until=$(sed -nE 's/^(proved: .*up to|undecided at) t = ([^ ,]*).*/\2/p' last | head -1)
   balls=$(sed -nE 's/^  run in +(.*), proved in balls around (.*); .*/\1 | \2/p' last)
   energy=$(sed -nE 's/.*energy .*known to ([^)]*)\).*/\1/p' last)
-  printf '| %s | %s | %s until %s | %s | %s | %.1f | %s | %s |\n' "$name" "${contacts% *}" "$verdict" "${until:0:9}" "$run" "$proof" \
+  printf '| %s | %s | %s until %s | %s | %s | %.1f | %s | %s |\n' "$name" "${collisions% *}" "$verdict" "${until:0:9}" "$run" "$proof" \
     "$(echo "$proof $run" | awk '{print $1 / ($2 > 0 ? $2 : .01)}')" "$balls" "${energy:--}"
 }
 
-echo '| scene | contacts | verdict | run, s | proof, s | ratio | run in | proved in | energy known to |'
+echo '| scene | collisions | verdict | run, s | proof, s | ratio | run in | proved in | energy known to |'
 echo '|---|---|---|---|---|---|---|---|---|'
 dry="fig2 $few --set output.profiles.times=[]"
 line "Fig. 2 to t = 2000" 3 $dry --set run.until=2000
@@ -46,7 +46,7 @@ line "Fig. 2 to t = 2000, 50 digits" 1 $dry --set run.until=2000 -- --digits 50
 line "Fig. 2 to t = 2000, 200 digits" 1 $dry --set run.until=2000 -- --digits 200
 line "Fig. 2 to t = 6500" 3 $dry
 line "Fig. 2 to t = 6550" 1 $dry --set run.until=6550
-line "collapse of three bodies to a gap of 1e-290" 1 collapse3
+line "collapse of three particles to a gap of 1e-290" 1 collapse3
 cooling="cooling $few --set output.masses=[]"
 line "ring of 1000, dry, to t = 100" 3 $cooling --set initial.particles=1000 --set run.until=100
 line "ring of 1e5, sticky, to t = 1000" 1 $cooling --set law.type=sticky --set law.restitution= --set law.cutoff= \
@@ -60,7 +60,7 @@ for digits in 50 100 200 400 800; do
   line "wet rows of 2e4, E = .01, $digits digits" 1 $wet --set law.loss=0.01 --set run.precision=mpfr \
     --set run.digits=$digits -- --digits "$digits"
 done
-# Bodies of unequal masses: a heavy one between two rows. Here radii grow with the contacts of a body.
+# Particles of unequal masses: a heavy one between two rows. Here radii grow with the collisions of a particle.
 cat >heavy.toml <<'END'
 law = {type = "inelastic", restitution = 0.95, cutoff = 1e-4}
 initial = {type = "rows", perturbation = 0.05, seed = 1, left = {particles = 500, speed = 0.5, density = 1}, right = {particles = 500, speed = -0.5, density = 1}, centre = {mass = 5}}
@@ -68,5 +68,5 @@ run.until = 300
 output.series.points = 11
 END
 for digits in 31 50 100 200; do
-  line "rows with a heavy body between them, $digits digits" 1 heavy.toml -- --digits "$digits"
+  line "rows with a heavy particle between them, $digits digits" 1 heavy.toml -- --digits "$digits"
 done

@@ -1,16 +1,17 @@
-// Contacts per second of Cradle's engine, in gaps and in absolute positions, against conventional engines in double
-// (twins/), in one run: read the ratios, since the machine is the same and so are the contacts.
+// Collisions per second of Cradle's engine, in gaps and in absolute positions, against conventional engines in double
+// (twins/), in one run: read the ratios, since the machine is the same and so are the collisions.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_engine
 //   build/release/bench/bench_engine --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
 //
-// shock   two rows of N bodies together, eps = .999, delta = 1e-5, as in the paper's Fig. 2; `contacts/s` over the
-//         whole run, `late/s` over its end (6000 to 6500 for N = 8000), when the dense cluster forms. The far bodies of
-//         long rows are not met yet: Cradle streams them.
-// gas     N bodies of random velocities, all of them active from the start, eps = .999.
+// shock   two rows of N particles together, eps = 0.999, delta = 1e-5, as in the paper's Fig. 2; `collisions/s` over
+//         the whole run, `late/s` over its end (6000 to 6500 for N = 8000), when the dense cluster forms. The far
+//         particles of long rows are not met yet: Cradle streams them.
+// gas     N particles of random velocities, all of them active from the start, eps = 0.999.
 //
 // Times are of the thread, not of the wall (but for the run on two threads), so that other work on the machine disturbs
-// less. The contacts that engines count must be the same; where they are not, the program says so and ends with status
+// less. The collisions that engines count must be the same; where they are not, the program says so and ends with
+// status
 // 1. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers, not the code timed
 // here.
 
@@ -26,14 +27,14 @@
 
 #include <benchmark/benchmark.h>
 
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/law.hpp"
-#include "cradle/core/list.hpp"
-#include "cradle/core/position_chain.hpp"
-#include "cradle/core/rows.hpp"
-#include "cradle/core/segments.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/laws/law.hpp"
+#include "cradle/core/parallel/segments.hpp"
 #include "twins/indexed_heap.hpp"
 #include "twins/priority_queue.hpp"
 #include "twins/time_slots.hpp"
@@ -41,14 +42,14 @@
 
 namespace {
 
-using cradle::BodyIndex;
-using BodiesPointer = std::shared_ptr<const cradle::Bodies<double>>;
+using cradle::ParticleIndex;
+using ParticlesPointer = std::shared_ptr<const cradle::Particles<double>>;
 
 constexpr twins::Law law{0.999, 1e-5};
 
 // ---- scenes
 
-// Finaliser of splitmix64: the random numbers of the published contact counts.
+// Finaliser of splitmix64: the random numbers of the published collision counts.
 std::uint64_t hash(std::uint64_t i) {
   std::uint64_t z = i + 0x9E3779B97F4A7C15;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
@@ -56,14 +57,14 @@ std::uint64_t hash(std::uint64_t i) {
   return z ^ (z >> 31);
 }
 
-BodiesPointer shock(BodyIndex n) {
-  const auto displacement = [](BodyIndex i) {
+ParticlesPointer shock(ParticleIndex n) {
+  const auto displacement = [](ParticleIndex i) {
     return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
   };
   return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(n, 0.5, 1.0, displacement));
 }
 
-BodiesPointer gas(BodyIndex n) {
+ParticlesPointer gas(ParticleIndex n) {
   std::vector<double> x, v;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
     const std::uint64_t bits = hash(i);
@@ -77,32 +78,33 @@ BodiesPointer gas(BodyIndex n) {
 
 template <class Chain> class Cradle {
  public:
-  Cradle(const BodiesPointer& bodies)
-      : simulation_(cradle::Inelastic<double>(law.restitution, law.cutoff), Chain(bodies, 0.0)) {}
+  Cradle(const ParticlesPointer& particles)
+      : simulation_(cradle::Inelastic<double>(law.restitution, law.cutoff), Chain(particles, 0.0)) {}
   void advance(double until) { simulation_.advance(until); }
-  std::uint64_t contacts() const { return simulation_.counts().contacts; }
+  std::uint64_t collisions() const { return simulation_.counts().collisions; }
 
  private:
   cradle::Simulation<double, cradle::Inelastic<double>, Chain> simulation_;
 };
 using Gaps = Cradle<cradle::GapChain<double>>;
 
-// One run in segments (core/segments.hpp), on so many threads; or cut into so many pieces, which shows how evenly the
-// work would be shared by as many processors: `parallel`, contacts of all over those of the busiest in each window.
+// One run in segments (core/parallel/segments.hpp), on so many threads; or cut into so many pieces, which shows how
+// evenly the work would be shared by as many processors: `parallel`, collisions of all over those of the busiest in
+// each time slab.
 template <unsigned threads, unsigned pieces = 0> class InSegments {
  public:
-  InSegments(const BodiesPointer& bodies)
-      : simulation_(cradle::Inelastic<double>(law.restitution, law.cutoff), cradle::GapChain<double>(bodies, 0.0)),
-        executor_(threads), segments_(cradle::workers(executor_), segmentation(*bodies)) {}
+  InSegments(const ParticlesPointer& particles)
+      : simulation_(cradle::Inelastic<double>(law.restitution, law.cutoff), cradle::GapChain<double>(particles, 0.0)),
+        executor_(threads), segments_(cradle::workers(executor_), segmentation(*particles)) {}
   void advance(double until) { simulation_.advance(until, segments_); }
-  std::uint64_t contacts() const { return simulation_.counts().contacts; }
+  std::uint64_t collisions() const { return simulation_.counts().collisions; }
   const auto& statistics() const { return segments_.statistics(); }
 
  private:
   using Law = cradle::Inelastic<double>;
-  static cradle::Segmentation segmentation(const cradle::Bodies<double>& bodies) {
+  static cradle::Segmentation segmentation(const cradle::Particles<double>& particles) {
     cradle::Segmentation how;
-    if (pieces > 0) how.gaps = static_cast<std::size_t>(bodies.count()) / pieces;
+    if (pieces > 0) how.gaps = static_cast<std::size_t>(particles.count()) / pieces;
     return how;
   }
   cradle::Simulation<double, Law, cradle::GapChain<double>> simulation_;
@@ -112,7 +114,7 @@ template <unsigned threads, unsigned pieces = 0> class InSegments {
 using Positions = Cradle<cradle::PositionChain<double>>;
 
 template <class Engine> struct Twin : Engine {
-  Twin(const BodiesPointer& bodies) : Engine(*bodies, law) {}
+  Twin(const ParticlesPointer& particles) : Engine(*particles, law) {}
 };
 using IndexedHeap = Twin<twins::IndexedHeapEngine>;
 using TunedHeap = Twin<twins::TunedHeapEngine>;
@@ -128,25 +130,25 @@ double seconds_of(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// A time at which all engines must have counted the same contacts: as given, or (0) as the first engine asked has.
+// A time at which all engines must have counted the same collisions: as given, or (0) as the first engine asked has.
 struct Check {
   double time;
-  std::uint64_t contacts;
+  std::uint64_t collisions;
 };
 
 struct Case {
   std::string name;
-  BodiesPointer bodies;
+  ParticlesPointer particles;
   std::vector<Check> checks;  // a run ends with the last
 };
 
 void check(const Case& c, const std::string& engine, const Check& at, std::uint64_t found) {
   static std::map<std::pair<std::string, double>, std::uint64_t> seen;
   const std::uint64_t expected =
-      at.contacts > 0 ? at.contacts : seen.try_emplace({c.name, at.time}, found).first->second;
+      at.collisions > 0 ? at.collisions : seen.try_emplace({c.name, at.time}, found).first->second;
   if (found == expected) return;
   std::fprintf(stderr,
-               "%s, %s: %llu contacts by t = %g (expected %llu): the engines do not agree, times mean nothing\n",
+               "%s, %s: %llu collisions by t = %g (expected %llu): the engines do not agree, times mean nothing\n",
                c.name.c_str(), engine.c_str(), static_cast<unsigned long long>(found), at.time,
                static_cast<unsigned long long>(expected));
   std::exit(1);
@@ -157,36 +159,37 @@ constexpr clockid_t clock_of = std::same_as<Engine, InSegments<2>> ? CLOCK_MONOT
 
 template <class Engine> void measure(benchmark::State& state, const Case& c, const std::string& engine_name) {
   double late_seconds = 0;
-  std::uint64_t contacts = 0, late_contacts = 0;
+  std::uint64_t collisions = 0, late_collisions = 0;
   for (auto iteration : state) {
-    Engine engine(c.bodies);
+    Engine engine(c.particles);
     double seconds = 0;
     std::uint64_t before = 0;
     double last = 0;
     for (const Check& at : c.checks) {
-      before = engine.contacts();
+      before = engine.collisions();
       const double start = seconds_of(clock_of<Engine>);
       engine.advance(at.time);
       last = seconds_of(clock_of<Engine>) - start;
       seconds += last;
-      check(c, engine_name, at, engine.contacts());
+      check(c, engine_name, at, engine.collisions());
     }
-    contacts += engine.contacts();
+    collisions += engine.collisions();
     if constexpr (requires { engine.statistics(); }) {
       const auto& s = engine.statistics();
-      state.counters["windows"] = static_cast<double>(s.windows);
+      state.counters["slabs"] = static_cast<double>(s.slabs);
       state.counters["given_up"] = static_cast<double>(s.given_up);
       state.counters["again"] = static_cast<double>(s.again);
-      if (s.largest > 0) state.counters["parallel"] = static_cast<double>(s.contacts) / static_cast<double>(s.largest);
+      if (s.largest > 0)
+        state.counters["parallel"] = static_cast<double>(s.collisions) / static_cast<double>(s.largest);
     }
-    late_contacts += engine.contacts() - before;
+    late_collisions += engine.collisions() - before;
     late_seconds += last;
     state.SetIterationTime(seconds);
   }
   using benchmark::Counter;
-  state.counters["contacts/s"] = Counter(static_cast<double>(contacts), Counter::kIsRate);
-  state.counters["contacts"] = Counter(static_cast<double>(contacts), Counter::kAvgIterations);
-  state.counters["late/s"] = static_cast<double>(late_contacts) / late_seconds;
+  state.counters["collisions/s"] = Counter(static_cast<double>(collisions), Counter::kIsRate);
+  state.counters["collisions"] = Counter(static_cast<double>(collisions), Counter::kAvgIterations);
+  state.counters["late/s"] = static_cast<double>(late_collisions) / late_seconds;
 }
 
 template <class Engine> void enter(const std::string& engine, const std::shared_ptr<const Case>& c) {
@@ -218,10 +221,10 @@ int main(int argc, char** argv) {
   // 6500 positions in double do not resolve the cluster any more, and counts begin to differ.
   enter_all(
       {"shock/8000", shock(8000), {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
-  for (const BodyIndex n : {100'000, 1'000'000})
+  for (const ParticleIndex n : {100'000, 1'000'000})
     enter_all({"shock/" + std::to_string(n), shock(n), {{2000, 0}, {4000, 0}}});
-  const std::pair<BodyIndex, double> gases[] = {{100, 300},    {1000, 300},     {8000, 300},
-                                                {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
+  const std::pair<ParticleIndex, double> gases[] = {{100, 300},    {1000, 300},     {8000, 300},
+                                                    {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
   for (const auto& [n, until] : gases) enter_all({"gas/" + std::to_string(n), gas(n), {{until / 2, 0}, {until, 0}}});
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

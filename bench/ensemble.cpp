@@ -1,12 +1,12 @@
-// What an ensemble costs beside its runs, what threads gain, and whether two replicas interleaved contact by contact in
-// one thread go faster than one after the other.
+// What an ensemble costs beside its runs, what threads gain, and whether two replicas interleaved collision by
+// collision in one thread go faster than one after the other.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_ensemble
 //   build/release/bench/bench_ensemble --benchmark_enable_random_interleaving=true --benchmark_repetitions=5
 //                                      --benchmark_report_aggregates_only=true
 //
-// wet   replicas of 1e4 bodies, E_loss = .05, to t = 9900, 101 samples (30,000 contacts each)
-// dry   replicas of the bundled scene fig2 to t = 4000, 101 samples (4.7 million contacts each)
+// wet   replicas of 1e4 particles, E_loss = 0.05, to t = 9900, 101 samples (30,000 collisions each)
+// dry   replicas of the bundled scene fig2 to t = 4000, 101 samples (4.7 million collisions each)
 //
 // runs          as `cradle run` makes them, one after the other, results thrown away
 // ensemble/T    as `cradle ensemble --threads T`: journal, statistics, file
@@ -23,10 +23,10 @@
 #include <memory>
 #include <string>
 
-#include "cradle/core/cluster_chain.hpp"
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/rows.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 
 namespace {
@@ -68,7 +68,7 @@ void enter_scene(const std::string& of, const tools::Scene& scene, int replicas)
 
 // ---- engines
 
-std::shared_ptr<const cradle::Bodies<double>> rows(cradle::BodyIndex particles, int replica) {
+std::shared_ptr<const cradle::Particles<double>> rows(cradle::ParticleIndex particles, int replica) {
   const auto displacement = cradle::uniform_displacement(0.05, 1, static_cast<std::uint64_t>(replica));
   return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(particles, 0.5, 1.0, displacement));
 }

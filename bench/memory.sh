@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Peak resident memory of the program for two rows of 8000 and of 2e7 bodies, run until t = 1000: rows are streamed, so
-# memory follows the active zone and the two must be about the same. Prints both and their ratio.
+# Peak resident memory of the program for two rows of 8000 and of 2e7 particles, run until t = 1000: rows are streamed,
+# so memory follows the active zone and the two must be about the same. Prints both and their ratio.
 #   bench/memory.sh [PROGRAM]      (default: build/release/tools/cradle)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

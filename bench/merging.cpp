@@ -1,14 +1,14 @@
-// Contacts per second where bodies merge or pass through each other, wet and sticky, against a conventional engine in
-// absolute coordinates (twins/merging.hpp), in one run: read the ratios. And the sticky gas without events: the O(N)
-// solution of core/sticky_gas.hpp.
+// Collisions per second where particles merge or pass through each other, wet and sticky, against a conventional engine
+// in absolute coordinates (twins/merging.hpp), in one run: read the ratios. And the sticky gas without events: the O(N)
+// solution of core/engine/sticky_gas.hpp.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_merging
 //   build/release/bench/bench_merging --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
 //
-// shock    the paper's wet shocks, Fig. 6 (N = 5e4, E_loss = 1e-4, to t = 12000) and Fig. 11 (N = 2e7, E_loss = .05, to
-//          1.9e7; and rows of 55,000 to 1e5, since the conventional engine holds every body). Counts are the published
-//          ones.
-// cooling  N bodies on a ring, Gaussian velocities of variance 1, to t = 1000.
+// shock    the paper's wet shocks, Fig. 6 (N = 5e4, E_loss = 1e-4, to t = 12000) and Fig. 11 (N = 2e7, E_loss = 0.05,
+//          to 1.9e7; and rows of 55,000 to 1e5, since the conventional engine holds every particle). Counts are the
+//          published ones.
+// cooling  N particles on a ring, Gaussian velocities of variance 1, to t = 1000.
 //
 // Times are of the thread, with two threads of the wall. Debian's Google Benchmark prints "library was built as DEBUG":
 // that concerns its own timers.
@@ -23,17 +23,17 @@
 
 #include <benchmark/benchmark.h>
 
-#include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
-#include "cradle/core/ring.hpp"
-#include "cradle/core/rows.hpp"
-#include "cradle/core/segments.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/parallel/segments.hpp"
 #include "twins/merging.hpp"
 
 namespace {
 
-using BodiesPointer = std::shared_ptr<const cradle::Bodies<double>>;
+using ParticlesPointer = std::shared_ptr<const cradle::Particles<double>>;
 
 double seconds_of(clockid_t clock) {
   std::timespec now{};
@@ -42,8 +42,8 @@ double seconds_of(clockid_t clock) {
 }
 
 // Rows displaced by the hash of the published counts.
-BodiesPointer rows(cradle::BodyIndex n) {
-  return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(n, 0.5, 1.0, [](cradle::BodyIndex i) {
+ParticlesPointer rows(cradle::ParticleIndex n) {
+  return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(n, 0.5, 1.0, [](cradle::ParticleIndex i) {
     std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15;
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
     z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
@@ -51,18 +51,19 @@ BodiesPointer rows(cradle::BodyIndex n) {
   }));
 }
 
-BodiesPointer ring(cradle::BodyIndex n) {
+ParticlesPointer ring(cradle::ParticleIndex n) {
   return std::make_shared<cradle::Ring<double>>(n, static_cast<double>(n), 1.0, cradle::gaussian_velocity(1, 0),
                                                 cradle::uniform_displacement(0, 1, 0));
 }
 
 struct Cradle {
   static constexpr clockid_t clock = CLOCK_THREAD_CPUTIME_ID;
-  static std::uint64_t run(const cradle::Bodies<double>&, const BodiesPointer& bodies, double loss, double until) {
+  static std::uint64_t run(const cradle::Particles<double>&, const ParticlesPointer& particles, double loss,
+                           double until) {
     const auto made = [&](auto law) {
-      cradle::Simulation engine(law, cradle::ClusterChain<double>(bodies, 0.0));
+      cradle::Simulation engine(law, cradle::ClusterChain<double>(particles, 0.0));
       engine.advance(until);
-      return engine.counts().contacts;
+      return engine.counts().collisions;
     };
     return loss < 0 ? made(cradle::Sticky<double>{}) : made(cradle::Wet<double>(loss));
   }
@@ -70,52 +71,54 @@ struct Cradle {
 // In segments, on so many threads.
 template <unsigned threads> struct InSegments {
   static constexpr clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
-  static std::uint64_t run(const cradle::Bodies<double>&, const BodiesPointer& bodies, double loss, double until) {
+  static std::uint64_t run(const cradle::Particles<double>&, const ParticlesPointer& particles, double loss,
+                           double until) {
     const cradle::TbbExecutor executor(threads);
     const auto made = [&]<class Law>(const Law& law) {
       using Chain = cradle::ClusterChain<double>;
-      cradle::Simulation engine(law, Chain(bodies, 0.0));
+      cradle::Simulation engine(law, Chain(particles, 0.0));
       cradle::Segments<Law, Chain> segments(cradle::workers(executor));
       engine.advance(until, segments);
-      return engine.counts().contacts;
+      return engine.counts().collisions;
     };
     return loss < 0 ? made(cradle::Sticky<double>{}) : made(cradle::Wet<double>(loss));
   }
 };
 struct Twin {
   static constexpr clockid_t clock = CLOCK_THREAD_CPUTIME_ID;
-  static std::uint64_t run(const cradle::Bodies<double>& bodies, const BodiesPointer&, double loss, double until) {
-    twins::MergingEngine engine(bodies, loss);
+  static std::uint64_t run(const cradle::Particles<double>& particles, const ParticlesPointer&, double loss,
+                           double until) {
+    twins::MergingEngine engine(particles, loss);
     engine.advance(until);
-    return engine.contacts();
+    return engine.collisions();
   }
 };
 
-// Setting up counts: it is part of what a run costs, and conventional engines set up every body of the rows.
+// Setting up counts: it is part of what a run costs, and conventional engines set up every particle of the rows.
 template <class Engine>
-void enter(const std::string& of, const std::string& engine, const BodiesPointer& bodies, double loss, double until,
-           std::uint64_t published = 0) {
+void enter(const std::string& of, const std::string& engine, const ParticlesPointer& particles, double loss,
+           double until, std::uint64_t published = 0) {
   const std::string name = of + "/" + engine;
   benchmark::RegisterBenchmark(
       name.c_str(),
       [=](benchmark::State& state) {
-        std::uint64_t contacts = 0;
+        std::uint64_t collisions = 0;
         for (auto iteration : state) {
           const double start = seconds_of(Engine::clock);
-          const std::uint64_t made = Engine::run(*bodies, bodies, loss, until);
+          const std::uint64_t made = Engine::run(*particles, particles, loss, until);
           state.SetIterationTime(seconds_of(Engine::clock) - start);
           static std::map<std::string, std::uint64_t> seen;  // by the first engine asked
           const std::uint64_t expected = published > 0 ? published : seen.try_emplace(of, made).first->second;
           if (made != expected) {
-            std::fprintf(stderr, "%s: %llu contacts (expected %llu): times mean nothing\n", name.c_str(),
+            std::fprintf(stderr, "%s: %llu collisions (expected %llu): times mean nothing\n", name.c_str(),
                          static_cast<unsigned long long>(made), static_cast<unsigned long long>(expected));
             std::exit(1);
           }
-          contacts += made;
+          collisions += made;
         }
         using benchmark::Counter;
-        state.counters["contacts"] = Counter(static_cast<double>(contacts), Counter::kAvgIterations);
-        state.counters["contacts/s"] = Counter(static_cast<double>(contacts), Counter::kIsRate);
+        state.counters["collisions"] = Counter(static_cast<double>(collisions), Counter::kAvgIterations);
+        state.counters["collisions/s"] = Counter(static_cast<double>(collisions), Counter::kIsRate);
       })
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
@@ -131,14 +134,14 @@ int main(int argc, char** argv) {
   enter<Cradle>("wet/fig11", "cradle", rows(20'000'000), 0.05, 1.9e7, 57079264);
   enter<Cradle>("wet/fig11_begin", "cradle", rows(110'000), 0.05, 1e5);
   enter<Twin>("wet/fig11_begin", "conventional", rows(110'000), 0.05, 1e5);
-  for (const cradle::BodyIndex n : {10'000, 100'000, 1'000'000}) {
-    const BodiesPointer bodies = ring(n);
+  for (const cradle::ParticleIndex n : {10'000, 100'000, 1'000'000}) {
+    const ParticlesPointer particles = ring(n);
     for (const double loss : {-1.0, 0.1}) {
       const std::string of = (loss < 0 ? "sticky/cooling/" : "wet/cooling/") + std::to_string(n);
-      enter<Cradle>(of, "cradle", bodies, loss, 1000);
-      enter<InSegments<1>>(of, "cradle_segments", bodies, loss, 1000);
-      enter<InSegments<2>>(of, "cradle_two_threads", bodies, loss, 1000);
-      enter<Twin>(of, "conventional", bodies, loss, 1000);
+      enter<Cradle>(of, "cradle", particles, loss, 1000);
+      enter<InSegments<1>>(of, "cradle_segments", particles, loss, 1000);
+      enter<InSegments<2>>(of, "cradle_two_threads", particles, loss, 1000);
+      enter<Twin>(of, "conventional", particles, loss, 1000);
     }
   }
   benchmark::RunSpecifiedBenchmarks();

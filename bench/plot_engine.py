@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Picture of time per contact against the number of bodies: plot_engine.py JSON OUT.png, with the JSON of
+"""Picture of time per collision against the number of particles: plot_engine.py JSON OUT.png, with the JSON of
 
     bench_engine --benchmark_filter=gas --benchmark_out=JSON --benchmark_out_format=json
 
-One line per engine: a gas of N bodies, all of them active; of repetitions the median is taken.
+One line per engine: a gas of N particles, all of them active; of repetitions the median is taken.
 """
 import json
 import statistics
@@ -22,14 +22,14 @@ ENGINES = {"cradle_two_threads": ("Cradle, two threads (wall time)", "#D55E00", 
 
 
 def read(path):
-    """{engine: {bodies: [ns per contact]}}"""
+    """{engine: {particles: [ns per collision]}}"""
     found = {}
     with open(path, encoding="utf-8") as file:
         for run in json.load(file)["benchmarks"]:
             if run.get("run_type") == "aggregate" or not run["name"].startswith("gas/"):
                 continue
-            _, bodies, engine, *_ = run["name"].split("/")
-            found.setdefault(engine, {}).setdefault(int(bodies), []).append(1e9 / run["contacts/s"])
+            _, particles, engine, *_ = run["name"].split("/")
+            found.setdefault(engine, {}).setdefault(int(particles), []).append(1e9 / run["collisions/s"])
     return found
 
 
@@ -42,8 +42,8 @@ def main(path, out):
             axes.plot(*zip(*points), style, color=colour, label=name, markersize=5)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlabel("bodies $N$")
-    axes.set_ylabel("time per contact (ns)")
+    axes.set_xlabel("particles $N$")
+    axes.set_ylabel("time per collision (ns)")
     axes.grid(True, which="both", color="0.92")
     axes.legend(frameon=False, fontsize=9)
     figure.savefig(out, dpi=150)

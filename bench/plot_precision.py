@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Picture of run time against error: plot_precision.py CSV OUT.png, with the CSV of bench_precision.
 
-Panels: (a) three-body collapse, (b) shock into the collapsed cluster, (c) time reversal, (d) speed on the long shock.
-One marker per representation, one colour per type; the line is the Pareto front: nothing is both faster and nearer (by
-half a digit).
+Panels: (a) three-particle collapse, (b) shock into the collapsed cluster, (c) time reversal, (d) speed on the long
+shock. One marker per representation, one colour per type; the line is the Pareto front: nothing is both faster and
+nearer (by half a digit).
 Errors run from 1 (no digit is right) to 1e-200 on an axis that is linear in the square root of the digits.
 """
 import csv
@@ -75,26 +75,26 @@ def main(source, target):
                 for (name, representation, kind), values in found.items()
                 if name == scene and (quantity, time) in values]
 
-    def per_contact(values):
-        return values["ns_per_contact", ""]
+    def per_collision(values):
+        return values["ns_per_collision", ""]
 
-    scatter(a, points("three", lambda v: v["ns_per_contact", ""] * v["contacts", ""] / 1e3, "time_error"),
+    scatter(a, points("three", lambda v: v["ns_per_collision", ""] * v["collisions", ""] / 1e3, "time_error"),
             "microseconds for the whole run", [
                 ("gaps", "double", 2, -13, "center"), ("absolute", "double", -4, 12, "left"),
                 ("gaps", "double-double", -6, -10, "right"), ("gaps", "mpfr 50", -9, -5, "right"),
                 ("gaps", "mpfr 100", -9, -5, "right"), ("gaps", "mpfr 200", -9, -4, "right")])
-    a.set_title("(a) collapse time of three bodies, against 12/7")
+    a.set_title("(a) collapse time of three particles, against 12/7")
     a.set_ylabel("relative error")
 
     end = max((time for (name, *_), values in found.items() if name == "shock"
                for quantity, time in values if quantity == "gap_error"), key=float)
-    scatter(b, points("shock", per_contact, "gap_error", end), "nanoseconds per contact", [
+    scatter(b, points("shock", per_collision, "gap_error", end), "nanoseconds per collision", [
         ("gaps", "double", 2, -13, "center"), ("absolute", "double", 9, 0, "left"), *WIDE_LABELS])
-    contacts = found["shock", "gaps", "double"]["contacts", ""]
+    collisions = found["shock", "gaps", "double"]["collisions", ""]
     b.set_title(f"(b) median gap in the collapsed shock, N = 1000, t = {end},\n"
-                f"after {contacts / 1e6:.1f} million contacts")
+                f"after {collisions / 1e6:.1f} million collisions")
 
-    scatter(c, points("reversal", per_contact, "position_error"), "nanoseconds per contact", [
+    scatter(c, points("reversal", per_collision, "position_error"), "nanoseconds per collision", [
         ("gaps", "double", 2, -13, "center"), *WIDE_LABELS])
     c.set_title("(c) positions of an elastic gas, there and back")
     c.set_ylabel("error")
@@ -107,7 +107,7 @@ def main(source, target):
             values = found.get(("speed", representation, kind))
             if not values:
                 continue
-            rate = 1e3 / values["ns_per_contact", ""]
+            rate = 1e3 / values["ns_per_collision", ""]
             plain = representation == "conventional"
             d.barh(y + height, rate, 0.5 if plain else 0.38, color="0.6" if plain else COLOURS[kind],
                    hatch="////" if representation == "absolute" else None, edgecolor="white", lw=0)
@@ -119,7 +119,7 @@ def main(source, target):
     d.minorticks_off()
     d.set_yticks(range(len(order)), labels)
     d.invert_yaxis()
-    d.set_xlabel("million contacts per second, one core")
+    d.set_xlabel("million collisions per second, one core")
     d.set_title("(d) shock of N = 8000 to t = 4000; hatched: absolute positions")
     d.grid(color="0.92", axis="x")
     d.set_axisbelow(True)

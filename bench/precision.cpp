@@ -4,10 +4,11 @@
 //   build/release/bench/bench_precision --csv=precision.csv        (five minutes; parts of it: --benchmark_filter)
 //   bench/plot_precision.py precision.csv bench/pictures/precision.png
 //
-// collapse   three and four bodies: collapse time against its closed form, contacts until the gap is wrong
-// shock      N = 1000 into the collapsed cluster: energy, front and gaps against 230 digits, first contact out of order
+// collapse   three and four particles: collapse time against its closed form, collisions until the gap is wrong
+// shock      N = 1000 into the collapsed cluster: energy, front and gaps against 230 digits, first collision out of
+//            order
 // order      N = 8000 to t = 6500, the paper's Fig. 3: the same against 100 digits, for the faster types
-// speed      N = 8000 to t = 4000: contacts per second, conventional engines in double (twins/) beside them
+// speed      N = 8000 to t = 4000: collisions per second, conventional engines in double (twins/) beside them
 // reversal   elastic gas there and back: rounding alone
 //
 // Errors are relative and at most 1. The CSV has a line per number: scene, representation, type, quantity, t, value.
@@ -53,11 +54,11 @@ class Report {
         counter(quantity) == quantity ? value : -std::log10(value);
     rows()[{scene_, representation_, type_, quantity, time}] = value;
   }
-  void cost(double seconds, std::uint64_t contacts) {
+  void cost(double seconds, std::uint64_t collisions) {
     state_.SetIterationTime(seconds);
-    add("contacts", static_cast<double>(contacts));
-    add("ns_per_contact", 1e9 * seconds / static_cast<double>(contacts));
-    state_.counters["contacts/s"] = static_cast<double>(contacts) / seconds;
+    add("collisions", static_cast<double>(collisions));
+    add("ns_per_collision", 1e9 * seconds / static_cast<double>(collisions));
+    state_.counters["collisions/s"] = static_cast<double>(collisions) / seconds;
   }
 
   static void write(const std::string& path) {
@@ -99,11 +100,11 @@ void measure_collapse(benchmark::State& state, const Engine& engine, const Colla
   for (auto iteration : state) {
     const CollapseOutcome outcome = measure(engine, scene);
     Report found = report(state, scene.name, engine);
-    found.cost(outcome.seconds, outcome.contacts);
+    found.cost(outcome.seconds, outcome.collisions);
     found.add("time_error", outcome.extrapolated);
     found.add("claimed_time_error", outcome.claimed);
     found.add("summed_time_error", outcome.summed);
-    found.add("contacts_right", static_cast<double>(outcome.contacts_right));
+    found.add("collisions_right", static_cast<double>(outcome.collisions_right));
   }
 }
 
@@ -111,7 +112,7 @@ void measure_reversal(benchmark::State& state, const Engine& engine) {
   for (auto iteration : state) {
     const ReversalOutcome outcome = reverse(engine);
     Report found = report(state, "reversal", engine);
-    found.cost(outcome.seconds, outcome.contacts);
+    found.cost(outcome.seconds, outcome.collisions);
     found.add("position_error", outcome.error);
   }
 }
@@ -126,17 +127,18 @@ void add_errors(Report& found, const ShockScene& scene, const ShockRun& run, con
   }
 }
 
-// Contacts, of the reference's, and time up to which the order is right; all there are if it is right to the end.
+// Collisions, of the reference's, and time up to which the order is right; all there are if it is right to the end.
 void add_order(Report& found, const ShockScene& scene, const ShockRun& run, const ShockRun& exact) {
   const auto agreed = last_agreement(exact.samples, run.samples);
   const Sample last = agreed.value_or(exact.samples.back());
-  found.add("order_right_contacts", static_cast<double>(last.contacts));
+  found.add("order_right_collisions", static_cast<double>(last.collisions));
   found.add("order_right_time", last.time);
   found.add("order_wrong", agreed ? 1 : 0);
-  if (exact.states.back().contacts / samples != scene.contacts / samples)
-    std::fprintf(stderr, "%s: %llu contacts in the reference run (expected about %llu): samples are spaced otherwise\n",
-                 scene.name.c_str(), static_cast<unsigned long long>(exact.states.back().contacts),
-                 static_cast<unsigned long long>(scene.contacts));
+  if (exact.states.back().collisions / samples != scene.collisions / samples)
+    std::fprintf(stderr,
+                 "%s: %llu collisions in the reference run (expected about %llu): samples are spaced otherwise\n",
+                 scene.name.c_str(), static_cast<unsigned long long>(exact.states.back().collisions),
+                 static_cast<unsigned long long>(scene.collisions));
 }
 
 // The scene's reference run, traced, and when it was sampled.
@@ -154,7 +156,7 @@ void measure_shock(benchmark::State& state, const Engine& engine) {
     for (int trial = 0; trial < 2 && plain.seconds < 1; ++trial)
       plain.seconds = std::min(plain.seconds, run(engine, shock).seconds);
     Report found = report(state, shock.name, engine);
-    found.cost(plain.seconds, plain.states.back().contacts);
+    found.cost(plain.seconds, plain.states.back().collisions);
     add_errors(found, shock, plain, exact.run);
     add_order(found, shock, run(engine, shock, exact.sampling), exact.run);
   }
@@ -166,7 +168,7 @@ void measure_order(benchmark::State& state, const Engine& engine) {
     const ShockRun traced = run(engine, order, exact.sampling);
     Report found = report(state, order.name, engine);
     state.SetIterationTime(traced.seconds);
-    found.add("contacts", static_cast<double>(traced.states.back().contacts));
+    found.add("collisions", static_cast<double>(traced.states.back().collisions));
     add_errors(found, order, traced, exact.run);
     add_order(found, order, traced, exact.run);
   }
@@ -174,29 +176,29 @@ void measure_order(benchmark::State& state, const Engine& engine) {
 
 template <class Once> void measure_speed(benchmark::State& state, Report found, Once once) {
   for (auto iteration : state) {
-    std::uint64_t contacts = 0;
-    double best = once(contacts);
-    for (int trial = 0; trial < 4 && best < 1; ++trial) best = std::min(best, once(contacts));
-    found.cost(best, contacts);
-    if (contacts != speed.contacts) state.SkipWithError("counts other contacts than it must: times mean nothing");
+    std::uint64_t collisions = 0;
+    double best = once(collisions);
+    for (int trial = 0; trial < 4 && best < 1; ++trial) best = std::min(best, once(collisions));
+    found.cost(best, collisions);
+    if (collisions != speed.collisions) state.SkipWithError("counts other collisions than it must: times mean nothing");
   }
 }
 
-double time_engine(const Engine& engine, const ShockScene& scene, std::uint64_t& contacts) {
+double time_engine(const Engine& engine, const ShockScene& scene, std::uint64_t& collisions) {
   return with_chain<double>(engine, [&]<class Chain>(std::type_identity<Chain>) {
     Run<Chain> simulation = prepare<Chain>(scene);
     const double start = thread_seconds();
     simulation.advance(typename Chain::Scalar(scene.times.back()));
-    contacts = simulation.counts().contacts;
+    collisions = simulation.counts().collisions;
     return thread_seconds() - start;
   });
 }
 
-template <class Twin> double time_twin(const ShockScene& scene, std::uint64_t& contacts) {
-  Twin twin(*rows<double>(scene.bodies), {0.999, 1e-5});
+template <class Twin> double time_twin(const ShockScene& scene, std::uint64_t& collisions) {
+  Twin twin(*rows<double>(scene.particles), {0.999, 1e-5});
   const double start = thread_seconds();
   twin.advance(scene.times.back());
-  contacts = twin.contacts();
+  collisions = twin.collisions();
   return thread_seconds() - start;
 }
 
@@ -209,7 +211,7 @@ template <class Measure> void enter(const std::string& name, Measure measure) {
 template <class Twin> void enter_twin(const std::string& name) {
   enter("speed/conventional/" + name, [=](benchmark::State& state) {
     measure_speed(state, Report(state, speed.name, "conventional", name),
-                  [](std::uint64_t& contacts) { return time_twin<Twin>(speed, contacts); });
+                  [](std::uint64_t& collisions) { return time_twin<Twin>(speed, collisions); });
   });
 }
 
@@ -228,7 +230,7 @@ void enter_all() {
   for (const Engine& engine : engines)
     enter("speed/" + engine.name(), [=](benchmark::State& state) {
       measure_speed(state, report(state, speed.name, engine),
-                    [&](std::uint64_t& contacts) { return time_engine(engine, speed, contacts); });
+                    [&](std::uint64_t& collisions) { return time_engine(engine, speed, collisions); });
     });
   for (const Engine& engine : engines)
     enter("shock/" + engine.name(), [=](benchmark::State& state) { measure_shock(state, engine); });

@@ -151,8 +151,8 @@ template <class M> class Ball {
     return is_positive(apart.middle_) ? Order::less : Order::greater;
   }
   friend Order order(const Ball& x, const Ball& y) {
-    const Order told = order_in_doubles(x, y);
-    return told != Order::open ? told : order_in_balls(x, y);
+    const Order order = order_in_doubles(x, y);
+    return order != Order::open ? order : order_in_balls(x, y);
   }
   friend bool operator<(const Ball& x, const Ball& y) { return order(x, y) == Order::less; }
   friend bool operator>(const Ball& x, const Ball& y) { return y < x; }

@@ -19,7 +19,7 @@
 namespace cradle {
 
 template <class T> struct Text;
-template <class T> struct SavedNumber;  // exactly, as bytes (core/state.hpp)
+template <class T> struct SavedNumber;  // exactly, as bytes (core/engine/state.hpp)
 
 // What scenes call the type.
 template <class T> inline constexpr std::string_view scalar_name = "";

@@ -2,7 +2,8 @@
 # What goes wrong on machines, done to the program on purpose: kills, full disks, folders that cannot be written, two
 # writers, damaged files, too little memory, clocks that jump. Prints one table: tried, failed. Failed is 0.
 #
-#   tests/faults.sh [PROGRAM] [KILLS]     program: build/release/tools/cradle; kills of runs, and as many of ensembles: 50
+#   tests/faults.sh [PROGRAM] [KILLS]     program: build/release/tools/cradle; kills of runs, and as many of ensembles:
+#   50
 #
 # Needs to mount a small tmpfs for the full disk (a user namespace of its own) and faketime for the clock; says where
 # there is none. SEED=n draws other moments.

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/support/tell.hpp"
+#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/version.hpp"
 
 using namespace cradle::tools;
@@ -20,7 +20,7 @@ namespace {
 const char* const first_steps =
     R"(Cradle: one-dimensional granular gases, event by event. To begin with:
 
-  cradle run fig2           two rows of inelastic bodies run into each other: fig2.h5, in a second or two
+  cradle run fig2           two rows of inelastic particles run into each other: fig2.h5, in a second or two
   cradle plot fig2.h5       its pictures: fig2.png and others beside it
   cradle report fig2.h5     all about it on one page: fig2.html
   cradle new                a commented scene of your own, shock.toml, for `cradle run shock.toml`
@@ -30,7 +30,7 @@ const char* const first_steps =
 )";
 
 int fail(std::string_view message, Exit status) {
-  tell(fmt::format("cradle: {}\n", message));
+  notify(fmt::format("cradle: {}\n", message));
   return static_cast<int>(status);
 }
 

@@ -23,7 +23,7 @@ step "plotting out/fig2.h5" "see the message above; the result itself is complet
 cat <<DONE
 
 Made:
-  out/fig2.h5    the result: velocities and profiles at several times, energy, contacts
+  out/fig2.h5    the result: velocities and profiles at several times, energy, collisions
   $(ls -m out/fig2*.png)
                  pictures of it; compare the first with Fig. 2 of the paper
   $cradle

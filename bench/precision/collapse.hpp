@@ -1,12 +1,12 @@
 #pragma once
-// Inelastic collapse of three and four equal bodies in the checkerboard pattern: collapse time and gaps are known
+// Inelastic collapse of three and four equal particles in the checkerboard pattern: collapse time and gaps are known
 // exactly. In units of the initial gap and closing speed,
 //
-//   three  x = (0, 1, 3),    v = (1, 0, -1),           eps = .05:  t_c = 12/7
-//   four   x = (0, 1, 3, 4), v = (3, 1, -1, -3)/2,     eps = .15:  t_c = 11/7; the outer gaps close together
+//   three  x = (0, 1, 3),    v = (1, 0, -1),           eps = 0.05:  t_c = 12/7
+//   four   x = (0, 1, 3, 4), v = (3, 1, -1, -3)/2,     eps = 0.15:  t_c = 11/7; the outer gaps close together
 //
 // With p the closing speed of the gap that closes, q and g those of the other kind, and c = 2 where both outer gaps
-// push the middle one, else 1:  q -> q + c (1 + eps) p/2,  p -> -eps p,  and the next contact comes after g/q.
+// push the middle one, else 1:  q -> q + c (1 + eps) p/2,  p -> -eps p,  and the next collision comes after g/q.
 
 #include <algorithm>
 #include <memory>
@@ -31,15 +31,15 @@ inline std::vector<CollapseScene> collapse_scenes() {
 }
 
 struct CollapseOutcome {
-  std::uint64_t contacts = 0;  // made until the collapse time is settled (policy stop); `seconds` are for these
+  std::uint64_t collisions = 0;  // made until the collapse time is settled (policy stop); `seconds` are for these
   double seconds = 0;
-  double extrapolated = 1;           // relative error of the collapse time as settled
-  double claimed = 1;                // what the engine says of it
-  double summed = 1;                 // and as the sum of all intervals between contacts that the type resolves
-  std::uint64_t contacts_right = 0;  // in the right order and with the gap right to 1e-6
+  double extrapolated = 1;             // relative error of the collapse time as settled
+  double claimed = 1;                  // what the engine says of it
+  double summed = 1;                   // and as the sum of all intervals between collisions that the type resolves
+  std::uint64_t collisions_right = 0;  // in the right order and with the gap right to 1e-6
 };
 
-inline constexpr std::uint64_t most_contacts = 2000;  // where counting right ones ends
+inline constexpr std::uint64_t most_collisions = 2000;  // where counting right ones ends
 
 template <class Chain> Run<Chain> prepare(const CollapseScene& scene, cradle::Policy<typename Chain::Scalar> policy) {
   using T = typename Chain::Scalar;
@@ -56,7 +56,7 @@ class ExactCollapse {
   explicit ExactCollapse(const CollapseScene& scene)
       : restitution_(scene.restitution), together_(scene.outer_together()) {}
 
-  bool outer() const { return outer_; }  // which kind closes: the outer gaps (of three bodies, the left one)
+  bool outer() const { return outer_; }  // which kind closes: the outer gaps (of three particles, the left one)
   const Wide& gap() const { return gap_; }
   void step() {
     const Wide flight = gap_ / closing_;
@@ -73,28 +73,28 @@ class ExactCollapse {
   bool together_, outer_ = true, first_ = true;
 };
 
-// Follows a collapse for as long as the type resolves it. Counts the contacts until one comes out of turn or finds a
-// gap that is not right to 1e-6; the time of the last contact is the sum of all intervals.
+// Follows a collapse for as long as the type resolves it. Counts the collisions until one comes out of turn or finds a
+// gap that is not right to 1e-6; the time of the last collision is the sum of all intervals.
 template <class Chain> void follow(const CollapseScene& scene, CollapseOutcome& outcome) {
   using T = typename Chain::Scalar;
   std::uint64_t right = 0, seen = 0;
   bool wrong = false;
   cradle::Policy<T> policy;
-  policy.interrupt = [&] { return seen >= most_contacts; };
+  policy.interrupt = [&] { return seen >= most_collisions; };
   Run<Chain> run = prepare<Chain>(scene, policy);
   ExactCollapse exact(scene);
   unsigned closed = 0;  // gaps closed in this half cycle, as bits
-  run.advance(T(2), [&](const cradle::Contact<T>& contact) {
+  run.advance(T(2), [&](const cradle::Collision<T>& collision) {
     ++seen;
     const unsigned outer = scene.outer_together() ? 0b101 : 0b001, all = exact.outer() ? outer : 0b010;
-    const unsigned own = 1U << contact.left;
+    const unsigned own = 1U << collision.left;
     if (wrong || !(own & all & ~closed)) {
       wrong = true;
       return;
     }
     if (closed == 0) {
-      const cradle::Slot slot = run.chain().first() + static_cast<cradle::Slot>(contact.left);
-      const T gap = run.chain().gap_at(slot, T(run.chain().due(slot) - contact.interval));
+      const cradle::Slot slot = run.chain().first() + static_cast<cradle::Slot>(collision.left);
+      const T gap = run.chain().gap_at(slot, T(run.chain().due(slot) - collision.interval));
       wrong = !(relative_error(widen(gap), exact.gap()) < 1e-6);
     }
     right += !wrong;
@@ -104,8 +104,8 @@ template <class Chain> void follow(const CollapseScene& scene, CollapseOutcome& 
       closed = 0;
     }
   });
-  outcome.contacts_right = std::min(right, most_contacts);
-  outcome.summed = relative_error(widen(run.last_contact_time()), scene.time());
+  outcome.collisions_right = std::min(right, most_collisions);
+  outcome.summed = relative_error(widen(run.last_collision_time()), scene.time());
 }
 
 inline CollapseOutcome measure(const Engine& engine, const CollapseScene& scene) {
@@ -117,7 +117,7 @@ inline CollapseOutcome measure(const Engine& engine, const CollapseScene& scene)
     outcome.seconds = best_seconds([&] {
       Run<Chain> run = prepare<Chain>(scene, stop);
       run.advance(T(2));
-      outcome.contacts = run.counts().contacts;
+      outcome.collisions = run.counts().collisions;
       if (!run.collapse().settled) return;
       const auto& found = run.collapse();
       outcome.extrapolated = relative_error(widen(found.time.high) + widen(found.time.low), scene.time());

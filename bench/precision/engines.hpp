@@ -13,17 +13,17 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/law.hpp"
-#include "cradle/core/list.hpp"
-#include "cradle/core/position_chain.hpp"
-#include "cradle/core/rows.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/laws/law.hpp"
 #include "cradle/precision/scalars.hpp"
 
 namespace precision {
 
-using cradle::BodyIndex;
+using cradle::ParticleIndex;
 
 // ---- engines
 

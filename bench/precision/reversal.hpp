@@ -1,7 +1,7 @@
 #pragma once
-// Time reversal of an elastic gas, 64 bodies with masses 1 and 3 in turn: run to t = 320, turn all velocities, run as
-// long again. In exact arithmetic every body is back where it started; unequal masses make the gas unstable, so what
-// is missing is rounding and nothing else, amplified by the contacts in between.
+// Time reversal of an elastic gas, 64 particles with masses 1 and 3 in turn: run to t = 320, turn all velocities, run
+// as long again. In exact arithmetic every particle is back where it started; unequal masses make the gas unstable, so
+// what is missing is rounding and nothing else, amplified by the collisions in between.
 
 #include <algorithm>
 #include <memory>
@@ -12,19 +12,20 @@
 namespace precision {
 
 struct ReversalOutcome {
-  std::uint64_t contacts = 0;  // both ways
+  std::uint64_t collisions = 0;  // both ways
   double seconds = 0;
-  double error = 1;  // root mean square of the bodies' distances from where they started, in mean spacings; at most 1
+  double error =
+      1;  // root mean square of the particles' distances from where they started, in mean spacings; at most 1
 };
 
-inline constexpr int reversal_bodies = 64, reversal_time = 320;
+inline constexpr int reversal_particles = 64, reversal_time = 320;
 
 inline ReversalOutcome reverse(const Engine& engine) {
   return with_chain<ReversalOutcome, cradle::IndividualMasses>(engine, []<class Chain>(std::type_identity<Chain>) {
     using T = typename Chain::Scalar;
     const T elastic(1), time(reversal_time);
     std::vector<T> x, v, m;
-    for (int i = 0; i < reversal_bodies; ++i) {
+    for (int i = 0; i < reversal_particles; ++i) {
       const std::uint64_t bits = hash(static_cast<std::uint64_t>(i));
       x.push_back(T(i) + T(static_cast<std::int64_t>(bits & 0x3FF)) / T(2048));
       v.push_back(T(static_cast<std::int64_t>((bits >> 20) & 0x3FFF) - 8192) / T(8192));
@@ -41,7 +42,7 @@ inline ReversalOutcome reverse(const Engine& engine) {
       Run<Chain> backward(law, Chain(std::make_shared<cradle::List<T>>(turned.x, turned.v, turned.m), T(0)));
       backward.advance(time);
       back = backward.chain().configuration(backward.chain().local_time(time)).x;
-      outcome.contacts = forward.counts().contacts + backward.counts().contacts;
+      outcome.collisions = forward.counts().collisions + backward.counts().collisions;
     });
     if (back.size() != x.size()) return outcome;
     Wide squares = 0;
@@ -49,7 +50,7 @@ inline ReversalOutcome reverse(const Engine& engine) {
       const Wide way = widen(back[i]) - widen(x[i]);
       squares += way * way;
     }
-    outcome.error = std::min(static_cast<double>(Wide(sqrt(Wide(squares / reversal_bodies)))), 1.0);
+    outcome.error = std::min(static_cast<double>(Wide(sqrt(Wide(squares / reversal_particles)))), 1.0);
     return outcome;
   });
 }

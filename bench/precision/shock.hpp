@@ -1,11 +1,11 @@
 #pragma once
-// The paper's shock, from the first contact into the collapsed cluster: two rows close in at speeds 1/2 and -1/2,
-// velocity cut-off 1e-5, every body displaced by a hash of its number. Two things are asked of an engine:
+// The paper's shock, from the first collision into the collapsed cluster: two rows close in at speeds 1/2 and -1/2,
+// velocity cut-off 1e-5, every particle displaced by a hash of its number. Two things are asked of an engine:
 //
 //   errors   of energy, front and gaps (median of their relative errors) at given times
-//   order    the first contact out of order. The digests of two runs' traces are sampled at many times; the runs
+//   order    the first collision out of order. The digests of two runs' traces are sampled at many times; the runs
 //            disagree from the first sample on from which digests differ for good (a sample between two runs' times of
-//            one contact differs only for the moment)
+//            one collision differs only for the moment)
 
 #include <algorithm>
 #include <memory>
@@ -19,39 +19,39 @@ namespace precision {
 
 struct ShockScene {
   std::string name;
-  BodyIndex bodies;
+  ParticleIndex particles;
   const char* restitution;
   std::vector<double> times;  // when errors are asked for; the run ends with the last
-  std::uint64_t contacts;     // of the whole run: sets how far apart samples are
+  std::uint64_t collisions;   // of the whole run: sets how far apart samples are
 };
 
-template <class T> std::shared_ptr<const cradle::Rows<T>> rows(BodyIndex bodies) {
-  const auto displacement = [](BodyIndex i) {
+template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex particles) {
+  const auto displacement = [](ParticleIndex i) {
     return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
   };
-  return std::make_shared<cradle::Rows<T>>(cradle::symmetric_rows<T>(bodies, T(1) / T(2), T(1), displacement));
+  return std::make_shared<cradle::Rows<T>>(cradle::symmetric_rows<T>(particles, T(1) / T(2), T(1), displacement));
 }
 
 template <class Chain> Run<Chain> prepare(const ShockScene& scene) {
   using T = typename Chain::Scalar;
   return {cradle::Inelastic<T>(cradle::from_text<T>(scene.restitution), cradle::from_text<T>("1e-5")),
-          Chain(rows<T>(scene.bodies), T(0))};
+          Chain(rows<T>(scene.particles), T(0))};
 }
 
 // ---- errors
 
 struct ShockState {
-  std::uint64_t contacts = 0;
+  std::uint64_t collisions = 0;
   Wide energy, front;
-  BodyIndex first = 0;     // body on the left of the first gap
-  std::vector<Wide> gaps;  // of the bodies that have collided, and the next on either side
+  ParticleIndex first = 0;  // particle on the left of the first gap
+  std::vector<Wide> gaps;   // of the particles that have collided, and the next on either side
 };
 
 template <class Chain> ShockState read(const Run<Chain>& run, const ShockScene& scene, double time) {
   const auto local = run.chain().local_time(typename Chain::Scalar(time));
   const auto configuration = run.chain().configuration(local);
-  ShockState state{run.counts().contacts,
-                   Wide(scene.bodies) / 8 - widen(run.energy_lost()),
+  ShockState state{run.counts().collisions,
+                   Wide(scene.particles) / 8 - widen(run.energy_lost()),
                    widen(run.chain().front_right(local)),
                    configuration.index.front(),
                    {}};
@@ -66,8 +66,8 @@ struct ShockErrors {
 inline ShockErrors errors(const ShockState& state, const ShockState& exact) {
   std::vector<double> gaps;
   for (std::size_t k = 0; k < exact.gaps.size(); ++k) {
-    const BodyIndex j = exact.first + static_cast<BodyIndex>(k) - state.first;
-    const bool held = j >= 0 && j < static_cast<BodyIndex>(state.gaps.size());
+    const ParticleIndex j = exact.first + static_cast<ParticleIndex>(k) - state.first;
+    const bool held = j >= 0 && j < static_cast<ParticleIndex>(state.gaps.size());
     gaps.push_back(held ? relative_error(state.gaps[static_cast<std::size_t>(j)], exact.gaps[k]) : 1);
   }
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
@@ -79,14 +79,14 @@ inline ShockErrors errors(const ShockState& state, const ShockState& exact) {
 
 inline constexpr std::uint64_t samples = 4000;
 
-// Sampling times: one in so many contacts, as gaps in double make them, halfway to the next contact; and the end.
+// Sampling times: one in so many collisions, as gaps in double make them, halfway to the next collision; and the end.
 inline std::vector<double> sampling_times(const ShockScene& scene) {
   std::vector<double> times;
   std::uint64_t made = 0;
-  const std::uint64_t stride = scene.contacts / samples;
+  const std::uint64_t stride = scene.collisions / samples;
   auto simulation = prepare<cradle::GapChain<double>>(scene);
-  simulation.advance(scene.times.back(), [&](const cradle::Contact<double>& contact) {
-    if (++made % stride == 0) times.push_back(contact.time.value() - contact.interval / 2);
+  simulation.advance(scene.times.back(), [&](const cradle::Collision<double>& collision) {
+    if (++made % stride == 0) times.push_back(collision.time.value() - collision.interval / 2);
   });
   times.push_back(scene.times.back());
   return times;
@@ -94,7 +94,7 @@ inline std::vector<double> sampling_times(const ShockScene& scene) {
 
 struct Sample {
   double time;
-  std::uint64_t digest, contacts;
+  std::uint64_t digest, collisions;
 };
 
 // The last sample in which both sums agree; nothing if that is the end of both runs.
@@ -124,15 +124,15 @@ inline ShockRun run(const Engine& engine, const ShockScene& scene, const std::ve
       if (sampling.empty())
         simulation.advance(T(until));
       else
-        simulation.advance(T(until),
-                           [&](const cradle::Contact<T>& contact) { trace.contact(contact.left, contact.right); });
+        simulation.advance(
+            T(until), [&](const cradle::Collision<T>& collision) { trace.collision(collision.left, collision.right); });
     };
     auto next = sampling.begin();
     for (const double time : scene.times) {
       const double start = thread_seconds();
       for (; next != sampling.end() && *next <= time; ++next) {
         advance(*next);
-        result.samples.push_back({*next, trace.digest(), simulation.counts().contacts});
+        result.samples.push_back({*next, trace.digest(), simulation.counts().collisions});
       }
       advance(time);
       result.seconds += thread_seconds() - start;

@@ -8,7 +8,7 @@ void IndexedHeapEngine::advance(double until) {
     const double time = heap_.due(gap);
     if (time > until) return;
     line_.collide(gap, time);
-    ++contacts_;
+    ++collisions_;
     heap_.update(gap, never);
     if (gap > 0) heap_.update(gap - 1, line_.due(gap - 1, time));
     if (gap + 1 < line_.gaps()) heap_.update(gap + 1, line_.due(gap + 1, time));

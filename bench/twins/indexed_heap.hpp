@@ -57,17 +57,18 @@ class IndexedHeap {
 
 class IndexedHeapEngine {
  public:
-  IndexedHeapEngine(const cradle::Bodies<double>& bodies, Law law) : line_(bodies, law), heap_(line_.all_due()) {}
+  IndexedHeapEngine(const cradle::Particles<double>& particles, Law law)
+      : line_(particles, law), heap_(line_.all_due()) {}
 
-  // Makes every contact at times <= until.
+  // Makes every collision at times <= until.
   void advance(double until);
 
-  std::uint64_t contacts() const { return contacts_; }
+  std::uint64_t collisions() const { return collisions_; }
 
  private:
   Line line_;
   IndexedHeap heap_;
-  std::uint64_t contacts_ = 0;
+  std::uint64_t collisions_ = 0;
 };
 
 }  // namespace twins

@@ -1,7 +1,7 @@
 #pragma once
-// Bodies on a line as a conventional event-driven program keeps them: absolute positions and velocities in double, each
-// body advanced only when it takes part in a contact. Equal masses; inelastic law with a velocity cut-off. The heaps
-// and the priority queue beside this file differ in how they find the next contact and in nothing else.
+// Particles on a line as a conventional event-driven program keeps them: absolute positions and velocities in double,
+// each particle advanced only when it takes part in a collision. Equal masses; inelastic law with a velocity cut-off.
+// The heaps and the priority queue beside this file differ in how they find the next collision and in nothing else.
 
 #include <algorithm>
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "cradle/core/bodies.hpp"
+#include "cradle/core/initial/particles.hpp"
 
 namespace twins {
 
@@ -17,22 +17,22 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 
 struct Law {
   double restitution;
-  double cutoff;  // closing speed below which contacts are elastic
+  double cutoff;  // closing speed below which collisions are elastic
 };
 
 class Line {
  public:
-  Line(const cradle::Bodies<double>& bodies, Law law) : law_(law) {
-    bodies_.reserve(static_cast<std::size_t>(bodies.count()));
-    for (cradle::BodyIndex b = 0; b < bodies.count(); ++b)
-      bodies_.push_back({bodies.position(b), bodies.velocity(b), 0});
+  Line(const cradle::Particles<double>& particles, Law law) : law_(law) {
+    particles_.reserve(static_cast<std::size_t>(particles.count()));
+    for (cradle::ParticleIndex b = 0; b < particles.count(); ++b)
+      particles_.push_back({particles.position(b), particles.velocity(b), 0});
   }
 
-  std::size_t gaps() const { return bodies_.size() - 1; }
+  std::size_t gaps() const { return particles_.size() - 1; }
 
-  // Time of the next contact of bodies i and i + 1, as seen at the time `now`.
+  // Time of the next collision of particles i and i + 1, as seen at the time `now`.
   double due(std::size_t i, double now) const {
-    const Body &left = bodies_[i], &right = bodies_[i + 1];
+    const Particle &left = particles_[i], &right = particles_[i + 1];
     const double closing = left.v - right.v;
     if (!(closing > 0)) return never;
     return now + std::max(right.at(now) - left.at(now), 0.0) / closing;  // rounding can make the gap negative
@@ -44,9 +44,9 @@ class Line {
     return times;
   }
 
-  // Contact of bodies i and i + 1.
+  // Collision of particles i and i + 1.
   void collide(std::size_t i, double time) {
-    Body &left = bodies_[i], &right = bodies_[i + 1];
+    Particle &left = particles_[i], &right = particles_[i + 1];
     left.advance(time);
     right.advance(time);
     right.x = left.x;
@@ -57,7 +57,7 @@ class Line {
   }
 
  private:
-  struct Body {
+  struct Particle {
     double x, v, time;  // x is the position at `time`
     double at(double t) const { return x + v * (t - time); }
     void advance(double t) {
@@ -67,7 +67,7 @@ class Line {
   };
 
   Law law_;
-  std::vector<Body> bodies_;
+  std::vector<Particle> particles_;
 };
 
 }  // namespace twins

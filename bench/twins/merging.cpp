@@ -11,22 +11,22 @@ namespace {
 constexpr auto none = std::numeric_limits<std::uint32_t>::max();
 }
 
-MergingEngine::MergingEngine(const cradle::Bodies<double>& bodies, double loss)
-    : loss_(loss), circumference_(bodies.circumference()), heap_({}) {
-  const auto count = static_cast<std::uint32_t>(bodies.count());
+MergingEngine::MergingEngine(const cradle::Particles<double>& particles, double loss)
+    : loss_(loss), circumference_(particles.circumference()), heap_({}) {
+  const auto count = static_cast<std::uint32_t>(particles.count());
   for (std::uint32_t b = 0; b < count; ++b)
-    bodies_.push_back({bodies.position(b), bodies.velocity(b), bodies.mass(b), 0, b - 1, b + 1});
-  bodies_.front().left = circumference_ > 0 ? count - 1 : none;
-  bodies_.back().right = circumference_ > 0 ? 0 : none;
+    particles_.push_back({particles.position(b), particles.velocity(b), particles.mass(b), 0, b - 1, b + 1});
+  particles_.front().left = circumference_ > 0 ? count - 1 : none;
+  particles_.back().right = circumference_ > 0 ? 0 : none;
   std::vector<double> times;
   for (std::uint32_t b = 0; b < count; ++b) times.push_back(due(b, 0));
   heap_ = IndexedHeap(std::move(times));
 }
 
 double MergingEngine::due(std::uint32_t i, double now) const {
-  const Body& left = bodies_[i];
+  const Particle& left = particles_[i];
   if (left.right == none || left.right == i) return never;
-  const Body& right = bodies_[left.right];
+  const Particle& right = particles_[left.right];
   const double closing = left.v - right.v;
   if (!(closing > 0)) return never;
   const double around = left.right < i ? circumference_ : 0;
@@ -34,9 +34,9 @@ double MergingEngine::due(std::uint32_t i, double now) const {
   return now + std::max(gap, 0.0) / closing;
 }
 
-void MergingEngine::fly(Body& body, double time) const {
-  body.x += body.v * (time - body.time);
-  body.time = time;
+void MergingEngine::fly(Particle& particle, double time) const {
+  particle.x += particle.v * (time - particle.time);
+  particle.time = time;
 }
 
 void MergingEngine::advance(double until) {
@@ -44,12 +44,12 @@ void MergingEngine::advance(double until) {
     const std::uint32_t i = heap_.first();
     const double time = heap_.due(i);
     if (time > until) return;
-    Body& left = bodies_[i];
+    Particle& left = particles_[i];
     const std::uint32_t j = left.right;
-    Body& right = bodies_[j];
+    Particle& right = particles_[j];
     fly(left, time);
     fly(right, time);
-    ++contacts_;
+    ++collisions_;
     const double closing = left.v - right.v, reduced = left.m * right.m / (left.m + right.m);
     const double centre = (left.m * left.v + right.m * right.v) / (left.m + right.m);
     if (reduced * closing * closing / 2 > loss_ && loss_ >= 0) {
@@ -64,7 +64,7 @@ void MergingEngine::advance(double until) {
       left.v = centre;
       left.m += right.m;
       left.right = right.right;
-      if (left.right != none) bodies_[left.right].left = i;
+      if (left.right != none) particles_[left.right].left = i;
       heap_.update(j, never);
       heap_.update(i, due(i, time));
     }

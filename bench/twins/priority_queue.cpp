@@ -12,7 +12,7 @@ void PriorityQueueEngine::advance(double until) {
     line_.collide(i, event.time);
     ++had_[i];
     ++had_[i + 1];
-    ++contacts_;
+    ++collisions_;
     if (i > 0) predict(i - 1, event.time);
     if (i + 1 < line_.gaps()) predict(i + 1, event.time);
   }

@@ -1,7 +1,7 @@
 #pragma once
-// The textbook event-driven engine: predicted contacts go into a std::priority_queue and stay there. A contact changes
-// what was predicted for the bodies involved; such stale events are known by the number of contacts that the two bodies
-// had when they were predicted, and are skipped when they surface.
+// The textbook event-driven engine: predicted collisions go into a std::priority_queue and stay there. A collision
+// changes what was predicted for the particles involved; such stale events are known by the number of collisions that
+// the two particles had when they were predicted, and are skipped when they surface.
 
 #include <queue>
 
@@ -11,14 +11,15 @@ namespace twins {
 
 class PriorityQueueEngine {
  public:
-  PriorityQueueEngine(const cradle::Bodies<double>& bodies, Law law) : line_(bodies, law), had_(line_.gaps() + 1, 0) {
+  PriorityQueueEngine(const cradle::Particles<double>& particles, Law law)
+      : line_(particles, law), had_(line_.gaps() + 1, 0) {
     for (std::size_t i = 0; i < line_.gaps(); ++i) predict(i, 0);
   }
 
-  // Makes every contact at times <= until.
+  // Makes every collision at times <= until.
   void advance(double until);
 
-  std::uint64_t contacts() const { return contacts_; }
+  std::uint64_t collisions() const { return collisions_; }
 
  private:
   struct Event {
@@ -33,9 +34,9 @@ class PriorityQueueEngine {
   }
 
   Line line_;
-  std::vector<std::uint32_t> had_;  // contacts of each body so far
+  std::vector<std::uint32_t> had_;  // collisions of each particle so far
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
-  std::uint64_t contacts_ = 0;
+  std::uint64_t collisions_ = 0;
 };
 
 }  // namespace twins

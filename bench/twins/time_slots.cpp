@@ -8,26 +8,26 @@ namespace twins {
 
 namespace {
 
-constexpr double contacts_per_slot = 2;
+constexpr double collisions_per_slot = 2;
 
 }  // namespace
 
-TimeSlotsEngine::TimeSlotsEngine(const cradle::Bodies<double>& bodies, Law law) : law_(law) {
-  const cradle::BodyIndex count = bodies.count() - 1;
+TimeSlotsEngine::TimeSlotsEngine(const cradle::Particles<double>& particles, Law law) : law_(law) {
+  const cradle::ParticleIndex count = particles.count() - 1;
   gaps_.reserve(static_cast<std::size_t>(count));
   std::vector<double> due;
-  for (cradle::BodyIndex b = 0; b < count; ++b) {
-    Gap gap{bodies.gap(b), bodies.closing_speed(b), 0};
+  for (cradle::ParticleIndex b = 0; b < count; ++b) {
+    Gap gap{particles.gap(b), particles.closing_speed(b), 0};
     if (gap.closing > 0) gap.due = gap.gap / gap.closing;
     if (gap.due < never) due.push_back(gap.due);
     gaps_.push_back(gap);
   }
   slots_.assign(std::bit_ceil(gaps_.size()), nobody);
-  // The pace of contacts at first: of those that are foreseen now.
+  // The pace of collisions at first: of those that are foreseen now.
   if (const std::size_t some = std::min<std::size_t>(due.size(), 1000); some > 0) {
     const auto last = due.begin() + static_cast<std::ptrdiff_t>(some - 1);
     std::nth_element(due.begin(), last, due.end());
-    if (*last > 0) slots_per_time_ = static_cast<double>(some) / *last / contacts_per_slot;
+    if (*last > 0) slots_per_time_ = static_cast<double>(some) / *last / collisions_per_slot;
   }
   for (std::uint32_t i = 0; i < gaps_.size(); ++i) enter(i);
   next_fit_ = 64;
@@ -89,15 +89,15 @@ void TimeSlotsEngine::kick(std::uint32_t i, double gain, double time) {
   predict(i);
 }
 
-// Slots as wide as the contacts since the last time ask for.
+// Slots as wide as the collisions since the last time ask for.
 void TimeSlotsEngine::fit(double time) {
-  const double pace = static_cast<double>(contacts_ - fitted_at_) / (time - fitted_time_);
+  const double pace = static_cast<double>(collisions_ - fitted_at_) / (time - fitted_time_);
   next_fit_ =
-      contacts_ + std::clamp<std::uint64_t>(contacts_ / 4, 64, 64 + gaps_.size() / 8);  // at first the pace rises
+      collisions_ + std::clamp<std::uint64_t>(collisions_ / 4, 64, 64 + gaps_.size() / 8);  // at first the pace rises
   if (!(time > fitted_time_)) return;
-  fitted_at_ = contacts_;
+  fitted_at_ = collisions_;
   fitted_time_ = time;
-  const double wanted = pace / contacts_per_slot;
+  const double wanted = pace / collisions_per_slot;
   if (wanted < 1.3 * slots_per_time_ && wanted > slots_per_time_ / 1.3) return;
   slots_per_time_ = wanted;
   now_ = static_cast<std::uint64_t>(time * slots_per_time_);
@@ -117,7 +117,7 @@ void TimeSlotsEngine::advance(double until) {
     predict(i);
     if (i > 0) kick(i - 1, impulse, time);
     if (i + 1 < gaps_.size()) kick(i + 1, impulse, time);
-    if (++contacts_ >= next_fit_) fit(time);
+    if (++collisions_ >= next_fit_) fit(time);
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // The best of the conventional engines: neighbours as gaps, as in Cradle, and a flat table of time slots for the next
-// contacts, each slot a list that is searched from end to end (a calendar queue; R. Brown 1988, doi
-// 10.1145/63039.63045). A slot is as wide as holds some two contacts and is fitted to the pace of contacts as it
+// collisions, each slot a list that is searched from end to end (a calendar queue; R. Brown 1988, doi
+// 10.1145/63039.63045). A slot is as wide as holds some two collisions and is fitted to the pace of collisions as it
 // changes, the table has a slot for every gap or two, so that few entries lie further ahead than once around.
 
 #include <cstddef>
@@ -14,12 +14,12 @@ namespace twins {
 
 class TimeSlotsEngine {
  public:
-  TimeSlotsEngine(const cradle::Bodies<double>& bodies, Law law);
+  TimeSlotsEngine(const cradle::Particles<double>& particles, Law law);
 
-  // Makes every contact at times <= until.
+  // Makes every collision at times <= until.
   void advance(double until);
 
-  std::uint64_t contacts() const { return contacts_; }
+  std::uint64_t collisions() const { return collisions_; }
 
  private:
   static constexpr std::uint32_t nobody = ~std::uint32_t{0};
@@ -45,7 +45,7 @@ class TimeSlotsEngine {
   double slots_per_time_ = 1;
   std::uint64_t now_ = 0;      // the slot that is looked at
   std::uint64_t entered_ = 0;  // gaps in the table
-  std::uint64_t contacts_ = 0, fitted_at_ = 0, next_fit_ = 0;
+  std::uint64_t collisions_ = 0, fitted_at_ = 0, next_fit_ = 0;
   double fitted_time_ = 0;
 };
 

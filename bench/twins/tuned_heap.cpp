@@ -7,7 +7,7 @@ void TunedHeapEngine::advance(double until) {
   while (heap_.front().time <= until) {
     const auto [time, i] = heap_.front();
     line_.collide(i, time);
-    ++contacts_;
+    ++collisions_;
     update(i, never);
     if (i > 0) update(i - 1, line_.due(i - 1, time));
     if (i + 1 < line_.gaps()) update(i + 1, line_.due(i + 1, time));

@@ -11,17 +11,17 @@ namespace twins {
 
 class TunedHeapEngine {
  public:
-  TunedHeapEngine(const cradle::Bodies<double>& bodies, Law law)
-      : line_(bodies, law), heap_(line_.gaps()), place_(line_.gaps()) {
+  TunedHeapEngine(const cradle::Particles<double>& particles, Law law)
+      : line_(particles, law), heap_(line_.gaps()), place_(line_.gaps()) {
     for (std::uint32_t i = 0; i < heap_.size(); ++i) heap_[i] = {line_.due(i, 0), i};
     std::make_heap(heap_.begin(), heap_.end(), [](const Event& a, const Event& b) { return a.time > b.time; });
     for (std::uint32_t p = 0; p < heap_.size(); ++p) place_[heap_[p].gap] = p;
   }
 
-  // Makes every contact at times <= until.
+  // Makes every collision at times <= until.
   void advance(double until);
 
-  std::uint64_t contacts() const { return contacts_; }
+  std::uint64_t collisions() const { return collisions_; }
 
  private:
   struct Event {
@@ -63,7 +63,7 @@ class TunedHeapEngine {
   Line line_;
   std::vector<Event> heap_;
   std::vector<std::uint32_t> place_;  // of each gap's entry in the heap
-  std::uint64_t contacts_ = 0;
+  std::uint64_t collisions_ = 0;
 };
 
 }  // namespace twins

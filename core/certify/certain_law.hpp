@@ -1,17 +1,17 @@
 #pragma once
-// Collision laws where closing speeds and coefficients are enclosed: what two bodies do, if that is certain, and the
+// Collision laws where closing speeds and coefficients are enclosed: what two particles do, if that is certain, and the
 // coefficients c of their new world lines (checker.hpp),
 //
 //   l' = l - c_l (l - r),   r' = r + c_r (l - r),
 //
 // in places at the start and velocities alike: c_l = J/(m_l w), c_r = J/(m_r w) for the impulse J. Among identical
-// bodies c = (1 + eps)/2 for both, 1 in an elastic contact; bodies that merge meet in c_l = m_r/(m_l + m_r).
+// particles c = (1 + eps)/2 for both, 1 in an elastic collision; particles that merge meet in c_l = m_r/(m_l + m_r).
 
 #include <optional>
 #include <utility>
 
 #include "cradle/core/certify/enclosing.hpp"
-#include "cradle/core/law.hpp"
+#include "cradle/core/laws/law.hpp"
 
 namespace cradle {
 
@@ -23,30 +23,30 @@ template <Enclosing N> struct CertainLaw {
   N restitution{1};
   bool elastic = false;                // restitution is 1
   std::optional<N> cutoff = {};        // none: 0
-  std::optional<N> contact_time = {};  // elastic where either body had a contact less than that before
-  N merge_speed{0};                    // merging: bodies stick below
-  N loss{0};                           // wet: energy per contact
+  std::optional<N> contact_time = {};  // elastic where either particle had a collision less than that before
+  N merge_speed{0};                    // merging: particles stick below
+  N loss{0};                           // wet: energy per collision
 
   bool bounces_only() const { return kind == Kind::inelastic; }
 };
 
-// Two bodies that meet, as the law sees them. `rest`: since the last contact of either, where it had one.
-template <Enclosing N> struct CertainContact {
+// Two particles that meet, as the law sees them. `rest`: since the last collision of either, where it had one.
+template <Enclosing N> struct CertainCollision {
   N closing;
   std::optional<N> left_rest, right_rest;  // of laws with a contact time
   const N* left_velocity;
   const N* right_velocity;
 };
 
-// What is certain of a contact.
+// What is certain of a collision.
 template <Enclosing N> struct CertainOutcome {
   Event event = Event::bounce;
   bool below_cutoff = false;
-  bool exchange = false;       // identical bodies, elastic: they exchange world lines
+  bool exchange = false;       // identical particles, elastic: they exchange world lines
   bool right_heavier = false;  // of two that merge
-  // Nothing: (1 + eps)/2, of identical bodies.
+  // Nothing: (1 + eps)/2, of identical particles.
   std::optional<typename N::Share> left, right;
-  // Wet: after the contact, known better than by the shares.
+  // Wet: after the collision, known better than by the shares.
   std::optional<N> left_velocity, right_velocity;
 
   void clear() {
@@ -56,7 +56,7 @@ template <Enclosing N> struct CertainOutcome {
   }
 };
 
-// What a law does to two bodies of these masses, which are not read where all have the same (`identical`). `tell` is
+// What a law does to two particles of these masses, which are not read where all have the same (`identical`). `tell` is
 // order(). Returns the two numbers whose order the law needs and that is open; nothing where all is certain.
 template <Enclosing N> class CertainLaws {
  public:
@@ -65,27 +65,27 @@ template <Enclosing N> class CertainLaws {
 
   explicit CertainLaws(const CertainLaw<N>& of) : law(of), bouncing((N(1) + of.restitution) / N(2)) {}
 
-  template <class Tell>
-  Open operator()(const CertainContact<N>& contact, const N& l_mass, const N& r_mass, bool identical, Tell tell,
-                  CertainOutcome<N>& outcome) const {
-    if (law.kind == Kind::sticky) return merged(l_mass, r_mass, tell, outcome), std::nullopt;
-    if (law.kind == Kind::wet) return wet(contact, l_mass, r_mass, tell, outcome);
-    const N& w = contact.closing;
+  template <class Compare>
+  Open operator()(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass, bool identical,
+                  Compare compare, CertainOutcome<N>& outcome) const {
+    if (law.kind == Kind::sticky) return merged(l_mass, r_mass, compare, outcome), std::nullopt;
+    if (law.kind == Kind::wet) return wet(collision, l_mass, r_mass, compare, outcome);
+    const N& w = collision.closing;
     if (law.kind == Kind::merging) {
-      const Order told = tell(w, law.merge_speed);
-      if (told == Order::open) return {{w, law.merge_speed}};
-      if (told == Order::less) return merged(l_mass, r_mass, tell, outcome), std::nullopt;
+      const Order order = compare(w, law.merge_speed);
+      if (order == Order::open) return {{w, law.merge_speed}};
+      if (order == Order::less) return merged(l_mass, r_mass, compare, outcome), std::nullopt;
     }
     if (law.cutoff) {
-      const Order told = tell(w, *law.cutoff);
-      if (told == Order::open) return {{w, *law.cutoff}};
-      outcome.below_cutoff = told == Order::less;
+      const Order order = compare(w, *law.cutoff);
+      if (order == Order::open) return {{w, *law.cutoff}};
+      outcome.below_cutoff = order == Order::less;
     }
-    for (const auto* rest : {&contact.left_rest, &contact.right_rest}) {
+    for (const auto* rest : {&collision.left_rest, &collision.right_rest}) {
       if (!*rest) continue;
-      const Order told = tell(**rest, *law.contact_time);
-      if (told == Order::open) return {{**rest, *law.contact_time}};
-      outcome.below_cutoff = outcome.below_cutoff || told == Order::less;
+      const Order order = compare(**rest, *law.contact_time);
+      if (order == Order::open) return {{**rest, *law.contact_time}};
+      outcome.below_cutoff = outcome.below_cutoff || order == Order::less;
     }
     const bool elastic = law.elastic || outcome.below_cutoff;
     outcome.exchange = elastic && identical;
@@ -100,25 +100,26 @@ template <Enclosing N> class CertainLaws {
   typename N::Share bouncing;
 
  private:
-  template <class Tell> void merged(const N& l_mass, const N& r_mass, Tell tell, CertainOutcome<N>& outcome) const {
+  template <class Compare>
+  void merged(const N& l_mass, const N& r_mass, Compare compare, CertainOutcome<N>& outcome) const {
     const N all = l_mass + r_mass;
     outcome.event = Event::merge;
-    outcome.right_heavier = tell(l_mass, r_mass) == Order::less;
+    outcome.right_heavier = compare(l_mass, r_mass) == Order::less;
     outcome.left.emplace(r_mass / all);
     outcome.right.emplace(l_mass / all);
   }
 
   // J(w) = mu (w - w') falls with w, at the rate mu (w/w' - 1). So v_l' = v_l - J(w)/m_l is J at the middle of w, and
   // what the radius of w makes of it at the greatest rate: enclosing J itself would forget that v_l is in w.
-  template <class Tell>
-  Open wet(const CertainContact<N>& contact, const N& l_mass, const N& r_mass, Tell tell,
+  template <class Compare>
+  Open wet(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass, Compare compare,
            CertainOutcome<N>& outcome) const {
-    const N& w = contact.closing;
+    const N& w = collision.closing;
     const N twice_loss = law.loss + law.loss, mu = l_mass * r_mass / (l_mass + r_mass), critical = twice_loss / mu;
     const N square = w * w;
-    const Order told = tell(critical, square);
-    if (told == Order::open) return {{critical, square}};
-    if (told == Order::greater) return merged(l_mass, r_mass, tell, outcome), std::nullopt;
+    const Order order = compare(critical, square);
+    if (order == Order::open) return {{critical, square}};
+    if (order == Order::greater) return merged(l_mass, r_mass, compare, outcome), std::nullopt;
     const auto impulse_at = [&](const N& speed) { return twice_loss / (speed + sqrt(speed * speed - critical)); };
     const N impulse = impulse_at(N(w.middle(), 0)), rate = mu * (w / sqrt(square - critical) - N(1));
     const auto after = [&](const N& velocity, const N& change, const N& mass) {
@@ -128,8 +129,8 @@ template <Enclosing N> class CertainLaws {
     const N over_speed = impulse_at(w) / w;
     outcome.left.emplace(over_speed / l_mass);
     outcome.right.emplace(over_speed / r_mass);
-    outcome.left_velocity = after(*contact.left_velocity, -impulse, l_mass);
-    outcome.right_velocity = after(*contact.right_velocity, impulse, r_mass);
+    outcome.left_velocity = after(*collision.left_velocity, -impulse, l_mass);
+    outcome.right_velocity = after(*collision.right_velocity, impulse, r_mass);
     return std::nullopt;
   }
 };

@@ -1,43 +1,44 @@
 #pragma once
-// A proof that a run is right. Given the contacts of a run one by one, as pairs of neighbours, the checker computes the
-// world lines of all bodies from the scene's own decimals, every number enclosed (precision/ball.hpp), and checks what
-// makes them the motion of the exact system. It shares no arithmetic with the engine that proposes the contacts.
+// A proof that a run is right. Given the collisions of a run one by one, as pairs of neighbours, the checker computes
+// the world lines of all particles from the scene's own decimals, every number enclosed (precision/ball.hpp), and
+// checks what makes them the motion of the exact system. It shares no arithmetic with the engine that proposes the
+// collisions.
 //
-// World lines. Body k flies along x = a_k + v_k t, t since the start, until its next contact. Two bodies l, r meet at
-// T = (a_r - a_l)/w, w = v_l - v_r, and whatever impulse J they exchange,
+// World lines. Particle k flies along x = a_k + v_k t, t since the start, until its next collision. Two particles l, r
+// meet at T = (a_r - a_l)/w, w = v_l - v_r, and whatever impulse J they exchange,
 //
 //   (a, v)_l' = (a, v)_l - c_l ((a, v)_l - (a, v)_r),   (a, v)_r' = (a, v)_r + c_r ((a, v)_l - (a, v)_r),
 //
 // c_l = J/(m_l w), c_r = J/(m_r w): one linear map for places and velocities, since both lines go through the same
-// point. The time T does not enter. For identical bodies c = (1 + eps)/2: the matrix is doubly stochastic, radii are
+// point. The time T does not enter. For identical particles c = (1 + eps)/2: the matrix is doubly stochastic, radii are
 // averaged and only roundings add to them. Merging is an average too.
 //
-// Checked at the start: every gap is certainly positive. At each contact of l and r:
+// Checked at the start: every gap is certainly positive. At each collision of l and r:
 //   1. they are neighbours;
 //   2. w > 0 certainly;
-//   3. T is certainly later than the last contact of either of them;
+//   3. T is certainly later than the last collision of either of them;
 //   4. w is certainly on one side of every threshold of the law.
-// At a time t to which the run is to be proved: every gap is certainly positive then, and the last contact of every
-// body certainly earlier.
+// At a time t to which the run is to be proved: every gap is certainly positive then, and the last collision of every
+// particle certainly earlier.
 //
 // Theorem. If all of this holds, these world lines are the motion of the exact system up to t, it has made exactly
-// these contacts, and every place and velocity lies in its ball.
+// these collisions, and every place and velocity lies in its ball.
 //
-// Proof. By 3 the contacts of each body are in the order of their true times, so its world line is a continuous,
-// piecewise linear function of time. Impulses push apart (J >= 0, with 2): a contact on the left of body k makes it
-// faster, one on its right slower. So between two contacts of a gap with itself, the place of the body on its left is a
-// convex function of time and that of the body on its right a concave one, and the gap is concave. It is 0 at its own
-// contacts and positive at the start and at t. A concave function that is 0 or positive at both ends of an interval is
-// positive within, unless it is 0 throughout; and that it is not: after a contact it opens at the speed w' > 0. So no
-// gap is ever negative, and each is 0 at its contacts alone: no contact is missing, none invented, each obeyed the law
-// (2, 4). Three bodies never meet at one time (3), so the motion is unique. Contacts that share no body may come in any
-// order. Bodies that pass exchange their cells of the line: J <= mu w, so the left cell goes on at v_r + J/m_r <= v_l
-// and the right one at v_l - J/m_l >= v_r, slower and faster as after a bounce.
+// Proof. By 3 the collisions of each particle are in the order of their true times, so its world line is a continuous,
+// piecewise linear function of time. Impulses push apart (J >= 0, with 2): a collision on the left of particle k makes
+// it faster, one on its right slower. So between two collisions of a gap with itself, the place of the particle on its
+// left is a convex function of time and that of the particle on its right a concave one, and the gap is concave. It is
+// 0 at its own collisions and positive at the start and at t. A concave function that is 0 or positive at both ends of
+// an interval is positive within, unless it is 0 throughout; and that it is not: after a collision it opens at the
+// speed w' > 0. So no gap is ever negative, and each is 0 at its collisions alone: no collision is missing, none
+// invented, each obeyed the law (2, 4). Three particles never meet at one time (3), so the motion is unique. Collisions
+// that share no particle may come in any order. Particles that pass exchange their cells of the line: J <= mu w, so the
+// left cell goes on at v_r + J/m_r <= v_l and the right one at v_l - J/m_l >= v_r, slower and faster as after a bounce.
 //
-// With a restitution of 0, w' = 0: bodies stay together until one of them is hit, and the next contact fails 2. Bodies
-// that merge have no gap any more. Bodies that pass change places, and their gap is one of cells in the order of the
-// line, as it is in the engine. On a ring the argument holds for the images. Bodies of a row that no contact has
-// reached fly in order, by how they were placed (rows.hpp).
+// With a restitution of 0, w' = 0: particles stay together until one of them is hit, and the next collision fails 2.
+// Particles that merge have no gap any more. Particles that pass change places, and their gap is one of cells in the
+// order of the line, as it is in the engine. On a ring the argument holds for the images. Particles of a row that no
+// collision has reached fly in order, by how they were placed (rows.hpp).
 
 #include <algorithm>
 #include <cmath>
@@ -58,17 +59,17 @@ enum class Check { neighbours, closing, later, side, gap, before, agreement };
 template <Enclosing N> struct Doubt {
   Check check = Check::gap;
   bool refuted = false;  // it is certain that it is not so; else it is open
-  BodyIndex left = -1, right = -1;
+  ParticleIndex left = -1, right = -1;
   N first{0}, second{0};
 };
 
-// What bounds the rounding of a run's bodies (agreement.hpp), in plain doubles.
+// What bounds the rounding of a run's particles (agreement.hpp), in plain doubles.
 struct Sizes {
-  std::uint64_t bodies = 0;
+  std::uint64_t particles = 0;
   double mass = 0, least_mass = 0, start_energy = 0, start_speed = 0, place = 0;  // speed, place: the largest
 
   void add(double of_mass, double speed) {
-    least_mass = bodies++ == 0 ? of_mass : std::min(least_mass, of_mass);
+    least_mass = particles++ == 0 ? of_mass : std::min(least_mass, of_mass);
     mass += of_mass;
     start_energy += of_mass * speed * speed / 2;
     start_speed = std::max(start_speed, std::abs(speed));
@@ -79,12 +80,12 @@ struct Sizes {
 template <Enclosing N> struct CertainState {
   std::optional<Doubt<N>> doubt;
   N energy{0};
-  N time{0}, closing{0};                     // at a contact: of it
-  std::optional<N> front_left, front_right;  // places of the outermost bodies that have collided, on a line
+  N time{0}, closing{0};                     // at a collision: of it
+  std::optional<N> front_left, front_right;  // places of the outermost particles that have collided, on a line
   // In powers of ten: the largest radius of a place, the smallest gap, the largest radius of one against itself.
   double widest = nothing, least_gap = -nothing, widest_of_gap = nothing;
   static constexpr double nothing = -std::numeric_limits<double>::infinity();
-  Sizes sizes;  // of the bodies held
+  Sizes sizes;  // of the particles held
 };
 
 template <Enclosing N> class Checker {
@@ -92,17 +93,17 @@ template <Enclosing N> class Checker {
   using Share = typename N::Share;
   using Line = WorldLine<N>;
 
-  Checker(std::shared_ptr<const Bodies<N>> bodies, const CertainLaw<N>& law)
-      : laws_(law), lines_(std::move(bodies), !law.bounces_only()), length_(lines_.bodies().circumference()),
-        half_(N(1) / N(2)), of_contacts_(law.kind == CertainLaw<N>::Kind::wet) {}
+  Checker(std::shared_ptr<const Particles<N>> particles, const CertainLaw<N>& law)
+      : laws_(law), lines_(std::move(particles), !law.bounces_only()), length_(lines_.particles().circumference()),
+        half_(N(1) / N(2)), of_collisions_(law.kind == CertainLaw<N>::Kind::wet) {}
 
-  // The bodies at the start.
+  // The particles at the start.
   std::optional<Doubt<N>> begin() const { return state_at(N(0)).doubt; }
 
-  // The next contact of the run. Where it is in doubt, no world line is changed.
-  std::optional<Doubt<N>> contact(BodyIndex left, BodyIndex right) {
+  // The next collision of the run. Where it is in doubt, no world line is changed.
+  std::optional<Doubt<N>> collision(ParticleIndex left, ParticleIndex right) {
     if (!lines_.holds(left) || !lines_.holds(right)) return Doubt<N>{Check::neighbours, true, left, right};
-    const BodyIndex l = lines_.cluster(left), r = lines_.cluster(right);
+    const ParticleIndex l = lines_.cluster(left), r = lines_.cluster(right);
     if (lines_.right(l) != r || l == r) return Doubt<N>{Check::neighbours, true, left, right};
     lines_.reach(l, r);
     auto doubt = strike(l, r);
@@ -110,44 +111,44 @@ template <Enclosing N> class Checker {
     return doubt;
   }
 
-  // All that is certain at a time since the start, up to which the run has made all contacts.
+  // All that is certain at a time since the start, up to which the run has made all collisions.
   CertainState<N> state_at(const N& time) const { return state_at(time, {}); }
-  // At the last contact, of a run that ends with it: the two that have met are in one place.
+  // At the last collision, of a run that ends with it: the two that have met are in one place.
   CertainState<N> state_now() const {
     CertainState<N> state = state_at(last_.time, last_);
     state.time = last_.time, state.closing = last_.closing;
     return state;
   }
-  // The body or cluster that goes by the number of one of its bodies, if that is held.
-  std::optional<BodyIndex> cluster(BodyIndex body) const {
-    if (!lines_.holds(body)) return {};
-    return lines_.cluster(body);
+  // The particle or cluster that goes by the number of one of its particles, if that is held.
+  std::optional<ParticleIndex> cluster(ParticleIndex particle) const {
+    if (!lines_.holds(particle)) return {};
+    return lines_.cluster(particle);
   }
-  // f(index, mass, place, velocity) for every body or cluster held, by index.
+  // f(index, mass, place, velocity) for every particle or cluster held, by index.
   template <class F> void for_each(const N& time, F f) const {
-    for (BodyIndex b = lines_.first(); b <= lines_.last(); ++b)
+    for (ParticleIndex b = lines_.first(); b <= lines_.last(); ++b)
       if (lines_.is_cluster(b)) f(b, lines_.mass(b), place_at(b, time), lines_[b].velocity);
   }
 
-  // Contacts proved, those of them that were below a threshold, those that merged, and those of which times and sides
+  // Collisions proved, those of them that were below a threshold, those that merged, and those of which times and sides
   // were told by plain doubles.
   struct Proved {
-    std::uint64_t contacts = 0, below_cutoff = 0, merges = 0, in_doubles = 0;
+    std::uint64_t collisions = 0, below_cutoff = 0, merges = 0, in_doubles = 0;
   };
   const Proved& proved() const { return proved_; }
 
  private:
   struct Meeting {
-    BodyIndex l = -1, r = -1;  // clusters, as they are after it: the same after a merger
+    ParticleIndex l = -1, r = -1;  // clusters, as they are after it: the same after a merger
     N time{0}, closing{0};
   };
 
   CertainState<N> state_at(const N& time, const Meeting& now) const {
     CertainState<N> state;
-    const auto meets = [&](BodyIndex b) { return b == now.l || b == now.r; };
+    const auto meets = [&](ParticleIndex b) { return b == now.l || b == now.r; };
     N before{0}, present{0};
-    for (BodyIndex b = lines_.first(); b <= lines_.last(); ++b) {
-      const N mass = lines_.bodies().mass(b), speed = lines_.bodies().velocity(b);
+    for (ParticleIndex b = lines_.first(); b <= lines_.last(); ++b) {
+      const N mass = lines_.particles().mass(b), speed = lines_.particles().velocity(b);
       before += mass * squared(speed);
       state.sizes.add(to_double(mass), to_double(speed));
       if (!lines_.is_cluster(b)) continue;
@@ -157,41 +158,41 @@ template <Enclosing N> class Checker {
       state.widest = std::max(state.widest, power_of_ten(x.radius()));
       state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
       if (line.touched && !meets(b))
-        if (const Order told = tell(line.changed, time); told != Order::less && !state.doubt)
-          state.doubt = Doubt<N>{Check::before, told == Order::greater, b, b, line.changed, time};
-      const BodyIndex next = lines_.right(b);
-      if (next != lines_.none && next != b && !(b == now.l && next == now.r)) look_at_gap(b, next, x, time, state);
+        if (const Order order = compare(line.changed, time); order != Order::less && !state.doubt)
+          state.doubt = Doubt<N>{Check::before, order == Order::greater, b, b, line.changed, time};
+      const ParticleIndex next = lines_.right(b);
+      if (next != lines_.none && next != b && !(b == now.l && next == now.r)) check_gap(b, next, x, time, state);
       if (lines_.on_ring() || !line.touched) continue;
-      // Bodies that no contact has reached stay between those that one has, in the order of their numbers: the first
-      // of several separate regions begins at the front on the left, the last one ends at that on the right.
+      // Particles that no collision has reached stay between those that one has, in the order of their numbers: the
+      // first of several separate regions begins at the front on the left, the last one ends at that on the right.
       const bool begins = lines_.left(b) == lines_.none || !lines_[lines_.left(b)].touched;
       if (begins && !state.front_left) state.front_left = x;
       if (next == lines_.none || !lines_[next].touched) state.front_right = x;
     }
     const bool all = lines_.first() == 0 && lines_.last() + 1 == lines_.count();
-    const N twice = all ? present : lines_.bodies().kinetic_energy() * N(2) - before + present;
+    const N twice = all ? present : lines_.particles().kinetic_energy() * N(2) - before + present;
     state.energy = twice * half_;
     return state;
   }
   static N squared(const N& x) { return x * x; }
   static double power_of_ten(auto radius) { return static_cast<double>(std::log10(radius)); }
-  N place_at(BodyIndex b, const N& time) const {
+  N place_at(ParticleIndex b, const N& time) const {
     const Line& line = lines_[b];
-    return line.place + line.velocity * (of_contacts_ ? time - origin(line) : time);
+    return line.place + line.velocity * (of_collisions_ ? time - origin(line) : time);
   }
 
-  Order tell(const N& x, const N& y) const {
-    const Order told = order_in_doubles(x, y);
-    if (told != Order::open) return told;
+  Order compare(const N& x, const N& y) const {
+    const Order order = order_in_doubles(x, y);
+    if (order != Order::open) return order;
     needed_balls_ = true;
     return order_in_balls(x, y);
   }
 
-  void look_at_gap(BodyIndex b, BodyIndex next, const N& x, const N& time, CertainState<N>& state) const {
+  void check_gap(ParticleIndex b, ParticleIndex next, const N& x, const N& time, CertainState<N>& state) const {
     N gap = place_at(next, time) - x;
     if (b == lines_.seam()) gap += length_;
-    if (const Order told = tell(N(0), gap); told != Order::less && !state.doubt)
-      state.doubt = Doubt<N>{Check::gap, told == Order::greater, b, next, N(0), gap};
+    if (const Order order = compare(N(0), gap); order != Order::less && !state.doubt)
+      state.doubt = Doubt<N>{Check::gap, order == Order::greater, b, next, N(0), gap};
     const double size = power_of_ten(gap.size());
     state.least_gap = std::min(state.least_gap, size);
     state.widest_of_gap = std::max(state.widest_of_gap, power_of_ten(gap.radius()) - size);
@@ -201,12 +202,12 @@ template <Enclosing N> class Checker {
   struct Places {
     N left, right, time{0};
   };
-  // Errors of wet bodies act on places from one contact to the next, and would from the start if that were the time
-  // that places are of: these are of a time near the contact. The other laws are linear, and know no time.
+  // Errors of wet particles act on places from one collision to the next, and would from the start if that were the
+  // time that places are of: these are of a time near the collision. The other laws are linear, and know no time.
   Places places_of(const Line& l, const Line& r, const N& closing, bool over_seam) const {
     Places at{l.place, r.place};
     if (over_seam) at.left -= length_;
-    if (!of_contacts_) return at;
+    if (!of_collisions_) return at;
     const N &of_l = origin(l), &of_r = origin(r);
     const N then = to_double(of_l) < to_double(of_r) ? of_r : of_l;
     at.left += l.velocity * (then - of_l), at.right += r.velocity * (then - of_r);
@@ -214,9 +215,9 @@ template <Enclosing N> class Checker {
     return {at.left + l.velocity * on, at.right + r.velocity * on, near};
   }
   // The time that a line's place is of.
-  N origin(const Line& line) const { return of_contacts_ && line.touched ? N(line.changed.middle(), 0) : zero_; }
+  N origin(const Line& line) const { return of_collisions_ && line.touched ? N(line.changed.middle(), 0) : zero_; }
 
-  [[gnu::flatten]] std::optional<Doubt<N>> strike(BodyIndex at_l, BodyIndex at_r) {
+  [[gnu::flatten]] std::optional<Doubt<N>> strike(ParticleIndex at_l, ParticleIndex at_r) {
     needed_balls_ = false;
     Line &l = lines_[at_l], &r = lines_[at_r];
     const N closing = l.velocity - r.velocity;
@@ -225,11 +226,11 @@ template <Enclosing N> class Checker {
     Places at = places_of(l, r, closing, over_seam);
     const N apart = at.left - at.right, after = -(apart / closing);
     N time = after;
-    if (of_contacts_) time += at.time;
+    if (of_collisions_) time += at.time;
     for (const Line* line : {&l, &r}) {
       if (!line->touched) continue;
-      if (const Order told = tell(line->changed, time); told != Order::less)
-        return Doubt<N>{Check::later, told == Order::greater, -1, -1, line->changed, time};
+      if (const Order order = compare(line->changed, time); order != Order::less)
+        return Doubt<N>{Check::later, order == Order::greater, -1, -1, line->changed, time};
     }
     CertainOutcome<N>& outcome = outcome_;
     outcome.clear();
@@ -238,12 +239,12 @@ template <Enclosing N> class Checker {
     apply(outcome, at, apart, closing, l, r);
     if (over_seam) (outcome.event == Event::pass ? r : l).place += length_;
     l.changed = time;
-    if (of_contacts_) l.changed = N::widened(at.time, after.size());
+    if (of_collisions_) l.changed = N::widened(at.time, after.size());
     r.changed = l.changed;
     l.touched = r.touched = true;
     last_.l = at_l, last_.r = outcome.event == Event::merge ? at_l : at_r, last_.time = time, last_.closing = closing;
     if (outcome.event == Event::pass) std::swap(last_.l, last_.r);
-    ++proved_.contacts;
+    ++proved_.collisions;
     proved_.in_doubles += !needed_balls_;
     proved_.below_cutoff += outcome.below_cutoff;
     proved_.merges += outcome.event == Event::merge;
@@ -252,17 +253,17 @@ template <Enclosing N> class Checker {
     return std::nullopt;
   }
 
-  typename CertainLaws<N>::Open outcome_of(BodyIndex at_l, BodyIndex at_r, const N& closing, const N& time,
+  typename CertainLaws<N>::Open outcome_of(ParticleIndex at_l, ParticleIndex at_r, const N& closing, const N& time,
                                            CertainOutcome<N>& outcome) const {
     const Line &l = lines_[at_l], &r = lines_[at_r];
-    CertainContact<N> contact{closing, {}, {}, &l.velocity, &r.velocity};
+    CertainCollision<N> collision{closing, {}, {}, &l.velocity, &r.velocity};
     if (laws_.law.contact_time) {
-      if (l.touched) contact.left_rest = time - l.changed;
-      if (r.touched) contact.right_rest = time - r.changed;
+      if (l.touched) collision.left_rest = time - l.changed;
+      if (r.touched) collision.right_rest = time - r.changed;
     }
-    const auto order = [this](const N& x, const N& y) { return tell(x, y); };
-    if (lines_.identical_masses()) return laws_(contact, zero_, zero_, true, order, outcome);
-    return laws_(contact, lines_.mass(at_l), lines_.mass(at_r), false, order, outcome);
+    const auto order = [this](const N& x, const N& y) { return compare(x, y); };
+    if (lines_.identical_masses()) return laws_(collision, zero_, zero_, true, order, outcome);
+    return laws_(collision, lines_.mass(at_l), lines_.mass(at_r), false, order, outcome);
   }
 
   void apply(const CertainOutcome<N>& outcome, const Places& at, const N& apart, const N& closing, Line& l,
@@ -289,10 +290,10 @@ template <Enclosing N> class Checker {
   WorldLines<N> lines_;
   N length_, zero_{0};
   N half_;
-  bool of_contacts_;  // places are of the time of a body's last contact, not of the start
+  bool of_collisions_;  // places are of the time of a particle's last collision, not of the start
   Proved proved_;
   Meeting last_;
-  CertainOutcome<N> outcome_;  // of the contact at hand
+  CertainOutcome<N> outcome_;  // of the collision at hand
   mutable bool needed_balls_ = false;
 };
 

@@ -1,28 +1,28 @@
 #pragma once
-// The world lines of a run's bodies, x = place + velocity t, t since the start, and who is whose neighbour. Of incoming
-// rows only bodies that have had a contact are held, and one more on each side: the others fly on as they began, in
-// order. Bodies that only bounce are neighbours by their numbers; those that merge or pass are linked.
+// The world lines of a run's particles, x = place + velocity t, t since the start, and who is whose neighbour. Of
+// incoming rows only particles that have had a collision are held, and one more on each side: the others fly on as they
+// began, in order. Particles that only bounce are neighbours by their numbers; those that merge or pass are linked.
 
 #include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "cradle/core/bodies.hpp"
 #include "cradle/core/certify/enclosing.hpp"
+#include "cradle/core/initial/particles.hpp"
 
 namespace cradle {
 
 // A vector that grows at both ends; indices stay.
 template <class T> class TwoEnded {
  public:
-  BodyIndex first() const { return first_; }
-  BodyIndex last() const { return first_ + static_cast<BodyIndex>(used_) - 1; }
+  ParticleIndex first() const { return first_; }
+  ParticleIndex last() const { return first_ + static_cast<ParticleIndex>(used_) - 1; }
   bool empty() const { return used_ == 0; }
-  T& operator[](BodyIndex i) { return items_[from_ + static_cast<std::size_t>(i - first_)]; }
-  const T& operator[](BodyIndex i) const { return items_[from_ + static_cast<std::size_t>(i - first_)]; }
+  T& operator[](ParticleIndex i) { return items_[from_ + static_cast<std::size_t>(i - first_)]; }
+  const T& operator[](ParticleIndex i) const { return items_[from_ + static_cast<std::size_t>(i - first_)]; }
 
-  void begin_at(BodyIndex first) { first_ = first; }
+  void begin_at(ParticleIndex first) { first_ = first; }
   void push_right(T item) {
     if (from_ + used_ == items_.size()) make_room();
     items_[from_ + used_++] = std::move(item);
@@ -45,85 +45,85 @@ template <class T> class TwoEnded {
 
   std::vector<T> items_;
   std::size_t from_ = 0, used_ = 0;
-  BodyIndex first_ = 0;
+  ParticleIndex first_ = 0;
 };
 
 template <Enclosing N> struct WorldLine {
   N place, velocity;
-  N changed{-1};  // when it had its last contact; -1: it had none
+  N changed{-1};  // when it had its last collision; -1: it had none
   bool touched = false;
 };
 
 template <Enclosing N> class WorldLines {
  public:
   using Line = WorldLine<N>;
-  static constexpr BodyIndex none = -1;
+  static constexpr ParticleIndex none = -1;
 
-  WorldLines(std::shared_ptr<const Bodies<N>> bodies, bool linked)
-      : bodies_(std::move(bodies)), linked_(linked), identical_(bodies_->identical_masses()) {
-    const GapRange moving = bodies_->gaps_in_motion();
-    const BodyIndex first = moving.last < moving.first ? 0 : moving.first;
-    const BodyIndex last = on_ring() || moving.last < moving.first ? count() - 1 : moving.last + 1;
+  WorldLines(std::shared_ptr<const Particles<N>> particles, bool linked)
+      : particles_(std::move(particles)), linked_(linked), identical_(particles_->identical_masses()) {
+    const GapRange moving = particles_->gaps_in_motion();
+    const ParticleIndex first = moving.last < moving.first ? 0 : moving.first;
+    const ParticleIndex last = on_ring() || moving.last < moving.first ? count() - 1 : moving.last + 1;
     lines_.begin_at(first);
     links_.begin_at(first);
-    for (BodyIndex b = first; b <= last; ++b) take_in_right(b);
+    for (ParticleIndex b = first; b <= last; ++b) take_in_right(b);
     if (on_ring()) {
       seam_ = count() - 1;
       if (linked_) links_[seam_].right = 0, links_[0].left = seam_;
     }
   }
 
-  const Bodies<N>& bodies() const { return *bodies_; }
-  BodyIndex count() const { return bodies_->count(); }
-  bool on_ring() const { return bodies_->on_ring(); }
+  const Particles<N>& particles() const { return *particles_; }
+  ParticleIndex count() const { return particles_->count(); }
+  bool on_ring() const { return particles_->on_ring(); }
   bool identical_masses() const { return identical_ && !linked_; }
-  BodyIndex first() const { return lines_.first(); }
-  BodyIndex last() const { return lines_.last(); }
+  ParticleIndex first() const { return lines_.first(); }
+  ParticleIndex last() const { return lines_.last(); }
 
-  // The body or cluster that goes by the number of one of its bodies; that must be held.
-  BodyIndex cluster(BodyIndex b) {
+  // The particle or cluster that goes by the number of one of its particles; that must be held.
+  ParticleIndex cluster(ParticleIndex b) {
     if (!linked_) return b;
     while (links_[b].part_of != b) b = links_[b].part_of = links_[links_[b].part_of].part_of;
     return b;
   }
-  BodyIndex cluster(BodyIndex b) const {
+  ParticleIndex cluster(ParticleIndex b) const {
     while (linked_ && links_[b].part_of != b) b = links_[b].part_of;
     return b;
   }
-  bool is_cluster(BodyIndex b) const { return !linked_ || links_[b].part_of == b; }
-  bool holds(BodyIndex b) const { return b >= first() && b <= last(); }
-  Line& operator[](BodyIndex b) { return lines_[b]; }
-  const Line& operator[](BodyIndex b) const { return lines_[b]; }
-  N mass(BodyIndex b) const { return linked_ ? links_[b].mass : bodies_->mass(b); }
+  bool is_cluster(ParticleIndex b) const { return !linked_ || links_[b].part_of == b; }
+  bool holds(ParticleIndex b) const { return b >= first() && b <= last(); }
+  Line& operator[](ParticleIndex b) { return lines_[b]; }
+  const Line& operator[](ParticleIndex b) const { return lines_[b]; }
+  N mass(ParticleIndex b) const { return linked_ ? links_[b].mass : particles_->mass(b); }
 
   // The next one to the right; none at the end of what is held. On a ring the seam lies between seam() and the next:
   // what is right of it is a circumference further on than its place says.
-  BodyIndex right(BodyIndex b) const {
+  ParticleIndex right(ParticleIndex b) const {
     if (linked_) return links_[b].right;
     return b < last() ? b + 1 : on_ring() ? 0 : none;
   }
-  BodyIndex left(BodyIndex b) const {
+  ParticleIndex left(ParticleIndex b) const {
     if (linked_) return links_[b].left;
     return b > first() ? b - 1 : on_ring() ? last() : none;
   }
-  BodyIndex seam() const { return seam_; }
+  ParticleIndex seam() const { return seam_; }
 
-  // Takes in the bodies of a row beside one that is about to have its first contact.
-  void reach(BodyIndex left, BodyIndex right) {
+  // Takes in the particles of a row beside one that is about to have its first collision.
+  void reach(ParticleIndex left, ParticleIndex right) {
     if (left == first() && left > 0) take_in_left(left - 1);
     if (right == last() && right + 1 < count()) take_in_right(right + 1);
   }
 
   // l and the one on its right are one from now on, called l.
-  void merge(BodyIndex l, BodyIndex r) {
+  void merge(ParticleIndex l, ParticleIndex r) {
     links_[l].mass += links_[r].mass;
     links_[r].part_of = l;
     link(l, links_[r].right == l ? l : links_[r].right);
     if (seam_ == r) seam_ = l;
   }
   // They change places; the seam stays where it is in the line.
-  void pass(BodyIndex l, BodyIndex r) {
-    const BodyIndex before = links_[l].left, after = links_[r].right;
+  void pass(ParticleIndex l, ParticleIndex r) {
+    const ParticleIndex before = links_[l].left, after = links_[r].right;
     if (seam_ == l)
       seam_ = r;
     else if (seam_ == r)
@@ -137,33 +137,33 @@ template <Enclosing N> class WorldLines {
  private:
   struct Links {
     N mass;
-    BodyIndex left = none, right = none, part_of = none;
+    ParticleIndex left = none, right = none, part_of = none;
   };
 
-  Line line_of(BodyIndex b) const { return {bodies_->position(b), bodies_->velocity(b)}; }
-  void take_in_right(BodyIndex b) {
+  Line line_of(ParticleIndex b) const { return {particles_->position(b), particles_->velocity(b)}; }
+  void take_in_right(ParticleIndex b) {
     const bool alone = lines_.empty();
     lines_.push_right(line_of(b));
     if (!linked_) return;
-    links_.push_right({bodies_->mass(b), none, none, b});
+    links_.push_right({particles_->mass(b), none, none, b});
     if (!alone) link(b - 1, b);
   }
-  void take_in_left(BodyIndex b) {
+  void take_in_left(ParticleIndex b) {
     lines_.push_left(line_of(b));
     if (!linked_) return;
-    links_.push_left({bodies_->mass(b), none, none, b});
+    links_.push_left({particles_->mass(b), none, none, b});
     link(b, b + 1);
   }
-  void link(BodyIndex l, BodyIndex r) {
+  void link(ParticleIndex l, ParticleIndex r) {
     if (l != none) links_[l].right = r;
     if (r != none) links_[r].left = l;
   }
 
-  std::shared_ptr<const Bodies<N>> bodies_;
+  std::shared_ptr<const Particles<N>> particles_;
   bool linked_, identical_;
   TwoEnded<Line> lines_;
   TwoEnded<Links> links_;
-  BodyIndex seam_ = none;
+  ParticleIndex seam_ = none;
 };
 
 }  // namespace cradle

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "cradle/core/workers.hpp"
+#include "cradle/core/parallel/workers.hpp"
 
 namespace cradle {
 

@@ -12,7 +12,7 @@
 // Why not superaccumulators (Neal, arXiv:1505.05571), which are exact in any order: two of them for an entry, for the
 // sum and (double length) for the sum of squares, take some 1.6 kB against 32 bytes times the nodes held, one or two
 // dozen, and each addition costs several times the dozen operations of a pairwise update. The tree's error grows with
-// log(replicas) only, see tests/core/ensemble_test.cpp.
+// log(replicas) only, see tests/core/ensemble/ensemble_test.cpp.
 
 #include <algorithm>
 #include <cstddef>

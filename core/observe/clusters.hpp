@@ -1,22 +1,22 @@
 #pragma once
-// The clusters of a gas whose bodies merge: the two heaviest ones, the cloud around them, and how masses are
-// distributed. Only bodies that have collided count; a body that has not merged is a cluster of its own. Units of the
-// scene.
+// The clusters of a gas whose particles merge: the two heaviest ones, the cloud around them, and how masses are
+// distributed. Only particles that have collided count; a particle that has not merged is a cluster of its own. Units
+// of the scene.
 
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "cradle/core/configuration.hpp"
+#include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
 
 template <Real T> struct Cluster {
   T mass{0}, x{0}, v{0};
-  // Number at the start of the body that the cluster goes by. It stays when clusters pass each other; when they merge
-  // it is that of the heavier one.
-  BodyIndex index = -1;
+  // Number at the start of the particle that the cluster goes by. It stays when clusters pass each other; when they
+  // merge it is that of the heavier one.
+  ParticleIndex index = -1;
 };
 
 template <Real T> struct Cloud {
@@ -57,7 +57,7 @@ template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
   return found;
 }
 
-// Entry k: how many clusters have a mass from 2^(k/4) to below 2^((k+1)/4) times that of the lightest body.
+// Entry k: how many clusters have a mass from 2^(k/4) to below 2^((k+1)/4) times that of the lightest particle.
 template <Real T> std::vector<std::uint64_t> mass_distribution(const Configuration<T>& c, const T& least_mass) {
   std::vector<std::uint64_t> clusters;
   for (std::size_t j = c.collided_from; j < c.collided_to; ++j) {

@@ -3,29 +3,30 @@
 
 #include <algorithm>
 
-#include "cradle/core/configuration.hpp"
+#include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
 
-// Kinetic energy summed over all bodies of the scene: the direct sum that the ledger is checked against.
-template <Real T> T kinetic_energy(const Configuration<T>& c, const Bodies<T>& bodies) {
-  CompensatedSum<T> twice, twice_before;  // of the bodies in the configuration, now and at the start
+// Kinetic energy summed over all particles of the scene: the direct sum that the ledger is checked against.
+template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>& particles) {
+  CompensatedSum<T> twice, twice_before;  // of the particles in the configuration, now and at the start
   for (std::size_t j = 0; j < c.x.size(); ++j) twice.add(c.m[j] * c.v[j] * c.v[j]);
-  for (BodyIndex b = c.from; b <= c.to; ++b) twice_before.add(bodies.mass(b) * bodies.velocity(b) * bodies.velocity(b));
-  return bodies.kinetic_energy() + (twice.value() - twice_before.value()) / T(2);
+  for (ParticleIndex b = c.from; b <= c.to; ++b)
+    twice_before.add(particles.mass(b) * particles.velocity(b) * particles.velocity(b));
+  return particles.kinetic_energy() + (twice.value() - twice_before.value()) / T(2);
 }
 
-// Momentum that the bodies of a configuration have gained since the start; zero but for rounding.
-template <Real T> T momentum_gained(const Configuration<T>& c, const Bodies<T>& bodies) {
+// Momentum that the particles of a configuration have gained since the start; zero but for rounding.
+template <Real T> T momentum_gained(const Configuration<T>& c, const Particles<T>& particles) {
   CompensatedSum<T> gained;
   for (std::size_t j = 0; j < c.x.size(); ++j) gained.add(c.m[j] * c.v[j]);
-  for (BodyIndex b = c.from; b <= c.to; ++b) gained.add(-bodies.mass(b) * bodies.velocity(b));
+  for (ParticleIndex b = c.from; b <= c.to; ++b) gained.add(-particles.mass(b) * particles.velocity(b));
   return gained.value();
 }
 
 template <Real T> struct GapStatistics { T least{0}, median{0}; };
 
-// Of the gaps of a configuration with at least two bodies.
+// Of the gaps of a configuration with at least two particles.
 template <Real T> GapStatistics<T> gap_statistics(const Configuration<T>& c) {
   std::vector<T> gaps = c.gap;
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);

@@ -1,33 +1,33 @@
 #pragma once
-// The core that a shock of dissipative bodies leaves at its centre: how much of the mass it holds, how wide it is, how
-// much its velocities differ, how close its bodies are. By definition here, of all bodies that have collided,
+// The core that a shock of dissipative particles leaves at its centre: how much of the mass it holds, how wide it is,
+// how much its velocities differ, how close its particles are. By definition here, of all particles that have collided,
 //
-//   width   is the length of the shortest interval that holds more than half of their mass (a robust measure: bodies on
-//           their way in do not count until they are half of all); 0 where that is one body, merged from many;
-//   mass    is what lies within three such lengths about the same middle: the core. With m = 1 its number of bodies;
-//   window  is the range of the velocities of the core, from the one that 5 % of its mass stay below to the one that
+//   width   is the length of the shortest interval that holds more than half of their mass (a robust measure: particles
+//           on their way in do not count until they are half of all); 0 where that is one particle, merged from many;
+//   mass    is what lies within three such lengths about the same middle: the core. With m = 1 its number of particles;
+//   range   is the range of the velocities of the core, from the one that 5 % of its mass stay below to the one that
 //           5 % are above;
-//   gap     is the median of the gaps within the core; NaN where it is one body.
+//   gap     is the median of the gaps within the core; NaN where it is one particle.
 //
 // Which interval is the shortest is told by positions, and not known where these do not resolve it; its width is a sum
-// of gaps. Units of the scene; float64. All NaN where there are fewer than two bodies.
+// of gaps. Units of the scene; float64. All NaN where there are fewer than two particles.
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "cradle/core/configuration.hpp"
+#include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
 
 struct DenseCore {
-  double mass, width, window, gap;
+  double mass, width, velocity_range, gap;
 };
 
 namespace detail {
 
-struct Interval {  // bodies first to last, both included
+struct Interval {  // particles first to last, both included
   std::size_t first, last;
 };
 

@@ -2,47 +2,47 @@
 // What holds in every run, whatever its physics: where it does not, the machine or the program is at fault, and what
 // follows means nothing. Looked at on a configuration, that is, now and then:
 //
-//   order      no two bodies have changed places (unless the run's account tells of it)
-//   past       the last contact is not later than the time looked at, nor earlier than the one before it
-//   energy     the sum over all bodies is what the ledger of losses leaves, and no body has more than there was
+//   order      no two particles have changed places (unless the run's account tells of it)
+//   past       the last collision is not later than the time looked at, nor earlier than the one before it
+//   energy     the sum over all particles is what the ledger of losses leaves, and no particle has more than there was
 //   momentum   is what it was at the start, between walls excepted
-//   closure    gaps and closing speeds add up to what the bodies at the ends of the line tell, or to the ring
+//   closure    gaps and closing speeds add up to what the particles at the ends of the line tell, or to the ring
 //
-// Bounds follow from the type, the contacts made and what there was at the start, not from how fast bodies happen to be
-// when they are looked at: a light body may have been faster by the square root of any ratio of masses. With E the
-// energy at the start, M the mass of all bodies and m the least one,
+// Bounds follow from the type, the collisions made and what there was at the start, not from how fast particles happen
+// to be when they are looked at: a light particle may have been faster by the square root of any ratio of masses. With
+// E the energy at the start, M the mass of all particles and m the least one,
 //
-//   delta = 8 epsilon (C + N + 64),   C contacts of N bodies, a factor of 5 to spare,
+//   delta = 8 epsilon (C + N + 64),   C collisions of N particles, a factor of 5 to spare,
 //   U     = sqrt(2 E/m), which no speed can exceed; where masses are identical the largest one at the start, since
-//           velocities after a contact lie between those before.
+//           velocities after a collision lie between those before.
 //
-// A contact rounds the velocities of its two bodies in their own units, and so what they exchange: |m dv| <= epsilon J,
-// J = (1 + eps) mu w <= 2 sqrt(2 E mu), whatever their masses. A velocity that is a sum of closing speeds has the
-// rounding of each of these instead, epsilon U, which shifts all bodies on one side of the gap. So
+// A collision rounds the velocities of its two particles in their own units, and so what they exchange: |m dv| <=
+// epsilon J, J = (1 + eps) mu w <= 2 sqrt(2 E mu), whatever their masses. A velocity that is a sum of closing speeds
+// has the rounding of each of these instead, epsilon U, which shifts all particles on one side of the gap. So
 //
 //                                    |dE| <=                     |dp| <=                 closing speeds add up to
-//   velocities of bodies' own        delta 2 E                   delta sqrt(2 E M)       delta epsilon U
+//   velocities of particles' own        delta 2 E                   delta sqrt(2 E M)       delta epsilon U
 //   sums of closing speeds           delta U sqrt(2 E M)         delta U M               delta U
 //
 // and a reading rounds each velocity by epsilon U at most. (Sums that keep what rounding leaves, gap_line.hpp, count as
-// the bodies' own; their rounding is that of the last row with delta epsilon for delta.) Gaps and places are rounded in
-// units of the line, and by the way in a unit of time:
+// the particles' own; their rounding is that of the last row with delta epsilon for delta.) Gaps and places are rounded
+// in units of the line, and by the way in a unit of time:
 //
-//   |dx| <= delta (extent + U t),   extent that at the start or now, whichever is more: the bodies at the ends are
+//   |dx| <= delta (extent + U t),   extent that at the start or now, whichever is more: the particles at the ends are
 //                                   pushed outwards only,
 //
 // since errors of speeds have acted for the time t at most. Walls that move or heat give energy: with such, E is what
 // the ledger of losses is laid out for (Walled::energy_to_lose).
 //
-// An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is less: for 5e8 contacts where velocities
-// are the bodies' own, for 5e8 sqrt(E/(M U^2/2)) where they are sums. One in a place is found where delta U t is less
-// than it, which masses of 1e-8 beside 1 can make 1e4 times as much as for equal ones.
+// An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is less: for 5e8 collisions where velocities
+// are the particles' own, for 5e8 sqrt(E/(M U^2/2)) where they are sums. One in a place is found where delta U t is
+// less than it, which masses of 1e-8 beside 1 can make 1e4 times as much as for equal ones.
 
 #include <cstdint>
 #include <limits>
 #include <optional>
 
-#include "cradle/core/configuration.hpp"
+#include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
 
@@ -51,11 +51,11 @@ enum class Guard { order, past, energy, momentum, closure };
 template <Real T> struct GuardReport {
   Guard guard = Guard::order;
   T found{0}, bound{0};
-  BodyIndex body = -1;  // order: the body on the left
+  ParticleIndex particle = -1;  // order: the particle on the left
 };
 
 // What a look tells, beside whether all is well.
-template <Real T> struct GuardLook {
+template <Real T> struct GuardCheck {
   std::optional<GuardReport<T>> broken;
   T gap_min{0};
   T closure_gap{0}, closure_speed{0};  // 0 where the configuration has none
@@ -72,17 +72,18 @@ template <Real T> T root_above(const T& x) {
 
 // `energy`: what the ledger leaves; `elapsed`: since the start; `ordered`: no account of lost order.
 template <Real T>
-GuardLook<T> guarded(const Configuration<T>& c, const Bodies<T>& bodies, std::uint64_t contacts, const T& energy,
-                     const T& elapsed, const T& last_contact, const T& contact_before, bool ordered) {
-  GuardLook<T> look;
-  if (c.x.size() < 2) return look;
-  const auto report = [&](Guard guard, const T& found, const T& bound, BodyIndex body = -1) {
-    if (!look.broken) look.broken = GuardReport<T>{guard, found, bound, body};
+GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, std::uint64_t collisions,
+                      const T& energy, const T& elapsed, const T& last_collision, const T& collision_before,
+                      bool ordered) {
+  GuardCheck<T> check;
+  if (c.x.size() < 2) return check;
+  const auto report = [&](Guard guard, const T& found, const T& bound, ParticleIndex particle = -1) {
+    if (!check.broken) check.broken = GuardReport<T>{guard, found, bound, particle};
   };
   // A time is stamped from an origin that moves, and rounded anew.
-  const T of_time = T(8) * T(std::numeric_limits<T>::epsilon()) * (magnitude(c.time) + magnitude(contact_before));
-  if (!(last_contact <= c.time + of_time) || last_contact < contact_before - of_time)
-    report(Guard::past, last_contact, last_contact < contact_before ? contact_before : c.time);
+  const T of_time = T(8) * T(std::numeric_limits<T>::epsilon()) * (magnitude(c.time) + magnitude(collision_before));
+  if (!(last_collision <= c.time + of_time) || last_collision < collision_before - of_time)
+    report(Guard::past, last_collision, last_collision < collision_before ? collision_before : c.time);
 
   CompensatedSum<T> twice, momentum;
   T fastest(0), most_energy(0);
@@ -94,54 +95,54 @@ GuardLook<T> guarded(const Configuration<T>& c, const Bodies<T>& bodies, std::ui
     if (fastest < magnitude(v)) fastest = magnitude(v);
     if (most_energy < own) most_energy = own;
   }
-  // What the other bodies have, and these had at the start.
+  // What the other particles have, and these had at the start.
   CompensatedSum<T> twice_before, momentum_before;
-  const bool all = c.from == 0 && c.to + 1 == bodies.count();
+  const bool all = c.from == 0 && c.to + 1 == particles.count();
   T fastest_before(0);
-  for (BodyIndex b = c.from; b <= c.to; ++b) {
-    const T v = bodies.velocity(b), p = bodies.mass(b) * v;
+  for (ParticleIndex b = c.from; b <= c.to; ++b) {
+    const T v = particles.velocity(b), p = particles.mass(b) * v;
     twice_before.add(p * v);
     momentum_before.add(p);
     if (fastest_before < magnitude(v)) fastest_before = magnitude(v);
   }
-  const T start_energy = bodies.kinetic_energy(), mass = bodies.total_mass();
+  const T start_energy = particles.kinetic_energy(), mass = particles.total_mass();
   const T rest = all ? T(0) : T(start_energy - twice_before.value() / T(2));
   const T epsilon = std::numeric_limits<T>::epsilon();
-  const T delta = T(8) * epsilon * (T(static_cast<std::int64_t>(contacts)) + T(bodies.count()) + T(64));
-  const bool driven = bodies.driven();
-  const T twice_energy = T(2) * (driven ? T(start_energy + bodies.energy_to_lose()) : start_energy);
-  const bool bounded_by_start = bodies.identical_masses() && !driven;
-  const T top_speed = bounded_by_start ? fastest_before : root_above(T(twice_energy / bodies.least_mass()));
+  const T delta = T(8) * epsilon * (T(static_cast<std::int64_t>(collisions)) + T(particles.count()) + T(64));
+  const bool driven = particles.driven();
+  const T twice_energy = T(2) * (driven ? T(start_energy + particles.energy_to_lose()) : start_energy);
+  const bool bounded_by_start = particles.identical_masses() && !driven;
+  const T top_speed = bounded_by_start ? fastest_before : root_above(T(twice_energy / particles.least_mass()));
   const T all_as_one = root_above(T(twice_energy * mass));  // no momentum is more
 
   const T of_sums = c.speeds_are_sums ? delta : T(delta * epsilon);
   const T of_energy = delta * twice_energy + of_sums * top_speed * all_as_one;
-  // No body has more than there was.
+  // No particle has more than there was.
   if (!(most_energy <= twice_energy + T(2) * of_energy)) report(Guard::energy, most_energy, twice_energy);
   const T off_energy = magnitude(T(rest + twice.value() / T(2) - energy));
   if (!(off_energy <= of_energy)) report(Guard::energy, off_energy, of_energy);
-  const T off_momentum = magnitude(T(momentum.value() - (all ? bodies.momentum() : momentum_before.value())));
+  const T off_momentum = magnitude(T(momentum.value() - (all ? particles.momentum() : momentum_before.value())));
   const T of_momentum = delta * all_as_one + of_sums * top_speed * mass;
-  if (!bodies.walled() && !(off_momentum <= of_momentum)) report(Guard::momentum, off_momentum, of_momentum);
+  if (!particles.walled() && !(off_momentum <= of_momentum)) report(Guard::momentum, off_momentum, of_momentum);
 
-  const T extent_before = magnitude(bodies.position(c.from)) + magnitude(bodies.position(c.to));
-  const T extent = magnitude(c.x.front()) + magnitude(c.x.back()) + extent_before + bodies.circumference();
+  const T extent_before = magnitude(particles.position(c.from)) + magnitude(particles.position(c.to));
+  const T extent = magnitude(c.x.front()) + magnitude(c.x.back()) + extent_before + particles.circumference();
   const T of_place = delta * (extent + top_speed * magnitude(elapsed));
-  look.gap_min = c.gap.front();
+  check.gap_min = c.gap.front();
   for (std::size_t j = 0; j < c.gap.size(); ++j) {
-    if (c.gap[j] < look.gap_min) look.gap_min = c.gap[j];
+    if (c.gap[j] < check.gap_min) check.gap_min = c.gap[j];
     if (ordered && !(-of_place <= c.gap[j])) report(Guard::order, c.gap[j], T(-of_place), c.index[j]);
   }
   if (c.closure_gap) {
-    look.closure_gap = *c.closure_gap;
+    check.closure_gap = *c.closure_gap;
     if (!(magnitude(*c.closure_gap) <= of_place)) report(Guard::closure, *c.closure_gap, of_place);
   }
   if (c.closure_speed) {
-    look.closure_speed = *c.closure_speed;
+    check.closure_speed = *c.closure_speed;
     const T of_speed = of_sums * top_speed + T(4) * epsilon * (fastest + fastest_before);
     if (!(magnitude(*c.closure_speed) <= of_speed)) report(Guard::closure, *c.closure_speed, of_speed);
   }
-  return look;
+  return check;
 }
 
 }  // namespace cradle

@@ -1,8 +1,8 @@
 #pragma once
 // Profiles over bins of equal width: number and mass density, mass-weighted mean velocity and its variance (the
 // granular temperature), and number density and velocity of right- and left-movers apart (the paper's rho±, u±; Figs. 2
-// b, c, 6, 7). Lengths, speeds, masses in units of the scene; float64, since a bin holds many bodies. Bins without
-// bodies have density 0 and no velocity (NaN).
+// b, c, 6, 7). Lengths, speeds, masses in units of the scene; float64, since a bin holds many particles. Bins without
+// particles have density 0 and no velocity (NaN).
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cradle/core/configuration.hpp"
+#include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
 
@@ -30,8 +30,8 @@ struct BinRange {
 
 namespace detail {
 
-// One bin, filled body by body; mean and variance by West's update, since late temperatures are small against v^2.
-// A body at rest counts as neither right- nor left-mover.
+// One bin, filled particle by particle; mean and variance by West's update, since late temperatures are small against
+// v^2. A particle at rest counts as neither right- nor left-mover.
 struct Bin {
   double count = 0, mass = 0, velocity = 0, scatter = 0;
   double right = 0, right_speed = 0, left = 0, left_speed = 0;
@@ -47,8 +47,8 @@ struct Bin {
   }
 };
 
-// The bin of a body that is in range: `place` counts bins from the start of the range, and may round up to their number
-// for a body just below its end.
+// The bin of a particle that is in range: `place` counts bins from the start of the range, and may round up to their
+// number for a particle just below its end.
 inline std::size_t bin_at(double place, std::size_t bins) {
   return std::min(static_cast<std::size_t>(place), bins - 1);
 }
@@ -59,32 +59,32 @@ inline double mean(double sum, double weight) {
 
 }  // namespace detail
 
-// What leaves a walk over bodies that its caller has stopped: what it was to fill is not whole.
+// What leaves a walk over particles that its caller has stopped: what it was to fill is not whole.
 struct WalkStopped : std::exception {
-  const char* what() const noexcept override { return "a walk over bodies was stopped"; }
+  const char* what() const noexcept override { return "a walk over particles was stopped"; }
 };
 
-// Calls visit(x, v, m) for every body in a range, also for those that the fronts have not reached: they fly as at the
-// start. These can be more than anybody waits for: `stopped` is called now and then, and true throws WalkStopped.
+// Calls visit(x, v, m) for every particle in a range, also for those that the fronts have not reached: they fly as at
+// the start. These can be more than anybody waits for: `stopped` is called now and then, and true throws WalkStopped.
 template <Real T, class Visit>
-void for_each_body(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range, Visit visit,
-                   const std::function<bool()>& stopped = {}) {
+void for_each_particle(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed, BinRange range,
+                       Visit visit, const std::function<bool()>& stopped = {}) {
   for (std::size_t j = 0; j < c.x.size(); ++j) {
     const double x = to_double(c.x[j]);
     if (x >= range.from && x < range.to) visit(x, to_double(c.v[j]), to_double(c.m[j]));
   }
-  const auto fly = [&](BodyIndex body) {
-    return to_double(T(bodies.position(body) + bodies.velocity(body) * elapsed));
+  const auto fly = [&](ParticleIndex particle) {
+    return to_double(T(particles.position(particle) + particles.velocity(particle) * elapsed));
   };
-  const auto visit_free = [&](BodyIndex body, double x) {
-    constexpr BodyIndex between_stops = 1 << 14;
-    if (body % between_stops == 0 && stopped && stopped()) throw WalkStopped();
-    visit(x, to_double(bodies.velocity(body)), to_double(bodies.mass(body)));
+  const auto visit_free = [&](ParticleIndex particle, double x) {
+    constexpr ParticleIndex between_stops = 1 << 14;
+    if (particle % between_stops == 0 && stopped && stopped()) throw WalkStopped();
+    visit(x, to_double(particles.velocity(particle)), to_double(particles.mass(particle)));
   };
   // They fly in order: the first of [low, high) that is not to the left of a place.
-  const auto first_from = [&](BodyIndex low, BodyIndex high, double place) {
+  const auto first_from = [&](ParticleIndex low, ParticleIndex high, double place) {
     while (low < high) {
-      const BodyIndex middle = low + (high - low) / 2;
+      const ParticleIndex middle = low + (high - low) / 2;
       if (fly(middle) < place)
         low = middle + 1;
       else
@@ -92,15 +92,16 @@ void for_each_body(const Configuration<T>& c, const Bodies<T>& bodies, const T& 
     }
     return low;
   };
-  for (BodyIndex body = first_from(0, c.from, range.to) - 1; body >= 0; --body) {
-    const double x = fly(body);
+  for (ParticleIndex particle = first_from(0, c.from, range.to) - 1; particle >= 0; --particle) {
+    const double x = fly(particle);
     if (x < range.from) break;
-    visit_free(body, x);
+    visit_free(particle, x);
   }
-  for (BodyIndex body = first_from(c.to + 1, bodies.count(), range.from); body < bodies.count(); ++body) {
-    const double x = fly(body);
+  for (ParticleIndex particle = first_from(c.to + 1, particles.count(), range.from); particle < particles.count();
+       ++particle) {
+    const double x = fly(particle);
     if (x >= range.to) break;
-    visit_free(body, x);
+    visit_free(particle, x);
   }
 }
 
@@ -111,16 +112,16 @@ inline std::vector<double> bin_centres(BinRange range, std::size_t bins) {
   return x;
 }
 
-// Throws std::invalid_argument for a range that is empty or not finite, or no bins; WalkStopped, see for_each_body.
+// Throws std::invalid_argument for a range that is empty or not finite, or no bins; WalkStopped, see for_each_particle.
 template <Real T>
-Profile profile(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed, BinRange range, std::size_t bins,
-                const std::function<bool()>& stopped = {}) {
+Profile profile(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed, BinRange range,
+                std::size_t bins, const std::function<bool()>& stopped = {}) {
   if (!(range.from < range.to) || !std::isfinite(range.to - range.from) || bins == 0)
     throw std::invalid_argument("profile without extent: give a range that increases and at least one bin");
   const double width = (range.to - range.from) / static_cast<double>(bins);
   std::vector<detail::Bin> sums(bins);
-  for_each_body(
-      c, bodies, elapsed, range,
+  for_each_particle(
+      c, particles, elapsed, range,
       [&](double x, double v, double m) { sums[detail::bin_at((x - range.from) / width, bins)].add(v, m); }, stopped);
 
   Profile p;

@@ -1,37 +1,37 @@
 #pragma once
-// One row of the time series: the state after all contacts at times <= t, in a few numbers. The ledger of losses holds
-// what walls have given as a loss below zero; here the two are told apart.
+// One row of the time series: the state after all collisions at times <= t, in a few numbers. The ledger of losses
+// holds what walls have given as a loss below zero; here the two are told apart.
 //
 // The energy comes from the ledger as long as that leaves half of the energy at the start or more, at constant cost;
-// else from the velocities of all bodies (relative_motion.hpp), as it does where walls have given or taken some. Why:
-// rounding adds an energy e_c to the state at a contact c, which the ledger does not know. The energy E(t) of the state
-// contains what is left of it, the share E(t)/E(t_c) of e_c as of any other energy; the energy of the ledger misses the
-// rest of e_c, which losses have taken. So the error of the one is sum e_c E(t)/E(t_c), that of the other
-// sum e_c (1 - E(t)/E(t_c)): nothing where bodies are elastic, all of it where they have come to rest, where that is
+// else from the velocities of all particles (relative_motion.hpp), as it does where walls have given or taken some.
+// Why: rounding adds an energy e_c to the state at a collision c, which the ledger does not know. The energy E(t) of
+// the state contains what is left of it, the share E(t)/E(t_c) of e_c as of any other energy; the energy of the ledger
+// misses the rest of e_c, which losses have taken. So the error of the one is sum e_c E(t)/E(t_c), that of the other
+// sum e_c (1 - E(t)/E(t_c)): nothing where particles are elastic, all of it where they have come to rest, where that is
 // more than there is left. A ledger that leaves half is moreover rounded to 2 eps of it. Where much is lost in many
-// contacts losses have errors of their own: of Fig. 2 in double the ledger is off by 3e-14 at t = 2000, where 74 % is
+// collisions losses have errors of their own: of Fig. 2 in double the ledger is off by 3e-14 at t = 2000, where 74 % is
 // left, and by 6e-13 at t = 6500, where 19 % is; the sum over velocities by 9e-15 and 7e-14 (of double-double's
 // energy).
 
 #include <limits>
 #include <optional>
 
-#include "cradle/core/bodies.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/particles.hpp"
 
 namespace cradle {
 
 template <Real T> struct Sample {
   T time{0};
-  T energy{0};       // kinetic, of all bodies of the scene
-  T energy_lost{0};  // since the start, in contacts of bodies
+  T energy{0};       // kinetic, of all particles of the scene
+  T energy_lost{0};  // since the start, in collisions of particles
   T given{0};        // by walls, since the start
   Counts counts;
-  BodyIndex bodies = 0;                      // in the active zone, between the outermost two that have collided
-  std::optional<T> front_left, front_right;  // positions of these two; none before the first contact, nor on a ring
+  ParticleIndex particles = 0;               // in the active zone, between the outermost two that have collided
+  std::optional<T> front_left, front_right;  // positions of these two; none before the first collision, nor on a ring
 };
 
-// Energy that walls have given to the bodies of a run.
+// Energy that walls have given to the particles of a run.
 template <class Run, Real T = typename Run::Scalar> T given_by_walls(const Run& run) {
   if constexpr (requires { run.given_by_walls(); })
     return run.given_by_walls();
@@ -41,18 +41,19 @@ template <class Run, Real T = typename Run::Scalar> T given_by_walls(const Run& 
     return T(0);
 }
 
-// Kinetic energy of all bodies of the scene, after the contacts made so far.
+// Kinetic energy of all particles of the scene, after the collisions made so far.
 template <class Run, Real T = typename Run::Scalar> T energy_now(const Run& run, const T& initial_energy) {
   const T left = initial_energy - run.energy_lost();
   return T(left + left) < initial_energy || !(given_by_walls(run) == T(0)) ? T(run.kinetic_energy()) : left;
 }
 
-// Of a Simulation or a StickyGas. `time` must not be before the last contact made nor after the time advanced to.
+// Of a Simulation or a StickyGas. `time` must not be before the last collision made nor after the time advanced to.
 template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
   const T lost = run.energy_lost(), given = given_by_walls(run);
-  Sample<T> s{time, energy_now(run, initial_energy), lost + given, given, run.counts(), run.collided_bodies(), {}, {}};
-  if (s.bodies > 0 && !run.on_ring()) {
+  Sample<T> s{time,         energy_now(run, initial_energy), lost + given, given,
+              run.counts(), run.collided_particles(),        {},           {}};
+  if (s.particles > 0 && !run.on_ring()) {
     s.front_left = run.front_left(time);
     s.front_right = run.front_right(time);
   }

@@ -1,11 +1,11 @@
 #pragma once
 // Which of the paper's two scenarios a wet shock takes (section VI, Fig. 9). Its two heaviest clusters either pass
 // through each other when they meet, and go on oscillating, or stick, and then another cluster becomes the second one.
-// The watch is told of every contact, and looks at the clusters now and then.
+// The watch is told of every collision, and looks at the clusters now and then.
 //
 //   pair          the two heaviest clusters, from the first look at which they hold more than half of the mass that has
-//                 collided, and ten bodies each or more
-//   meeting       a contact of the two clusters that were the pair at the last look: a pass or a stick
+//                 collided, and ten particles each or more
+//   meeting       a collision of the two clusters that were the pair at the last look: a pass or a stick
 //   role change   a look at which the pair is not made of the same two clusters as at the look before
 //   regime        apart: these two have not met yet; through: their last meeting was a pass; stuck: it was a stick
 //   exponents     powers of time by which the largest separation and the largest speed of the pair grow: one point for
@@ -47,22 +47,22 @@ struct Scenario {
 
 class ScenarioWatch {
  public:
-  // To be called before each contact, of the bodies with these numbers; there were `merges` so far.
-  void contact(BodyIndex left, BodyIndex right, double time, std::uint64_t merges) {
+  // To be called before each collision, of the particles with these numbers; there were `merges` so far.
+  void collision(ParticleIndex left, ParticleIndex right, double time, std::uint64_t merges) {
     settle(merges);
     if (!pair_ ||
-        std::minmax(left, right) != std::pair<const BodyIndex&, const BodyIndex&>(pair_->first, pair_->second))
+        std::minmax(left, right) != std::pair<const ParticleIndex&, const ParticleIndex&>(pair_->first, pair_->second))
       return;
     meeting_ = {time, merges};
   }
 
-  // A look, when all contacts up to `time` (since the start) are made.
-  template <Real T> void look(const Cloud<T>& cloud, double time, std::uint64_t merges) {
+  // A look, when all collisions up to `time` (since the start) are made.
+  template <Real T> void sample(const Cloud<T>& cloud, double time, std::uint64_t merges) {
     settle(merges);
     if (!cloud.left || !cloud.right) return;
     const double left = to_double(cloud.left->mass), right = to_double(cloud.right->mass);
     if (!pair_ && !(2 * (left + right) > to_double(cloud.mass) && left >= 10 && right >= 10)) return;
-    const std::pair<BodyIndex, BodyIndex> now = std::minmax(cloud.left->index, cloud.right->index);
+    const std::pair<ParticleIndex, ParticleIndex> now = std::minmax(cloud.left->index, cloud.right->index);
     if (!pair_) {
       found_.established = time;
       found_.regime = Scenario::Regime::apart;
@@ -93,7 +93,7 @@ class ScenarioWatch {
     static auto state(auto& self) { return std::tie(self.time, self.merges_before); }
   };
 
-  // A contact is told of before it is made: whether it was a merge shows in the count that comes with the next one.
+  // A collision is told of before it is made: whether it was a merge shows in the count that comes with the next one.
   void settle(std::uint64_t merges) {
     if (!meeting_) return;
     const bool passed = merges == meeting_->merges_before;
@@ -117,9 +117,9 @@ class ScenarioWatch {
     return (n * xy - x * y) / (n * xx - x * x);
   }
 
-  std::optional<std::pair<BodyIndex, BodyIndex>> pair_;  // the lower number first
-  std::optional<Meeting> meeting_;                       // not settled yet
-  std::map<int, std::pair<double, double>> largest_;     // separation and speed, by thirds of a decade
+  std::optional<std::pair<ParticleIndex, ParticleIndex>> pair_;  // the lower number first
+  std::optional<Meeting> meeting_;                               // not settled yet
+  std::map<int, std::pair<double, double>> largest_;             // separation and speed, by thirds of a decade
   Scenario found_;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 // The interaction zone of a late wet shock, averaged over time, in bins: number density n± and mean speed u± of single
-// bodies (those that have not merged), right-movers + and left-movers -. And the width 2L of the zone, from the slope
-// of u+. In the paper's linear model (section VI, Fig. 7) u+ falls linearly from u0 to u_crit over the length 2L (9).
-// So, by definition here,
+// particles (those that have not merged), right-movers + and left-movers -. And the width 2L of the zone, from the
+// slope of u+. In the paper's linear model (section VI, Fig. 7) u+ falls linearly from u0 to u_crit over the length 2L
+// (9). So, by definition here,
 //
 //   2L = (u0 - u_crit)/|slope|,   |slope| = (u0/2)/(x_{1/4} - x_{3/4}),   u+(x_q) = q u0,
 //
@@ -20,8 +20,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cradle/core/engine/state.hpp"
 #include "cradle/core/observe/profile.hpp"
-#include "cradle/core/state.hpp"
 
 namespace cradle {
 
@@ -41,9 +41,9 @@ class ZoneAverage {
       throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 16 samples at least");
   }
 
-  // As it was where the walk is stopped (WalkStopped, see for_each_body).
+  // As it was where the walk is stopped (WalkStopped, see for_each_particle).
   template <Real T>
-  void add(const Configuration<T>& c, const Bodies<T>& bodies, const T& elapsed,
+  void add(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
            const std::function<bool()>& stopped = {}) {
     const std::size_t at = taken_ * parts / samples_;
     Part part = part_.at(at);
@@ -54,7 +54,7 @@ class ZoneAverage {
       (v > 0 ? part.right : part.left)[bin] += 1;
       (v > 0 ? part.right_speed : part.left_speed)[bin] += v;
     };
-    for_each_body(c, bodies, elapsed, {-reach_, reach_}, count, stopped);
+    for_each_particle(c, particles, elapsed, {-reach_, reach_}, count, stopped);
     ++part.samples;
     part_[at] = std::move(part);
     ++taken_;
@@ -68,7 +68,7 @@ class ZoneAverage {
   std::vector<double> velocity_right() const { return quotient(&Part::right_speed, &Part::right); }
   std::vector<double> velocity_left() const { return quotient(&Part::left_speed, &Part::left); }
 
-  // For rows at `speed` whose bodies stick below the closing speed `critical`.
+  // For rows at `speed` whose particles stick below the closing speed `critical`.
   ZoneWidth width(double speed, double critical) const {
     std::vector<double> widths;
     for (const Part& part : part_)

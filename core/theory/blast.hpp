@@ -1,6 +1,6 @@
 // A blast in a cold gas at rest, on a line: energy E set free at x = 0, t = 0 in a gas of mass density rho. For hard
-// bodies on a line (one degree of freedom: gamma = 3) Euler's equations have the self-similar solution of Taylor, von
-// Neumann and Sedov, in closed form. With delta = 2/3,
+// particles on a line (one degree of freedom: gamma = 3) Euler's equations have the self-similar solution of Taylor,
+// von Neumann and Sedov, in closed form. With delta = 2/3,
 //
 //     R = (A E t^2/rho)^(1/3),  xi = x/R,  velocity (delta x/t) V(xi),  density rho G(xi),  pressure = density * theta,
 //
@@ -11,7 +11,8 @@
 //     xi = (6V-2)^(2/5) (2V)^(-2/3) (3-4V)^(-11/15),    G = 2 (2-2V)^2 (6V-2)^(1/5) (3-4V)^(-11/5),
 //
 // and 1/A = 2 delta^2 int_0^1 xi^2 G (V^2 + V^2 (1-V)/(3V-1))/2 dxi: A = 1071/152 (arXiv:2010.15868, found there; the
-// quadrature is in tests/core/classics_test.cpp). Derived here; the source's profiles are these. Units of the scene.
+// quadrature is in tests/core/theory/classics_test.cpp). Derived here; the source's profiles are these. Units of the
+// scene.
 #pragma once
 
 #include <algorithm>

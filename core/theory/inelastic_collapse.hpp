@@ -1,11 +1,11 @@
-// Inelastic collapse of few bodies: infinitely many contacts in a finite time.
-// n equal bodies in the checkerboard pattern: every second gap closes at once, then the others, in turn;
-// mirror-symmetric data of 3 or 4 bodies always are of this form, with gaps and closing speeds in proportion to sin(pi
-// k/n), k = 1 .. n-1. p_j: amplitude of the closing speeds of the gaps that close at contact j (length/time); g_j:
-// amplitude of the other gaps at that moment (length); eps: restitution; a = (1+eps) cos(pi/n), the coupling. With n =
-// 3 both amplitudes may be read as the plain closing speed and gap. Then
+// Inelastic collapse of few particles: infinitely many collisions in a finite time.
+// n equal particles in the checkerboard pattern: every second gap closes at once, then the others, in turn;
+// mirror-symmetric data of 3 or 4 particles always are of this form, with gaps and closing speeds in proportion to
+// sin(pi k/n), k = 1 .. n-1. p_j: amplitude of the closing speeds of the gaps that close at collision j (length/time);
+// g_j: amplitude of the other gaps at that moment (length); eps: restitution; a = (1+eps) cos(pi/n), the coupling. With
+// n = 3 both amplitudes may be read as the plain closing speed and gap. Then
 //     p_{j+1} = a p_j - eps p_{j-1},   g_j p_j = eps^j g_0 p_0,   lam+- = (a +- sqrt(a^2 - 4 eps))/2 .
-// Sources: three bodies: McNamara and Young, Phys. Fluids A 4, 496 (1992); n bodies: Bernu and Mazighi,
+// Sources: three particles: McNamara and Young, Phys. Fluids A 4, 496 (1992); n particles: Bernu and Mazighi,
 // J. Phys. A 23, 5745 (1990). Section II of "Dry and wet granular shock waves" meets it as the need for a cut-off.
 #pragma once
 
@@ -15,27 +15,28 @@
 
 namespace cradle::theory {
 
-/// Factors per contact of a collapse: closing speeds shrink by `plus`, gaps by `minus`, intervals by minus/plus.
+/// Factors per collision of a collapse: closing speeds shrink by `plus`, gaps by `minus`, intervals by minus/plus.
 template <class T> struct CollapseRates {
   T plus;
   T minus;
 };
 
-/// Coupling a of n = `bodies` equal bodies in the checkerboard pattern; exact for 2, 3 and 4 up to one square root.
-template <class T> T checkerboard_coupling(const T& restitution, int bodies) {
+/// Coupling a of n = `particles` equal particles in the checkerboard pattern; exact for 2, 3 and 4 up to one square
+/// root.
+template <class T> T checkerboard_coupling(const T& restitution, int particles) {
   using std::atan;
   using std::cos;
   using std::sqrt;
   const T sum = T(1) + restitution;
-  if (bodies == 2) return T(0);
-  if (bodies == 3) return T(sum / T(2));
-  if (bodies == 4) return T(sum / sqrt(T(2)));
-  const T angle = T(4) * atan(T(1)) / T(bodies);
+  if (particles == 2) return T(0);
+  if (particles == 3) return T(sum / T(2));
+  if (particles == 4) return T(sum / sqrt(T(2)));
+  const T angle = T(4) * atan(T(1)) / T(particles);
   return T(sum * cos(angle));
 }
 
 /// lam+ and lam- for a coupling; none where they are complex, that is, where the pattern disperses instead of
-/// collapsing, and none for restitution 0 with coupling 0 (two bodies).
+/// collapsing, and none for restitution 0 with coupling 0 (two particles).
 template <class T> std::optional<CollapseRates<T>> collapse_rates(const T& restitution, const T& coupling) {
   using std::sqrt;
   const T discriminant = coupling * coupling - T(4) * restitution;
@@ -44,23 +45,24 @@ template <class T> std::optional<CollapseRates<T>> collapse_rates(const T& resti
   return CollapseRates<T>{plus, T(restitution / plus)};  // lam+ lam- = eps: the difference of the roots would cancel
 }
 
-/// Largest restitution at which three equal bodies collapse, 7 - 4 sqrt 3 = 0.0718, without the cancellation.
-template <class T> T three_body_collapse_limit() {
+/// Largest restitution at which three equal particles collapse, 7 - 4 sqrt 3 = 0.0718, without the cancellation.
+template <class T> T three_particle_collapse_limit() {
   using std::sqrt;
   return T(T(1) / (T(7) + T(4) * sqrt(T(3))));
 }
 
-/// Largest restitution at which n = `bodies` equal bodies collapse in the checkerboard pattern: tan^2[(pi/4)(1 - 2/n)].
-template <class T> T collapse_limit(int bodies) {
+/// Largest restitution at which n = `particles` equal particles collapse in the checkerboard pattern: tan^2[(pi/4)(1 -
+/// 2/n)].
+template <class T> T collapse_limit(int particles) {
   using std::sqrt;
-  const T cosine = checkerboard_coupling(T(0), bodies);  // tan(pi/4 - b) = cos 2b / (1 + sin 2b) with 2b = pi/n
+  const T cosine = checkerboard_coupling(T(0), particles);  // tan(pi/4 - b) = cos 2b / (1 + sin 2b) with 2b = pi/n
   const T tangent = cosine / (T(1) + sqrt(T((T(1) - cosine) * (T(1) + cosine))));
   return T(tangent * tangent);
 }
 
-/// Number of equal bodies from which a gas of this restitution collapses, N_c = 2/(1 - (4/pi) atan sqrt eps), a real
+/// Number of equal particles from which a gas of this restitution collapses, N_c = 2/(1 - (4/pi) atan sqrt eps), a real
 /// number; about 2 pi/(1 - eps) near eps = 1. None for eps = 1. Inverse of `collapse_limit`.
-template <class T> std::optional<T> collapse_onset_bodies(const T& restitution) {
+template <class T> std::optional<T> collapse_onset_particles(const T& restitution) {
   using std::atan;
   using std::sqrt;
   if (!(restitution < T(1))) return std::nullopt;
@@ -70,42 +72,44 @@ template <class T> std::optional<T> collapse_onset_bodies(const T& restitution) 
   return T(T(2) * atan(T(1)) / angle);
 }
 
-/// McNamara and Young's estimate of how many bodies it takes to stop one that runs into them, N =
-/// ln(4/(1-eps))/(1-eps): of a gas between walls that collapses, N_c = 36.9, 87.6, 599 at eps = .9, .95, .99. eps < 1.
-inline double cushion_bodies(double restitution) {
+/// McNamara and Young's estimate of how many particles it takes to stop one that runs into them, N =
+/// ln(4/(1-eps))/(1-eps): of a gas between walls that collapses, N_c = 36.9, 87.6, 599 at eps = 0.9, 0.95, 0.99. eps <
+/// 1.
+inline double cushion_particles(double restitution) {
   using std::log;
   return log(4 / (1 - restitution)) / (1 - restitution);
 }
 
-/// Where a collapse stands just after contact j = `contact`, counted from 0.
-template <class T> struct CollapseContact {
-  std::uint64_t contact;
+/// Where a collapse stands just after collision j = `collision`, counted from 0.
+template <class T> struct CollapseCollision {
+  std::uint64_t collision;
   T time;
-  T closing_speed;  ///< p_j, before the contact
+  T closing_speed;  ///< p_j, before the collision
   T other_gap;      ///< g_j
 };
 
-/// The contacts of a collapse one after the other, from plain arithmetic: closing speeds by the recursion, gaps by the
-/// invariant. Times lose their last digits as the contacts crowd; `closing_speed`, `other_gap` and `interval` do not.
+/// The collisions of a collapse one after the other, from plain arithmetic: closing speeds by the recursion, gaps by
+/// the invariant. Times lose their last digits as the collisions crowd; `closing_speed`, `other_gap` and `interval` do
+/// not.
 template <class T> class CollapseSequence {
  public:
-  /// At time `t0` (contact 0) gaps closing at `p0` touch, the others are `g0` wide and closed at `other_speed` before
+  /// At time `t0` (collision 0) gaps closing at `p0` touch, the others are `g0` wide and closed at `other_speed` before
   /// it.
   CollapseSequence(const T& restitution, const T& coupling, const T& t0, const T& p0, const T& g0, const T& other_speed)
       : eps_(restitution), coupling_(coupling), now_{0, t0, p0, g0}, next_speed_(other_speed + coupling * p0) {}
 
-  const CollapseContact<T>& now() const { return now_; }
-  /// p_{j+1}, the closing speed at the contact to come; where it is not positive the sequence has ended.
+  const CollapseCollision<T>& now() const { return now_; }
+  /// p_{j+1}, the closing speed at the collision to come; where it is not positive the sequence has ended.
   const T& next_closing_speed() const { return next_speed_; }
-  /// Time from this contact to the next.
+  /// Time from this collision to the next.
   T interval() const { return T(now_.other_gap / next_speed_); }
 
-  /// Goes on to the next contact; false, and nothing changes, where there is none.
+  /// Goes on to the next collision; false, and nothing changes, where there is none.
   bool advance() {
     if (!(next_speed_ > T(0))) return false;
     const T speed = next_speed_;
     next_speed_ = T(coupling_ * speed - eps_ * now_.closing_speed);
-    now_ = {now_.contact + 1, T(now_.time + now_.other_gap / speed), speed,
+    now_ = {now_.collision + 1, T(now_.time + now_.other_gap / speed), speed,
             T(eps_ * now_.other_gap * (now_.closing_speed / speed))};
     return true;
   }
@@ -113,12 +117,12 @@ template <class T> class CollapseSequence {
  private:
   T eps_;
   T coupling_;
-  CollapseContact<T> now_;
+  CollapseCollision<T> now_;
   T next_speed_;
 };
 
-/// Time of collapse, t_c = t_0 + g_0/(p_1 - lam- p_0): the contact times telescope. None where there is no collapse:
-/// the roots are complex (eps too large) or p_1 <= lam- p_0 (the bodies part after finitely many contacts).
+/// Time of collapse, t_c = t_0 + g_0/(p_1 - lam- p_0): the collision times telescope. None where there is no collapse:
+/// the roots are complex (eps too large) or p_1 <= lam- p_0 (the particles part after finitely many collisions).
 template <class T>
 std::optional<T> collapse_time(const T& restitution, const T& coupling, const T& t0, const T& p0, const T& g0,
                                const T& p1) {
@@ -129,11 +133,11 @@ std::optional<T> collapse_time(const T& restitution, const T& coupling, const T&
   return T(t0 + g0 / excess);
 }
 
-/// Time of collapse of three equal bodies from their gaps (length) and closing speeds (length/time) at time 0.
-/// None where they do not collapse; simultaneous first contacts (a triple collision) have no defined outcome: none.
+/// Time of collapse of three equal particles from their gaps (length) and closing speeds (length/time) at time 0.
+/// None where they do not collapse; simultaneous first collisions (a triple collision) have no defined outcome: none.
 template <class T>
-std::optional<T> three_body_collapse_time(const T& restitution, const T& left_gap, const T& left_speed,
-                                          const T& right_gap, const T& right_speed) {
+std::optional<T> three_particle_collapse_time(const T& restitution, const T& left_gap, const T& left_speed,
+                                              const T& right_gap, const T& right_speed) {
   // The gap that closes first: g_l/w_l < g_r/w_r, written without division since either may be opening.
   const T left_key = left_gap * right_speed;
   const T right_key = right_gap * left_speed;

@@ -1,9 +1,9 @@
-// The inelastic shock: two rows of equal bodies, spacing l, running into each other at +u0 (left) and -u0 (right).
-// "Dry and wet granular shock waves", section IV. Equal bodies that bounce may be relabelled as passing through each
-// other, so the very first body of the left row is a tracer: after n contacts, at time t_n, it is at x_n with velocity
-// u_n,
+// The inelastic shock: two rows of equal particles, spacing l, running into each other at +u0 (left) and -u0 (right).
+// "Dry and wet granular shock waves", section IV. Equal particles that bounce may be relabelled as passing through each
+// other, so the very first particle of the left row is a tracer: after n collisions, at time t_n, it is at x_n with
+// velocity u_n,
 //     u_{n+1} = u_n (1+eps)/2 - u0 (1-eps)/2,   x_{n+1} = x_n + u_n dt_n,   dt_n = l/(u_n + u0),   x_0 = -l/2 .
-// These discrete forms are exact (for about 2/(1-eps) contacts); equations (4) to (7) are continuous approximations.
+// These discrete forms are exact (for about 2/(1-eps) collisions); equations (4) to (7) are continuous approximations.
 // Units: lengths, times and masses of the scene; densities are mass per length; rho0 = m/l.
 // kappa = (1-eps)/(1+eps) and s = 2 u0 t kappa/l; every form is written so that nothing cancels as eps -> 1, and eps =
 // 1 (rows that pass freely) is the limit, not a special case. T needs +, -, *, /, comparison, T(int), and log by ADL.
@@ -24,10 +24,10 @@ template <class T> struct InelasticShock {
   T restitution;                ///< eps
   T speed = T(T(1) / T(2));     ///< u0
   T spacing = T(1);             ///< l
-  T mass = T(1);                ///< m, of one body
+  T mass = T(1);                ///< m, of one particle
   std::uint64_t particles = 0;  ///< N, both rows together; enters only the energy
 
-  /// (1-eps)/(1+eps): what each contact adds to the ratio of two successive intervals.
+  /// (1-eps)/(1+eps): what each collision adds to the ratio of two successive intervals.
   T kappa() const { return T((T(1) - restitution) / (T(1) + restitution)); }
   /// x_0 = -l/2, where the tracer starts. The paper's text calls x_0 the centre of the wave and sets it to 0 from (5)
   /// on.
@@ -77,7 +77,8 @@ template <class T> T log_deficit(const T& z) {
 template <class Condition> std::uint64_t first_count(Condition&& reached) {
   std::uint64_t high = 1;
   while (!reached(high)) {
-    if ((high >> 62) != 0) throw std::overflow_error("contact count is out of range (above 2^62): use a shorter time");
+    if ((high >> 62) != 0)
+      throw std::overflow_error("collision count is out of range (above 2^62): use a shorter time");
     high *= 2;
   }
   std::uint64_t low = high / 2;
@@ -88,7 +89,7 @@ template <class Condition> std::uint64_t first_count(Condition&& reached) {
   return high;
 }
 
-/// How far the front (5) lags behind a free body: u0 t - x_f(t), without the cancellation of the two.
+/// How far the front (5) lags behind a free particle: u0 t - x_f(t), without the cancellation of the two.
 template <class T> T front_lag(const InelasticShock<T>& shock, const T& t) {
   const T kappa = shock.kappa();
   const T own = log_deficit(kappa);
@@ -100,16 +101,16 @@ template <class T> T front_lag(const InelasticShock<T>& shock, const T& t) {
 
 // ---- discrete: the tracer, exact ----
 
-/// The tracer just after contact n (n = 0: the start).
-template <class T> struct FrontContact {
-  std::uint64_t contact;
+/// The tracer just after collision n (n = 0: the start).
+template <class T> struct FrontCollision {
+  std::uint64_t collision;
   T time;      ///< t_n
   T position;  ///< x_n, from x_0 = -l/2
-  T velocity;  ///< u_n, after the contact
+  T velocity;  ///< u_n, after the collision
 };
 
 /// u_n, x_n, t_n in closed form; printed correctly, with x_0 = -l/2.
-template <class T> FrontContact<T> front_contact(const InelasticShock<T>& shock, std::uint64_t n) {
+template <class T> FrontCollision<T> front_collision(const InelasticShock<T>& shock, std::uint64_t n) {
   const T sum = detail::geometric_sum(shock.kappa(), n);
   const T slowed = shock.kappa() * sum;  // ((1+eps)/2)^-n = 1 + kappa sum
   const T half = shock.spacing / T(2);
@@ -117,12 +118,12 @@ template <class T> FrontContact<T> front_contact(const InelasticShock<T>& shock,
           T(shock.speed * (T(1) - slowed) / (T(1) + slowed))};
 }
 
-/// The recursion as printed, one contact per call. Rounding grows with n, unlike in `front_contact`.
+/// The recursion as printed, one collision per call. Rounding grows with n, unlike in `front_collision`.
 template <class T> class FrontRecursion {
  public:
   explicit FrontRecursion(const InelasticShock<T>& shock) : shock_(shock), now_{0, T(0), shock.origin(), shock.speed} {}
 
-  const FrontContact<T>& now() const { return now_; }
+  const FrontCollision<T>& now() const { return now_; }
   void advance() {
     const T interval = shock_.spacing / (now_.velocity + shock_.speed);
     now_.position = T(now_.position + now_.velocity * interval);
@@ -130,36 +131,36 @@ template <class T> class FrontRecursion {
     const T gain = T(1) + shock_.restitution;
     const T loss = T(1) - shock_.restitution;
     now_.velocity = T((now_.velocity * gain - shock_.speed * loss) / T(2));
-    ++now_.contact;
+    ++now_.collision;
   }
 
  private:
   InelasticShock<T> shock_;
-  FrontContact<T> now_;
+  FrontCollision<T> now_;
 };
 
-/// The last contact at or before time t >= 0; between contacts the tracer flies on from there at its velocity.
-template <class T> FrontContact<T> front_contact_before(const InelasticShock<T>& shock, const T& t) {
+/// The last collision at or before time t >= 0; between collisions the tracer flies on from there at its velocity.
+template <class T> FrontCollision<T> front_collision_before(const InelasticShock<T>& shock, const T& t) {
   const T kappa = shock.kappa();
   const T limit = T(2) * shock.speed * t / shock.spacing;
   const auto after = detail::first_count([&](std::uint64_t n) { return detail::geometric_sum(kappa, n) > limit; });
-  return front_contact(shock, after - 1);
+  return front_collision(shock, after - 1);
 }
 
 /// The tracer's exact position at time t >= 0 (length, from the centre of the wave).
 template <class T> T front_position_discrete(const InelasticShock<T>& shock, const T& t) {
-  const auto last = front_contact_before(shock, t);
+  const auto last = front_collision_before(shock, t);
   return T(last.position + last.velocity * (t - last.time));
 }
 
-/// The contact at which the tracer is farthest, the first with u_n <= 0; its reach is position - origin(). None at eps
-/// = 1.
-template <class T> std::optional<FrontContact<T>> turnover_contact(const InelasticShock<T>& shock) {
+/// The collision at which the tracer is farthest, the first with u_n <= 0; its reach is position - origin(). None at
+/// eps = 1.
+template <class T> std::optional<FrontCollision<T>> turnover_collision(const InelasticShock<T>& shock) {
   const T kappa = shock.kappa();
   if (!(kappa > T(0))) return std::nullopt;
   const auto n =
       detail::first_count([&](std::uint64_t k) { return !(kappa * detail::geometric_sum(kappa, k) < T(1)); });
-  return front_contact(shock, n);
+  return front_collision(shock, n);
 }
 
 // ---- continuous: equations (4) and (5) ----
@@ -203,13 +204,13 @@ template <class T> T interaction_density(const InelasticShock<T>& shock, const T
   return T(shock.row_density() * (T(1) + shock.speed * t / front_displacement(shock, t)));
 }
 
-/// rho_+, the density (mass per length) of bodies that came from the left; its integral is rho0 (x_f + u0 t).
+/// rho_+, the density (mass per length) of particles that came from the left; its integral is rho0 (x_f + u0 t).
 template <class T> T right_mover_density(const InelasticShock<T>& shock, const T& x, const T& t) {
   const T front = front_displacement(shock, t);
   const T excess = (front + x) * detail::front_lag(shock, t) / (T(2) * front * front);
   return T(shock.row_density() * (T(1) + excess));
 }
-/// rho_-, of bodies that came from the right.
+/// rho_-, of particles that came from the right.
 template <class T> T left_mover_density(const InelasticShock<T>& shock, const T& x, const T& t) {
   return right_mover_density(shock, T(-x), t);
 }
@@ -250,8 +251,8 @@ template <class T> T initial_energy(const InelasticShock<T>& shock) {
 }
 
 /// Energy, equation (7) with + before 2/3 (printed: -, which would gain energy, the bracket being negative).
-/// It is the energy of the linear profiles; the loss is 1.7, 5.4, 15 % too small at t*/4, t*/2, t* (eps = .999,
-/// N-body).
+/// It is the energy of the linear profiles; the loss is 1.7, 5.4, 15 % too small at t*/4, t*/2, t* (eps = 0.999,
+/// N-particle).
 template <class T> T energy(const InelasticShock<T>& shock, const T& t) {
   const T front = front_displacement(shock, t);
   const T free = shock.speed * t;
@@ -267,11 +268,11 @@ template <class T> T sticky_energy(const InelasticShock<T>& shock, const T& t) {
   return left > T(0) ? left : T(0);
 }
 
-/// When the bodies engaged, 2 u0 t/l, reach `collapse_onset_bodies`: N_c l/(2 u0). None at eps = 1.
+/// When the particles engaged, 2 u0 t/l, reach `collapse_onset_particles`: N_c l/(2 u0). None at eps = 1.
 template <class T> std::optional<T> collapse_onset_time(const InelasticShock<T>& shock) {
-  const auto bodies = collapse_onset_bodies(shock.restitution);
-  if (!bodies) return std::nullopt;
-  return T(*bodies * shock.spacing / (T(2) * shock.speed));
+  const auto particles = collapse_onset_particles(shock.restitution);
+  if (!particles) return std::nullopt;
+  return T(*particles * shock.spacing / (T(2) * shock.speed));
 }
 
 }  // namespace cradle::theory

@@ -1,14 +1,14 @@
-// A splash: a gas at rest at x > 0, vacuum at x < 0, kicked at its surface (impulsive load; for hard bodies on a line,
-// of alternate masses, arXiv:2203.11097). The shock goes as R ~ t^d, what is left in the gas as E ~ R^3/t^2 ~ t^(3d-2),
-// with an exponent that no dimension tells: a self-similar solution of the second kind. With xi = x/R, velocity R'
-// U(xi), density rho G(xi), pressure rho R'^2 P(xi), k = (d - 1)/d and a = U - xi, Euler's equations are
+// A splash: a gas at rest at x > 0, vacuum at x < 0, kicked at its surface (impulsive load; for hard particles on a
+// line, of alternate masses, arXiv:2203.11097). The shock goes as R ~ t^d, what is left in the gas as E ~ R^3/t^2 ~
+// t^(3d-2), with an exponent that no dimension tells: a self-similar solution of the second kind. With xi = x/R,
+// velocity R' U(xi), density rho G(xi), pressure rho R'^2 P(xi), k = (d - 1)/d and a = U - xi, Euler's equations are
 //
 //     U' = k (gamma a U - 2 c^2)/(gamma (c^2 - a^2)),  G' = -G U'/a,  P' = -G (k U + a U'),   c^2 = gamma P/G,
 //
 // from the strong shock U = P = 2/(gamma+1), G = (gamma+1)/(gamma-1) at xi = 1 towards -infinity. Too small a d ends
 // where c^2 = a^2, with an infinite slope; from a critical one on there is no such place, and at that one the solution
-// passes through it smoothly: this is the d. It is 3/5 exactly for gamma = 7/5; for gamma = 3, bodies on a line,
-// .6279520417, and the energy's exponent -.116143875.
+// passes through it smoothly: this is the d. It is 3/5 exactly for gamma = 7/5; for gamma = 3, particles on a line,
+// 0.6279520417, and the energy's exponent -0.116143875.
 //
 // With d xi/ds = -gamma (c^2 - a^2) the equations have no infinite slope, and 1 - a^2/c^2 falls along s up to 0 for too
 // small a d, to a least value above 0 for too large a one.
@@ -47,7 +47,7 @@ inline bool splash_breaks_off(double d, double gamma, double step) {
 }  // namespace detail
 
 /// d of R ~ t^d, for gamma from 1.2 to 3. The error falls with the fourth power of the step: 6e-11 for gamma = 3.
-inline double splash_front_exponent(double gamma = 3, double step = .0025) {
+inline double splash_front_exponent(double gamma = 3, double step = 0.0025) {
   double below = 0.55, above = 2.0 / 3;  // 2/3: of a shock whose energy is kept
   for (int halvings = 0; halvings < 48; ++halvings) {
     const double d = (below + above) / 2;

@@ -1,7 +1,7 @@
-// The sticky shock: two rows, rho_l at u_l on the left and rho_r at u_r on the right, run into a body of mass m_0 and
-// velocity u_c between them, at x = 0 and t = 0; all that arrives sticks. "Dry and wet granular shock waves", section
-// II, Fig. 1, for the general Riemann data given there. With the absorbed masses A_l = rho_l (u_l t - X) and A_r =
-// rho_r (X - u_r t), mass, momentum and moment of the cluster at X(t) are those of what it took in:
+// The sticky shock: two rows, rho_l at u_l on the left and rho_r at u_r on the right, run into a particle of mass m_0
+// and velocity u_c between them, at x = 0 and t = 0; all that arrives sticks. "Dry and wet granular shock waves",
+// section II, Fig. 1, for the general Riemann data given there. With the absorbed masses A_l = rho_l (u_l t - X) and
+// A_r = rho_r (X - u_r t), mass, momentum and moment of the cluster at X(t) are those of what it took in:
 //     M = m_0 + A_l + A_r,   M X = m_0 u_c t + (rho_l (u_l^2 t^2 - X^2) + rho_r (X^2 - u_r^2 t^2))/2 ,
 // a quadratic equation for X. In the frame of u_c, with w_l = u_l - u_c >= 0, w_r = u_c - u_r >= 0, w = w_l + w_r,
 //     M^2 = m_0^2 + 2 m_0 t (rho_l w_l + rho_r w_r) + rho_l rho_r w^2 t^2,
@@ -19,7 +19,8 @@
 
 namespace cradle::theory {
 
-/// Riemann data: densities > 0, u_l >= u_c >= u_r, u_l > u_r, m_0 >= 0. Without a body, m_0 = 0, u_c has no meaning.
+/// Riemann data: densities > 0, u_l >= u_c >= u_r, u_l > u_r, m_0 >= 0. Without a particle, m_0 = 0, u_c has no
+/// meaning.
 template <class T> struct StickyShock {
   T density_left;     ///< rho_l
   T velocity_left;    ///< u_l
@@ -71,7 +72,7 @@ template <class T> StickyCentre<T> sticky_centre(const StickyShock<T>& shock, co
   const T& u_r = shock.velocity_right;
   if (!(shock.density_left > T(0) && shock.density_right > T(0)) || m0 < T(0))
     throw std::domain_error("a density of the sticky shock is not positive, or its central mass negative");
-  // Without a body any u_c between the rows does; with that of the cluster, q vanishes.
+  // Without a particle any u_c between the rows does; with that of the cluster, q vanishes.
   const T u_c = m0 > T(0) ? shock.velocity : late_velocity(shock);
   if (!(u_l > u_r) || u_c > u_l || u_c < u_r)
     throw std::domain_error("the sticky shock needs rows that close in on what is between them");

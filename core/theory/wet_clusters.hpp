@@ -1,4 +1,4 @@
-// The two heaviest clusters of the late wet shock as heavy pistons in the stationary force of the other bodies:
+// The two heaviest clusters of the late wet shock as heavy pistons in the stationary force of the other particles:
 // "Dry and wet granular shock waves", section VI, equation (16),  M_i(t) x_i'' = F(x_i),  M_i(t) = m (1 + r_i t).
 // Where they meet they go through each other or stick. The velocity of the clusters does not enter the force, and what
 // they take up comes in with their own velocity, as the equation is printed.
@@ -123,11 +123,11 @@ template <PiecewiseForce Force, class Stepper> class ClusterMotion {
     event_.reset();
     for (std::size_t i = 0; i < 2; ++i)
       if (moves(i))
-        look_for(
+        search_for(
             i == 0 ? Kind::first_leaves : Kind::second_leaves, end,
             [&](const ClusterState& y) { return outside(i, y); }, [&](const ClusterState& y) { return y[2 * i + 1]; });
     if (!merged_)
-      look_for(
+      search_for(
           Kind::meeting, end, [&](const ClusterState& y) { return first_is_left_ ? y[0] - y[2] : y[2] - y[0]; },
           [&](const ClusterState& y) { return y[1] - y[3]; });
     known_ = event_ ? event_->time : end;
@@ -145,7 +145,7 @@ template <PiecewiseForce Force, class Stepper> class ClusterMotion {
 
   // Notes the first time in this step at which `excess` becomes positive, if that is before the event noted so far.
   // `rate` vanishes where excess has its extremum: a step may cross and come back.
-  template <class Excess, class Rate> void look_for(Kind kind, double end, Excess&& excess, Rate&& rate) {
+  template <class Excess, class Rate> void search_for(Kind kind, double end, Excess&& excess, Rate&& rate) {
     const auto crossed = [&](double t) { return excess(state_at(t)) > 0; };
     const bool rising = rate(state_at(begin_)) > 0;
     double from = begin_;

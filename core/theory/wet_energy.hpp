@@ -1,12 +1,12 @@
-// Energy of the wet shock as long as nothing sticks: every contact takes E_loss exactly, so only contacts have to be
-// counted. "Dry and wet granular shock waves", section V, gives the front alone; the rest follows in the same way.
-// Wet bodies pass through each other, so body i of the left row (counted from the front, i = 0, 1, ...) meets each body
-// j of the right row once. With u_ij the speed of a body that has met j others and is the i-th of its row, the two
-// close at w_ij = u_ij + u_ji and each loses 2e/(w + w'), e = E_loss/m, w' = sqrt(w^2 - 4e); the flights between
-// contacts are straight. This recursion over i and j (`cross_rows`) is exact for unperturbed rows until the first pair
-// sticks; its row i = 0 is the front. Many contacts, e << u0^2: a row decelerates at e times the number density of the
-// other. In s = E_loss t/(m u0 l) the number of contacts is 2 (u0 t/l)^2 g(s), of which 2 (u0 t/l)^2 is that of rows
-// that pass freely, with
+// Energy of the wet shock as long as nothing sticks: every collision takes E_loss exactly, so only collisions have to
+// be counted. "Dry and wet granular shock waves", section V, gives the front alone; the rest follows in the same way.
+// Wet particles pass through each other, so particle i of the left row (counted from the front, i = 0, 1, ...) meets
+// each particle j of the right row once. With u_ij the speed of a particle that has met j others and is the i-th of its
+// row, the two close at w_ij = u_ij + u_ji and each loses 2e/(w + w'), e = E_loss/m, w' = sqrt(w^2 - 4e); the flights
+// between collisions are straight. This recursion over i and j (`cross_rows`) is exact for unperturbed rows until the
+// first pair sticks; its row i = 0 is the front. Many collisions, e << u0^2: a row decelerates at e times the number
+// density of the other. In s = E_loss t/(m u0 l) the number of collisions is 2 (u0 t/l)^2 g(s), of which 2 (u0 t/l)^2
+// is that of rows that pass freely, with
 //     w u_j = -e, u_j = v_i;   w t_ij = -(u_i t_j + v_j t_i),   w = u + v      (subscripts i, j: derivatives)
 // solved as power series in i and j and counted, area of {t(i,j) <= t}: g(s) = 1 - s/3 - s^2/48 - s^3/80 - ... .
 #pragma once
@@ -22,14 +22,14 @@
 
 namespace cradle::theory {
 
-/// s = E_loss t/(m u0 l): the front turns at s = 1, the first bodies stick at 1.13 (E_loss -> 0).
+/// s = E_loss t/(m u0 l): the front turns at s = 1, the first particles stick at 1.13 (E_loss -> 0).
 template <class T> T wet_progress(const WetShock<T>& shock, const T& t) {
   return T(shock.loss * t / (shock.mass * shock.speed * shock.spacing));
 }
 
-/// g(s): contacts over those of rows that pass freely, in the limit of small losses. The series is cut after s^16: g is
-/// 7e-7 too large at s = .8, 4e-5 at 1, 2e-4 at 1.1. Finite losses change it by a few e/u0^2.
-template <class T> T contact_share(const T& s) {
+/// g(s): collisions over those of rows that pass freely, in the limit of small losses. The series is cut after s^16: g
+/// is 7e-7 too large at s = 0.8, 4e-5 at 1, 2e-4 at 1.1. Finite losses change it by a few e/u0^2.
+template <class T> T collision_share(const T& s) {
   // 1 - g = sum of 2 a_k s^k/(k+2)!, a_k dyadic: {numerator, binary logarithm of the denominator}
   struct Dyadic {
     std::int64_t numerator;
@@ -62,21 +62,21 @@ template <class T> T contact_share(const T& s) {
   return T(T(1) - sum);
 }
 
-/// Contacts up to time t before anything sticks, 2 (u0 t/l)^2 g(s), for small losses and as long as both rows last.
-template <class T> T wet_contacts(const WetShock<T>& shock, const T& t) {
+/// Collisions up to time t before anything sticks, 2 (u0 t/l)^2 g(s), for small losses and as long as both rows last.
+template <class T> T wet_collisions(const WetShock<T>& shock, const T& t) {
   const T free = shock.speed * t / shock.spacing;
-  return T(T(2) * free * free * contact_share(wet_progress(shock, t)));
+  return T(T(2) * free * free * collision_share(wet_progress(shock, t)));
 }
 
 /// Energy before anything sticks, E(0) - E_loss 2 (u0 t/l)^2 g(s).
 template <class T> T energy(const WetShock<T>& shock, const T& t) {
-  return T(initial_energy(shock) - shock.loss * wet_contacts(shock, t));
+  return T(initial_energy(shock) - shock.loss * wet_collisions(shock, t));
 }
 
-/// The recursion over all pairs of two rows of N/2 bodies. Calls visit(time, pairs) for the contacts with time <=
+/// The recursion over all pairs of two rows of N/2 particles. Calls visit(time, pairs) for the collisions with time <=
 /// until, in no particular order: 1 or 2 pairs, (i,j) with its mirror image (j,i). Returns when the first pair sticks,
-/// if that is before `until` (or when a body may catch up with the one before it in its row); later contacts are not
-/// those of a run. Takes as many steps as there are contacts, and memory for the bodies that meet.
+/// if that is before `until` (or when a particle may catch up with the one before it in its row); later collisions are
+/// not those of a run. Takes as many steps as there are collisions, and memory for the particles that meet.
 template <class T, class Visitor>
 std::optional<T> cross_rows(const WetShock<T>& shock, const T& until, Visitor&& visit) {
   struct Flight {
@@ -92,7 +92,7 @@ std::optional<T> cross_rows(const WetShock<T>& shock, const T& until, Visitor&& 
     if (!end || time < *end) end = time;
   };
   std::vector<Flight> left_movers;                                    // after meeting the right-movers before i
-  std::size_t reach = static_cast<std::size_t>(shock.particles / 2);  // bodies that right-mover i can meet
+  std::size_t reach = static_cast<std::size_t>(shock.particles / 2);  // particles that right-mover i can meet
   for (std::size_t i = 0; i < reach; ++i) {
     if (i == left_movers.size()) left_movers.push_back(start(i));
     Flight right = left_movers[i];

@@ -1,7 +1,7 @@
-// The front of the wet shock: two rows of equal bodies, spacing l, running into each other at +u0 (left) and -u0
-// (right), each contact taking the energy E_loss. "Dry and wet granular shock waves", section V.
-// Wet bodies pass through each other, so the very first body of the left row is a tracer that meets one fresh body of
-// the right row after the other. With e = E_loss/m and r = u + u0, its closing speed at the next contact,
+// The front of the wet shock: two rows of equal particles, spacing l, running into each other at +u0 (left) and -u0
+// (right), each collision taking the energy E_loss. "Dry and wet granular shock waves", section V.
+// Wet particles pass through each other, so the very first particle of the left row is a tracer that meets one fresh
+// particle of the right row after the other. With e = E_loss/m and r = u + u0, its closing speed at the next collision,
 //     r_{n+1} = r_n/2 + sqrt(r_n^2/4 - e),   that is   r_n = r_{n+1} + e/r_{n+1},   r_0 = 2 u0,
 //     t_{n+1} = t_n + l/r_n,   x_n = x_0 + n l - u0 t_n,   x_0 = -l/2 ,
 // until r_n <= 2 sqrt e, where it sticks. This discrete form is exact. The continuous one, equation (8) integrated with
@@ -22,7 +22,8 @@
 
 namespace cradle::theory {
 
-/// Closing speed up to which two bodies stick, sqrt(2 E_loss/mu), mu the reduced mass; 2 sqrt(E_loss/m) for equal ones.
+/// Closing speed up to which two particles stick, sqrt(2 E_loss/mu), mu the reduced mass; 2 sqrt(E_loss/m) for equal
+/// ones.
 template <class T> T critical_closing_speed(const T& loss, const T& mass_left, const T& mass_right) {
   using std::sqrt;
   return T(sqrt(T(T(2) * loss * ((mass_left + mass_right) / (mass_left * mass_right)))));
@@ -39,11 +40,11 @@ template <class T> struct WetShock {
   T loss;                       ///< E_loss
   T speed = T(T(1) / T(2));     ///< u0
   T spacing = T(1);             ///< l
-  T mass = T(1);                ///< m, of one body
+  T mass = T(1);                ///< m, of one particle
   std::uint64_t particles = 0;  ///< N, both rows together; enters only the energy
 
   T specific_loss() const { return T(loss / mass); }
-  /// 2 sqrt e: two single bodies that close no faster stick.
+  /// 2 sqrt e: two single particles that close no faster stick.
   T critical_speed() const { return critical_closing_speed(loss, mass, mass); }
   /// x_0 = -l/2, where the tracer starts.
   T origin() const { return T(-spacing / T(2)); }
@@ -54,7 +55,7 @@ template <class T> T initial_energy(const WetShock<T>& shock) {
   return T(detail::from_count<T>(shock.particles) * shock.mass * shock.speed * shock.speed / T(2));
 }
 
-/// What each of two single bodies closing at w > w_c loses of its speed, (w - w')/2 = 2e/(w + w'), w' = sqrt(w^2 -
+/// What each of two single particles closing at w > w_c loses of its speed, (w - w')/2 = 2e/(w + w'), w' = sqrt(w^2 -
 /// w_c^2).
 template <class T> T speed_lost(const T& specific_loss, const T& w, const T& critical) {
   using std::sqrt;
@@ -63,40 +64,40 @@ template <class T> T speed_lost(const T& specific_loss, const T& w, const T& cri
 
 // ---- discrete: the tracer, exact ----
 
-/// The tracer from contact to contact. Sums are compensated: t_n and u_n carry a few roundings, not n.
+/// The tracer from collision to collision. Sums are compensated: t_n and u_n carry a few roundings, not n.
 template <class T> class WetFrontRecursion {
  public:
   explicit WetFrontRecursion(const WetShock<T>& shock)
       : shock_(shock), loss_(shock.specific_loss()),
         critical_(shock.critical_speed()), now_{0, T(0), shock.origin(), shock.speed} {}
 
-  const FrontContact<T>& now() const { return now_; }
-  /// Time of the contact to come.
+  const FrontCollision<T>& now() const { return now_; }
+  /// Time of the collision to come.
   T next_time() const { return T(now_.time + shock_.spacing / closing_speed()); }
-  /// Whether the tracer will stick at the contact to come.
+  /// Whether the tracer will stick at the collision to come.
   bool sticks_next() const { return !(closing_speed() > critical_); }
 
-  /// Goes on to the next contact; false, and nothing changes, where the tracer sticks at it.
+  /// Goes on to the next collision; false, and nothing changes, where the tracer sticks at it.
   bool advance() {
     if (sticks_next()) return false;
     const T w = closing_speed();
     time_.add(T(shock_.spacing / w));
     lost_.add(speed_lost(loss_, w, critical_));
-    ++now_.contact;
+    ++now_.collision;
     now_.time = time_.value();
     now_.velocity = T(shock_.speed - lost_.value());
     now_.position =
-        T(shock_.origin() + (shock_.spacing * detail::from_count<T>(now_.contact) - shock_.speed * now_.time));
+        T(shock_.origin() + (shock_.spacing * detail::from_count<T>(now_.collision) - shock_.speed * now_.time));
     return true;
   }
 
-  /// Goes on to the last contact at or before `t`.
+  /// Goes on to the last collision at or before `t`.
   void advance_to(const T& t) {
     while (!(next_time() > t) && advance()) {
     }
   }
 
-  /// Position at time t, from the contact before it up to the next one; none once the tracer has stuck.
+  /// Position at time t, from the collision before it up to the next one; none once the tracer has stuck.
   std::optional<T> position_at(const T& t) const {
     if (sticks_next() && t > next_time()) return std::nullopt;
     return T(now_.position + now_.velocity * (t - now_.time));
@@ -108,25 +109,25 @@ template <class T> class WetFrontRecursion {
   WetShock<T> shock_;
   T loss_, critical_;
   CompensatedSum<T> time_, lost_;  // lost_: u0 - u_n
-  FrontContact<T> now_;
+  FrontCollision<T> now_;
 };
 
-/// The tracer just after its last contact at or before time t >= 0, in as many steps as it has had contacts.
+/// The tracer just after its last collision at or before time t >= 0, in as many steps as it has had collisions.
 template <class T> WetFrontRecursion<T> front_recursion_at(const WetShock<T>& shock, const T& t) {
   WetFrontRecursion<T> recursion(shock);
   recursion.advance_to(t);
   return recursion;
 }
 
-/// The contact at which the tracer is farthest, the first with u_n <= 0; its reach is position - origin(). None where
+/// The collision at which the tracer is farthest, the first with u_n <= 0; its reach is position - origin(). None where
 /// it sticks before, or never slows (loss 0). Takes about 3 u0^2/(2 e) steps; throws std::overflow_error above `most`.
 template <class T>
-std::optional<FrontContact<T>> turnover_contact(const WetShock<T>& shock, std::uint64_t most = 100'000'000) {
+std::optional<FrontCollision<T>> turnover_collision(const WetShock<T>& shock, std::uint64_t most = 100'000'000) {
   if (!(shock.loss > T(0))) return std::nullopt;
   WetFrontRecursion<T> recursion(shock);
   while (recursion.now().velocity > T(0)) {
-    if (recursion.now().contact == most)
-      throw std::overflow_error("the front turns after too many contacts: use the continuous form");
+    if (recursion.now().collision == most)
+      throw std::overflow_error("the front turns after too many collisions: use the continuous form");
     if (!recursion.advance()) return std::nullopt;
   }
   return recursion.now();
@@ -134,9 +135,9 @@ std::optional<FrontContact<T>> turnover_contact(const WetShock<T>& shock, std::u
 
 // ---- continuous: equation (8) in closed form ----
 
-/// The front where the contacts are counted by a real number n.
+/// The front where the collisions are counted by a real number n.
 template <class T> struct WetFrontState {
-  T contacts;
+  T collisions;
   T time;
   T position;
   T velocity;
@@ -228,7 +229,7 @@ template <class T> class WetFront {
   }
 
  private:
-  // Rows that close at no more than 2 sqrt e stick at the first contact.
+  // Rows that close at no more than 2 sqrt e stick at the first collision.
   bool moves() const { return shock_.speed > root_; }
 
   // h = r/(2 sqrt e) - 1 and s = y - 1 = h + sqrt(h (h+2))
@@ -250,9 +251,9 @@ template <class T> class WetFront {
     const T y = T(1) + s;
     const T product = depth0_ + y0_ * s;  // y0 y - 1
     const T ratio = d / y;
-    const T contacts = ratio * ((product + s * (y + T(1))) / T(2) + detail::log_deficit(ratio));
+    const T collisions = ratio * ((product + s * (y + T(1))) / T(2) + detail::log_deficit(ratio));
     const T time = time_of(d, s);
-    return {contacts, time, T(shock_.origin() + (contacts * shock_.spacing - shock_.speed * time)),
+    return {collisions, time, T(shock_.origin() + (collisions * shock_.spacing - shock_.speed * time)),
             T(shock_.speed - root_ * d * product / (y0_ * y))};
   }
 

@@ -1,15 +1,15 @@
-// The linear model of the late wet shock: a stationary zone |x| < L in which incoming bodies are slowed from u0 to the
-// critical speed u_crit, and the force it exerts on a heavy cluster. "Dry and wet granular shock waves", section VI,
-// equations (9) to (15), corrected. n0 = 1/l; k = n~/n0, the excess of density in the zone.
+// The linear model of the late wet shock: a stationary zone |x| < L in which incoming particles are slowed from u0 to
+// the critical speed u_crit, and the force it exerts on a heavy cluster. "Dry and wet granular shock waves", section
+// VI, equations (9) to (15), corrected. n0 = 1/l; k = n~/n0, the excess of density in the zone.
 //   (9)  u_+ = -a x + b, a = (u0 - u_crit)/2L, b = (u0 + u_crit)/2        (10) n_+ = n0 (1 + k/2 + k x/2L)
 //   (12) energy balance (11): L = m u0^2/[2 E_loss n0 (k^2/6 + k + 1)]
-//   (13) slowing down of one body: L = m u0^2/[2 E_loss n0 (2 + k)]
+//   (13) slowing down of one particle: L = m u0^2/[2 E_loss n0 (2 + k)]
 // so that k^2/6 + k + 1 = 2 + k, k = sqrt 6. Left-movers are the mirror image.
-// A body that runs into a much heavier cluster (reduced mass m) at speed v leaves it on the other side with
+// A particle that runs into a much heavier cluster (reduced mass m) at speed v leaves it on the other side with
 // sqrt(v^2 - v_c^2), v_c = sqrt(2 E_loss/m), or sticks, and hands over the momentum it loses; the printed form lacks
-// the factor m. u_crit of (9) is that of two single bodies, sqrt 2 v_c: no body of the zone is slow enough to stick to
-// a cluster, and 2 E_loss/(m u^2) <= 1/2 in (15). That needs u_crit <= u0, E_loss <= m u0^2/4. The velocity of the
-// cluster itself is left out, as in the paper. T needs +, -, *, /, comparison, T(int), sqrt by ADL.
+// the factor m. u_crit of (9) is that of two single particles, sqrt 2 v_c: no particle of the zone is slow enough to
+// stick to a cluster, and 2 E_loss/(m u^2) <= 1/2 in (15). That needs u_crit <= u0, E_loss <= m u0^2/4. The velocity of
+// the cluster itself is left out, as in the paper. T needs +, -, *, /, comparison, T(int), sqrt by ADL.
 #pragma once
 
 #include "cradle/core/theory/wet_shock.hpp"
@@ -19,7 +19,7 @@
 
 namespace cradle::theory {
 
-/// m u0^2/(2 E_loss n0), the length over which as many bodies stand as their losses take to use up m u0^2/2.
+/// m u0^2/(2 E_loss n0), the length over which as many particles stand as their losses take to use up m u0^2/2.
 template <class T> T stopping_length(const WetShock<T>& shock) {
   return T(shock.mass * shock.speed * shock.speed * shock.spacing / (T(2) * shock.loss));
 }
@@ -27,7 +27,7 @@ template <class T> T stopping_length(const WetShock<T>& shock) {
 template <class T> T half_width_from_energy(const WetShock<T>& shock, const T& k) {
   return T(stopping_length(shock) / (k * k / T(6) + k + T(1)));
 }
-/// L from the slowing down of one body, equation (13).
+/// L from the slowing down of one particle, equation (13).
 template <class T> T half_width_from_slowing(const WetShock<T>& shock, const T& k) {
   return T(stopping_length(shock) / (T(2) + k));
 }
@@ -36,11 +36,11 @@ template <class T> T density_excess() {
   using std::sqrt;
   return T(sqrt(T(6)));
 }
-/// Contacts of a body in the zone, j* = m u0^2/E_loss.
-template <class T> T contacts_to_rest(const WetShock<T>& shock) {
+/// Collisions of a particle in the zone, j* = m u0^2/E_loss.
+template <class T> T collisions_to_rest(const WetShock<T>& shock) {
   return T(shock.mass * shock.speed * shock.speed / shock.loss);
 }
-/// Speed lost per contact where the two rows close at u0 >= u_crit: (u0/2)(1 - sqrt(1 - 4 E_loss/(m u0^2))), about
+/// Speed lost per collision where the two rows close at u0 >= u_crit: (u0/2)(1 - sqrt(1 - 4 E_loss/(m u0^2))), about
 /// E_loss/(m u0) (printed before (13): E_loss/(m u0^2)).
 template <class T> T zone_speed_lost(const WetShock<T>& shock) {
   return speed_lost(shock.specific_loss(), shock.speed, shock.critical_speed());
@@ -73,8 +73,8 @@ template <class T> class WetZone {
     return T((T(1) + excess_ / T(2) + excess_ * x / width()) / shock_.spacing);
   }
 
-  /// Momentum that a body of speed v >= 0 hands to a heavy cluster at rest: m (v - sqrt(v^2 - v_c^2)), all of it where
-  /// it sticks.
+  /// Momentum that a particle of speed v >= 0 hands to a heavy cluster at rest: m (v - sqrt(v^2 - v_c^2)), all of it
+  /// where it sticks.
   T piston_momentum(const T& v) const {
     using std::sqrt;
     if (!(v > piston_critical_)) return T(shock_.mass * v);

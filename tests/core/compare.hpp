@@ -1,13 +1,13 @@
 #pragma once
-// Comparing runs: states bit for bit, and sequences of contacts as far as they mean anything. Contacts at gaps that are
-// not neighbours commute, so two runs made the same contacts if at every two neighbouring gaps they came in the same
-// order; the order across the line may differ.
+// Comparing runs: states bit for bit, and sequences of collisions as far as they mean anything. Collisions at gaps that
+// are not neighbours commute, so two runs made the same collisions if at every two neighbouring gaps they came in the
+// same order; the order across the line may differ.
 
 #include <map>
 #include <vector>
 
-#include "cradle/core/configuration.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/simulation.hpp"
 
 namespace cradle::test {
 
@@ -19,24 +19,24 @@ template <class T> bool identical(const Configuration<T>& a, const Configuration
 }
 
 // `close_calls` and `origin_moves` are how the run was made, not what happened in it.
-inline bool same_contacts(const Counts& a, const Counts& b) {
-  return a.contacts == b.contacts && a.below_cutoff == b.below_cutoff && a.merges == b.merges;
+inline bool same_collisions(const Counts& a, const Counts& b) {
+  return a.collisions == b.collisions && a.below_cutoff == b.below_cutoff && a.merges == b.merges;
 }
 inline bool identical(const Counts& a, const Counts& b) {
-  return same_contacts(a, b) && a.close_calls == b.close_calls && a.origin_moves == b.origin_moves;
+  return same_collisions(a, b) && a.close_calls == b.close_calls && a.origin_moves == b.origin_moves;
 }
 
-// Contacts in order, for each gap and its right neighbour.
+// Collisions in order, for each gap and its right neighbour.
 class Sequence {
  public:
-  void add(BodyIndex left) {
+  void add(ParticleIndex left) {
     at_pair_[left].push_back(left);
     at_pair_[left - 1].push_back(left);
   }
   friend bool operator==(const Sequence&, const Sequence&) = default;
 
  private:
-  std::map<BodyIndex, std::vector<BodyIndex>> at_pair_;
+  std::map<ParticleIndex, std::vector<ParticleIndex>> at_pair_;
 };
 
 }  // namespace cradle::test

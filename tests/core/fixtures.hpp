@@ -1,5 +1,5 @@
 #pragma once
-// Initial states that several tests share, and the runs made from them. Both fixtures perturb their bodies by a hash
+// Initial states that several tests share, and the runs made from them. Both fixtures perturb their particles by a hash
 // (the finaliser of splitmix64) and are exact in double: every scalar type starts from the same numbers.
 //
 //   rmix    x_i = i + (h & 0x3FF)/2048,  v_i = (((h >> 20) & 0x3FFF) - 8192)/8192
@@ -8,68 +8,68 @@
 #include <memory>
 #include <vector>
 
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/law.hpp"
-#include "cradle/core/list.hpp"
-#include "cradle/core/position_chain.hpp"
-#include "cradle/core/ring.hpp"
-#include "cradle/core/rows.hpp"
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/laws/law.hpp"
 
 namespace cradle::test {
 
-template <class T> using Scene = std::shared_ptr<const Bodies<T>>;
+template <class T> using Scene = std::shared_ptr<const Particles<T>>;
 template <class T> using GapRun = Simulation<T, Inelastic<T>, GapChain<T>>;
 template <class T> using MassRun = Simulation<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>;
 template <class T> using PositionRun = Simulation<T, Inelastic<T>, PositionChain<T>>;
 
-inline std::uint64_t hash(BodyIndex i) {
+inline std::uint64_t hash(ParticleIndex i) {
   std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
   return z ^ (z >> 31);
 }
 
-inline std::int64_t bits_of(BodyIndex body, int shift, std::uint64_t mask) {
-  return static_cast<std::int64_t>((hash(body) >> shift) & mask);
+inline std::int64_t bits_of(ParticleIndex particle, int shift, std::uint64_t mask) {
+  return static_cast<std::int64_t>((hash(particle) >> shift) & mask);
 }
 
 template <class T> Scene<T> list(std::vector<T> x, std::vector<T> v, std::vector<T> m = {}) {
   return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m));
 }
 
-template <class T> Scene<T> rmix(BodyIndex n) {
+template <class T> Scene<T> rmix(ParticleIndex n) {
   std::vector<T> x, v;
-  for (BodyIndex i = 0; i < n; ++i) {
+  for (ParticleIndex i = 0; i < n; ++i) {
     x.push_back(T(i) + T(bits_of(i, 0, 0x3FF)) / T(2048));
     v.push_back(T(bits_of(i, 20, 0x3FFF) - 8192) / T(8192));
   }
   return list(std::move(x), std::move(v));
 }
 
-inline std::int64_t rshock_displacement(BodyIndex body) { return bits_of(body, 0, 0x3FFFF) - 131072; }
+inline std::int64_t rshock_displacement(ParticleIndex particle) { return bits_of(particle, 0, 0x3FFFF) - 131072; }
 
 // Rows of unit spacing closing in at plus and minus `speed`.
-template <class T> Scene<T> rshock(BodyIndex n, const T& speed) {
+template <class T> Scene<T> rshock(ParticleIndex n, const T& speed) {
   return std::make_shared<Rows<T>>(symmetric_rows<T>(n, speed, T(1), rshock_displacement));
 }
-template <class T> Scene<T> rshock(BodyIndex n) { return rshock(n, T(T(1) / T(2))); }
+template <class T> Scene<T> rshock(ParticleIndex n) { return rshock(n, T(T(1) / T(2))); }
 
 // Rows and rings as scenes have them, displaced by counters.
-inline Scene<double> uniform_rows(BodyIndex count) {
-  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, .5, 1, uniform_displacement(.05, 3, 0)));
+inline Scene<double> uniform_rows(ParticleIndex count) {
+  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));
 }
-inline Scene<double> gaussian_ring(BodyIndex count, double length) {
-  return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(3, 0), uniform_displacement(.05, 3, 0));
+inline Scene<double> gaussian_ring(ParticleIndex count, double length) {
+  return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
 }
 
-// The same bodies, held as a list without any knowledge of rows.
-template <class T> Scene<T> as_list(const Bodies<T>& bodies) {
+// The same particles, held as a list without any knowledge of rows.
+template <class T> Scene<T> as_list(const Particles<T>& particles) {
   std::vector<T> x, v, m;
-  for (BodyIndex b = 0; b < bodies.count(); ++b) {
-    x.push_back(bodies.position(b));
-    v.push_back(bodies.velocity(b));
-    m.push_back(bodies.mass(b));
+  for (ParticleIndex b = 0; b < particles.count(); ++b) {
+    x.push_back(particles.position(b));
+    v.push_back(particles.velocity(b));
+    m.push_back(particles.mass(b));
   }
   return list(std::move(x), std::move(v), std::move(m));
 }
@@ -80,22 +80,22 @@ struct Options {
 };
 
 template <class T>
-GapRun<T> gap_run(const Scene<T>& bodies, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
+GapRun<T> gap_run(const Scene<T>& particles, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
                   Options options = {}) {
-  return {law, GapChain<T>(bodies, start, options.hold_all), std::move(policy), options.least_queue_bits};
+  return {law, GapChain<T>(particles, start, options.hold_all), std::move(policy), options.least_queue_bits};
 }
 
 template <class T>
-MassRun<T> mass_run(const Scene<T>& bodies, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
+MassRun<T> mass_run(const Scene<T>& particles, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
                     Options options = {}) {
-  return {law, GapChain<T, IndividualMasses<T>>(bodies, start, options.hold_all), std::move(policy),
+  return {law, GapChain<T, IndividualMasses<T>>(particles, start, options.hold_all), std::move(policy),
           options.least_queue_bits};
 }
 
 template <class T>
-PositionRun<T> position_run(const Scene<T>& bodies, const Inelastic<T>& law, Policy<T> policy = {},
+PositionRun<T> position_run(const Scene<T>& particles, const Inelastic<T>& law, Policy<T> policy = {},
                             const T& start = T(0)) {
-  return {law, PositionChain<T>(bodies, start), std::move(policy)};
+  return {law, PositionChain<T>(particles, start), std::move(policy)};
 }
 
 template <class Run, class T> auto configuration_at(const Run& run, const T& time) {

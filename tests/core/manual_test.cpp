@@ -57,7 +57,8 @@ TEST(Manual, OfTheCoreNamesEveryHeaderAndNoOther) {
   }
   for (const std::string& named : all(manual, R"(([A-Za-z_0-9/.]+\.[ch]pp)\b)")) {
     bool there = false;
-    for (const char* folder : {".", "core", "core/observe", "core/ensemble", "tests/core"})
+    for (const char* folder : {".", "core", "core/engine", "core/chains", "core/parallel", "core/laws", "core/initial",
+                               "core/observe", "core/ensemble", "tests/core", "tests/core/engine", "tests/core/chains"})
       there = there || fs::exists(root() / folder / named);
     EXPECT_TRUE(there) << "core/README.md names " << named << ", which is not there: correct it";
   }

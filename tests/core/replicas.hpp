@@ -6,8 +6,8 @@
 #include <numeric>
 #include <vector>
 
-#include "cradle/core/counter_rng.hpp"
 #include "cradle/core/ensemble/tree.hpp"
+#include "cradle/core/initial/counter_rng.hpp"
 
 namespace cradle::test {
 

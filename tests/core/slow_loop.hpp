@@ -1,35 +1,35 @@
 #pragma once
-// The event loop in its plainest form, twin of Simulation: no queue, no keys, no ties by rounding. Before every contact
-// all gaps are looked through for the least exact time, the leftmost of equal ones; the origin of time may be moved
-// after any number of contacts. Made one contact at a time, which the real loop cannot be.
+// The event loop in its plainest form, twin of Simulation: no queue, no keys, no ties by rounding. Before every
+// collision all gaps are looked through for the least exact time, the leftmost of equal ones; the origin of time may be
+// moved after any number of collisions. Made one collision at a time, which the real loop cannot be.
 
 #include <optional>
 #include <utility>
 
-#include "cradle/core/chain.hpp"
-#include "cradle/core/configuration.hpp"
-#include "cradle/core/event_queue.hpp"
+#include "cradle/core/chains/chain.hpp"
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/event_queue.hpp"
 
 namespace cradle::test {
 
 template <class T> struct Step {
-  BodyIndex body;   // on the left of the gap
-  Pair<T> time;     // of the scene
-  T local_time;     // as the chain called it
-  T closing_speed;  // before the contact
-  T nearest_gap;    // beside it
+  ParticleIndex particle;  // on the left of the gap
+  Pair<T> time;            // of the scene
+  T local_time;            // as the chain called it
+  T closing_speed;         // before the collision
+  T nearest_gap;           // beside it
 };
 
 template <class Law, class Chain> class SlowLoop {
  public:
   using T = typename Chain::Scalar;
 
-  SlowLoop(Law law, Chain chain, int contacts_per_move = 1)
-      : law_(std::move(law)), chain_(std::move(chain)), contacts_per_move_(contacts_per_move) {}
+  SlowLoop(Law law, Chain chain, int collisions_per_move = 1)
+      : law_(std::move(law)), chain_(std::move(chain)), collisions_per_move_(collisions_per_move) {}
 
   const Chain& chain() const { return chain_; }
 
-  // The gap that closes next; none when all bodies part.
+  // The gap that closes next; none when all particles part.
   std::optional<Slot> next() const {
     std::optional<Slot> first;
     for (Slot s = chain_.first(); s <= chain_.last(); ++s)
@@ -39,12 +39,12 @@ template <class Law, class Chain> class SlowLoop {
 
   Step<T> collide(Slot s) {
     const T time = chain_.due(s);
-    Step<T> step{chain_.body(s), chain_.stamp(time), time, chain_.closing(s), T(0)};
-    const Collision<T> collision = chain_.collide(law_, s, time);
+    Step<T> step{chain_.particle(s), chain_.stamp(time), time, chain_.closing(s), T(0)};
+    const CollisionResult<T> collision = chain_.collide(law_, s, time);
     step.nearest_gap = chain_.nearest_gap(s);
     if constexpr (StreamingChain<Chain>)
-      if (asks(collision.notice, Notice::needs_slots)) chain_.make_room();
-    if (++since_move_ == contacts_per_move_) {
+      if (includes(collision.notice, Notice::needs_slots)) chain_.make_room();
+    if (++since_move_ == collisions_per_move_) {
       chain_.move_origin(time);
       since_move_ = 0;
     }
@@ -54,7 +54,7 @@ template <class Law, class Chain> class SlowLoop {
  private:
   Law law_;
   Chain chain_;
-  int contacts_per_move_, since_move_ = 0;
+  int collisions_per_move_, since_move_ = 0;
 };
 
 }  // namespace cradle::test

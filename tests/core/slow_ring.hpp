@@ -1,27 +1,27 @@
 #pragma once
-// Bodies on a ring in the plainest form, twin of the chains on a ring: positions and velocities, all bodies advanced
-// from contact to contact, the next one found by looking at every pair of neighbours.
+// Particles on a ring in the plainest form, twin of the chains on a ring: positions and velocities, all particles
+// advanced from collision to collision, the next one found by looking at every pair of neighbours.
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "cradle/core/bodies.hpp"
-#include "cradle/core/law.hpp"
+#include "cradle/core/initial/particles.hpp"
+#include "cradle/core/laws/law.hpp"
 
 namespace cradle::test {
 
 template <Real T> class SlowRing {
  public:
-  struct Body {
+  struct Particle {
     T x, v, m;  // x unwrapped: those of the list increase and span less than the circumference
-    BodyIndex index;
+    ParticleIndex index;
   };
 
-  explicit SlowRing(const Bodies<T>& bodies) : length_(bodies.circumference()) {
-    for (BodyIndex b = 0; b < bodies.count(); ++b)
-      ring_.push_back({bodies.position(b), bodies.velocity(b), bodies.mass(b), b});
+  explicit SlowRing(const Particles<T>& particles) : length_(particles.circumference()) {
+    for (ParticleIndex b = 0; b < particles.count(); ++b)
+      ring_.push_back({particles.position(b), particles.velocity(b), particles.mass(b), b});
   }
 
   template <class Law> void advance(const Law& law, const T& until) {
@@ -37,25 +37,25 @@ template <Real T> class SlowRing {
       if (!soonest || *soonest > until) break;
       fly(*soonest);
       collide(law, left);
-      ++contacts;
+      ++collisions;
     }
     fly(until);
   }
 
   // As they are told, from the first one on the left; on a ring so large that nothing comes round: a line.
-  const std::vector<Body>& unfolded() const { return ring_; }
-  // From the first body right of 0.
-  std::vector<Body> folded() const {
-    std::vector<Body> bodies = ring_;
-    for (Body& b : bodies) {
+  const std::vector<Particle>& unfolded() const { return ring_; }
+  // From the first particle right of 0.
+  std::vector<Particle> folded() const {
+    std::vector<Particle> particles = ring_;
+    for (Particle& b : particles) {
       while (b.x < T(0)) b.x += length_;
       while (!(b.x < length_)) b.x -= length_;
     }
-    std::sort(bodies.begin(), bodies.end(), [](const Body& a, const Body& b) { return a.x < b.x; });
-    return bodies;
+    std::sort(particles.begin(), particles.end(), [](const Particle& a, const Particle& b) { return a.x < b.x; });
+    return particles;
   }
 
-  std::uint64_t contacts = 0, merges = 0;
+  std::uint64_t collisions = 0, merges = 0;
 
  private:
   std::size_t next(std::size_t i) const { return i + 1 < ring_.size() ? i + 1 : 0; }
@@ -63,12 +63,12 @@ template <Real T> class SlowRing {
     return i + 1 < ring_.size() ? T(ring_[i + 1].x - ring_[i].x) : T(ring_[0].x + length_ - ring_[i].x);
   }
   void fly(const T& time) {
-    for (Body& b : ring_) b.x += b.v * (time - time_);
+    for (Particle& b : ring_) b.x += b.v * (time - time_);
     time_ = time;
   }
   template <class Law> void collide(const Law& law, std::size_t i) {
-    Body& l = ring_[i];
-    Body& r = ring_[next(i)];
+    Particle& l = ring_[i];
+    Particle& r = ring_[next(i)];
     const Outcome<T> outcome = law(T(l.v - r.v), TwoMasses<T>{l.m, r.m});
     l.v -= outcome.to_left;
     r.v += outcome.to_right;
@@ -86,7 +86,7 @@ template <Real T> class SlowRing {
     }
   }
 
-  std::vector<Body> ring_;
+  std::vector<Particle> ring_;
   T length_, time_{0};
 };
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/event_queue.hpp"
+#include "cradle/core/engine/event_queue.hpp"
 
 namespace cradle::test {
 

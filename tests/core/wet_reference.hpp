@@ -23,12 +23,12 @@ template <class T> theory::WetShock<T> paper_shock(const T& loss, std::uint64_t 
 
 // The front at its turnover, continuous and discrete, u0 = 1/2.
 struct WetTurnover {
-  const char *loss, *contacts, *time, *reach;
+  const char *loss, *collisions, *time, *reach;
   std::uint64_t n;
   const char *discrete_time, *discrete_reach;
 };
 // Source: the table, and (8) and its recursion evaluated anew with 40 digits. (The table has the last digit of n* at
-// .01, 36.79104537654821436, one unit too low.)
+// 0.01, 36.79104537654821436, one unit too low.)
 inline constexpr std::array<WetTurnover, 3> turnovers{
     WetTurnover{"1e-4", "3749.30670274438751", "4998.99976654257587", "1249.80681947309957", 3750,
                 "4999.69313159489030", "1250.15343420255485"},

@@ -1,8 +1,8 @@
 // Contents of journals, as they are behind their checksums, which a fuzzer would not guess: header and records of a
 // run, header and records of an ensemble.
 #include "cradle/tests/fuzz/fuzz.hpp"
-#include "cradle/tools/ensemble/journal_contents.hpp"
-#include "cradle/tools/run/run_journal.hpp"
+#include "cradle/tools/store/ensemble_journal.hpp"
+#include "cradle/tools/store/run_journal.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cradle;

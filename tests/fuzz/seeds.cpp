@@ -3,19 +3,19 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cradle/core/cluster_chain.hpp"
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/position_chain.hpp"
-#include "cradle/core/ring.hpp"
-#include "cradle/core/rows.hpp"
-#include "cradle/core/simulation.hpp"
-#include "cradle/core/state.hpp"
-#include "cradle/core/sticky_gas.hpp"
-#include "cradle/tools/ensemble/journal_contents.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/result/result_bytes.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/run/run_journal.hpp"
+#include "cradle/tools/store/ensemble_journal.hpp"
+#include "cradle/tools/store/run_journal.hpp"
 
 namespace {
 
@@ -68,18 +68,22 @@ int main(int argc, char** argv) {
   put("journal", "replica",
       '\3' + tools::EnsembleState::record(0, state.layout().row(3, run), state.layout().values(run)));
 
-  const auto rows = std::make_shared<Rows<double>>(symmetric_rows<double>(12, .5, 1, uniform_displacement(.05, 3, 0)));
-  const auto ring = std::make_shared<Ring<double>>(8, 8., 1., gaussian_velocity(3, 0), uniform_displacement(.05, 3, 0));
+  const auto rows =
+      std::make_shared<Rows<double>>(symmetric_rows<double>(12, 0.5, 1, uniform_displacement(0.05, 3, 0)));
+  const auto ring =
+      std::make_shared<Ring<double>>(8, 8., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
   using Dry = Inelastic<double>;
-  const Dry dry(.9, 1e-3);
+  const Dry dry(0.9, 1e-3);
   put_state(0, Simulation<double, Dry, GapChain<double>>(dry, GapChain<double>(rows, 0.)));
   put_state(1, Simulation<double, Dry, GapChain<double>>(dry, GapChain<double>(ring, 0.)));
   using Individual = GapChain<double, IndividualMasses<double>>;
   put_state(2,
             Simulation<double, ContactTime<double>, Individual>(ContactTime<double>(dry, 1e-3), Individual(rows, 0.)));
   put_state(3, Simulation<double, Dry, PositionChain<double>>(dry, PositionChain<double>(rows, 0.)));
-  put_state(4, Simulation<double, Wet<double>, ClusterChain<double>>(Wet<double>(.01), ClusterChain<double>(rows, 0.)));
-  put_state(5, Simulation<double, Wet<double>, ClusterChain<double>>(Wet<double>(.01), ClusterChain<double>(ring, 0.)));
+  put_state(4,
+            Simulation<double, Wet<double>, ClusterChain<double>>(Wet<double>(0.01), ClusterChain<double>(rows, 0.)));
+  put_state(5,
+            Simulation<double, Wet<double>, ClusterChain<double>>(Wet<double>(0.01), ClusterChain<double>(ring, 0.)));
   put_state(6, StickyGas<double>(ring, 0.));
   put_state(13, StickyGas<double>(rows, 0.));
 }

@@ -1,16 +1,16 @@
-// What a user's program looks like: two rows of inelastic bodies run into each other (the scene fig2, made small), once
-// and as an ensemble. Shows that an installed Cradle compiles and runs outside its own tree, with the libraries it
+// What a user's program looks like: two rows of inelastic particles run into each other (the scene fig2, made small),
+// once and as an ensemble. Shows that an installed Cradle compiles and runs outside its own tree, with the libraries it
 // needs; the exit status says whether the energy balance is right.
 
 #include <cmath>
 #include <iostream>
 #include <memory>
 
-#include <cradle/core/ensemble.hpp>
-#include <cradle/core/gap_chain.hpp>
-#include <cradle/core/law.hpp>
-#include <cradle/core/rows.hpp>
-#include <cradle/core/simulation.hpp>
+#include <cradle/core/chains/gap_chain.hpp>
+#include <cradle/core/engine/simulation.hpp>
+#include <cradle/core/ensemble/ensemble.hpp>
+#include <cradle/core/initial/rows.hpp>
+#include <cradle/core/laws/law.hpp>
 
 namespace {
 
@@ -30,12 +30,12 @@ int main() {
   const double time = 150;
   shock.advance(time);
 
-  const auto bodies = shock.chain().configuration(shock.chain().local_time(time));
-  double kinetic = 0;  // of the active zone; the bodies outside it still move at 1/2
-  for (const double v : bodies.v) kinetic += v * v / 2;
-  kinetic += static_cast<double>(rows->count() - static_cast<BodyIndex>(bodies.v.size())) / 8;
+  const auto particles = shock.chain().configuration(shock.chain().local_time(time));
+  double kinetic = 0;  // of the active zone; the particles outside it still move at 1/2
+  for (const double v : particles.v) kinetic += v * v / 2;
+  kinetic += static_cast<double>(rows->count() - static_cast<ParticleIndex>(particles.v.size())) / 8;
   const double ledger = rows->kinetic_energy() - shock.energy_lost();
-  std::cout << shock.counts().contacts << " contacts, energy " << kinetic << '\n';
+  std::cout << shock.counts().collisions << " collisions, energy " << kinetic << '\n';
 
   Ensemble energies;
   run_replicas(TbbExecutor(2), {0, 10}, energies, [&](ReplicaIndex k) {

@@ -1,14 +1,14 @@
-// No heap in the event loop. Proves: once the run is warm, a hundred thousand contacts of the paper's shock
-// (N = 8000, eps = .999, delta = 1e-5, t = 300 to 600) take not one allocation, neither from C++ nor from GMP and MPFR,
-// in any scalar type, nor do twenty thousand of the wet one (E_loss = 1e-4). All gaps are held from the start, since
-// the growth of a streamed chain may allocate. Where clusters merge and rows stream in, the chain is laid out anew now
-// and then, a few blocks of memory for every few dozen contacts.
+// No heap in the event loop. Proves: once the run is warm, a hundred thousand collisions of the paper's shock
+// (N = 8000, eps = 0.999, delta = 1e-5, t = 300 to 600) take not one allocation, neither from C++ nor from GMP and
+// MPFR, in any scalar type, nor do twenty thousand of the wet one (E_loss = 1e-4). All gaps are held from the start,
+// since the growth of a streamed chain may allocate. Where clusters merge and rows stream in, the chain is laid out
+// anew now and then, a few blocks of memory for every few dozen collisions.
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <cstdlib>
 
-#include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/counted_heap.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
@@ -54,43 +54,43 @@ using Counted = testing::Types<Precision<double>, Precision<double_double>
 TYPED_TEST_SUITE(Allocations, Counted, PrecisionName);
 
 // From t = 300 on; before that it warms up.
-template <class Run> void expect_none(Run run, int until, std::uint64_t least_contacts) {
+template <class Run> void expect_none(Run run, int until, std::uint64_t least_collisions) {
   using T = typename Run::Scalar;
   const T warm(300), end(until);
   ASSERT_EQ(run.advance(warm), Status::reached);
-  const std::uint64_t contacts = run.counts().contacts, before = allocations;
+  const std::uint64_t collisions = run.counts().collisions, before = allocations;
   ASSERT_GT(before, 0U);  // they are counted
   const Status status = run.advance(end);
   const std::uint64_t after = allocations;
   ASSERT_EQ(status, Status::reached);
-  EXPECT_GT(run.counts().contacts, contacts + least_contacts);
+  EXPECT_GT(run.counts().collisions, collisions + least_collisions);
   EXPECT_EQ(after - before, 0U);
 }
 
-TYPED_TEST(Allocations, NoneInAHundredThousandContacts) {
+TYPED_TEST(Allocations, NoneInAHundredThousandCollisions) {
   using T = typename TypeParam::Scalar;
   const Inelastic<T> law(from_text<T>(".999"), from_text<T>("1e-5"));
   expect_none(gap_run(rshock<T>(8000), law, {}, T(0), {.hold_all = true}), 600, 90000);
 }
 
-TYPED_TEST(Allocations, NoneInTwentyThousandWetContacts) {
+TYPED_TEST(Allocations, NoneInTwentyThousandWetCollisions) {
   using T = typename TypeParam::Scalar;
   const Wet<T> law(from_text<T>("1e-4"));
   Simulation<T, Wet<T>, ClusterChain<T>> run(law, ClusterChain<T>(rshock<T>(8000), T(0), true), Policy<T>{});
   expect_none(std::move(run), 400, 20000);
 }
 
-// The slow wet shock of Fig. 11, whose zone of some tens of bodies changes all through. A new layout takes four blocks
-// (cells, lags, the list of cells kept, the queue), and there is one for every 12 cells vacated or 24 bodies taken in
-// at most; to a contact in three there is a merger.
-TYPED_TEST(Allocations, FewWhereBodiesComeInAndMerge) {
+// The slow wet shock of Fig. 11, whose zone of some tens of particles changes all through. A new layout takes four
+// blocks (cells, lags, the list of cells kept, the queue), and there is one for every 12 cells vacated or 24 particles
+// taken in at most; to a collision in three there is a merger.
+TYPED_TEST(Allocations, FewWhereParticlesComeInAndMerge) {
   using T = typename TypeParam::Scalar;
   Simulation<T, Wet<T>, ClusterChain<T>> run(Wet<T>(from_text<T>(".05")), ClusterChain<T>(rshock<T>(200000), T(0)),
                                              Policy<T>{});
   ASSERT_EQ(run.advance(T(1000)), Status::reached);
-  const std::uint64_t contacts = run.counts().contacts, before = allocations;
+  const std::uint64_t collisions = run.counts().collisions, before = allocations;
   ASSERT_EQ(run.advance(T(2000)), Status::reached);
-  EXPECT_LT(allocations - before, (run.counts().contacts - contacts) / 9);
+  EXPECT_LT(allocations - before, (run.counts().collisions - collisions) / 9);
 }
 
 }  // namespace allocation_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/counter_rng.hpp"
+#include "cradle/core/initial/counter_rng.hpp"
 #include "cradle/precision/ball.hpp"
 #include "cradle/precision/ball_text.hpp"
 #include "cradle/tests/core/rational.hpp"
@@ -174,7 +174,7 @@ TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
           expect_holds(r, Rational(b + of * (a - b)));
         }
     if (k % 2 != 0) continue;
-    // What doubly stochastic contacts rely on: together they are no wider than before, but for roundings.
+    // What doubly stochastic collisions rely on: together they are no wider than before, but for roundings.
     const Rational roundings = (size_of(exact(x.middle())) + size_of(exact(y.middle()))) * exact(0x1p-98);
     EXPECT_LE(exact(l.radius()) + exact(r.radius()),
               (exact(x.radius()) + exact(y.radius())) * (1 + exact(0x1p-40)) + roundings);
@@ -184,7 +184,7 @@ TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
 TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
   using B = Ball<TypeParam>;
   Draws<TypeParam> draws;
-  std::array<int, 3> told{};
+  std::array<int, 3> counted{};
   for (int k = 0; k < 5000; ++k) {
     const B x = draws.ball();
     // Near it, so that all cases occur.
@@ -193,13 +193,13 @@ TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
     const bool less = exact(x.middle()) + exact(x.radius()) < exact(y.middle()) - exact(y.radius());
     const bool greater = exact(x.middle()) - exact(x.radius()) > exact(y.middle()) + exact(y.radius());
     const Order order_of_both = order(x, y);
-    ++told[static_cast<std::size_t>(order_of_both)];
+    ++counted[static_cast<std::size_t>(order_of_both)];
     EXPECT_TRUE(order_of_both != Order::less || less);
     EXPECT_TRUE(order_of_both != Order::greater || greater);
     EXPECT_TRUE(order_in_doubles(x, y) == Order::open || order_in_doubles(x, y) == order_of_both);
     EXPECT_FALSE(x < y && x >= y);
   }
-  for (const int count : told) EXPECT_GT(count, 300);
+  for (const int count : counted) EXPECT_GT(count, 300);
 }
 
 TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
@@ -233,7 +233,7 @@ TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
   }
 }
 
-// A body at rest has the velocity 0, exactly: to find doubles on either side of it must not take for ever.
+// A particle at rest has the velocity 0, exactly: to find doubles on either side of it must not take for ever.
 TYPED_TEST(Balls, DoublesAreFoundAroundZero) {
   using N = Ball<TypeParam>;
   for (const N& x : {N(0), N(TypeParam(0), 5e-324), N(TypeParam(0), 1e-300), N(TypeParam(0), 1e-30)}) {

@@ -1,18 +1,18 @@
 // The checker, checked: what it calls proved is what exact rational arithmetic gives, its bounds hold the exact
-// numbers, and a run of which one contact is dropped, exchanged with a neighbour's, invented or made on the wrong side
-// of the cut-off is never proved.
+// numbers, and a run of which one collision is dropped, exchanged with a neighbour's, invented or made on the wrong
+// side of the cut-off is never proved.
 #include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "cradle/core/certify/checker.hpp"
-#include "cradle/core/cluster_chain.hpp"
-#include "cradle/core/counter_rng.hpp"
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/list.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/initial/list.hpp"
 #include "cradle/core/observe/trace.hpp"
-#include "cradle/core/simulation.hpp"
 #include "cradle/precision/ball.hpp"
 #include "cradle/precision/ball_text.hpp"
 #include "cradle/tests/precision/exact_gas.hpp"
@@ -23,7 +23,7 @@ using namespace cradle;
 using namespace cradle::test;
 
 using B = Ball<double_double>;
-using Contacts = std::vector<std::pair<BodyIndex, BodyIndex>>;
+using Collisions = std::vector<std::pair<ParticleIndex, ParticleIndex>>;
 
 Rational exact(const B& x) { return exactly(x.middle().high()) + exactly(x.middle().low()); }
 bool holds(const B& x, const Rational& number) {
@@ -31,7 +31,7 @@ bool holds(const B& x, const Rational& number) {
   return (off < 0 ? -off : off) <= exactly(x.radius());
 }
 
-// Whole numbers of 1/64, so that everybody has the same bodies; coefficients as decimals.
+// Whole numbers of 1/64, so that everybody has the same particles; coefficients as decimals.
 struct Drawn {
   std::vector<int> gaps, velocities, masses;
   const char* restitution = "1";
@@ -46,9 +46,9 @@ Drawn draw(std::uint64_t number, bool sticky) {
   };
   Drawn d;
   d.sticky = sticky;
-  const int bodies = 3 + below(5);
+  const int particles = 3 + below(5);
   const bool equal = below(2) == 0, small = below(8) == 0;  // few numbers to choose from: ties, cut-offs hit exactly
-  for (int b = 0; b < bodies; ++b) {
+  for (int b = 0; b < particles; ++b) {
     d.gaps.push_back(small ? 64 : 1 + below(200));
     d.velocities.push_back(small ? 64 * (below(5) - 2) : below(512) - 256);
     d.masses.push_back(equal ? 64 : 16 + below(200));
@@ -89,7 +89,7 @@ ExactGas gas_of(const Drawn& d) {
   return gas;
 }
 
-template <class T> std::shared_ptr<const Bodies<T>> bodies_of(const Drawn& d) {
+template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn& d) {
   std::vector<T> x, v, m;
   const auto unit = [](int n) { return T(T(n) / T(64)); };
   int place = 0;
@@ -110,42 +110,42 @@ CertainLaw<B> law_of(const Drawn& d) {
 }
 
 constexpr int until = 4;
-constexpr std::size_t most_contacts = 60;
+constexpr std::size_t most_collisions = 60;
 
-// What a run says of itself beside its contacts. One on the wrong side of the cut-off may leave their sequence as it
+// What a run says of itself beside its collisions. One on the wrong side of the cut-off may leave their sequence as it
 // is.
 struct Said {
   std::uint64_t below;
   Rational energy;
 };
 
-// Whether these are proved to be the contacts of the scene; `checker` is left where they end.
-bool proved(Checker<B>& checker, const Contacts& contacts, const std::optional<Said>& said = {}) {
+// Whether these are proved to be the collisions of the scene; `checker` is left where they end.
+bool proved(Checker<B>& checker, const Collisions& collisions, const std::optional<Said>& said = {}) {
   if (checker.begin()) return false;
-  for (const auto& [left, right] : contacts)
-    if (checker.contact(left, right)) return false;
+  for (const auto& [left, right] : collisions)
+    if (checker.collision(left, right)) return false;
   const auto end = checker.state_at(B(until));
   return !end.doubt && (!said || (checker.proved().below_cutoff == said->below && holds(end.energy, said->energy)));
 }
 
 // All of them, in the exact gas; `wrong`: that one on the wrong side of the cut-off.
 struct ExactRun {
-  Contacts contacts;
+  Collisions collisions;
   std::uint64_t digest = 0, below = 0;
   bool tied = false, ended = false;
   ExactGas gas;
 };
-ExactRun exact_run(const Drawn& d, std::size_t wrong = most_contacts) {
+ExactRun exact_run(const Drawn& d, std::size_t wrong = most_collisions) {
   ExactRun run;
   run.gas = gas_of(d);
   Trace trace;
-  while (run.contacts.size() < most_contacts) {
-    const auto contact = run.gas.next(until, run.contacts.size() == wrong);
-    if (!contact) break;
-    run.contacts.push_back(*contact);
-    trace.contact(contact->first, contact->second);
+  while (run.collisions.size() < most_collisions) {
+    const auto collision = run.gas.next(until, run.collisions.size() == wrong);
+    if (!collision) break;
+    run.collisions.push_back(*collision);
+    trace.collision(collision->first, collision->second);
   }
-  run.ended = run.contacts.size() < most_contacts;
+  run.ended = run.collisions.size() < most_collisions;
   if (run.ended) run.gas.fly(until);
   run.digest = trace.digest();
   run.tied = run.gas.tied;
@@ -153,25 +153,25 @@ ExactRun exact_run(const Drawn& d, std::size_t wrong = most_contacts) {
   return run;
 }
 
-// The contacts that the engine makes in doubles.
-template <class Run> Contacts made(Run&& run) {
-  Contacts contacts;
-  run.advance(until, [&](const Contact<double>& c) { contacts.emplace_back(c.left, c.right); });
-  return contacts;
+// The collisions that the engine makes in doubles.
+template <class Run> Collisions made(Run&& run) {
+  Collisions collisions;
+  run.advance(until, [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.right); });
+  return collisions;
 }
-Contacts made(const Drawn& d) {
-  const auto bodies = bodies_of<double>(d);
+Collisions made(const Drawn& d) {
+  const auto particles = particles_of<double>(d);
   const Inelastic<double> law(std::stod(d.restitution), d.cutoff / 64.);
   if (d.sticky) {
     const InelasticMerging<double> merging(Inelastic<double>(0.), std::numeric_limits<double>::max());
-    return made(Simulation(merging, ClusterChain<double>(bodies, 0.)));
+    return made(Simulation(merging, ClusterChain<double>(particles, 0.)));
   }
-  return made(Simulation(law, GapChain<double, IndividualMasses<double>>(bodies, 0.)));
+  return made(Simulation(law, GapChain<double, IndividualMasses<double>>(particles, 0.)));
 }
 
-std::uint64_t digest_of(const Contacts& contacts) {
+std::uint64_t digest_of(const Collisions& collisions) {
   Trace trace;
-  for (const auto& [left, right] : contacts) trace.contact(left, right);
+  for (const auto& [left, right] : collisions) trace.collision(left, right);
   return trace.digest();
 }
 
@@ -182,86 +182,87 @@ void compare_with_the_exact_gas(bool sticky, std::uint64_t scenes, std::uint64_t
     const Drawn d = draw(number, sticky);
     const ExactRun run = exact_run(d);
     if (!run.ended) continue;
-    Checker<B> checker(bodies_of<B>(d), law_of(d));
-    const Contacts contacts = made(d);
-    if (!proved(checker, contacts)) continue;
+    Checker<B> checker(particles_of<B>(d), law_of(d));
+    const Collisions collisions = made(d);
+    if (!proved(checker, collisions)) continue;
     EXPECT_TRUE(sticky || law_of(d).elastic || checker.proved().below_cutoff == run.below);
     ++counted;
     ASSERT_FALSE(run.tied);
-    ASSERT_EQ(contacts.size(), run.contacts.size());
-    ASSERT_TRUE(sticky || digest_of(contacts) == run.digest);  // clusters go by other names there
+    ASSERT_EQ(collisions.size(), run.collisions.size());
+    ASSERT_TRUE(sticky || digest_of(collisions) == run.digest);  // clusters go by other names there
     ASSERT_TRUE(holds(checker.state_at(B(until)).energy, run.gas.energy()));
     std::size_t k = 0;
-    checker.for_each(B(until), [&](BodyIndex body, const B&, const B& x, const B& v) {
-      const auto b = static_cast<std::size_t>(body);
-      if (sticky) {  // by any of its bodies
+    checker.for_each(B(until), [&](ParticleIndex particle, const B&, const B& x, const B& v) {
+      const auto b = static_cast<std::size_t>(particle);
+      if (sticky) {  // by any of its particles
         ++k;
         return;
       }
-      EXPECT_TRUE(holds(x, run.gas.x[b])) << body;
-      EXPECT_TRUE(holds(v, run.gas.v[b])) << body;
+      EXPECT_TRUE(holds(x, run.gas.x[b])) << particle;
+      EXPECT_TRUE(holds(v, run.gas.v[b])) << particle;
     });
     EXPECT_EQ(k, sticky ? run.gas.clusters.size() : 0U);
   }
   EXPECT_GE(counted, least_proved);
 }
 
-TEST(Certify, WhatIsProvedOfInelasticBodiesIsWhatRationalsGive) { compare_with_the_exact_gas(false, 800, 500); }
-TEST(Certify, WhatIsProvedOfStickyBodiesIsWhatRationalsGive) { compare_with_the_exact_gas(true, 400, 300); }
+TEST(Certify, WhatIsProvedOfInelasticParticlesIsWhatRationalsGive) { compare_with_the_exact_gas(false, 800, 500); }
+TEST(Certify, WhatIsProvedOfStickyParticlesIsWhatRationalsGive) { compare_with_the_exact_gas(true, 400, 300); }
 
-TEST(Certify, ContactsOfTheExactGasAreProved) {
+TEST(Certify, CollisionsOfTheExactGasAreProved) {
   std::uint64_t counted = 0;
   for (std::uint64_t number = 0; number < 500; ++number) {
     const Drawn d = draw(number, false);
     const ExactRun run = exact_run(d);
     if (!run.ended || run.tied) continue;
-    Checker<B> checker(bodies_of<B>(d), law_of(d));
-    if (proved(checker, run.contacts)) ++counted;
+    Checker<B> checker(particles_of<B>(d), law_of(d));
+    if (proved(checker, run.collisions)) ++counted;
   }
   EXPECT_GE(counted, 400U);
 }
 
-bool shares_a_body(const std::pair<BodyIndex, BodyIndex>& a, const std::pair<BodyIndex, BodyIndex>& b) {
+bool shares_a_particle(const std::pair<ParticleIndex, ParticleIndex>& a,
+                       const std::pair<ParticleIndex, ParticleIndex>& b) {
   return a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second;
 }
 
-TEST(Certify, ARunThatIsWrongInOneContactIsNeverProved) {
+TEST(Certify, ARunThatIsWrongInOneCollisionIsNeverProved) {
   std::uint64_t mutants = 0, of_side = 0;
   for (std::uint64_t number = 0; number < 500; ++number) {
     SCOPED_TRACE(number);
     const Drawn d = draw(number, number % 4 == 3);
     const ExactRun run = exact_run(d);
-    if (!run.ended || run.tied || run.contacts.empty()) continue;
-    const auto refuse = [&](const Contacts& contacts, const std::optional<Said>& said = {}) {
-      Checker<B> checker(bodies_of<B>(d), law_of(d));
+    if (!run.ended || run.tied || run.collisions.empty()) continue;
+    const auto refuse = [&](const Collisions& collisions, const std::optional<Said>& said = {}) {
+      Checker<B> checker(particles_of<B>(d), law_of(d));
       ++mutants;
-      ASSERT_FALSE(proved(checker, contacts, said));
+      ASSERT_FALSE(proved(checker, collisions, said));
     };
     const auto pick = [&](std::uint64_t salt, std::size_t of) { return random_bits(5, number, salt) % of; };
     for (std::uint64_t salt = 0; salt < 2; ++salt) {
-      Contacts dropped = run.contacts;
+      Collisions dropped = run.collisions;
       dropped.erase(dropped.begin() + static_cast<std::ptrdiff_t>(pick(salt, dropped.size())));
       refuse(dropped);
 
-      Contacts invented = run.contacts;
-      const auto left = static_cast<BodyIndex>(pick(salt + 10, d.gaps.size() - (d.length > 0 ? 0 : 1)));
-      const auto right = (left + 1) % static_cast<BodyIndex>(d.gaps.size());
+      Collisions invented = run.collisions;
+      const auto left = static_cast<ParticleIndex>(pick(salt + 10, d.gaps.size() - (d.length > 0 ? 0 : 1)));
+      const auto right = (left + 1) % static_cast<ParticleIndex>(d.gaps.size());
       invented.insert(invented.begin() + static_cast<std::ptrdiff_t>(pick(salt + 20, invented.size() + 1)),
                       {left, right});
       refuse(invented);
 
-      // Later than the one after it, which shares a body with it.
-      Contacts late = run.contacts;
+      // Later than the one after it, which shares a particle with it.
+      Collisions late = run.collisions;
       for (std::size_t k = pick(salt + 30, late.size()); k + 1 < late.size(); ++k)
-        if (late[k] != late[k + 1] && shares_a_body(late[k], late[k + 1])) {
+        if (late[k] != late[k + 1] && shares_a_particle(late[k], late[k + 1])) {
           std::swap(late[k], late[k + 1]);
           refuse(late);
           break;
         }
 
       const bool has_sides = !d.sticky && d.cutoff > 0 && std::string(d.restitution) != "1";
-      const ExactRun wrong = exact_run(d, pick(salt + 40, run.contacts.size()));
-      if (has_sides && wrong.ended) refuse(wrong.contacts, Said{wrong.below, wrong.gas.energy()}), ++of_side;
+      const ExactRun wrong = exact_run(d, pick(salt + 40, run.collisions.size()));
+      if (has_sides && wrong.ended) refuse(wrong.collisions, Said{wrong.below, wrong.gas.energy()}), ++of_side;
     }
   }
   EXPECT_GE(mutants, 2000U);
@@ -270,7 +271,7 @@ TEST(Certify, ARunThatIsWrongInOneContactIsNeverProved) {
 
 #ifdef CRADLE_WITH_MPFR
 // The wet law has roots, which rationals have not: the engine itself with 50 digits is the reference.
-TEST(Certify, WhatIsProvedOfWetBodiesIsWhatFiftyDigitsGive) {
+TEST(Certify, WhatIsProvedOfWetParticlesIsWhatFiftyDigitsGive) {
   using Wide = Mpfr<4>;
   MpfrPrecision::set_bits(MpfrPrecision::bits_for(50));
   std::uint64_t counted = 0, merged = 0;
@@ -280,18 +281,18 @@ TEST(Certify, WhatIsProvedOfWetBodiesIsWhatFiftyDigitsGive) {
     CertainLaw<B> law;
     law.kind = CertainLaw<B>::Kind::wet;
     law.loss = B(1 + static_cast<int>(number % 7)) / B(8);
-    Contacts contacts;
+    Collisions collisions;
     Simulation run(Wet<double>((1 + static_cast<int>(number % 7)) / 8.),
-                   ClusterChain<double>(bodies_of<double>(d), 0.));
-    run.advance(until, [&](const Contact<double>& c) { contacts.emplace_back(c.left, c.right); });
-    Checker<B> checker(bodies_of<B>(d), law);
-    if (!proved(checker, contacts)) continue;
+                   ClusterChain<double>(particles_of<double>(d), 0.));
+    run.advance(until, [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.right); });
+    Checker<B> checker(particles_of<B>(d), law);
+    if (!proved(checker, collisions)) continue;
     ++counted;
-    const auto wide_bodies = bodies_of<Wide>(d);
+    const auto wide_particles = particles_of<Wide>(d);
     Simulation wide(Wet<Wide>(Wide(1 + static_cast<int>(number % 7)) / Wide(8)),
-                    ClusterChain<Wide>(wide_bodies, Wide(0)));
+                    ClusterChain<Wide>(wide_particles, Wide(0)));
     wide.advance(Wide(until));
-    ASSERT_EQ(wide.counts().contacts, contacts.size());
+    ASSERT_EQ(wide.counts().collisions, collisions.size());
     ASSERT_EQ(wide.counts().merges, checker.proved().merges);
     merged += checker.proved().merges;
     const auto holds_wide = [](const B& x, const Wide& value) {
@@ -299,14 +300,14 @@ TEST(Certify, WhatIsProvedOfWetBodiesIsWhatFiftyDigitsGive) {
       const Rational off = exact(x) - exactly(high) - exactly(low);
       return (off < 0 ? -off : off) <= exactly(x.radius()) + exactly(std::abs(high) * 0x1p-100);
     };
-    EXPECT_TRUE(holds_wide(checker.state_at(B(until)).energy, wide_bodies->kinetic_energy() - wide.energy_lost()));
+    EXPECT_TRUE(holds_wide(checker.state_at(B(until)).energy, wide_particles->kinetic_energy() - wide.energy_lost()));
     if (d.length > 0) continue;  // places of a ring are told from another one
     const auto now = wide.configuration(Wide(until));
-    checker.for_each(B(until), [&](BodyIndex body, const B&, const B& x, const B& v) {
+    checker.for_each(B(until), [&](ParticleIndex particle, const B&, const B& x, const B& v) {
       for (std::size_t j = 0; j < now.index.size(); ++j) {
-        if (now.index[j] != body) continue;
-        EXPECT_TRUE(holds_wide(x, now.x[j])) << body;
-        EXPECT_TRUE(holds_wide(v, now.v[j])) << body;
+        if (now.index[j] != particle) continue;
+        EXPECT_TRUE(holds_wide(x, now.x[j])) << particle;
+        EXPECT_TRUE(holds_wide(v, now.v[j])) << particle;
       }
     });
   }
@@ -320,23 +321,24 @@ TEST(Certify, FrontsAreTheOutermostOfAllRegions) {
   CertainLaw<B> law;
   law.restitution = B(0.5);
   Checker<B> checker(std::make_shared<List<B>>(places, speeds), law);
-  ASSERT_FALSE(checker.contact(4, 5));
-  ASSERT_FALSE(checker.contact(0, 1));
+  ASSERT_FALSE(checker.collision(4, 5));
+  ASSERT_FALSE(checker.collision(0, 1));
   const auto end = checker.state_at(B(3.5));
   ASSERT_FALSE(end.doubt);
   EXPECT_TRUE(holds(*end.front_left, exactly(1.625)));
   EXPECT_TRUE(holds(*end.front_right, exactly(22.875)));
 }
 
-TEST(Certify, ATieIsOpenAndNamesTheBodies) {
+TEST(Certify, ATieIsOpenAndNamesTheParticles) {
   // The middle one is hit from both sides at once.
-  const auto bodies = std::make_shared<List<B>>(std::vector<B>{B(-1), B(0), B(1)}, std::vector<B>{B(1), B(0), B(-1)});
+  const auto particles =
+      std::make_shared<List<B>>(std::vector<B>{B(-1), B(0), B(1)}, std::vector<B>{B(1), B(0), B(-1)});
   CertainLaw<B> law;
   law.restitution = from_text<B>("0.9");
-  Checker<B> checker(bodies, law);
+  Checker<B> checker(particles, law);
   EXPECT_FALSE(checker.begin());
-  EXPECT_FALSE(checker.contact(0, 1));
-  const auto doubt = checker.contact(1, 2);
+  EXPECT_FALSE(checker.collision(0, 1));
+  const auto doubt = checker.collision(1, 2);
   ASSERT_TRUE(doubt);
   EXPECT_EQ(doubt->check, Check::later);
   EXPECT_FALSE(doubt->refuted);
@@ -344,23 +346,23 @@ TEST(Certify, ATieIsOpenAndNamesTheBodies) {
   EXPECT_EQ(doubt->right, 2);
 }
 
-TEST(Certify, ContactsThatShareNoBodyMayComeInAnyOrder) {
+TEST(Certify, CollisionsThatShareNoParticleMayComeInAnyOrder) {
   // Two pairs that meet at one moment, far from each other.
-  const auto bodies =
+  const auto particles =
       std::make_shared<List<B>>(std::vector<B>{B(-11), B(-9), B(9), B(11)}, std::vector<B>{B(1), B(-1), B(1), B(-1)});
   CertainLaw<B> law;
   law.restitution = from_text<B>("0.9");
-  for (const Contacts& contacts : {Contacts{{0, 1}, {2, 3}}, Contacts{{2, 3}, {0, 1}}}) {
-    Checker<B> checker(bodies, law);
-    EXPECT_TRUE(proved(checker, contacts));
+  for (const Collisions& collisions : {Collisions{{0, 1}, {2, 3}}, Collisions{{2, 3}, {0, 1}}}) {
+    Checker<B> checker(particles, law);
+    EXPECT_TRUE(proved(checker, collisions));
     EXPECT_EQ(checker.proved().in_doubles, 2U);
   }
 }
 
-TEST(Certify, BodiesThatAreNotInOrderForSureAreNoStart) {
-  const auto bodies = std::make_shared<List<B>>(std::vector<B>{B(0), B(1)}, std::vector<B>{B(0), B(0)});
+TEST(Certify, ParticlesThatAreNotInOrderForSureAreNoStart) {
+  const auto particles = std::make_shared<List<B>>(std::vector<B>{B(0), B(1)}, std::vector<B>{B(0), B(0)});
   CertainLaw<B> law;
-  EXPECT_FALSE(Checker<B>(bodies, law).begin());
+  EXPECT_FALSE(Checker<B>(particles, law).begin());
   EXPECT_THROW(List<B>({B(double_double(0), 1), B(double_double(1), 1)}, {B(0), B(0)}), std::invalid_argument);
 }
 

@@ -1,5 +1,5 @@
-// A run started late. Proves: from t = 1e12, where a double resolves 1e-4, a run makes the contacts of the one from
-// t = 0 with the same gaps and closing speeds to the last bit, and contact times less 1e12 agree to 1e-18.
+// A run started late. Proves: from t = 1e12, where a double resolves 1e-4, a run makes the collisions of the one from
+// t = 0 with the same gaps and closing speeds to the last bit, and collision times less 1e12 agree to 1e-18.
 //
 // Bound. Times are kept as a sum of two numbers; a move of the origin rounds the lower one, which is at most half a
 // unit in the last place of 1e12, 2^-14 in double, to 53 bits: 2^-68 a move, 3.4e-21. The scenes here move it some tens
@@ -23,27 +23,27 @@ using Precisions = testing::Types<Precision<double>, Precision<double_double>, P
 TYPED_TEST_SUITE(LateStart, Precisions, PrecisionName);
 
 template <class T> struct Seen {
-  BodyIndex left;
+  ParticleIndex left;
   Reference time;
   T closing_speed;
 };
 
 template <class T>
-void expect_same_run(const Scene<T>& bodies, const Inelastic<T>& law, int end, Policy<T> policy = {}) {
+void expect_same_run(const Scene<T>& particles, const Inelastic<T>& law, int end, Policy<T> policy = {}) {
   const T late(std::int64_t{1000000000000}), shift(end);
-  auto early_run = gap_run(bodies, law, policy), late_run = gap_run(bodies, law, policy, late);
-  std::vector<Seen<T>> early_contacts, late_contacts;
+  auto early_run = gap_run(particles, law, policy), late_run = gap_run(particles, law, policy, late);
+  std::vector<Seen<T>> early_collisions, late_collisions;
   const auto into = [](std::vector<Seen<T>>& all) {
-    return [&all](const Contact<T>& c) { all.push_back({c.left, reference(c.time), c.closing_speed}); };
+    return [&all](const Collision<T>& c) { all.push_back({c.left, reference(c.time), c.closing_speed}); };
   };
-  const Status status = early_run.advance(shift, into(early_contacts));
-  ASSERT_EQ(late_run.advance(late + shift, into(late_contacts)), status);
+  const Status status = early_run.advance(shift, into(early_collisions));
+  ASSERT_EQ(late_run.advance(late + shift, into(late_collisions)), status);
 
   ASSERT_TRUE(identical(early_run.counts(), late_run.counts()));
   ASSERT_LE(early_run.counts().origin_moves, 147U) << "the bound needs fewer than 1e-18 2^68/2 moves a run";
-  ASSERT_EQ(early_contacts.size(), late_contacts.size());
-  for (std::size_t n = 0; n < early_contacts.size(); ++n) {
-    const Seen<T>&a = early_contacts[n], &b = late_contacts[n];
+  ASSERT_EQ(early_collisions.size(), late_collisions.size());
+  for (std::size_t n = 0; n < early_collisions.size(); ++n) {
+    const Seen<T>&a = early_collisions[n], &b = late_collisions[n];
     ASSERT_EQ(a.left, b.left) << n;
     ASSERT_TRUE(a.closing_speed == b.closing_speed) << n;
     ASSERT_LE(abs(b.time - Reference(1e12) - a.time), Reference(1e-18)) << n;
@@ -72,7 +72,7 @@ TYPED_TEST(LateStart, Collapse) {
                   stop_below(from_text<T>("1e-30")));
 }
 
-// The gaps themselves, read at the last contact: the reading of a gap at a given time would round that time.
+// The gaps themselves, read at the last collision: the reading of a gap at a given time would round that time.
 TYPED_TEST(LateStart, GapsHaveTheSameBits) {
   using T = typename TypeParam::Scalar;
   const T late(std::int64_t{1000000000000});
@@ -80,9 +80,9 @@ TYPED_TEST(LateStart, GapsHaveTheSameBits) {
   auto early_run = gap_run(rmix<T>(32), law), late_run = gap_run(rmix<T>(32), law, {}, late);
   std::vector<T> early_gaps, late_gaps;
   const auto into = [](std::vector<T>& all, const auto& run) {
-    return [&](const Contact<T>& c) {
+    return [&](const Collision<T>& c) {
       const auto& chain = run.chain();
-      const Slot chosen = static_cast<Slot>(c.left - chain.body(0));
+      const Slot chosen = static_cast<Slot>(c.left - chain.particle(0));
       for (Slot s = chain.first(); s <= chain.last(); ++s) all.push_back(chain.gap_at(s, chain.due(chosen)));
     };
   };

@@ -1,8 +1,8 @@
-// Collapse of many bodies under policy stop. Proves: among 3, 10 and 100 bodies as soft as three need to be to
+// Collapse of many particles under policy stop. Proves: among 3, 10 and 100 particles as soft as three need to be to
 // collapse, a run with exact dynamics ends by itself with the collapse time of the same run in 100 digits, to within
 // the uncertainty it states, or in double, where rounding may leave the collapse open, with the type's range; near the
-// elastic limit 100 and 1e5 bodies get to just before the onset of collapse; no order is lost on the way. A
-// mirror-symmetric pattern of 4 bodies, in which symmetry is unstable, keeps it as long as the type's digits allow.
+// elastic limit 100 and 1e5 particles get to just before the onset of collapse; no order is lost on the way. A
+// mirror-symmetric pattern of 4 particles, in which symmetry is unstable, keeps it as long as the type's digits allow.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,11 +19,11 @@ using namespace cradle::test;
 template <class P> using CollapseSizes = InPrecision<P>;
 TYPED_TEST_SUITE(CollapseSizes, WidePrecision, PrecisionName);
 
-// Collapse sets in at t = N_c/(2 u0), N_c = 2/(1 - (4/pi) atan sqrt eps) bodies being engaged.
+// Collapse sets in at t = N_c/(2 u0), N_c = 2/(1 - (4/pi) atan sqrt eps) particles being engaged.
 double onset(double restitution) { return 2 / (1 - 4 / M_PI * std::atan(std::sqrt(restitution))); }
 
-// Three bodies collapse below eps = 7 - 4 sqrt 3 = .0718; the same doubles are exact in every type.
-constexpr double soft[] = {.05, .01, .0625};
+// Three particles collapse below eps = 7 - 4 sqrt 3 = 0.0718; the same doubles are exact in every type.
+constexpr double soft[] = {.05, 0.01, .0625};
 
 template <class T> std::vector<Scene<T>> scenes() {
   return {list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}), rshock<T>(10), rshock<T>(100), rmix<T>(10), rmix<T>(100)};
@@ -31,12 +31,12 @@ template <class T> std::vector<Scene<T>> scenes() {
 
 // Nothing where rounding leaves it open.
 template <class T>
-std::optional<CollapseReport<T>> collapse_of(const Scene<T>& bodies, double restitution, std::uint64_t& contacts) {
-  auto run = gap_run(bodies, Inelastic<T>(T(restitution), T(0)), stop_below(T(0)));
+std::optional<CollapseReport<T>> collapse_of(const Scene<T>& particles, double restitution, std::uint64_t& collisions) {
+  auto run = gap_run(particles, Inelastic<T>(T(restitution), T(0)), stop_below(T(0)));
   const Status status = run.advance(T(1000));
   EXPECT_EQ(run.chain().account().order_lost, 0U);
   EXPECT_EQ(status, run.collapse().settled ? Status::collapsed : Status::exhausted);
-  contacts = run.counts().contacts;
+  collisions = run.counts().collisions;
   return run.collapse().settled ? std::optional(run.collapse()) : std::nullopt;
 }
 
@@ -51,8 +51,8 @@ template <class T> int expect_ends_of_all_sizes() {
   for (const double restitution : soft)
     for (std::size_t k = 0; k < in_type.size(); ++k) {
       SCOPED_TRACE(testing::Message() << "eps " << restitution << ", scene " << k);
-      std::uint64_t contacts = 0, in_more_digits = 0;
-      const auto report = collapse_of(in_type[k], restitution, contacts);
+      std::uint64_t collisions = 0, in_more_digits = 0;
+      const auto report = collapse_of(in_type[k], restitution, collisions);
       const auto expected = collapse_of(in_wide[k], restitution, in_more_digits);
       EXPECT_TRUE(expected.has_value());
       if (!report || !expected) {
@@ -61,7 +61,7 @@ template <class T> int expect_ends_of_all_sizes() {
       }
       const bin_float error = wide(report->time.high) + wide(report->time.low) - expected->time.value();
       EXPECT_LE(magnitude(error), wide(report->uncertainty));
-      EXPECT_GT(in_more_digits, contacts) << "more digits, more contacts that they tell apart";
+      EXPECT_GT(in_more_digits, collisions) << "more digits, more collisions that they tell apart";
     }
   return open;
 }
@@ -69,25 +69,25 @@ template <class T> int expect_ends_of_all_sizes() {
 TYPED_TEST(CollapseSizes, RunsEndByThemselves) { EXPECT_EQ(expect_ends_of_all_sizes<typename TypeParam::Scalar>(), 0); }
 
 TEST(CollapseSizesInDouble, RunsEndByThemselves) {
-  EXPECT_LE(expect_ends_of_all_sizes<double>(), 4) << "of the two rows, whose last contacts are slow";
-  // Close to the elastic limit many bodies collapse together, from t = N_c/(2 u0) on; a run to just before that ends
+  EXPECT_LE(expect_ends_of_all_sizes<double>(), 4) << "of the two rows, whose last collisions are slow";
+  // Close to the elastic limit many particles collapse together, from t = N_c/(2 u0) on; a run to just before that ends
   // too.
-  auto before = gap_run(rshock<double>(100), Inelastic<double>(.9), stop_below(0.));
-  EXPECT_EQ(before.advance(.98 * onset(.9)), Status::reached);
+  auto before = gap_run(rshock<double>(100), Inelastic<double>(0.9), stop_below(0.));
+  EXPECT_EQ(before.advance(0.98 * onset(0.9)), Status::reached);
 }
 
-TEST(SlowCollapseSizes, AHundredThousandBodiesUpToTheOnset) {
-  auto run = gap_run(rshock<double>(100000), Inelastic<double>(.999), stop_below(0.));
-  EXPECT_EQ(run.advance(.98 * onset(.999)), Status::reached);
+TEST(SlowCollapseSizes, AHundredThousandParticlesUpToTheOnset) {
+  auto run = gap_run(rshock<double>(100000), Inelastic<double>(0.999), stop_below(0.));
+  EXPECT_EQ(run.advance(0.98 * onset(0.999)), Status::reached);
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
-// Contacts until the pattern - every second gap, then the others - breaks, in cycles; at most `most`.
-template <class T> int cycles_kept(const Scene<T>& bodies, const T& restitution, int most) {
-  auto run = gap_run(bodies, Inelastic<T>(restitution, T(0)), stop_below(from_text<T>("1e-280")));
-  const int gaps = static_cast<int>(bodies->count()) - 1;
-  std::vector<BodyIndex> order;
-  run.advance(T(100), [&](const Contact<T>& c) {
+// Collisions until the pattern - every second gap, then the others - breaks, in cycles; at most `most`.
+template <class T> int cycles_kept(const Scene<T>& particles, const T& restitution, int most) {
+  auto run = gap_run(particles, Inelastic<T>(restitution, T(0)), stop_below(from_text<T>("1e-280")));
+  const int gaps = static_cast<int>(particles->count()) - 1;
+  std::vector<ParticleIndex> order;
+  run.advance(T(100), [&](const Collision<T>& c) {
     if (static_cast<int>(order.size()) < most * gaps) order.push_back(c.left);
   });
   EXPECT_EQ(run.chain().account().order_lost, 0U);
@@ -101,15 +101,15 @@ template <class T> int cycles_kept(const Scene<T>& bodies, const T& restitution,
   return cycles;
 }
 
-// Gaps (1, 2, 1), closing speeds (1, 1, 1), eps = .15: a = (1 + eps) cos(pi/4), and an antisymmetric error grows by
+// Gaps (1, 2, 1), closing speeds (1, 1, 1), eps = 0.15: a = (1 + eps) cos(pi/4), and an antisymmetric error grows by
 // eps/lam-^2 a cycle. From one rounding it takes ln(1/v)/ln(eps/lam-^2) cycles to become as large as the gaps.
-TYPED_TEST(CollapseSizes, FourBodiesKeepTheirSymmetry) {
+TYPED_TEST(CollapseSizes, FourParticlesKeepTheirSymmetry) {
   using T = typename TypeParam::Scalar;
-  const double eps = .15, a = (1 + eps) / std::sqrt(2.), slow = (a - std::sqrt(a * a - 4 * eps)) / 2;
+  const double eps = 0.15, a = (1 + eps) / std::sqrt(2.), slow = (a - std::sqrt(a * a - 4 * eps)) / 2;
   const double growth = eps / (slow * slow), room = -std::log(to_double(std::numeric_limits<T>::epsilon()));
   const int predicted = static_cast<int>(room / std::log(growth));
-  const auto bodies = list<T>({T(0), T(1), T(3), T(4)}, {T(3) / T(2), T(1) / T(2), T(-1) / T(2), T(-3) / T(2)});
-  EXPECT_GE(cycles_kept(bodies, from_text<T>(".15"), 1000), predicted - 4);  // 64 roundings of head start: 4 cycles
+  const auto particles = list<T>({T(0), T(1), T(3), T(4)}, {T(3) / T(2), T(1) / T(2), T(-1) / T(2), T(-3) / T(2)});
+  EXPECT_GE(cycles_kept(particles, from_text<T>(".15"), 1000), predicted - 4);  // 64 roundings of head start: 4 cycles
 }
 
 }  // namespace collapse_sizes_test

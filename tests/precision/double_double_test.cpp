@@ -64,7 +64,7 @@ class RandomOperands {
 // Largest error seen, in units of u^2 relative to the exact result.
 class Worst {
  public:
-  void look(const double_double& result, const Exact& exact) {
+  void compare(const double_double& result, const Exact& exact) {
     ASSERT_LE(std::abs(result.low()), std::abs(result.high()) * u) << "not normalised";
     ASSERT_EQ(result.high() + result.low(), result.high()) << "not normalised";
     if (mpfr_zero_p(exact.value)) {
@@ -95,7 +95,7 @@ double worst_of(std::uint64_t seed, int pairs, int spread, bool cancelling, Mine
         cancelling ? random.nearly(x) : random.number(spread > 100 ? random.between(-spread, spread) : exponent);
     a.set(x), b.set(y);
     theirs(exact.value, a.value, b.value, MPFR_RNDN);
-    worst.look(mine(x, y), exact);
+    worst.compare(mine(x, y), exact);
   }
   testing::Test::RecordProperty("largest error in u^2", std::to_string(worst.largest()));
   return worst.largest();
@@ -119,7 +119,7 @@ TEST(DoubleDouble, SumIsWithinThreeSquaredUnits) {
     const double_double x = random.number(0), y = random.number(random.between(-110, 110));
     a.set(x), b.set(y);
     mpfr_add(exact.value, a.value, b.value, MPFR_RNDN);
-    ASSERT_NO_FATAL_FAILURE(worst.look(x + y, exact));
+    ASSERT_NO_FATAL_FAILURE(worst.compare(x + y, exact));
   }
   EXPECT_LE(worst.largest(), 3 + 13 * u);
   EXPECT_GE(std::max(near, worst.largest()), 1.5);
@@ -170,11 +170,11 @@ TEST(DoubleDouble, BoundsHoldDownToTheLeastNormalNumber) {
                         z = random.number(968 + exponent);
     a.set(x), b.set(y);
     mpfr_mul(exact.value, a.value, b.value, MPFR_RNDN);
-    ASSERT_NO_FATAL_FAILURE(of_products.look(x * y, exact));
+    ASSERT_NO_FATAL_FAILURE(of_products.compare(x * y, exact));
     b.set(z);
     mpfr_div(exact.value, a.value, b.value, MPFR_RNDN);
     if (mpfr_get_exp(exact.value) <= -969) continue;
-    ASSERT_NO_FATAL_FAILURE(of_quotients.look(x / z, exact));
+    ASSERT_NO_FATAL_FAILURE(of_quotients.compare(x / z, exact));
   }
   EXPECT_LE(of_products.largest(), 4 + 1);  // and what the error term itself loses below 2^-1074
   EXPECT_LE(of_quotients.largest(), 15 + 1);

@@ -1,12 +1,12 @@
 // The exponential and the power that laws use, and the law made of them, in every scalar type. Proves: both have the
 // digits of the type, against MPFR with 4400 bits, down to arguments at which 1 - exp(-y) would cancel; exact
-// cases are exact; the law's loss is that of its restitution to all digits however elastic a contact is, its shares are
-// exactly what the pair loses, and its limits are the plain law's.
-#include "cradle/core/elementary.hpp"
+// cases are exact; the law's loss is that of its restitution to all digits however elastic a collision is, its shares
+// are exactly what the pair loses, and its limits are the plain law's.
+#include "cradle/core/laws/elementary.hpp"
 
 #include <cmath>
 
-#include "cradle/core/law.hpp"
+#include "cradle/core/laws/law.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
@@ -122,7 +122,7 @@ TYPED_TEST(Elementary, LawKeepsTheDigitsOfItsLoss) {
   }
 }
 
-// Very fast and very slow contacts, 2^9 and 2^-64 times the cut-off, are those of the plain law above and below it.
+// Very fast and very slow collisions, 2^9 and 2^-64 times the cut-off, are those of the plain law above and below it.
 TYPED_TEST(Elementary, LawHasThePlainOneAsItsLimits) {
   using T = typename TypeParam::Scalar;
   const T mass(1), half = mass / T(2), delta = T(1) / T(8);

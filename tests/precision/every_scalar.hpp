@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "cradle/core/simulation.hpp"
+#include "cradle/core/engine/simulation.hpp"
 #include "cradle/precision/scalars.hpp"
 
 namespace cradle::test {

@@ -1,13 +1,14 @@
 #pragma once
-// A gas of a few bodies in exact rational arithmetic, in the plainest way: all pairs of neighbours are asked who meets
-// first, bodies fly there, the law acts. What two neighbouring pairs do at one moment is nobody's to say: `tied`.
+// A gas of a few particles in exact rational arithmetic, in the plainest way: all pairs of neighbours are asked who
+// meets first, particles fly there, the law acts. What two neighbouring pairs do at one moment is nobody's to say:
+// `tied`.
 
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cradle/core/bodies.hpp"
+#include "cradle/core/initial/particles.hpp"
 #include "cradle/tests/core/rational.hpp"
 
 namespace cradle::test {
@@ -20,17 +21,17 @@ struct ExactGas {
   ExactLaw law = ExactLaw::inelastic;
 
   Rational time{0};
-  std::vector<std::vector<BodyIndex>> clusters;  // from left to right; of one body each unless they merge
+  std::vector<std::vector<ParticleIndex>> clusters;  // from left to right; of one particle each unless they merge
   std::uint64_t below_cutoff = 0;
   bool tied = false;
 
   void begin() {
     clusters.clear();
-    for (std::size_t b = 0; b < x.size(); ++b) clusters.push_back({static_cast<BodyIndex>(b)});
+    for (std::size_t b = 0; b < x.size(); ++b) clusters.push_back({static_cast<ParticleIndex>(b)});
   }
 
-  // The next contact not after `until`, made; `wrong_side`: as if it were on the other side of the cut-off.
-  std::optional<std::pair<BodyIndex, BodyIndex>> next(const Rational& until, bool wrong_side = false) {
+  // The next collision not after `until`, made; `wrong_side`: as if it were on the other side of the cut-off.
+  std::optional<std::pair<ParticleIndex, ParticleIndex>> next(const Rational& until, bool wrong_side = false) {
     std::optional<Rational> first;
     std::size_t at = 0;
     const std::size_t pairs = clusters.size() < 2 ? 0 : clusters.size() - (length > 0 ? 0 : 1);
@@ -61,34 +62,34 @@ struct ExactGas {
     for (std::size_t k = 0; k < clusters.size(); ++k) twice += mass(k) * v[name(k)] * v[name(k)];
     return twice / 2;
   }
-  // A cluster's place and velocity are those of its first body in the list.
+  // A cluster's place and velocity are those of its first particle in the list.
   std::size_t name(std::size_t k) const { return static_cast<std::size_t>(clusters[k].front()); }
 
  private:
   std::size_t next_to(std::size_t k) const { return k + 1 < clusters.size() ? k + 1 : 0; }
   Rational mass(std::size_t k) const {
     Rational all(0);
-    for (const BodyIndex b : clusters[k]) all += m[static_cast<std::size_t>(b)];
+    for (const ParticleIndex b : clusters[k]) all += m[static_cast<std::size_t>(b)];
     return all;
   }
 
-  std::pair<BodyIndex, BodyIndex> collide(std::size_t k, bool wrong_side) {
+  std::pair<ParticleIndex, ParticleIndex> collide(std::size_t k, bool wrong_side) {
     const std::size_t n = next_to(k), l = name(k), r = name(n);
     const Rational w = v[l] - v[r], left = mass(k), right = mass(n), all = left + right;
-    const std::pair contact{clusters[k].front(), clusters[n].front()};
+    const std::pair collision{clusters[k].front(), clusters[n].front()};
     if (law == ExactLaw::sticky) {
       const Rational velocity = (left * v[l] + right * v[r]) / all;
       clusters[k].insert(clusters[k].end(), clusters[n].begin(), clusters[n].end());
       v[l] = velocity;
       clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(n));
-      return contact;
+      return collision;
     }
     const bool below = (w < cutoff) != wrong_side;
     below_cutoff += below;
     const Rational handed = (1 + (below ? Rational(1) : restitution)) * w;
     v[l] -= handed * right / all;
     v[r] += handed * left / all;
-    return contact;
+    return collision;
   }
 };
 

@@ -1,7 +1,7 @@
 // Scenes at the edge of what numbers hold. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the
-// same contacts in double as in double-double; restitutions next to 0 and 1, and 0 and 1 themselves, and contacts of
-// equal times by construction end a run as they should, without a hang and without a lost order; the velocity cut-off
-// takes effect exactly below its value.
+// same collisions in double as in double-double; restitutions next to 0 and 1, and 0 and 1 themselves, and collisions
+// of equal times by construction end a run as they should, without a hang and without a lost order; the velocity
+// cut-off takes effect exactly below its value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,25 +31,26 @@ Scene<T> in(const std::vector<double>& x, const std::vector<double>& v, const st
   return list<T>(convert(x), convert(v), convert(m));
 }
 
-template <class T> Sequence contacts_of(MassRun<T> run, const T& end, std::uint64_t& contacts) {
+template <class T> Sequence collisions_of(MassRun<T> run, const T& end, std::uint64_t& collisions) {
   Sequence sequence;
-  run.advance(end, [&](const Contact<T>& c) { sequence.add(c.left); });
+  run.advance(end, [&](const Collision<T>& c) { sequence.add(c.left); });
   EXPECT_EQ(run.chain().account().order_lost, 0U);
-  contacts = run.counts().contacts;
+  collisions = run.counts().collisions;
   return sequence;
 }
 
 template <class T>
-void expect_contacts_of_double(double restitution, double cutoff, const std::vector<double>& x,
-                               const std::vector<double>& v, const std::vector<double>& m, double end,
-                               std::uint64_t least_contacts) {
+void expect_collisions_of_double(double restitution, double cutoff, const std::vector<double>& x,
+                                 const std::vector<double>& v, const std::vector<double>& m, double end,
+                                 std::uint64_t least_collisions) {
   std::uint64_t in_double = 0, in_wide = 0;
   const Sequence narrow =
-      contacts_of(mass_run(in<double>(x, v, m), Inelastic<double>(restitution, cutoff)), end, in_double);
-  const Sequence wide = contacts_of(mass_run(in<T>(x, v, m), Inelastic<T>(T(restitution), T(cutoff))), T(end), in_wide);
+      collisions_of(mass_run(in<double>(x, v, m), Inelastic<double>(restitution, cutoff)), end, in_double);
+  const Sequence wide =
+      collisions_of(mass_run(in<T>(x, v, m), Inelastic<T>(T(restitution), T(cutoff))), T(end), in_wide);
   EXPECT_EQ(in_double, in_wide);
   EXPECT_TRUE(narrow == wide);
-  EXPECT_GE(in_double, least_contacts);
+  EXPECT_GE(in_double, least_collisions);
 }
 
 // Places 1e-300, 1e-290, ... 1, velocities falling from left to right by unequal steps.
@@ -57,11 +58,11 @@ TEST(Extremes, GapsOverThreeHundredDecades) {
   std::vector<double> x, v, m;
   for (int k = 0; k <= 30; ++k) {
     x.push_back(std::pow(10., -300 + 10 * k));
-    v.push_back(-k - .01 * static_cast<double>(bits_of(k, 3, 31)));
+    v.push_back(-k - 0.01 * static_cast<double>(bits_of(k, 3, 31)));
     m.push_back(1);
   }
-  expect_contacts_of_double<double_double>(1, 0, x, v, m, 10, 31 * 30 / 2);
-  expect_contacts_of_double<double_double>(.75, 1e-3, x, v, m, 10, 100);
+  expect_collisions_of_double<double_double>(1, 0, x, v, m, 10, 31 * 30 / 2);
+  expect_collisions_of_double<double_double>(0.75, 1e-3, x, v, m, 10, 100);
   // Elastic: all have passed each other and part at once the velocities are sorted.
   auto run = gap_run(in<double>(x, v, {}), Inelastic<double>(1, 0));
   ASSERT_EQ(run.advance(10), Status::reached);
@@ -79,18 +80,20 @@ std::vector<double> alternating(double ratio, std::size_t n) {
 TEST(Extremes, MassesOfOneToATrillion) {
   const auto even = rmix<double>(40);
   std::vector<double> x, v;
-  for (BodyIndex b = 0; b < 40; ++b) x.push_back(even->position(b)), v.push_back(even->velocity(b));
+  for (ParticleIndex b = 0; b < 40; ++b) x.push_back(even->position(b)), v.push_back(even->velocity(b));
   for (const double ratio : {1e12, 1e-12})
-    expect_contacts_of_double<double_double>(.9, 1e-4, x, v, alternating(ratio, 40), 1.25, 5);
+    expect_collisions_of_double<double_double>(0.9, 1e-4, x, v, alternating(ratio, 40), 1.25, 5);
 
-  // Momentum and energy: each contact rounds two closing speeds of at most 4, and each acts on all bodies to one side.
-  const auto bodies = in<double>(x, v, alternating(1e12, 40));
-  auto run = mass_run(bodies, Inelastic<double>(.9, 1e-4));
+  // Momentum and energy: each collision rounds two closing speeds of at most 4, and each acts on all particles to one
+  // side.
+  const auto particles = in<double>(x, v, alternating(1e12, 40));
+  auto run = mass_run(particles, Inelastic<double>(0.9, 1e-4));
   ASSERT_EQ(run.advance(1), Status::reached);
   const auto c = configuration_at(run, 1.);
-  const double mass = 20 * (1e12 + 1), error = 2 * static_cast<double>(run.counts().contacts) * 4 * u;
-  EXPECT_LE(std::abs(momentum_gained(c, *bodies)), mass * (error + 4 * u));
-  EXPECT_LE(std::abs(bodies->kinetic_energy() - run.energy_lost() - kinetic_energy(c, *bodies)), mass * 4 * error);
+  const double mass = 20 * (1e12 + 1), error = 2 * static_cast<double>(run.counts().collisions) * 4 * u;
+  EXPECT_LE(std::abs(momentum_gained(c, *particles)), mass * (error + 4 * u));
+  EXPECT_LE(std::abs(particles->kinetic_energy() - run.energy_lost() - kinetic_energy(c, *particles)),
+            mass * 4 * error);
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
@@ -101,8 +104,8 @@ template <class T> Scene<T> three(int third_place) {
   return list<T>({T(0), T(1), T(third_place)}, {T(1), T(0), T(-1)});
 }
 
-// Next to 0, far below epsilon, the second contact finds a gap that no time resolves, at 0 none: with a cut-off the
-// bodies part, without one the run says that it is exhausted.
+// Next to 0, far below epsilon, the second collision finds a gap that no time resolves, at 0 none: with a cut-off the
+// particles part, without one the run says that it is exhausted.
 TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
   using T = typename TypeParam::Scalar;
   for (const T& restitution : {T(0), from_text<T>(TypeParam::digits > 0 ? "1e-100000000" : "1e-300")}) {
@@ -120,12 +123,12 @@ TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
   }
 }
 
-// Elastic contacts up to t are the inversions of x + v t, exact in double for these places and velocities.
-std::uint64_t inversions(const Bodies<double>& bodies, double t) {
+// Elastic collisions up to t are the inversions of x + v t, exact in double for these places and velocities.
+std::uint64_t inversions(const Particles<double>& particles, double t) {
   std::uint64_t count = 0;
-  const auto place = [&](BodyIndex b) { return bodies.position(b) + bodies.velocity(b) * t; };
-  for (BodyIndex i = 0; i < bodies.count(); ++i)
-    for (BodyIndex j = i + 1; j < bodies.count(); ++j) count += place(i) > place(j);
+  const auto place = [&](ParticleIndex b) { return particles.position(b) + particles.velocity(b) * t; };
+  for (ParticleIndex i = 0; i < particles.count(); ++i)
+    for (ParticleIndex j = i + 1; j < particles.count(); ++j) count += place(i) > place(j);
   return count;
 }
 
@@ -135,22 +138,23 @@ TYPED_TEST(EveryExtreme, RestitutionNextToOne) {
     auto run = gap_run(rmix<T>(200), Inelastic<T>(restitution, T(0)));
     for (const int t : {5, 20}) {
       ASSERT_EQ(run.advance(T(t)), Status::reached);
-      EXPECT_EQ(run.counts().contacts, inversions(*rmix<double>(200), t)) << t;
+      EXPECT_EQ(run.counts().collisions, inversions(*rmix<double>(200), t)) << t;
     }
     EXPECT_TRUE((run.energy_lost() > T(0)) == (restitution < T(1)));
-    // (1 - eps)(1 + eps) w^2/4 a contact, w < 2
-    EXPECT_LE(to_double(run.energy_lost()), static_cast<double>(run.counts().contacts) * 2 * u);
+    // (1 - eps)(1 + eps) w^2/4 a collision, w < 2
+    EXPECT_LE(to_double(run.energy_lost()), static_cast<double>(run.counts().collisions) * 2 * u);
     EXPECT_EQ(run.chain().account().order_lost, 0U);
   }
 }
 
-// Three bodies meet at one place at t = 1. By the tie rule the left gap goes first; elastic bodies come out mirrored.
-TYPED_TEST(EveryExtreme, ThreeBodiesMeet) {
+// Three particles meet at one place at t = 1. By the tie rule the left gap goes first; elastic particles come out
+// mirrored.
+TYPED_TEST(EveryExtreme, ThreeParticlesMeet) {
   using T = typename TypeParam::Scalar;
   auto run = gap_run(three<T>(2), Inelastic<T>(T(1), T(0)));
-  std::vector<BodyIndex> order;
-  ASSERT_EQ(run.advance(T(2), [&](const Contact<T>& c) { order.push_back(c.left); }), Status::reached);
-  EXPECT_EQ(order, (std::vector<BodyIndex>{0, 1, 0}));
+  std::vector<ParticleIndex> order;
+  ASSERT_EQ(run.advance(T(2), [&](const Collision<T>& c) { order.push_back(c.left); }), Status::reached);
+  EXPECT_EQ(order, (std::vector<ParticleIndex>{0, 1, 0}));
   EXPECT_GT(run.chain().account().simultaneous, 0U);
   EXPECT_EQ(run.chain().account().order_lost, 0U);
   const auto c = configuration_at(run, T(2));
@@ -166,16 +170,16 @@ TYPED_TEST(EveryExtreme, ThreeBodiesMeet) {
 // Two rows of a perfect lattice: k pairs are k spacings apart, for k up to the length of a row; they meet at k/(2 u).
 TYPED_TEST(EveryExtreme, LatticesMeetAllAtOnce) {
   using T = typename TypeParam::Scalar;
-  const Scene<T> lattice =
-      std::make_shared<Rows<T>>(symmetric_rows<T>(60, T(T(1) / T(2)), T(1), [](BodyIndex) { return std::int64_t{0}; }));
+  const Scene<T> lattice = std::make_shared<Rows<T>>(
+      symmetric_rows<T>(60, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
   auto run = gap_run(lattice, Inelastic<T>(T(1), T(0)));
   for (const int t : {1, 2, 7, 29, 30}) {
     ASSERT_EQ(run.advance(T(t)), Status::reached);
     const auto k = static_cast<std::uint64_t>(t);
-    EXPECT_EQ(run.counts().contacts, k * (k + 1) / 2) << t;
+    EXPECT_EQ(run.counts().collisions, k * (k + 1) / 2) << t;
   }
   ASSERT_EQ(run.advance(T(100)), Status::reached);
-  EXPECT_EQ(run.counts().contacts, 30U * 30U);  // every body of one row has met every one of the other
+  EXPECT_EQ(run.counts().collisions, 30U * 30U);  // every particle of one row has met every one of the other
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
@@ -191,7 +195,7 @@ TYPED_TEST(EveryExtreme, CutoffFromBothSides) {
     for (const auto& [w, elastic] : {std::pair(below, true), std::pair(cutoff, false), std::pair(above, false)}) {
       auto run = gap_run(list<T>({T(0), T(1)}, {w, T(0)}), law);
       ASSERT_EQ(run.advance(T(1000000)), Status::reached);
-      EXPECT_EQ(run.counts().contacts, 1U);
+      EXPECT_EQ(run.counts().collisions, 1U);
       EXPECT_EQ(run.counts().below_cutoff, elastic ? 1U : 0U);
       // Two unit masses: mu w^2 (1 - eps)(1 + eps)/2, in some ten operations.
       const T lost = elastic ? T(0) : T((T(1) - eps) * (T(1) + eps) * w * w / T(4));

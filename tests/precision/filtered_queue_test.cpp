@@ -1,9 +1,9 @@
 // The filtered queue: 64-bit keys made from rounded times, exact times only where keys are too close to call. Proves it
-// equal to a loop that looks through all gaps for the least (exact time, position): the same contacts in the same order
-// at each body, at the same times to the last bit, in scenes that collapse and in shocks. Where many contacts fall on
-// the same time by construction, in lattices, contacts that commute may swap, and rounding decides triple collisions:
-// there every single choice is checked, against all gaps that could claim to come first. The number of index bits in a
-// key changes no bit of a run.
+// equal to a loop that looks through all gaps for the least (exact time, position): the same collisions in the same
+// order at each particle, at the same times to the last bit, in scenes that collapse and in shocks. Where many
+// collisions fall on the same time by construction, in lattices, collisions that commute may swap, and rounding decides
+// triple collisions: there every single choice is checked, against all gaps that could claim to come first. The number
+// of index bits in a key changes no bit of a run.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -22,22 +22,22 @@ template <class P> using FilteredQueue = InPrecision<P>;
 TYPED_TEST_SUITE(FilteredQueue, WidePrecision, PrecisionName);
 
 template <class T>
-void expect_same_contacts(const Scene<T>& bodies, const Inelastic<T>& law, const T& end, std::uint64_t least_contacts,
-                          Policy<T> policy = {}) {
-  const Recorded<T> run = recorded(gap_run(bodies, law, std::move(policy)), end);
-  EXPECT_GE(run.counts.contacts, least_contacts);
-  expect_same_meetings(run.meetings, searched(GapChain<T>(bodies, T(0)), law, run));
+void expect_same_collisions(const Scene<T>& particles, const Inelastic<T>& law, const T& end,
+                            std::uint64_t least_collisions, Policy<T> policy = {}) {
+  const Recorded<T> run = recorded(gap_run(particles, law, std::move(policy)), end);
+  EXPECT_GE(run.counts.collisions, least_collisions);
+  expect_same_meetings(run.meetings, searched(GapChain<T>(particles, T(0)), law, run));
 }
 
 // Of all gaps the chosen one is first by (exact time, position), whatever the keys can tell.
 template <class T>
-void expect_every_choice_right(const Scene<T>& bodies, const Inelastic<T>& law, const T& end,
-                               std::uint64_t least_contacts) {
-  auto run = gap_run(bodies, law);
+void expect_every_choice_right(const Scene<T>& particles, const Inelastic<T>& law, const T& end,
+                               std::uint64_t least_collisions) {
+  auto run = gap_run(particles, law);
   const auto& chain = run.chain();
   std::uint64_t wrong = 0;
-  run.advance(end, [&](const Contact<T>& contact) {
-    const Slot chosen = static_cast<Slot>(contact.left - chain.body(0));
+  run.advance(end, [&](const Collision<T>& collision) {
+    const Slot chosen = static_cast<Slot>(collision.left - chain.particle(0));
     const T time = chain.due(chosen);
     for (Slot s = chain.first(); s <= chain.last(); ++s) {
       if (s == chosen || !(chain.closing(s) > T(0))) continue;
@@ -46,49 +46,50 @@ void expect_every_choice_right(const Scene<T>& bodies, const Inelastic<T>& law, 
     }
   });
   EXPECT_EQ(wrong, 0U);
-  EXPECT_GE(run.counts().contacts, least_contacts);
+  EXPECT_GE(run.counts().collisions, least_collisions);
   EXPECT_GT(run.counts().close_calls, 0U);
 }
 
 TYPED_TEST(FilteredQueue, MixedVelocities) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(rmix<T>(32), Inelastic<T>(T(15) / T(16), T(0)), T(1000), 188);
+  expect_same_collisions(rmix<T>(32), Inelastic<T>(T(15) / T(16), T(0)), T(1000), 188);
 }
 
 TYPED_TEST(FilteredQueue, Shock) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(rshock<T>(200), Inelastic<T>(from_text<T>(".9"), from_text<T>("1e-3")), T(66), 5000);
+  expect_same_collisions(rshock<T>(200), Inelastic<T>(from_text<T>(".9"), from_text<T>("1e-3")), T(66), 5000);
 }
 
-TYPED_TEST(FilteredQueue, ThreeBodyCollapse) {
+TYPED_TEST(FilteredQueue, ThreeParticleCollapse) {
   using T = typename TypeParam::Scalar;
   for (const char* restitution : {".05", ".01", ".0625"})
-    expect_same_contacts(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}),
-                         Inelastic<T>(from_text<T>(restitution), T(0)), T(10), 100, stop_below(from_text<T>("1e-280")));
+    expect_same_collisions(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}),
+                           Inelastic<T>(from_text<T>(restitution), T(0)), T(10), 100,
+                           stop_below(from_text<T>("1e-280")));
 }
 
-// At eps = .4 seven bodies are enough: 2/(1 - (4/pi) atan sqrt eps) = 7.1.
-TYPED_TEST(FilteredQueue, ManyBodyCollapse) {
+// At eps = 0.4 seven particles are enough: 2/(1 - (4/pi) atan sqrt eps) = 7.1.
+TYPED_TEST(FilteredQueue, ManyParticleCollapse) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(rshock<T>(12), Inelastic<T>(from_text<T>(".4"), T(0)), T(100), 100,
-                       stop_below(from_text<T>("1e-200")));
+  expect_same_collisions(rshock<T>(12), Inelastic<T>(from_text<T>(".4"), T(0)), T(100), 100,
+                         stop_below(from_text<T>("1e-200")));
 }
 
 template <class T> Scene<T> perfect_lattice() {
   return std::make_shared<Rows<T>>(
-      symmetric_rows<T>(40, T(T(1) / T(2)), T(1), [](BodyIndex) { return std::int64_t{0}; }));
+      symmetric_rows<T>(40, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
 }
 
 // Elastic rows of a perfect lattice: all pairs of a generation meet at one time, exactly representable.
 TYPED_TEST(FilteredQueue, ElasticLattice) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(perfect_lattice<T>(), Inelastic<T>(T(1), T(0)), T(100), 20 * 21 / 2);
+  expect_same_collisions(perfect_lattice<T>(), Inelastic<T>(T(1), T(0)), T(100), 20 * 21 / 2);
 }
 
 // Inelastic ones: mirror symmetry makes pairs of equal times, and triple collisions that rounding decides.
 TYPED_TEST(FilteredQueue, InelasticLattice) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(perfect_lattice<T>(), Inelastic<T>(T(15) / T(16), from_text<T>("1e-3")), T(30), 100);
+  expect_same_collisions(perfect_lattice<T>(), Inelastic<T>(T(15) / T(16), from_text<T>("1e-3")), T(30), 100);
 }
 
 TYPED_TEST(FilteredQueue, IntegerPlacesAndVelocities) {
@@ -100,17 +101,17 @@ TYPED_TEST(FilteredQueue, IntegerPlacesAndVelocities) {
 }
 
 template <class T>
-std::uint64_t expect_index_bits_change_no_bit(const Scene<T>& bodies, const Inelastic<T>& law, const T& step,
+std::uint64_t expect_index_bits_change_no_bit(const Scene<T>& particles, const Inelastic<T>& law, const T& step,
                                               int steps) {
-  auto run = gap_run(bodies, law, {}, T(0), {.least_queue_bits = 3});
-  auto run13 = gap_run(bodies, law, {}, T(0), {.least_queue_bits = 13});
-  auto run20 = gap_run(bodies, law, {}, T(0), {.least_queue_bits = 20});
+  auto run = gap_run(particles, law, {}, T(0), {.least_queue_bits = 3});
+  auto run13 = gap_run(particles, law, {}, T(0), {.least_queue_bits = 13});
+  auto run20 = gap_run(particles, law, {}, T(0), {.least_queue_bits = 20});
   T t(0);
   for (int k = 0; k < steps; ++k) {
     t += step;
     for (auto* other : {&run, &run13, &run20}) EXPECT_EQ(other->advance(t), Status::reached);
     for (const auto* other : {&run13, &run20}) {
-      EXPECT_TRUE(same_contacts(run.counts(), other->counts())) << to_double(t);
+      EXPECT_TRUE(same_collisions(run.counts(), other->counts())) << to_double(t);
       EXPECT_TRUE(run.energy_lost() == other->energy_lost()) << to_double(t);
       EXPECT_TRUE(identical(configuration_at(run, t), configuration_at(*other, t))) << to_double(t);
     }

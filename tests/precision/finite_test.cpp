@@ -1,5 +1,5 @@
 // What is infinite or not a number is told from numbers in every scalar type, whatever its numeric_limits say: a run
-// refuses it as a time to go to, and goes on unharmed. (In double-double an infinite time made no contacts and said
+// refuses it as a time to go to, and goes on unharmed. (In double-double an infinite time made no collisions and said
 // nothing; in double one that is no number overwrote memory.)
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ TYPED_TEST(Finite, OnlyNumbersAreTimes) {
     EXPECT_THROW(run.advance(t), std::invalid_argument);
   }
   EXPECT_EQ(run.advance(T(5)), Status::reached);
-  EXPECT_EQ(run.counts().contacts, 3U);
+  EXPECT_EQ(run.counts().collisions, 3U);
 }
 
 }  // namespace finite_test

@@ -138,7 +138,7 @@ TYPED_TEST(MpfrInPlace, LeadingDigitsAreThoseOfTheLibrary) {
     long exponent = 0, expected_exponent = 0;
     const double mantissa = split(x, exponent);
     const double expected = mpfr_get_d_2exp(&expected_exponent, x.get(), MPFR_RNDN);
-    ASSERT_GE(std::abs(mantissa), .5);
+    ASSERT_GE(std::abs(mantissa), 0.5);
     ASSERT_LE(std::abs(mantissa), 1);
     ASSERT_LE(std::abs(expected_exponent - exponent), 1);
     const double scaled = std::ldexp(expected, static_cast<int>(expected_exponent - exponent));

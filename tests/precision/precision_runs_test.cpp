@@ -1,17 +1,18 @@
-// The engine in every scalar type. Proves: all make the contacts of the paper's shock that an independent event-driven
-// program counts in double, binary128 and 100 digits alike; all settle the collapse time of three bodies, of equal and
-// unequal masses, to the full precision of the type; all follow a collapse to the end of their range.
+// The engine in every scalar type. Proves: all make the collisions of the paper's shock that an independent
+// event-driven program counts in double, binary128 and 100 digits alike; all settle the collapse time of three
+// particles, of equal and unequal masses, to the full precision of the type; all follow a collapse to the end of their
+// range.
 //
-// Closed forms (McNamara and Young, Phys. Fluids A 4, 496 (1992)): p_n the closing speed at contact n, g_n the other
-// gap then; a_r, a_l the shares of a contact's closing speed handed to the right and to the left gap (both (1+eps)/2
-// for equal masses), a^2 = a_l a_r, lam = (a - sqrt(a^2 - 4 eps))/2. With p_n of every second contact scaled by r =
+// Closed forms (McNamara and Young, Phys. Fluids A 4, 496 (1992)): p_n the closing speed at collision n, g_n the other
+// gap then; a_r, a_l the shares of a collision's closing speed handed to the right and to the left gap (both (1+eps)/2
+// for equal masses), a^2 = a_l a_r, lam = (a - sqrt(a^2 - 4 eps))/2. With p_n of every second collision scaled by r =
 // sqrt(a_r/a_l): t_c = t_0 + g_0/(p_1 - r lam p_0) and g_n p_n = eps^n g_0 p_0. Evaluated with 1300 digits from the
 // numbers that the type holds.
 //
-// Tolerance. Let v be the largest error of one operation. A contact takes 3 roundings of a gap and 6 of a closing speed
-// (tests/core/collapse_test.cpp), a flight 3 more: the n-th interval is off by 12 (n+1) v. Intervals fall by
-// q = lam-/lam+, so all are off by 12 v (t_c - t_0)/(1 - q) together. The run stops when t_c moved by less than half an
-// epsilon of the time elapsed twice running, with q < 1/2 within one epsilon; its rounding to one number is another.
+// Tolerance. Let v be the largest error of one operation. A collision takes 3 roundings of a gap and 6 of a closing
+// speed (tests/core/engine/collapse_test.cpp), a flight 3 more: the n-th interval is off by 12 (n+1) v. Intervals fall
+// by q = lam-/lam+, so all are off by 12 v (t_c - t_0)/(1 - q) together. The run stops when t_c moved by less than half
+// an epsilon of the time elapsed twice running, with q < 1/2 within one epsilon; its rounding to one number is another.
 #ifdef CRADLE_WITH_MPFR
 
 #include <gtest/gtest.h>
@@ -43,47 +44,47 @@ TYPED_TEST_SUITE(EveryScalarCollapse, EveryPrecision, PrecisionName);
 
 struct Count {
   int time;
-  std::uint64_t contacts;
+  std::uint64_t collisions;
 };
 
-template <class T> void expect_contacts(const std::vector<Count>& counts) {
+template <class T> void expect_collisions(const std::vector<Count>& counts) {
   auto run = gap_run(rshock<T>(8000), Inelastic<T>(from_text<T>(".999"), from_text<T>("1e-5")));
   for (const Count& count : counts) {
     ASSERT_EQ(run.advance(T(count.time)), Status::reached);
-    EXPECT_EQ(run.counts().contacts, count.contacts) << "t = " << count.time;
+    EXPECT_EQ(run.counts().collisions, count.collisions) << "t = " << count.time;
     EXPECT_EQ(run.counts().below_cutoff, 0U) << "t = " << count.time;
   }
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 // Where the independent program gives no count.
-std::uint64_t contacts_in_double(int time) {
-  auto run = gap_run(rshock<double>(8000), Inelastic<double>(.999, 1e-5));
+std::uint64_t collisions_in_double(int time) {
+  auto run = gap_run(rshock<double>(8000), Inelastic<double>(0.999, 1e-5));
   run.advance(time);
-  return run.counts().contacts;
+  return run.counts().collisions;
 }
 
 TYPED_TEST(EveryScalarRun, ShockOfThePapersFigure2) {
   using T = typename TypeParam::Scalar;
   if (TypeParam::digits == 1000)
-    expect_contacts<T>({{300, contacts_in_double(300)}});
+    expect_collisions<T>({{300, collisions_in_double(300)}});
   else
-    expect_contacts<T>({{1999, 1299216}});
+    expect_collisions<T>({{1999, 1299216}});
 }
 
 TYPED_TEST(SlowScalarRun, ShockOfThePapersFigure2) {
   using T = typename TypeParam::Scalar;
   if (std::same_as<T, double> || std::same_as<T, long double> || std::same_as<T, double_double>)
-    expect_contacts<T>({{4000, 4685816}, {6000, 16156905}});
+    expect_collisions<T>({{4000, 4685816}, {6000, 16156905}});
   else
-    expect_contacts<T>({{4000, 4685816}});
+    expect_collisions<T>({{4000, 4685816}});
 }
 
 struct Collapse {
   Reference time, ratio;  // t_c and q
 };
 
-// Bodies at 0, 1, 3 with velocities 1, 0, -1: t_0 = 1, g_0 = p_0 = 1, the right gap closes at 1 until then.
+// Particles at 0, 1, 3 with velocities 1, 0, -1: t_0 = 1, g_0 = p_0 = 1, the right gap closes at 1 until then.
 template <class T> Collapse closed_form(const T& restitution, const std::vector<T>& masses) {
   const Reference eps = reference(restitution), one(1), two(2), four(4);
   const Reference m1 = reference(masses[0]), m2 = reference(masses[1]), m3 = reference(masses[2]);
@@ -93,7 +94,7 @@ template <class T> Collapse closed_form(const T& restitution, const std::vector<
   return {one + one / (one + to_right - r * slow), (a - root) / (a + root)};
 }
 
-template <class T> Scene<T> three_bodies(const std::vector<T>& masses) {
+template <class T> Scene<T> three_particles(const std::vector<T>& masses) {
   return list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}, masses);
 }
 
@@ -122,12 +123,12 @@ TYPED_TEST(EveryScalarCollapse, TimeIsSettledToFullPrecision) {
     SCOPED_TRACE(row.restitution);
     const Inelastic<T> law(restitution, T(0));
     const Policy<T> policy = stop_below(T(0));
-    expect_collapse_time<T>(gap_run(three_bodies<T>({}), law, policy), expected);
-    expect_collapse_time<T>(mass_run(three_bodies<T>({T(1), T(1), T(1)}), law, policy), expected);
+    expect_collapse_time<T>(gap_run(three_particles<T>({}), law, policy), expected);
+    expect_collapse_time<T>(mass_run(three_particles<T>({T(1), T(1), T(1)}), law, policy), expected);
   }
 }
 
-// Heavy outer bodies collapse at larger restitution: q < 1/2 in all of these.
+// Heavy outer particles collapse at larger restitution: q < 1/2 in all of these.
 TYPED_TEST(EveryScalarCollapse, TimeIsSettledToFullPrecisionForUnequalMasses) {
   using T = typename TypeParam::Scalar;
   const struct {
@@ -140,17 +141,17 @@ TYPED_TEST(EveryScalarCollapse, TimeIsSettledToFullPrecisionForUnequalMasses) {
     std::vector<T> masses;
     for (const int m : row.masses) masses.push_back(T(m));
     const Collapse expected = closed_form(restitution, masses);
-    ASSERT_LT(expected.ratio, Reference(.5)) << expected.ratio;
-    expect_collapse_time<T>(mass_run(three_bodies(masses), Inelastic<T>(restitution, T(0)), stop_below(T(0))),
+    ASSERT_LT(expected.ratio, Reference(0.5)) << expected.ratio;
+    expect_collapse_time<T>(mass_run(three_particles(masses), Inelastic<T>(restitution, T(0)), stop_below(T(0))),
                             expected);
   }
 }
 
-// Three roundings a contact, however closing speeds are rounded (tests/core/collapse_test.cpp).
+// Three roundings a collision, however closing speeds are rounded (tests/core/engine/collapse_test.cpp).
 template <class T> void expect_invariant_down_to(const char* least) {
   const T restitution = from_text<T>(".05"), stop = from_text<T>(least);
   const Inelastic<T> law(restitution, T(0));
-  SlowLoop loop(law, GapChain<T>(three_bodies<T>({}), T(0)));
+  SlowLoop loop(law, GapChain<T>(three_particles<T>({}), T(0)));
   const Reference eps = reference(restitution), v = rounding<T>();
   Reference invariant(1);
   std::uint64_t n = 0;
@@ -159,15 +160,15 @@ template <class T> void expect_invariant_down_to(const char* least) {
     ASSERT_TRUE(s.has_value());
     const Step<T> step = loop.collide(*s);
     const Reference product = reference(step.nearest_gap) * reference(step.closing_speed);
-    ASSERT_LE(abs(product - invariant), Reference(3 * static_cast<double>(n)) * v * invariant) << "contact " << n;
+    ASSERT_LE(abs(product - invariant), Reference(3 * static_cast<double>(n)) * v * invariant) << "collision " << n;
     invariant = invariant * eps;
     down = step.nearest_gap < stop;
   }
-  auto run = gap_run(three_bodies<T>({}), law, stop_below(stop));
+  auto run = gap_run(three_particles<T>({}), law, stop_below(stop));
   ASSERT_EQ(run.advance(T(1000)), Status::collapsed);
-  EXPECT_EQ(run.counts().contacts, n);
+  EXPECT_EQ(run.counts().collisions, n);
   EXPECT_TRUE(run.collapse().gap < stop && run.collapse().gap > T(0));
-  EXPECT_TRUE(run.collapse().gap > stop / T(64)) << "a contact takes it down by lam- = 1/8";
+  EXPECT_TRUE(run.collapse().gap > stop / T(64)) << "a collision takes it down by lam- = 1/8";
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 

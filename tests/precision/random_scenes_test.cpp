@@ -1,5 +1,5 @@
 // Random small scenes of every law and type, by rapidcheck, which shrinks what fails: invariants hold (guards are
-// silent, energy is never gained), a loop without a queue makes the same contacts, a run saved at random moments and
+// silent, energy is never gained), a loop without a queue makes the same collisions, a run saved at random moments and
 // loaded again goes on with the same bits, and so does one that is looked at in between. RC_PARAMS="max_success=10000"
 // makes it more; CTest sets the seed.
 #include <memory>
@@ -8,13 +8,13 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "cradle/core/cluster_chain.hpp"
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/list.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/initial/list.hpp"
 #include "cradle/core/observe/guards.hpp"
-#include "cradle/core/position_chain.hpp"
-#include "cradle/core/simulation.hpp"
-#include "cradle/core/state.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
@@ -34,11 +34,11 @@ struct Drawn {
 Drawn draw() {
   using rc::gen::inRange;
   Drawn d;
-  const auto bodies = *inRange<std::size_t>(2, 9);
-  d.gaps = *rc::gen::container<std::vector<int>>(bodies, inRange(1, 1 << 16));
-  d.velocities = *rc::gen::container<std::vector<int>>(bodies, inRange(-(1 << 14), 1 << 14));
-  d.masses = *rc::gen::container<std::vector<int>>(bodies, inRange(64, 1 << 14));
-  d.restitution = *inRange(1, 1025);  // of 0, what bodies do that stay together is rounding's to decide
+  const auto particles = *inRange<std::size_t>(2, 9);
+  d.gaps = *rc::gen::container<std::vector<int>>(particles, inRange(1, 1 << 16));
+  d.velocities = *rc::gen::container<std::vector<int>>(particles, inRange(-(1 << 14), 1 << 14));
+  d.masses = *rc::gen::container<std::vector<int>>(particles, inRange(64, 1 << 14));
+  d.restitution = *inRange(1, 1025);  // of 0, what particles do that stay together is rounding's to decide
   d.cutoff = *inRange(32, 1024);
   d.loss = *inRange(0, 2048);
   d.ring = *rc::gen::arbitrary<bool>();
@@ -49,7 +49,7 @@ Drawn draw() {
 
 template <class T> T in_units(int n) { return T(n) / T(1024); }
 
-template <class T> std::shared_ptr<const Bodies<T>> bodies_of(const Drawn& d, bool ring) {
+template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn& d, bool ring) {
   std::vector<T> x, v, m;
   T place(0);
   for (std::size_t k = 0; k < d.gaps.size(); ++k) {
@@ -64,51 +64,52 @@ template <class T> std::shared_ptr<const Bodies<T>> bodies_of(const Drawn& d, bo
 const int until = 20;
 
 template <class T, class Law, class Chain>
-void check(const Law& law, const std::shared_ptr<const Bodies<T>>& bodies, const Drawn& d) {
-  const auto make = [&] { return Simulation<T, Law, Chain>(law, Chain(bodies, T(0))); };
+void check(const Law& law, const std::shared_ptr<const Particles<T>>& particles, const Drawn& d) {
+  const auto make = [&] { return Simulation<T, Law, Chain>(law, Chain(particles, T(0))); };
 
   // Looked at, and saved and loaded, at random moments.
-  auto whole = make(), looked = make();
+  auto whole = make(), inspected = make();
   auto saved = std::make_unique<Simulation<T, Law, Chain>>(make());
-  std::vector<BodyIndex> contacts;
+  std::vector<ParticleIndex> collisions;
   // Some collapse all the same, in the type's resolution: what is to be looked at comes before that.
-  if (whole.advance(T(until), [&](const Contact<T>& c) { contacts.push_back(c.left); }) != Status::reached) return;
-  T contact_before(0), energy = bodies->kinetic_energy();
+  if (whole.advance(T(until), [&](const Collision<T>& c) { collisions.push_back(c.left); }) != Status::reached) return;
+  T collision_before(0), energy = particles->kinetic_energy();
   for (const int cut : d.cuts) {
     const T time = in_units<T>(cut);
-    looked.advance(time);
-    const T left = bodies->kinetic_energy() - looked.energy_lost();
-    const auto look = guarded(looked.configuration(time), *bodies, looked.counts().contacts, left, time,
-                              looked.last_contact_time(), contact_before, looked.account().order_lost == 0);
-    if (look.broken)
-      RC_LOG() << "guard " << static_cast<int>(look.broken->guard) << ": " << to_double(look.broken->found) << " > "
-               << to_double(look.broken->bound) << " at " << to_double(time) << " of " << looked.counts().contacts;
-    RC_ASSERT(!look.broken);
+    inspected.advance(time);
+    const T left = particles->kinetic_energy() - inspected.energy_lost();
+    const auto found = guarded(inspected.configuration(time), *particles, inspected.counts().collisions, left, time,
+                               inspected.last_collision_time(), collision_before, inspected.account().order_lost == 0);
+    if (found.broken)
+      RC_LOG() << "guard " << static_cast<int>(found.broken->guard) << ": " << to_double(found.broken->found) << " > "
+               << to_double(found.broken->bound) << " at " << to_double(time) << " of "
+               << inspected.counts().collisions;
+    RC_ASSERT(!found.broken);
     RC_ASSERT(!(energy < left));
     energy = left;
-    contact_before = looked.last_contact_time();
+    collision_before = inspected.last_collision_time();
     saved->advance(time);
     SavedState state = SavedState::of(*saved);
     saved = std::make_unique<Simulation<T, Law, Chain>>(make());
     load(state, *saved);
     RC_ASSERT(state.left() == 0U);
   }
-  looked.advance(T(until));
+  inspected.advance(T(until));
   saved->advance(T(until));
-  RC_ASSERT(SavedState::of(looked) == SavedState::of(whole));
+  RC_ASSERT(SavedState::of(inspected) == SavedState::of(whole));
   RC_ASSERT(SavedState::of(*saved) == SavedState::of(whole));
 
   // Made one by one. Times differ by the rounding of other origins: as far as chaos has not blown that up.
-  SlowLoop<Law, Chain> slow(law, Chain(bodies, T(0)), 1 << 30);
-  std::vector<BodyIndex> one_by_one;
-  const std::size_t most = std::min<std::size_t>(contacts.size(), 25);
+  SlowLoop<Law, Chain> slow(law, Chain(particles, T(0)), 1 << 30);
+  std::vector<ParticleIndex> one_by_one;
+  const std::size_t most = std::min<std::size_t>(collisions.size(), 25);
   while (one_by_one.size() < most) {
     const auto next = slow.next();
     RC_ASSERT(next.has_value());
-    one_by_one.push_back(slow.collide(*next).body);
+    one_by_one.push_back(slow.collide(*next).particle);
   }
   RC_ASSERT(one_by_one ==
-            std::vector<BodyIndex>(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(most)));
+            std::vector<ParticleIndex>(collisions.begin(), collisions.begin() + static_cast<std::ptrdiff_t>(most)));
 }
 
 template <class P> class RandomScenes : public InPrecision<P> {};
@@ -119,7 +120,7 @@ TYPED_TEST(RandomScenes, InelasticInGaps) {
   EXPECT_TRUE(rc::check([] {
     const Drawn d = draw();
     check<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>(
-        Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)), bodies_of<T>(d, d.ring), d);
+        Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)), particles_of<T>(d, d.ring), d);
   }));
 }
 TYPED_TEST(RandomScenes, InelasticInPositions) {
@@ -127,7 +128,7 @@ TYPED_TEST(RandomScenes, InelasticInPositions) {
   EXPECT_TRUE(rc::check([] {
     const Drawn d = draw();
     check<T, Inelastic<T>, PositionChain<T>>(Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)),
-                                             bodies_of<T>(d, false), d);
+                                             particles_of<T>(d, false), d);
   }));
 }
 TYPED_TEST(RandomScenes, WithAContactTime) {
@@ -135,14 +136,14 @@ TYPED_TEST(RandomScenes, WithAContactTime) {
   EXPECT_TRUE(rc::check([] {
     const Drawn d = draw();
     check<T, ContactTime<T>, GapChain<T, IndividualMasses<T>>>(
-        ContactTime<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)), bodies_of<T>(d, d.ring), d);
+        ContactTime<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)), particles_of<T>(d, d.ring), d);
   }));
 }
 TYPED_TEST(RandomScenes, Wet) {
   using T = typename TestFixture::Scalar;
   EXPECT_TRUE(rc::check([] {
     const Drawn d = draw();
-    check<T, cradle::Wet<T>, ClusterChain<T>>(cradle::Wet<T>(in_units<T>(d.loss)), bodies_of<T>(d, d.ring), d);
+    check<T, cradle::Wet<T>, ClusterChain<T>>(cradle::Wet<T>(in_units<T>(d.loss)), particles_of<T>(d, d.ring), d);
   }));
 }
 TYPED_TEST(RandomScenes, Merging) {
@@ -150,14 +151,14 @@ TYPED_TEST(RandomScenes, Merging) {
   EXPECT_TRUE(rc::check([] {
     const Drawn d = draw();
     check<T, InelasticMerging<T>, ClusterChain<T>>(
-        InelasticMerging<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)), bodies_of<T>(d, d.ring),
-        d);
+        InelasticMerging<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)),
+        particles_of<T>(d, d.ring), d);
   }));
 }
 
-// Found here: three bodies collapse down to gaps of 1e-1080, and the times of other contacts, told in such units, are
-// beyond the range of the queue's keys. They were taken for never.
-TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherContact) {
+// Found here: three particles collapse down to gaps of 1e-1080, and the times of other collisions, told in such units,
+// are beyond the range of the queue's keys. They were taken for never.
+TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision) {
   using T = typename TestFixture::Scalar;
   const Drawn d{{1, 1, 17, 1, 1, 1},
                 {-16384, -14252, -16384, -16384, -15276, -15679},
@@ -169,7 +170,7 @@ TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherContact) {
                 {0, 0, 64}};
   EXPECT_TRUE(rc::check([&] {
     check<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>(
-        Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)), bodies_of<T>(d, d.ring), d);
+        Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)), particles_of<T>(d, d.ring), d);
   }));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // What the filtered queue is compared with: a loop that looks through all gaps for the least (exact time, position).
 //
-// It moves its origin of time where the run did (after the same number of contacts, by the same offset), since times
+// It moves its origin of time where the run did (after the same number of collisions, by the same offset), since times
 // are rounded as offsets; it knows nothing else of the run.
 
 #include <cstdint>
@@ -17,20 +17,20 @@
 namespace cradle::test {
 
 template <class T> struct Meeting {
-  BodyIndex other;
+  ParticleIndex other;
   T time;
 };
-// Of each body, in order.
-template <class T> using Meetings = std::map<BodyIndex, std::vector<Meeting<T>>>;
+// Of each particle, in order.
+template <class T> using Meetings = std::map<ParticleIndex, std::vector<Meeting<T>>>;
 
-template <class T> void note(Meetings<T>& meetings, BodyIndex left, BodyIndex right, const T& time) {
+template <class T> void note(Meetings<T>& meetings, ParticleIndex left, ParticleIndex right, const T& time) {
   meetings[left].push_back({right, time});
   meetings[right].push_back({left, time});
 }
 
 template <class T> struct Origin {
-  std::uint64_t contacts;  // made before it moved
-  T offset;                // to where
+  std::uint64_t collisions;  // made before it moved
+  T offset;                  // to where
 };
 
 template <class T> struct Recorded {
@@ -47,21 +47,21 @@ template <class Run, class T> Recorded<T> recorded(Run run, const T& end) {
   Recorded<T> record;
   T last(0);
   const auto take_origin = [&] {
-    if (run.counts().origin_moves > record.origins.size()) record.origins.push_back({run.counts().contacts, last});
+    if (run.counts().origin_moves > record.origins.size()) record.origins.push_back({run.counts().collisions, last});
   };
-  EXPECT_EQ(status, run.advance(end, [&](const Contact<T>& contact) {
+  EXPECT_EQ(status, run.advance(end, [&](const Collision<T>& collision) {
     take_origin();
     const auto& chain = run.chain();
     for (Slot s = chain.first(); s <= chain.last(); ++s)
-      if (chain.right(s) != s && chain.body(s) == contact.left) last = chain.due(s);
-    note(record.meetings, contact.left, contact.right, contact.time.value());
+      if (chain.right(s) != s && chain.particle(s) == collision.left) last = chain.due(s);
+    note(record.meetings, collision.left, collision.right, collision.time.value());
   }));
   take_origin();
   record.counts = run.counts();
   EXPECT_EQ(record.origins.size(), run.counts().origin_moves);
   EXPECT_EQ(run.chain().account().order_lost, 0U);
-  const T seen = status == Status::reached ? end : run.last_contact_time();
-  EXPECT_TRUE(same_contacts(run.counts(), unobserved.counts()));
+  const T seen = status == Status::reached ? end : run.last_collision_time();
+  EXPECT_TRUE(same_collisions(run.counts(), unobserved.counts()));
   EXPECT_EQ(run.counts().close_calls, unobserved.counts().close_calls);
   EXPECT_TRUE(run.energy_lost() == unobserved.energy_lost());
   EXPECT_TRUE(identical(run.configuration(seen), unobserved.configuration(seen)));
@@ -71,7 +71,7 @@ template <class Run, class T> Recorded<T> recorded(Run run, const T& end) {
 template <class Chain, class Law, class T> Meetings<T> searched(Chain chain, const Law& law, const Recorded<T>& run) {
   Meetings<T> meetings;
   auto origin = run.origins.begin();
-  for (std::uint64_t n = 1; n <= run.counts.contacts; ++n) {
+  for (std::uint64_t n = 1; n <= run.counts.collisions; ++n) {
     Slot first = chain.slots();
     T time(0);
     for (Slot s = chain.first(); s <= chain.last(); ++s) {
@@ -80,31 +80,31 @@ template <class Chain, class Law, class T> Meetings<T> searched(Chain chain, con
       if (first == chain.slots() || due < time) first = s, time = due;
     }
     if (first == chain.slots()) break;
-    note(meetings, chain.body(first), chain.body(chain.right(first)), chain.stamp(time).value());
-    const Collision<T> collision = chain.collide(law, first, time);
-    if (asks(collision.notice, Notice::needs_slots)) chain.make_room();
-    if (origin != run.origins.end() && origin->contacts == n) chain.move_origin((origin++)->offset);
+    note(meetings, chain.particle(first), chain.particle(chain.right(first)), chain.stamp(time).value());
+    const CollisionResult<T> collision = chain.collide(law, first, time);
+    if (includes(collision.notice, Notice::needs_slots)) chain.make_room();
+    if (origin != run.origins.end() && origin->collisions == n) chain.move_origin((origin++)->offset);
   }
   return meetings;
 }
 
-// Every body has the same contacts with the same others in the same order, at the same times to the last bit.
+// Every particle has the same collisions with the same others in the same order, at the same times to the last bit.
 template <class T> void expect_same_meetings(const Meetings<T>& found, const Meetings<T>& expected) {
   ASSERT_EQ(found.size(), expected.size());
-  for (const auto& [body, meetings] : found) {
-    const auto& others = expected.at(body);
-    ASSERT_EQ(meetings.size(), others.size()) << "body " << body;
+  for (const auto& [particle, meetings] : found) {
+    const auto& others = expected.at(particle);
+    ASSERT_EQ(meetings.size(), others.size()) << "particle " << particle;
     for (std::size_t k = 0; k < meetings.size(); ++k) {
-      ASSERT_EQ(meetings[k].other, others[k].other) << "body " << body << ", contact " << k;
-      ASSERT_TRUE(meetings[k].time == others[k].time) << "body " << body << ", time of contact " << k;
+      ASSERT_EQ(meetings[k].other, others[k].other) << "particle " << particle << ", collision " << k;
+      ASSERT_TRUE(meetings[k].time == others[k].time) << "particle " << particle << ", time of collision " << k;
     }
   }
 }
 
-// Bodies on integers with a few integer velocities: times are small rationals at first, equal ones abound.
+// Particles on integers with a few integer velocities: times are small rationals at first, equal ones abound.
 template <class T> Scene<T> integers() {
   std::vector<T> x, v;
-  for (BodyIndex i = 0; i < 60; ++i) {
+  for (ParticleIndex i = 0; i < 60; ++i) {
     x.push_back(T(i));
     v.push_back(T(bits_of(i, 7, 3) - 1));
   }

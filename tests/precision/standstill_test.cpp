@@ -1,8 +1,8 @@
-// Proves: a light body between a wall that takes energy and a heavy body, elastic where slow, comes to an end in every
-// type, those whose exponents have none included.
+// Proves: a light particle between a wall that takes energy and a heavy particle, elastic where slow, comes to an end
+// in every type, those whose exponents have none included.
 #include <gtest/gtest.h>
 
-#include "cradle/core/walled.hpp"
+#include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
@@ -23,7 +23,7 @@ TYPED_TEST(SlowStandstill, EndsARunThatNoLongerAdvances) {
   const SpeedDependent<T> law(T(9) / T(10), T(1) / T(100), T(2));
   Simulation run(law, GapChain<T, IndividualMasses<T>>(walled, T(0)), Policy<T>{});
   EXPECT_EQ(run.advance(T(1000)), Status::exhausted);
-  EXPECT_LE(run.counts().contacts, 1200000U);
+  EXPECT_LE(run.counts().collisions, 1200000U);
 }
 
 }  // namespace standstill_wide_test

@@ -1,5 +1,5 @@
 // Masses from 1e-8 to 1e8 beside each other. Proves: runs of 2000 random systems (lines, rings, walls, every law that
-// bounces) make the contacts that 70 digits make wherever nothing says that rounding may have decided; guards are
+// bounces) make the collisions that 70 digits make wherever nothing says that rounding may have decided; guards are
 // silent on all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) come out right up
 // to a ratio of 1e12, or 1e14 in the slow test.
 #include <array>
@@ -13,12 +13,12 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/gap_chain.hpp"
-#include "cradle/core/list.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/guards.hpp"
-#include "cradle/core/position_chain.hpp"
-#include "cradle/core/simulation.hpp"
-#include "cradle/core/walled.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
@@ -49,7 +49,7 @@ class Drawing {
     System s;
     double x = 0;
     for (std::size_t n = 2 + below(8); n > 0; --n) {
-      s.x.push_back(x += std::ldexp(std::round(std::ldexp(from_to(.01, 2), 20)), -20));
+      s.x.push_back(x += std::ldexp(std::round(std::ldexp(from_to(0.01, 2), 20)), -20));
       s.m.push_back(std::pow(10., from_to(-decades, decades)));
       s.v.push_back(from_to(-1, 1) / (below(2) == 0 ? 1 : std::sqrt(s.m.back())));  // or of like energies
     }
@@ -57,9 +57,9 @@ class Drawing {
       s.circumference = x + 1;
     else
       s.left_wall = below(2) == 0, s.right_wall = below(2) == 0;
-    s.wall_restitution = below(2) == 0 ? 1 : from_to(.5, 1);
+    s.wall_restitution = below(2) == 0 ? 1 : from_to(0.5, 1);
     s.law = static_cast<Bounce>(below(4));
-    s.restitution = s.law == Bounce::elastic ? 1 : from_to(.05, 1);
+    s.restitution = s.law == Bounce::elastic ? 1 : from_to(0.05, 1);
     s.cutoff = std::pow(10., s.law == Bounce::contact_time ? from_to(-6, -2) : from_to(-4, 0));
     s.until = std::pow(10., from_to(-1, longest));
     return s;
@@ -69,7 +69,7 @@ class Drawing {
   std::mt19937_64 bits_;
 };
 
-template <class T> std::shared_ptr<const Bodies<T>> bodies_of(const System& s) {
+template <class T> std::shared_ptr<const Particles<T>> particles_of(const System& s) {
   const auto numbers = [](const std::vector<double>& values) {
     std::vector<T> all;
     for (const double value : values) all.push_back(exactly<T>(value));
@@ -94,7 +94,7 @@ template <class T, class F> auto with_law(const System& s, F f) {
 
 struct Made {
   Status status = Status::reached;
-  std::uint64_t contacts = 0;
+  std::uint64_t collisions = 0;
   bool warned = false, broken = false;
   std::array<double, 3> guard{};
   int missed = 0;  // planted errors that no guard has found
@@ -102,25 +102,25 @@ struct Made {
 
 template <class Chain> Made make(const System& s, std::uint64_t most) {
   using T = typename Chain::Scalar;
-  const auto bodies = bodies_of<T>(s);
+  const auto particles = particles_of<T>(s);
   return with_law<T>(s, [&](const auto& law) {
     bool enough = false;
     Policy<T> policy;
-    policy.progress = [&](const T&, const Counts& counts) { enough = counts.contacts > most; };
+    policy.progress = [&](const T&, const Counts& counts) { enough = counts.collisions > most; };
     policy.interrupt = [&] { return enough; };
-    Simulation run(law, Chain(bodies, T(0)), policy);
+    Simulation run(law, Chain(particles, T(0)), policy);
     Made made;
     made.status = run.advance(exactly<T>(s.until));
-    made.contacts = run.counts().contacts;
-    const T end = made.status == Status::reached ? exactly<T>(s.until) : run.last_contact_time();
+    made.collisions = run.counts().collisions;
+    const T end = made.status == Status::reached ? exactly<T>(s.until) : run.last_collision_time();
     const Account<T>& account = run.account();
     made.warned = account.uncertain + account.order_lost + account.simultaneous > 0;
     if constexpr (requires { run.chain().uncertain_at(end); })
       made.warned = made.warned || run.chain().uncertain_at(run.chain().local_time(end));
-    const T energy = bodies->kinetic_energy() - run.energy_lost();
+    const T energy = particles->kinetic_energy() - run.energy_lost();
     const auto broken = [&](const Configuration<T>& c, const T& left) {
       const auto look =
-          guarded(c, *bodies, made.contacts, left, end, run.last_contact_time(), T(0), account.order_lost == 0);
+          guarded(c, *particles, made.collisions, left, end, run.last_collision_time(), T(0), account.order_lost == 0);
       if (look.broken)
         made.guard = {static_cast<double>(look.broken->guard), to_double(look.broken->found),
                       to_double(look.broken->bound)};
@@ -128,13 +128,13 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
     };
     const Configuration<T> now = run.configuration(end);
     made.broken = broken(now, energy);
-    // A part in a million of the energy at the start, in the ledger and in the fastest of the bodies that have any;
+    // A part in a million of the energy at the start, in the ledger and in the fastest of the particles that have any;
     // of the largest speed, in what closing speeds add up to.
-    const T part = T(1) / T(1000000), at_start = bodies->kinetic_energy();
+    const T part = T(1) / T(1000000), at_start = particles->kinetic_energy();
     made.missed += !broken(now, T(energy + part * at_start));
     T fastest(0);
     for (std::size_t j = 0; j < now.m.size(); ++j) {
-      const T before = bodies->velocity(now.index[j]), twice = now.m[j] * now.v[j] * now.v[j];
+      const T before = particles->velocity(now.index[j]), twice = now.m[j] * now.v[j] * now.v[j];
       for (const T& v : {before, now.v[j]})
         if (fastest < magnitude(v)) fastest = magnitude(v);
       if (twice * T(1000) < at_start) continue;
@@ -166,11 +166,12 @@ template <class T> int expect_right_or_warned(std::uint64_t seed, int systems, d
     EXPECT_FALSE(made.broken) << "seed " << seed << ", system " << k << ": guard " << made.guard[0] << ", found "
                               << made.guard[1] << ", bound " << made.guard[2];
     EXPECT_EQ(made.missed, 0) << "seed " << seed << ", system " << k;
-    if (right.status != Status::reached || made.status != Status::reached) continue;  // collapse, or too many contacts
+    if (right.status != Status::reached || made.status != Status::reached)
+      continue;  // collapse, or too many collisions
     ++compared;
     warned += made.warned;
     if (made.warned) continue;
-    EXPECT_EQ(made.contacts, right.contacts) << "seed " << seed << ", system " << k;
+    EXPECT_EQ(made.collisions, right.collisions) << "seed " << seed << ", system " << k;
   }
   EXPECT_GT(compared, systems / 2);
   std::printf("%d systems, seed %d: %d compared, %d of them warned of\n", systems, static_cast<int>(seed), compared,
@@ -191,10 +192,11 @@ TEST(UnequalMasses, AreRightOrWarnedOfInWiderTypes) {
 TEST(SlowUnequalMasses, AreRightOrWarnedOf) {
   expect_right_or_warned<double>(5, 2000, 8, 1.5);
   expect_right_or_warned<double>(6, 500, 2, 3);
-  expect_right_or_warned<double>(7, 500, .3, 3);
+  expect_right_or_warned<double>(7, 500, 0.3, 3);
 }
 
-// Galperin: a light body between a wall and one of M times its mass that comes in makes floor(pi sqrt(M)) contacts.
+// Galperin: a light particle between a wall and one of M times its mass that comes in makes floor(pi sqrt(M))
+// collisions.
 System billiard(double mass) {
   System s;
   s.x = {1, 2}, s.v = {0, -1}, s.m = {1, mass};
@@ -209,47 +211,47 @@ System two_billiards(double mass) {
   s.until = 1000;
   return s;
 }
-template <class Chain> void expect_contacts(const System& s, std::uint64_t contacts) {
+template <class Chain> void expect_collisions(const System& s, std::uint64_t collisions) {
   const Made made = make<Chain>(s, 1U << 30);
-  EXPECT_EQ(made.contacts, contacts) << s.m.back();
+  EXPECT_EQ(made.collisions, collisions) << s.m.back();
   EXPECT_FALSE(made.warned) << s.m.back();
   EXPECT_FALSE(made.broken) << s.m.back();
   EXPECT_EQ(made.missed, 0) << s.m.back();
 }
 
 TEST(UnequalMasses, CountTheDigitsOfPi) {
-  expect_contacts<Watching<double>>(billiard(1e6), 3141);
-  expect_contacts<Watching<double>>(billiard(1e12), 3141592);
-  expect_contacts<Watching<long double>>(billiard(1e10), 314159);
-  expect_contacts<Watching<double_double>>(billiard(1e10), 314159);
-  expect_contacts<PositionChain<double>>(billiard(1e10), 314159);
+  expect_collisions<Watching<double>>(billiard(1e6), 3141);
+  expect_collisions<Watching<double>>(billiard(1e12), 3141592);
+  expect_collisions<Watching<long double>>(billiard(1e10), 314159);
+  expect_collisions<Watching<double_double>>(billiard(1e10), 314159);
+  expect_collisions<PositionChain<double>>(billiard(1e10), 314159);
 }
 TEST(SlowUnequalMasses, CountTheDigitsOfPi) {
-  expect_contacts<Watching<double>>(billiard(1e13), 9934588);
-  expect_contacts<Watching<double>>(billiard(1e14), 31415926);
+  expect_collisions<Watching<double>>(billiard(1e13), 9934588);
+  expect_collisions<Watching<double>>(billiard(1e14), 31415926);
 }
-TEST(UnequalMasses, GuardsAreSilentOnHeavyBodiesThatMeetBetweenNoWalls) {
-  expect_contacts<Watching<double>>(two_billiards(1e9), 149018);
-  expect_contacts<Watching<double>>(two_billiards(1e10), 471239);
-  expect_contacts<PositionChain<double>>(two_billiards(1e10), 471239);
-  expect_contacts<Watching<double_double>>(two_billiards(1e10), 471239);
+TEST(UnequalMasses, GuardsAreSilentOnHeavyParticlesThatMeetBetweenNoWalls) {
+  expect_collisions<Watching<double>>(two_billiards(1e9), 149018);
+  expect_collisions<Watching<double>>(two_billiards(1e10), 471239);
+  expect_collisions<PositionChain<double>>(two_billiards(1e10), 471239);
+  expect_collisions<Watching<double_double>>(two_billiards(1e10), 471239);
 }
-TEST(UnequalMasses, GuardsAreSilentOnALightBodyThatHasBeenFast) {
+TEST(UnequalMasses, GuardsAreSilentOnALightParticleThatHasBeenFast) {
   System s;
   s.x = {0, 1, 2.3}, s.v = {1, 0, -1}, s.m = {1e3, 1e-6, 1e3};
   s.law = Bounce::cutoff, s.cutoff = 1e-9, s.until = 4;
   const Made positions = make<PositionChain<double>>(s, 1U << 30), gaps = make<Watching<double>>(s, 1U << 30),
              plain = make<Plain<double>>(s, 1U << 30);
-  EXPECT_EQ(gaps.contacts, 70248U);
-  EXPECT_EQ(positions.contacts, 70248U);
+  EXPECT_EQ(gaps.collisions, 70248U);
+  EXPECT_EQ(positions.collisions, 70248U);
   EXPECT_FALSE(positions.broken || gaps.broken || plain.broken || gaps.warned);
   EXPECT_EQ(gaps.missed + positions.missed, 0);
 }
-TEST(UnequalMasses, GuardsAreSilentOnManyBodies) {
+TEST(UnequalMasses, GuardsAreSilentOnManyParticles) {
   Drawing draw(3);
   System s;
   for (int k = 0; k < 520; ++k) {
-    s.x.push_back(k + draw.from_to(0, .5));
+    s.x.push_back(k + draw.from_to(0, 0.5));
     s.m.push_back(k % 3 == 0 ? 1e-8 : k % 3 == 1 ? 1 : 1e8);
     s.v.push_back(draw.from_to(-1, 1));
   }
@@ -264,17 +266,18 @@ TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
   Drawing draw(17);
   for (int k = 0; k < 50; ++k) {
     const System s = draw(1.5, 2);
-    const auto bodies = bodies_of<double>(s);
-    ASSERT_FALSE(far_apart(*bodies));
+    const auto particles = particles_of<double>(s);
+    ASSERT_FALSE(far_apart(*particles));
     with_law<double>(s, [&](const auto& law) {
       bool enough = false;
       Policy<double> policy;
-      policy.progress = [&](double, const Counts& counts) { enough = counts.contacts > 2000; };
+      policy.progress = [&](double, const Counts& counts) { enough = counts.collisions > 2000; };
       policy.interrupt = [&] { return enough; };
-      Simulation watched(law, Watching<double>(bodies, 0.), policy), plain(law, Plain<double>(bodies, 0.), policy);
+      Simulation watched(law, Watching<double>(particles, 0.), policy),
+          plain(law, Plain<double>(particles, 0.), policy);
       EXPECT_EQ(watched.advance(s.until), plain.advance(s.until));
-      const double end = std::max(watched.last_contact_time(), plain.last_contact_time());
-      EXPECT_EQ(watched.counts().contacts, plain.counts().contacts);
+      const double end = std::max(watched.last_collision_time(), plain.last_collision_time());
+      EXPECT_EQ(watched.counts().collisions, plain.counts().collisions);
       EXPECT_TRUE(identical(watched.configuration(end), plain.configuration(end))) << k;
     });
   }

@@ -1,10 +1,10 @@
 // The filtered queue under the wet law: 64-bit keys made from rounded times, exact times only where keys are too close
-// to call. Proves it equal to a loop that looks through all gaps for the least (exact time, position): every body has
-// the same contacts with the same others in the same order, at the same times to the last bit, where bodies pass, merge
-// and stream in. The number of index bits in a key changes no bit of a run.
+// to call. Proves it equal to a loop that looks through all gaps for the least (exact time, position): every particle
+// has the same collisions with the same others in the same order, at the same times to the last bit, where particles
+// pass, merge and stream in. The number of index bits in a key changes no bit of a run.
 #include <gtest/gtest.h>
 
-#include "cradle/core/cluster_chain.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
@@ -19,43 +19,43 @@ template <class P> using WetFilteredQueue = InPrecision<P>;
 TYPED_TEST_SUITE(WetFilteredQueue, WidePrecision, PrecisionName);
 
 template <class T> using WetRun = Simulation<T, Wet<T>, ClusterChain<T>>;
-template <class T> WetRun<T> wet_run(const Scene<T>& bodies, const T& loss, int least_queue_bits = 3) {
-  return {Wet<T>(loss), ClusterChain<T>(bodies, T(0)), Policy<T>{}, least_queue_bits};
+template <class T> WetRun<T> wet_run(const Scene<T>& particles, const T& loss, int least_queue_bits = 3) {
+  return {Wet<T>(loss), ClusterChain<T>(particles, T(0)), Policy<T>{}, least_queue_bits};
 }
 
 template <class T>
-void expect_same_contacts(const Scene<T>& bodies, const T& loss, const T& end, std::uint64_t least_contacts,
-                          std::uint64_t least_merges) {
-  const Recorded<T> run = recorded(wet_run(bodies, loss), end);
-  EXPECT_GE(run.counts.contacts, least_contacts);
+void expect_same_collisions(const Scene<T>& particles, const T& loss, const T& end, std::uint64_t least_collisions,
+                            std::uint64_t least_merges) {
+  const Recorded<T> run = recorded(wet_run(particles, loss), end);
+  EXPECT_GE(run.counts.collisions, least_collisions);
   EXPECT_GE(run.counts.merges, least_merges);
-  expect_same_meetings(run.meetings, searched(ClusterChain<T>(bodies, T(0)), Wet<T>(loss), run));
+  expect_same_meetings(run.meetings, searched(ClusterChain<T>(particles, T(0)), Wet<T>(loss), run));
 }
 
 TYPED_TEST(WetFilteredQueue, MixedVelocities) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(rmix<T>(100), from_text<T>(".01"), T(300), 200, 60);
+  expect_same_collisions(rmix<T>(100), from_text<T>(".01"), T(300), 200, 60);
 }
 
 TYPED_TEST(WetFilteredQueue, Shock) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(rshock<T>(200), from_text<T>(".01"), T(250), 2000, 150);
+  expect_same_collisions(rshock<T>(200), from_text<T>(".01"), T(250), 2000, 150);
 }
 
 TYPED_TEST(WetFilteredQueue, SlowShock) {
   using T = typename TypeParam::Scalar;
-  expect_same_contacts(rshock<T>(2000), from_text<T>(".05"), T(500), 1000, 400);
+  expect_same_collisions(rshock<T>(2000), from_text<T>(".05"), T(500), 1000, 400);
 }
 
 TYPED_TEST(WetFilteredQueue, IndexBitsChangeNoBit) {
   using T = typename TypeParam::Scalar;
-  for (const Scene<T>& bodies : {rshock<T>(200), integers<T>()}) {
-    auto run = wet_run(bodies, from_text<T>(".01")), run13 = wet_run(bodies, from_text<T>(".01"), 13),
-         run18 = wet_run(bodies, from_text<T>(".01"), 18);
+  for (const Scene<T>& particles : {rshock<T>(200), integers<T>()}) {
+    auto run = wet_run(particles, from_text<T>(".01")), run13 = wet_run(particles, from_text<T>(".01"), 13),
+         run18 = wet_run(particles, from_text<T>(".01"), 18);
     for (int t = 10; t <= 60; t += 10) {
       for (auto* each : {&run, &run13, &run18}) ASSERT_EQ(each->advance(T(t)), Status::reached);
       for (const auto* other : {&run13, &run18}) {
-        EXPECT_TRUE(same_contacts(run.counts(), other->counts())) << t;
+        EXPECT_TRUE(same_collisions(run.counts(), other->counts())) << t;
         EXPECT_TRUE(run.energy_lost() == other->energy_lost()) << t;
         EXPECT_TRUE(identical(run.configuration(T(t)), other->configuration(T(t)))) << t;
       }

@@ -2,13 +2,13 @@
 // which is exact until the turnover (paper, section V): rows on a lattice at plus and minus u0 = 1/2, in every scalar
 // type to its full precision.
 //
-// Tolerance. A contact multiplies an error of r by at most 1 + e/r^2, r >= 1/2: over n contacts by less than 2 for the
-// losses here (n e/r^2 of order 1); the law rounds some 8 times, so r_n is off by 16 n u, flights l/r by as much of
+// Tolerance. A collision multiplies an error of r by at most 1 + e/r^2, r >= 1/2: over n collisions by less than 2 for
+// the losses here (n e/r^2 of order 1); the law rounds some 8 times, so r_n is off by 16 n u, flights l/r by as much of
 // themselves, places by their sum: 32 (n + 1)(t + 1) u.
 #include <gtest/gtest.h>
 
-#include "cradle/core/cluster_chain.hpp"
-#include "cradle/core/rows.hpp"
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/theory/wet_shock.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
@@ -20,13 +20,13 @@ TYPED_TEST_SUITE(WetFront, test::EveryPrecision, test::PrecisionName);
 
 template <class T> void expect_front(const T& loss, std::uint64_t turnover, int samples) {
   const T speed = T(1) / T(2);
-  const auto rows = std::make_shared<Rows<T>>(
-      symmetric_rows<T>(static_cast<BodyIndex>(4 * turnover), speed, T(1), [](BodyIndex) { return std::int64_t{0}; }));
+  const auto rows = std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<ParticleIndex>(4 * turnover), speed, T(1),
+                                                                [](ParticleIndex) { return std::int64_t{0}; }));
   Simulation run(Wet<T>{loss}, ClusterChain<T>{rows, T(0)});
   theory::WetFrontRecursion<T> front(theory::WetShock<T>{loss});
-  const auto end = theory::turnover_contact(theory::WetShock<T>{loss});
+  const auto end = theory::turnover_collision(theory::WetShock<T>{loss});
   ASSERT_TRUE(end);
-  ASSERT_EQ(end->contact, turnover);
+  ASSERT_EQ(end->collision, turnover);
   const T unit = T(std::numeric_limits<T>::epsilon());
   for (int k = 1; k <= samples; ++k) {
     const T t = T(1) + (end->time - T(1)) * T(k) / T(samples);
@@ -34,7 +34,7 @@ template <class T> void expect_front(const T& loss, std::uint64_t turnover, int 
     front.advance_to(t);
     const auto expected = front.position_at(t);
     ASSERT_TRUE(expected);
-    const T tolerance = T(32) * T(static_cast<std::int64_t>(front.now().contact + 1)) * (t + T(1)) * unit;
+    const T tolerance = T(32) * T(static_cast<std::int64_t>(front.now().collision + 1)) * (t + T(1)) * unit;
     ASSERT_LE(magnitude(T(run.front_right(t) - *expected)), tolerance) << to_double(t);
     ASSERT_LE(magnitude(T(run.front_left(t) + *expected)), tolerance) << to_double(t);
   }
@@ -47,7 +47,7 @@ TYPED_TEST(WetFront, FollowsTheRecursion) {
   expect_front<T>(T(1) / T(20), 8, 31);
 }
 
-TEST(WetFrontInDouble, FollowsTheRecursionForThousandsOfContacts) { expect_front(1e-4, 3750, 50); }
+TEST(WetFrontInDouble, FollowsTheRecursionForThousandsOfCollisions) { expect_front(1e-4, 3750, 50); }
 
 }  // namespace wet_front_test
 }  // namespace cradle

@@ -52,11 +52,11 @@ TEST_F(Manual, HasEveryCommandAndItsOptions) {
     EXPECT_NE(written, "") << "tools/README.md has no section on cradle " << command << ": write it";
     const Printed help = shell("cradle " + command + " --help");
     ASSERT_EQ(help.status, 0) << help.err;
-    Names has, told = matches(written, option);
+    Names has, documented = matches(written, option);
     for (const std::string& line : matches(help.out, option_lines)) has.merge(matches(line, option));
     has.erase("--help");
-    if (has.contains("--set")) told.insert(common.begin(), common.end());
-    EXPECT_EQ(has, told) << "options of cradle " << command << ", and those that tools/README.md tells of";
+    if (has.contains("--set")) documented.insert(common.begin(), common.end());
+    EXPECT_EQ(has, documented) << "options of cradle " << command << ", and those that tools/README.md tells of";
   }
 }
 
@@ -77,9 +77,10 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
   }
   ASSERT_EQ(shell("cradle run collapse3 -o collapse.h5 --quiet").status, 3);
 
-  const Names told = matches(page, "`/?([A-Za-z_0-9/.]+)`");
+  const Names documented = matches(page, "`/?([A-Za-z_0-9/.]+)`");
   const auto expect = [&](const std::string& name, const std::string& file) {
-    EXPECT_TRUE(told.contains(name)) << file << " holds " << name << ", tools/README.md does not name it: add it there";
+    EXPECT_TRUE(documented.contains(name))
+        << file << " holds " << name << ", tools/README.md does not name it: add it there";
   };
   std::size_t groups = 0;
   for (const char* file : {"dry", "wet", "model", "trust", "collapse", "ensemble", "sweep"}) {

@@ -54,20 +54,20 @@ class ProgramTest : public testing::Test {
 };
 
 // Runs that are interfered with must not end by themselves, however quick the machine is: this one would make 1e18
-// contacts. It keeps its state ten times a second.
+// collisions. It keeps its state ten times a second.
 inline std::string endless_run(const std::string& file) {
   return "cradle run cooling --quiet --set law.type=inelastic --set law.restitution=1 --set initial.particles=2000 "
          "--set run.until=1e15 --set output.checkpoint.every_seconds=0.1 -o " +
          file;
 }
 
-// Puts the command before it in the background, its process being $pid, and waits until its state has contacts in it.
-inline std::string until_contacts(const std::string& file) {
+// Puts the command before it in the background, its process being $pid, and waits until its state has collisions in it.
+inline std::string until_collisions(const std::string& file) {
   return " & pid=$!; until cradle info " + file +
-         ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* contacts'; do sleep 0.01; done; ";
+         ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* collisions'; do sleep 0.01; done; ";
 }
 
-// Initial perturbation of the published fixtures: the splitmix64 finaliser of the body's number.
+// Initial perturbation of the published fixtures: the splitmix64 finaliser of the particle's number.
 inline std::uint64_t hash(std::uint64_t i) {
   std::uint64_t z = i + 0x9E3779B97F4A7C15;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;

@@ -1,5 +1,5 @@
-# cradle::mpfr: MPFR with GMP, where both are there. Read by the build and, installed, by the package config, so that they
-# are found anew wherever Cradle is used, in the system's folders or in those that the environment names.
+# cradle::mpfr: MPFR with GMP, where both are there. Read by the build and, installed, by the package config, so that
+# they are found anew wherever Cradle is used, in the system's folders or in those that the environment names.
 find_library(CRADLE_MPFR_LIBRARY mpfr HINTS ENV LIBRARY_PATH)
 find_library(CRADLE_GMP_LIBRARY gmp HINTS ENV LIBRARY_PATH)
 find_path(CRADLE_MPFR_INCLUDE mpfr.h HINTS ENV CPATH)

@@ -1,16 +1,16 @@
-#include "cradle/tools/certify/certify.hpp"
+#include "cradle/tools/proof/certify.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "cradle/tools/certify/replicas.hpp"
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/proof/replicas.hpp"
 #include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/tell.hpp"
+#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -48,7 +48,7 @@ Exit run_certify(const CertifyArguments& options) {
   const bool proved = run.proved();
   write_or_keep(certified_result(std::move(run)), output);
   fmt::print("{}{}{}", text, report.empty() ? "" : "estimated by the run:\n", report);
-  tell(warning);
+  notify(warning);
   if (!options.quiet) fmt::print("wrote {}\n", output);
   return proved ? Exit::done : Exit::lost;
 }
@@ -56,7 +56,7 @@ Exit run_certify(const CertifyArguments& options) {
 }  // namespace
 
 void add_certify(CommandLine& program) {
-  Command command = program.add("certify", "the run with a proof of its contacts, and bounds of its results",
+  Command command = program.add("certify", "the run with a proof of its collisions, and bounds of its results",
                                 "cradle certify fig2 --set run.until=2000 -o fig2.h5");
   const auto options = std::make_shared<CertifyArguments>();
   add_common_options(command, *options);

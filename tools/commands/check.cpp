@@ -4,7 +4,7 @@
 
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/run/initial_state.hpp"
+#include "cradle/tools/model/initial_state.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
@@ -17,30 +17,31 @@ Exit check(const CommonOptions& options) {
   for (const auto& [key, value] : values(scene, true)) fmt::print("{} = {}\n", key, shortened(value));
   check_built(scene);
   if (scene.initial.type == InitialType::clusters) {
-    fmt::print("\na model of two clusters: no bodies, no contacts; below a second\n");
+    fmt::print("\na model of two clusters: no particles, no collisions; below a second\n");
     return Exit::done;
   }
   if (scene.run.precision == Precision::double_)
-    initial_bodies<double>(scene);  // refuses what cannot be set up
+    initial_particles<double>(scene);  // refuses what cannot be set up
   else
-    initial_bodies<long double>(scene);
+    initial_particles<long double>(scene);
 
   const Cost cost = expected_cost(scene);
-  fmt::print("\nbodies in the active zone at the end: {:.3g} at most\n", cost.bodies);
-  if (cost.contacts) {
-    fmt::print("contacts: about {:.2g}{}\n", *cost.contacts,
+  fmt::print("\nparticles in the active zone at the end: {:.3g} at most\n", cost.particles);
+  if (cost.collisions) {
+    fmt::print("collisions: about {:.2g}{}\n", *cost.collisions,
                cost.collapse ? fmt::format(" until inelastic collapse at about t = {:.3g}, without limit after it",
                                            *cost.collapse)
                              : "");
-    fmt::print("time: about {:.2g} s at {:.2g} contacts/s\n", *cost.contacts / cost.contacts_per_second,
-               cost.contacts_per_second);
+    fmt::print("time: about {:.2g} s at {:.2g} collisions/s\n", *cost.collisions / cost.collisions_per_second,
+               cost.collisions_per_second);
   } else {
-    fmt::print("contacts and time: not known beforehand for this initial state\n");
+    fmt::print("collisions and time: not known beforehand for this initial state\n");
   }
   const unsigned threads = thread_count(options.threads);
   const Threading threading = expected_threading(scene, cost, threads);
   if (threading.alone.empty())
-    fmt::print("threads: {}, about {:.2g} times as fast as one once all bodies are active\n", threads, threading.gain);
+    fmt::print("threads: {}, about {:.2g} times as fast as one once all particles are active\n", threads,
+               threading.gain);
   else
     fmt::print("threads: one does the work ({})\n", threading.alone);
   fmt::print("memory: about {:.2g} MB\n", cost.memory * 1e-6);

@@ -19,9 +19,9 @@ void add_common_options(Command& command, CommonOptions& options) {
 }
 
 void add_running_options(Command& command, RunningOptions& options) {
-  command.option(
-      "--threads", options.threads,
-      "threads to use at most, for replicas or for one run of many bodies; 0: all processors; never changes a result");
+  command.option("--threads", options.threads,
+                 "threads to use at most, for replicas or for one run of many particles; 0: all processors; never "
+                 "changes a result");
   command.flag("--quiet", options.quiet, "no messages but errors and the collapse report");
   command.flag("--progress", options.progress, "tell progress also where standard error is not a terminal");
 }

@@ -13,7 +13,8 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr const char* bash = R"(# bash completion of cradle: source it, or put it into a folder of completions under the name cradle.
+constexpr const char* bash =
+    R"(# bash completion of cradle: source it, or put it into a folder of completions under the name cradle.
 _cradle() {
   local IFS=$'\n'
   mapfile -t COMPREPLY < <(cradle completion words -- "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null | cut -f 1)
@@ -31,7 +32,8 @@ _cradle() {
 }
 if [[ $funcstack[1] == _cradle ]]; then _cradle "$@"; else compdef _cradle cradle; fi
 )";
-constexpr const char* fish = R"(# fish completion of cradle: put it into ~/.config/fish/completions under the name cradle.fish.
+constexpr const char* fish =
+    R"(# fish completion of cradle: put it into ~/.config/fish/completions under the name cradle.fish.
 complete -c cradle -a '(cradle completion words -- (commandline -opc)[2..] (commandline -ct) 2>/dev/null)'
 )";
 
@@ -49,7 +51,8 @@ std::vector<std::pair<std::string, std::string>> candidates(const std::vector<Co
     all.emplace_back("--help", ""), all.emplace_back("--version", "");
     return all;
   }
-  const auto command = std::find_if(commands.begin(), commands.end(), [&](const auto& c) { return c.name == words[0]; });
+  const auto command =
+      std::find_if(commands.begin(), commands.end(), [&](const auto& c) { return c.name == words[0]; });
   if (command == commands.end()) return all;
   const std::string &before = words[words.size() - 2], &word = words.back();
   if (before == "--set" || before == "--vary" || before == "--point") {

@@ -4,10 +4,10 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/csv.hpp"
-#include "cradle/tools/result/journal.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/run/run_journal.hpp"
+#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/run_journal.hpp"
 
 namespace cradle::tools {
 

@@ -9,11 +9,11 @@
 #include <thread>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble/journal_contents.hpp"
-#include "cradle/tools/result/journal.hpp"
 #include "cradle/tools/result/listing.hpp"
 #include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/run/run_files.hpp"
+#include "cradle/tools/store/ensemble_journal.hpp"
+#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
@@ -50,8 +50,8 @@ std::string checkpoint_listing(const std::string& path, const RunHeader* journal
   StateReader reader(path);
   const CheckpointHeader found = read_checkpoint(reader, path);
   if (journal != nullptr && found.run.number != journal->number) return line("checkpoint", "of a run before");
-  return line("checkpoint", fmt::format("t = {:.10g}, {} contacts, {:.0f} s of computing, {} bytes", found.time,
-                                        found.contacts, found.seconds, std::filesystem::file_size(path)));
+  return line("checkpoint", fmt::format("t = {:.10g}, {} collisions, {:.0f} s of computing, {} bytes", found.time,
+                                        found.collisions, found.seconds, std::filesystem::file_size(path)));
 }
 
 Exit info_of_run(const InfoArguments& options) {
@@ -63,10 +63,11 @@ Exit info_of_run(const InfoArguments& options) {
     const RunStatus& now = journal.statuses.back();
     const double start = scene.run.start.value, until = scene.run.until.value;
     const double left = now.time > start ? now.seconds * (until - now.time) / (now.time - start) : 0;
-    fmt::print("{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
-               line("contacts", fmt::format("{}", now.contacts)),
-               line("contacts/s", fmt::format("{:.3g} over the last minute", contacts_per_second(journal.statuses))),
-               line("computing", fmt::format("{}, {} left at this pace", duration(now.seconds), duration(left))));
+    fmt::print(
+        "{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
+        line("collisions", fmt::format("{}", now.collisions)),
+        line("collisions/s", fmt::format("{:.3g} over the last minute", collisions_per_second(journal.statuses))),
+        line("computing", fmt::format("{}, {} left at this pace", duration(now.seconds), duration(left))));
     for (const auto& [name, value] : {std::pair("smallest gap", now.gap_min), std::pair("closure gap", now.closure_gap),
                                       std::pair("closure speed", now.closure_speed)})
       if (!std::isnan(value)) fmt::print("{}", line(name, fmt::format("{:.6g}", value)));

@@ -44,14 +44,16 @@ Exit manual(const CommandLine& program) {
       ".TH CRADLE 1 \"\" \"cradle {0}\" \"User Commands\"\n"
       ".SH NAME\ncradle \\- one\\-dimensional granular gases, event by event\n"
       ".SH SYNOPSIS\n.B cradle\n.I COMMAND\n[OPTIONS]\n"
-      ".SH DESCRIPTION\nSimulates point bodies on a line or a ring that collide by one of three laws: inelastic, wet, "
+      ".SH DESCRIPTION\nSimulates point particles on a line or a ring that collide by one of three laws: inelastic, "
+      "wet, "
       "sticky. SCENE is a scene file or, where no such file exists, the name of a bundled scene. Results are HDF5 "
       "files. "
       "Tables go to standard output, messages and progress to standard error.\n"
       ".SH COMMANDS\n",
       version);
   for (const CommandText& command : program.texts()) fmt::print("{}", command_text(command));
-  fmt::print(".SH SCENE KEYS\nIn TOML. m is the mass of a single body, l and t are the scene\\(aqs length and time.\n");
+  fmt::print(
+      ".SH SCENE KEYS\nIn TOML. m is the mass of a single particle, l and t are the scene\\(aqs length and time.\n");
   for (const Field& field : scene_fields()) {
     const std::string with = field.when->text.empty() ? "" : fmt::format("; with {}", field.when->text);
     fmt::print("{}", entry(field.key, fmt::format("{} ({}{})", field.doc, facts(field), with)));
@@ -60,7 +62,7 @@ Exit manual(const CommandLine& program) {
              entry("2", "bad input, the command line included"),
              entry("3", "stopped at inelastic collapse (policy stop)"),
              entry("4", "a file could not be read or written"),
-             entry("5", "resolution or order of contacts lost, a replica failed, or a proof is undecided"),
+             entry("5", "resolution or order of collisions lost, a replica failed, or a proof is undecided"),
              entry("130, 143", "interrupted by SIGINT; by SIGTERM, SIGUSR1 or SIGHUP"));
   fmt::print(".SH ENVIRONMENT\n{}{}", entry("CRADLE_PYTHON", "the Python that makes pictures and reports"),
              entry("TMPDIR", "the folder for temporary files"));

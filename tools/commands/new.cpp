@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/atomic_file.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 
@@ -20,7 +20,7 @@ struct NewArguments {
 // Without --from: Fig. 2, smaller, and through its turn-over.
 Scene to_start_from(const std::string& name) {
   if (!name.empty()) return read_scene(name, {});
-  return read_scene("fig2", {"title=two rows of inelastic bodies", "initial.particles=2000", "run.until=1500",
+  return read_scene("fig2", {"title=two rows of inelastic particles", "initial.particles=2000", "run.until=1500",
                              "output.snapshots=[100,500,1000,1500]", "output.profiles.times=[100,500,1000,1500]",
                              "output.profiles.range=[-100,100]"});
 }

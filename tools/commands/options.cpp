@@ -44,9 +44,8 @@ Error misread(const CLI::App& program, const std::string& wrong, const std::stri
 }  // namespace
 
 bool CommandText::takes(const std::string& argument) const {
-  return std::any_of(options.begin(), options.end(), [&](const OptionText& option) {
-    return option.argument && option.names.front() == argument;
-  });
+  return std::any_of(options.begin(), options.end(),
+                     [&](const OptionText& option) { return option.argument && option.names.front() == argument; });
 }
 
 Command::Command(CLI::App& command, Action& chosen, const std::string& ending)

@@ -3,12 +3,12 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/commands/python.hpp"
-#include "cradle/tools/result/atomic_file.hpp"
-#include "cradle/tools/result/journal.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/run/run_journal.hpp"
+#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/theory/table.hpp"
 
 namespace cradle::tools {

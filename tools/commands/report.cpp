@@ -3,9 +3,9 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/commands/python.hpp"
-#include "cradle/tools/result/atomic_file.hpp"
-#include "cradle/tools/result/journal.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 

@@ -4,9 +4,9 @@
 
 #include "cradle/tools/commands/run_command.hpp"
 #include "cradle/tools/commands/study.hpp"
-#include "cradle/tools/ensemble/journal_contents.hpp"
-#include "cradle/tools/result/atomic_file.hpp"
-#include "cradle/tools/result/journal.hpp"
+#include "cradle/tools/store/ensemble_journal.hpp"
+#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 
@@ -40,7 +40,7 @@ Exit resume(const ResumeArguments& options) {
     if (!options.quiet) fmt::print("{}\n", files.over());
     return files.over_status();
   }
-  if (!options.quiet) fmt::print("{}: going on from {}\n", file, files.goes_on_from());
+  if (!options.quiet) fmt::print("{}: going on from {}\n", file, files.resumed_from());
   return run_command(files, file, options, interrupt);
 }
 

@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "cradle/tools/commands/run_command.hpp"
-#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/tell.hpp"
+#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
@@ -20,12 +20,12 @@ struct RunArguments : CommonOptions {
   std::string output;
 };
 
-std::string summary(const RunOutcome& run, std::uint64_t contacts_before, double seconds) {
+std::string summary(const RunOutcome& run, std::uint64_t collisions_before, double seconds) {
   const int digits = std::clamp(static_cast<int>(run.energy_digits), 1, 10);
-  return fmt::format("{}: t = {}, {} contacts, energy {:.{}g}{}, {:.2f} s, {:.1f} million contacts/s\n",
-                     end_row(run.end).text, run.time, run.contacts, run.energy, digits,
+  return fmt::format("{}: t = {}, {} collisions, energy {:.{}g}{}, {:.2f} s, {:.1f} million collisions/s\n",
+                     end_row(run.end).text, run.time, run.collisions, run.energy, digits,
                      run.energy_digits < 1 ? " (rounding)" : "", seconds,
-                     static_cast<double>(run.contacts - contacts_before) / seconds * 1e-6);
+                     static_cast<double>(run.collisions - collisions_before) / seconds * 1e-6);
 }
 
 }  // namespace
@@ -38,22 +38,22 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
   const Threads threads(options.threads);
   RunOutcome end = run_scene(files.scene(), {show, nullptr, &interrupt, workers(threads), &files});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  const std::string told = summary(end, files.contacts_before(), seconds);
+  const std::string text = summary(end, files.collisions_before(), seconds);
   if (end.end == RunEnd::interrupted) {
-    tools::tell(end.warning);
-    tools::tell(
+    tools::notify(end.warning);
+    tools::notify(
         files.up_to_date()
             ? fmt::format("interrupted: `cradle resume {}` goes on from there\n", output)
             : fmt::format("interrupted: `cradle resume {}` goes on from the checkpoint before, if there is one, "
                           "else it starts anew\n",
                           output));
-    if (!options.quiet) fmt::print("{}", told);
+    if (!options.quiet) fmt::print("{}", text);
     return status_of_signal(interrupt.signal());
   }
   files.finish(std::move(end.result), end.end);
   fmt::print("{}", end.report);
-  tell(end.warning);
-  if (!options.quiet) fmt::print("{}wrote {}\n", told, output);
+  notify(end.warning);
+  if (!options.quiet) fmt::print("{}wrote {}\n", text, output);
   return end_row(end.end).status;
 }
 

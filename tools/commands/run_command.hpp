@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/run/run_files.hpp"
+#include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/tell.hpp"
+#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -17,7 +17,7 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   StudyPlan plan;
   const Exit failed = crew->together([&] { plan = make_plan(); });
   if (failed != Exit::done) return failed;
-  if (crew->rank() == 0) tell(same_replicas_warning(plan.study, plan.replicas.count));
+  if (crew->rank() == 0) notify(same_replicas_warning(plan.study, plan.replicas.count));
   const std::string& output = plan.output;
   EnsembleOptions how;
   how.replicas = plan.replicas;
@@ -29,10 +29,10 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   const EnsembleOutcome end = run_study(plan.study, how, output, *crew);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (crew->rank() != 0) return end.status;
-  if (!options.quiet) tell(end.account);
-  tell(end.warning);
+  if (!options.quiet) notify(end.account);
+  notify(end.warning);
   if (end.status == Exit::interrupted || end.status == Exit::terminated) {
-    tell(fmt::format(
+    notify(fmt::format(
         "interrupted: finished replicas are in {}.part; the same command goes on from there, or `cradle resume {}`\n",
         output, output));
   } else if (!options.quiet) {

@@ -1,12 +1,12 @@
-#include "cradle/tools/run/trust.hpp"
+#include "cradle/tools/proof/trust.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/atomic_file.hpp"
 #include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {

@@ -104,7 +104,7 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew
       [&] { return crew.interrupt().signal() != 0; });
 }
 
-EnsembleOutcome told(const EnsembleStore& store, const std::string& file) {
+EnsembleOutcome outcome_of(const EnsembleStore& store, const std::string& file) {
   EnsembleOutcome end;
   end.replicas = store.replicas();
   end.outcome = store.outcome();
@@ -129,7 +129,7 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const
       store.finish();
     else
       store.drop_journals();
-    end = told(store, file);
+    end = outcome_of(store, file);
   } else {
     store.sync();
     end.status = status_of_signal(signal);

@@ -1,14 +1,14 @@
 // Ensembles of a scene: replicas run on all threads (and ranks), statistics of what they record in one file. Finished
-// replicas are never lost nor run again: see store.hpp. The file has the same bytes for the same replicas.
+// replicas are never lost nor run again: see ensemble_store.hpp. The file has the same bytes for the same replicas.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <string>
 
-#include "cradle/tools/ensemble/store.hpp"
 #include "cradle/tools/ranks/crew.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/store/ensemble_store.hpp"
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {

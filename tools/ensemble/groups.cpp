@@ -114,13 +114,13 @@ Group EnsembleState::spread_group(std::size_t k) const {
 }
 
 Group EnsembleState::replica_group() const {
-  std::vector<std::uint64_t> index, outcome, contacts, merges;
+  std::vector<std::uint64_t> index, outcome, collisions, merges;
   std::vector<std::vector<double>> numbers(layout_.numbers.size());
   for (const std::size_t k : table_.order()) {
     const ReplicaRow row = table_[k];
     index.push_back(row.index);
     outcome.push_back(static_cast<std::uint64_t>(row.outcome));
-    contacts.push_back(row.contacts);
+    collisions.push_back(row.collisions);
     merges.push_back(row.merges);
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i].push_back(row.numbers[i]);
   }
@@ -131,7 +131,7 @@ Group EnsembleState::replica_group() const {
               {},
               {{"index", "1", "initial.replica of the run", std::move(index)},
                {"outcome", "1", outcomes, std::move(outcome)},
-               {"contacts", "1", "contacts until the end", std::move(contacts)},
+               {"collisions", "1", "collisions until the end", std::move(collisions)},
                {"merges", "1", "merges until the end", std::move(merges)}}};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     group.columns.push_back(layout_.numbers[i]);
@@ -182,7 +182,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
     take_node(read_node(*group, file), file);
   const Group& table = get(result, name("replicas"), file);
   const auto &index = get<std::uint64_t>(table, "index", file), &outcome = get<std::uint64_t>(table, "outcome", file),
-             &contacts = get<std::uint64_t>(table, "contacts", file),
+             &collisions = get<std::uint64_t>(table, "collisions", file),
              &merges = get<std::uint64_t>(table, "merges", file);
   std::vector<const std::vector<double>*> numbers;
   for (const Column& column : layout_.numbers) numbers.push_back(&get<double>(table, column.name, file));
@@ -193,7 +193,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   std::set<ReplicaIndex> stopped;
   for (std::size_t k = 0; k < index.size(); ++k) {
     const auto how = static_cast<RunEnd>(std::min<std::uint64_t>(outcome[k], outcome_count - 1));
-    ReplicaRow row{index[k], how, contacts[k], merges[k], {}};
+    ReplicaRow row{index[k], how, collisions[k], merges[k], {}};
     for (const auto* column : numbers) row.numbers.push_back((*column)[k]);
     table_.add(row);
     if (how == RunEnd::failed) stopped.insert(index[k]);

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "cradle/tools/model/laws.hpp"
-#include "cradle/tools/run/tables.hpp"
+#include "cradle/tools/record/tables.hpp"
 
 namespace cradle::tools {
 
@@ -100,7 +100,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
   const RunEnd end = run.end == RunEnd::small_gap ? RunEnd::collapsed : run.end;
-  ReplicaRow row{index, end, run.contacts, run.merges, std::vector<double>(numbers.size(), missing)};
+  ReplicaRow row{index, end, run.collisions, run.merges, std::vector<double>(numbers.size(), missing)};
   const auto put = [&](const std::string& name, double value) {
     for (std::size_t k = 0; k < numbers.size(); ++k)
       if (numbers[k].name == name) return void(row.numbers[k] = value);

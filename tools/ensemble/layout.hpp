@@ -1,7 +1,7 @@
 // What the numbers of a replica mean: every column that a run of the scene records in its series, profiles and zone,
 // one after the other in one vector of doubles, which is what ensembles keep statistics of. Times and bins are common
 // to all replicas, so they are here and not among the numbers. Which columns there are is said by the tables of a run
-// (run/tables.hpp).
+// (record/tables.hpp).
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct Quantity {
 struct ReplicaRow {
   std::uint64_t index = 0;
   RunEnd outcome = RunEnd::reached;
-  std::uint64_t contacts = 0, merges = 0;
+  std::uint64_t collisions = 0, merges = 0;
   std::vector<double> numbers;  // one for each of ReplicaLayout::numbers; NaN: has none
 };
 

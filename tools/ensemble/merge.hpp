@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cradle/tools/ensemble/store.hpp"
+#include "cradle/tools/store/ensemble_store.hpp"
 
 namespace cradle::tools {
 

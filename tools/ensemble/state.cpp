@@ -12,7 +12,7 @@
 namespace cradle::tools {
 
 void ReplicaTable::add(const ReplicaRow& row) {
-  integers_.insert(integers_.end(), {row.index, static_cast<std::uint64_t>(row.outcome), row.contacts, row.merges});
+  integers_.insert(integers_.end(), {row.index, static_cast<std::uint64_t>(row.outcome), row.collisions, row.merges});
   for (std::size_t k = 0; k < width_; ++k)
     numbers_.push_back(k < row.numbers.size() ? row.numbers[k] : std::numeric_limits<double>::quiet_NaN());
 }

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "cradle/core/ensemble.hpp"
+#include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
-#include "cradle/tools/result/journal.hpp"
+#include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {
@@ -40,7 +40,7 @@ class ReplicaTable {
  private:
   static constexpr std::size_t integers = 4;
   std::size_t width_;
-  std::vector<std::uint64_t> integers_;  // index, outcome, contacts, merges
+  std::vector<std::uint64_t> integers_;  // index, outcome, collisions, merges
   std::vector<double> numbers_;
 };
 
@@ -69,7 +69,7 @@ class EnsembleState {
   const MomentTree& replicas() const { return tree_; }
   Outcomes outcomes() const;
   const ReplicaTable& table() const { return table_; }
-  /// Why, of the replicas that cannot be trusted: what stopped them, or that they lost the order of contacts or
+  /// Why, of the replicas that cannot be trusted: what stopped them, or that they lost the order of collisions or
   /// exhausted the resolution.
   std::map<ReplicaIndex, std::string> failures() const;
   const std::vector<Histograms>& spreads() const { return spreads_; }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "cradle/core/rows.hpp"
+#include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/version.hpp"
 
@@ -13,7 +13,8 @@ namespace cradle::tools {
 
 namespace {
 
-// Whether replicas differ: by displacements, which are whole numbers of units (core/rows.hpp), velocities or walls.
+// Whether replicas differ: by displacements, which are whole numbers of units (core/initial/rows.hpp), velocities or
+// walls.
 bool is_random(const Scene& scene) {
   const Initial& initial = scene.initial;
   const bool displaced = initial.type == InitialType::rows || initial.type == InitialType::cold;

@@ -15,8 +15,8 @@ namespace cradle::tools {
 /// makes no scene, naming it.
 ///
 /// In the file: `/sweep` with a column for every key that takes numbers (named as the key; NaN at points that do not
-/// set it), `label`s as attributes, and for every number of the replicas (contacts, energy, ...) its mean over them and
-/// the standard error of that (`_error`); `/points/0000` and so on, the ensembles.
+/// set it), `label`s as attributes, and for every number of the replicas (collisions, energy, ...) its mean over them
+/// and the standard error of that (`_error`); `/points/0000` and so on, the ensembles.
 Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep);
 
 /// That of a scene which names its points, with the scenes that they are, by their groups in the file.

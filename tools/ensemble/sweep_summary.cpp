@@ -59,7 +59,7 @@ Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates&
     const EnsembleState& state = *states[p];
     const auto& replicas = state.table();
     table.put(p, "replicas", "1", "replicas that ended", static_cast<double>(replicas.size()));
-    table.put(p, "failed", "1", "replicas that failed, lost the order of contacts or exhausted the resolution",
+    table.put(p, "failed", "1", "replicas that failed, lost the order of collisions or exhausted the resolution",
               static_cast<double>(state.failures().size()));
     const auto order = replicas.order();
     const auto mean = [&](const Column& about, auto of) {
@@ -67,7 +67,8 @@ Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates&
       for (const std::size_t k : order) values.push_back(of(replicas[k]));
       put_mean(table, p, about, values);
     };
-    mean({"contacts", "1", "contacts", {}}, [](const ReplicaRow& row) { return static_cast<double>(row.contacts); });
+    mean({"collisions", "1", "collisions", {}},
+         [](const ReplicaRow& row) { return static_cast<double>(row.collisions); });
     mean({"merges", "1", "merges", {}}, [](const ReplicaRow& row) { return static_cast<double>(row.merges); });
     const auto& numbers = state.layout().numbers;
     for (std::size_t i = 0; i < numbers.size(); ++i)

@@ -31,7 +31,7 @@ struct EndRow {
 inline constexpr std::array<EndRow, 8> run_ends{{
     {RunEnd::reached, "reached the end", Exit::done},
     {RunEnd::collapsed, "inelastic collapse", Exit::collapse},
-    {RunEnd::order_lost, "order of contacts lost", Exit::lost},
+    {RunEnd::order_lost, "order of collisions lost", Exit::lost},
     {RunEnd::exhausted, "resolution exhausted", Exit::lost},
     {RunEnd::failed, "failed", Exit::lost},
     {RunEnd::small_gap, "a gap below run.stop_gap", Exit::collapse},

@@ -24,7 +24,7 @@ constexpr std::array<LawRow, 3> laws{{
      .predict = predict_wet,
      .cost_of_rows = wet_rows,
      .misprints =
-         "bodies stick below sqrt(2 E_loss/mu), not sqrt(2 E_loss)/mu;\n"
+         "particles stick below sqrt(2 E_loss/mu), not sqrt(2 E_loss)/mu;\n"
          "  before (13) the speed lost is E_loss/(m u0), not E_loss/(m u0^2);\n"
          "  before (14) the momentum lacks a factor m;\n"
          "  (15): F_+ is 0 for x >= L and the force of a whole row, about n0 E_loss, for x <= -L; F_- mirrors it;\n"
@@ -50,11 +50,11 @@ static_assert(laws_in_order());
 const LawRow& law_row(const Scene& scene) { return laws.at(static_cast<std::size_t>(scene.law.type)); }
 
 bool particles_merge(const Scene& scene) {
-  return law_row(scene).merges || scene.run.collapse == CollapsePolicy::merge;
+  return law_row(scene).merges || scene.run.collapse == scene::CollapsePolicy::merge;
 }
 
 bool stops_at_collapse(const Scene& scene) {
-  return !law_row(scene).merges && scene.run.collapse == CollapsePolicy::stop;
+  return !law_row(scene).merges && scene.run.collapse == scene::CollapsePolicy::stop;
 }
 
 bool without_collisions(const Scene& scene) { return !law_row(scene).needs_events && !scene.output.events; }

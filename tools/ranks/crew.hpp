@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cradle/core/ensemble.hpp"
+#include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/tools/support/errors.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 

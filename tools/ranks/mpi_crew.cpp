@@ -205,18 +205,18 @@ void MpiCrew::lead(Workshop& shop, const Workshop::More& piece,
 }
 
 void MpiCrew::follow(Workshop& shop) const {
-  bool asked = false, closed = false, told = false;
+  bool requested = false, closed = false, notified = false;
   std::uint64_t reported = 0;
   auto last = std::chrono::steady_clock::now();
   for (bool idle = false; !idle;) {
-    idle = shop.idle(!asked && !closed);
+    idle = shop.idle(!requested && !closed);
     if (idle && shop.error()) abandon(shop.error());
     Report report{shop.taken() - reported};
     if (idle)
       report.wish = Wish::leave;
-    else if (!asked && !closed && shop.empty())
-      report.wish = Wish::piece, asked = true;
-    if (interrupt().signal() != 0 && !std::exchange(told, true))
+    else if (!requested && !closed && shop.empty())
+      report.wish = Wish::piece, requested = true;
+    if (interrupt().signal() != 0 && !std::exchange(notified, true))
       report.signal = static_cast<std::uint64_t>(interrupt().signal());
     const auto now = std::chrono::steady_clock::now();
     if (report.wish != Wish::nothing || report.signal != 0 || (report.taken > 0 && now - last > 500ms)) {
@@ -228,7 +228,7 @@ void MpiCrew::follow(Workshop& shop) const {
       const auto reply = receive<Reply>(0, from_leader);
       if (reply.order == Order::work) {
         shop.put({reply.point, {reply.first, reply.count}});
-        asked = false;
+        requested = false;
         continue;
       }
       if (reply.order == Order::stop) interrupt().note(static_cast<int>(reply.signal));

@@ -11,21 +11,22 @@
 #include <variant>
 #include <vector>
 
+#include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/dense_core.hpp"
 #include "cradle/core/observe/sample.hpp"
-#include "cradle/core/sticky_gas.hpp"
 #include "cradle/tools/record/recorded.hpp"
+#include "cradle/tools/record/tables.hpp"
 #include "cradle/tools/run/engine.hpp"
-#include "cradle/tools/run/tables.hpp"
 
 namespace cradle::tools {
 
-/// What columns are filled from at one time. What takes all bodies is computed where a column requires it, once.
+/// What columns are filled from at one time. What takes all particles is computed where a column requires it, once.
 template <Real T> class Moment {
  public:
-  Moment(const Engine<T>& run, std::shared_ptr<const cradle::Bodies<T>> bodies, const T& start, const T& time)
-      : state(sample(run, bodies->kinetic_energy(), time)), run_(run), bodies_(std::move(bodies)), start_(start) {}
+  Moment(const Engine<T>& run, std::shared_ptr<const cradle::Particles<T>> particles, const T& start, const T& time)
+      : state(sample(run, particles->kinetic_energy(), time)), run_(run), particles_(std::move(particles)),
+        start_(start) {}
 
   const Sample<T> state;
 
@@ -40,9 +41,9 @@ template <Real T> class Moment {
   }
   /// Energy minus that of the sticky gas from the same initial state; of both ledgers: what they share cancels.
   T sticky_excess() const {
-    StickyGas<T> sticky(bodies_, start_);  // anew: what it gives must not depend on earlier samples
+    StickyGas<T> sticky(particles_, start_);  // anew: what it gives must not depend on earlier samples
     sticky.advance(state.time);
-    const T energy = bodies_->kinetic_energy();
+    const T energy = particles_->kinetic_energy();
     return T(T(energy - run_.energy_lost()) - (energy - sticky.energy_lost()));
   }
 
@@ -53,7 +54,7 @@ template <Real T> class Moment {
   }
 
   const Engine<T>& run_;
-  std::shared_ptr<const cradle::Bodies<T>> bodies_;
+  std::shared_ptr<const cradle::Particles<T>> particles_;
   T start_;
   mutable std::optional<Configuration<T>> configuration_;
   mutable std::optional<Cloud<T>> cloud_;
@@ -94,25 +95,25 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
   constexpr auto walls = [](const Scene& scene) { return scene.walls.any(); };
   constexpr auto core = [](const Scene& scene) { return scene.output.core; };
   static const std::vector<SeriesColumn<T>> all{
-      {"time", "t", "a sample is the state after all contacts at times <= t", always,
+      {"time", "t", "a sample is the state after all collisions at times <= t", always,
        filled_by<T, [](At at) { return at.state.time; }>()},
-      {"energy", "m l^2/t^2", "kinetic energy of all bodies of the scene", always,
+      {"energy", "m l^2/t^2", "kinetic energy of all particles of the scene", always,
        filled_by<T, [](At at) { return at.state.energy; }>()},
-      {"energy_lost", "m l^2/t^2", "energy lost in contacts since the start", always,
+      {"energy_lost", "m l^2/t^2", "energy lost in collisions since the start", always,
        filled_by<T, [](At at) { return at.state.energy_lost; }>()},
-      {"contacts", "1", "contacts since the start, those below the cut-off and merges included", always,
-       filled_by<T, [](At at) { return Whole{at.state.counts.contacts}; }>()},
-      {"contacts_below_cutoff", "1", "contacts closing slower than the cut-off", always,
+      {"collisions", "1", "collisions since the start, those below the cut-off and merges included", always,
+       filled_by<T, [](At at) { return Whole{at.state.counts.collisions}; }>()},
+      {"collisions_below_cutoff", "1", "collisions closing slower than the cut-off", always,
        filled_by<T, [](At at) { return Whole{at.state.counts.below_cutoff}; }>()},
       {"merges", "1", "merges since the start", always,
        filled_by<T, [](At at) { return Whole{at.state.counts.merges}; }>()},
-      {"bodies", "1", "bodies in the active zone, between the outermost that have collided", always,
-       filled_by<T, [](At at) { return static_cast<Whole>(at.state.bodies); }>()},
-      {"front_left", "l", "position of the leftmost body that has collided", always,
+      {"particles", "1", "particles in the active zone, between the outermost that have collided", always,
+       filled_by<T, [](At at) { return static_cast<Whole>(at.state.particles); }>()},
+      {"front_left", "l", "position of the leftmost particle that has collided", always,
        filled_by<T, [](At at) { return at.state.front_left.value_or(none<T>()); }>()},
-      {"front_right", "l", "position of the rightmost body that has collided", always,
+      {"front_right", "l", "position of the rightmost particle that has collided", always,
        filled_by<T, [](At at) { return at.state.front_right.value_or(none<T>()); }>()},
-      {"cloud_mass", "m", "mass of all bodies that have collided", clouds,
+      {"cloud_mass", "m", "mass of all particles that have collided", clouds,
        filled_by<T, [](At at) { return at.cloud().mass; }>()},
       {"cloud_width", "l",
        "standard deviation of position, weighted by mass, of all that have collided but the two heaviest clusters",
@@ -123,7 +124,7 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
        filled_by<T, [](At at) { return at.core().mass; }>()},
       {"core_width", "l", "shortest length that holds more than half of the mass that has collided", core,
        filled_by<T, [](At at) { return at.core().width; }>()},
-      {"core_window", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", core,
+      {"core_velocity_range", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", core,
        filled_by<T, [](At at) { return at.core().window; }>()},
       {"core_gap", "l", "median gap within the core", core, filled_by<T, [](At at) { return at.core().gap; }>()},
       {"sticky_excess", "m l^2/t^2", "energy minus that of the sticky gas that began alike", core,

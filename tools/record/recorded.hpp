@@ -13,7 +13,7 @@
 
 #include "cradle/core/real.hpp"
 #include "cradle/precision/text.hpp"
-#include "cradle/tools/run/tables.hpp"
+#include "cradle/tools/record/tables.hpp"
 
 namespace cradle::tools {
 

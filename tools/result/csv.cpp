@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {

@@ -9,7 +9,7 @@
 namespace cradle::tools {
 
 /// One line per row, as many digits as it takes to read the same number back. Columns that are shorter (gaps of n
-/// bodies) leave their last fields empty; attributes come first, as comments.
+/// particles) leave their last fields empty; attributes come first, as comments.
 std::string csv(const Group& group);
 
 /// Writes GROUP.csv for every group below `folder`, and scene.toml where there is a scene: that of the file, those of a

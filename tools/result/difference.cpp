@@ -71,13 +71,13 @@ class Comparison {
     for (const Named& x : a) {
       const auto y = std::find_if(b.begin(), b.end(), [&](const Named& other) { return name(other) == name(x); });
       if (y == b.end())
-        tell(kind + name(x), "only in " + first_);
+        report(kind + name(x), "only in " + first_);
       else
         both(x, *y);
     }
     for (const Named& y : b)
       if (std::none_of(a.begin(), a.end(), [&](const Named& other) { return name(other) == name(y); }))
-        tell(kind + name(y), "only in " + second_);
+        report(kind + name(y), "only in " + second_);
   }
 
   void attributes(const std::vector<Attribute>& a, const std::vector<Attribute>& b, const std::string& where) {
@@ -87,12 +87,12 @@ class Comparison {
   }
 
   void column(const std::string& where, const Column& a, const Column& b) {
-    if (a.unit != b.unit) tell(where, fmt::format("unit \"{}\" against \"{}\"", a.unit, b.unit));
-    if (a.description != b.description) tell(where, "description " + first_line(a.description, b.description));
+    if (a.unit != b.unit) report(where, fmt::format("unit \"{}\" against \"{}\"", a.unit, b.unit));
+    if (a.description != b.description) report(where, "description " + first_line(a.description, b.description));
     if (a.values.index() != b.values.index())
-      return tell(where, "real numbers, whole ones or text against another of these");
-    if (a.width != b.width) tell(where, fmt::format("{} numbers a row against {}", a.width, b.width));
-    if (a.rows() != b.rows()) tell(where, fmt::format("{} rows against {}", a.rows(), b.rows()));
+      return report(where, "real numbers, whole ones or text against another of these");
+    if (a.width != b.width) report(where, fmt::format("{} numbers a row against {}", a.width, b.width));
+    if (a.rows() != b.rows()) report(where, fmt::format("{} rows against {}", a.rows(), b.rows()));
     if (a.width != b.width) return;
     std::visit([&](const auto& x) { numbers(where, x, std::get<std::decay_t<decltype(x)>>(b.values), a.width); },
                a.values);
@@ -101,7 +101,7 @@ class Comparison {
   Differences result() && { return std::move(found_); }
 
  private:
-  void tell(const std::string& where, const std::string& what) { found_.lines.push_back(where + ": " + what); }
+  void report(const std::string& where, const std::string& what) { found_.lines.push_back(where + ": " + what); }
 
   template <class Number> bool differ(const Number& a, const Number& b) {
     ++found_.numbers;
@@ -114,9 +114,9 @@ class Comparison {
   }
 
   void attribute(const std::string& where, const decltype(Attribute::second)& a, const decltype(Attribute::second)& b) {
-    if (a.index() != b.index()) return tell(where, "text, real or whole number against another of these");
+    if (a.index() != b.index()) return report(where, "text, real or whole number against another of these");
     if (const auto* text = std::get_if<std::string>(&a)) {
-      if (*text != std::get<std::string>(b)) tell(where, first_line(*text, std::get<std::string>(b)));
+      if (*text != std::get<std::string>(b)) report(where, first_line(*text, std::get<std::string>(b)));
     } else if (const auto* real = std::get_if<double>(&a)) {
       number(where, *real, std::get<double>(b));
     } else {
@@ -124,7 +124,7 @@ class Comparison {
     }
   }
   template <class Number> void number(const std::string& where, Number a, Number b) {
-    if (differ(a, b)) tell(where, fmt::format("{} against {}{}", shown(a), shown(b), size_of(a, b)));
+    if (differ(a, b)) report(where, fmt::format("{} against {}{}", shown(a), shown(b), size_of(a, b)));
   }
 
   template <class Number>
@@ -145,7 +145,7 @@ class Comparison {
                                    shown(b[*first]), size_of(a[*first], b[*first]));
     if (count > 1) line += fmt::format("; {} of {} numbers differ", count, both);
     if (count > 1 && std::isfinite(largest)) line += fmt::format(", by up to {:.2g} relative", largest);
-    tell(where, line);
+    report(where, line);
   }
 
   const std::string &first_, &second_;

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <exception>
 
-#include "cradle/tools/result/atomic_file.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/errors.hpp"
 

@@ -23,7 +23,7 @@ struct Column {
   std::string description;
   Numbers values;              // row after row
   std::size_t width = 1;       // numbers in a row
-  bool names = false;          // they name something, bodies for instance: a mean of them would mean nothing
+  bool names = false;          // they name something, particles for instance: a mean of them would mean nothing
   std::uint64_t left_out = 0;  // rows of the file that were not read, between the first and the last one
   std::size_t longest = 0;     // bytes, of texts among these
 

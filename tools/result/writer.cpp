@@ -8,10 +8,10 @@
 #include <limits>
 #include <map>
 
-#include "cradle/tools/result/atomic_file.hpp"
 #include "cradle/tools/result/guarded.hpp"
 #include "cradle/tools/result/hdf5.hpp"
 #include "cradle/tools/result/seal.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 

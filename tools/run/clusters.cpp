@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cradle/core/theory/wet_clusters.hpp"
-#include "cradle/tools/run/schedule.hpp"
-#include "cradle/tools/run/tables.hpp"
+#include "cradle/tools/record/schedule.hpp"
+#include "cradle/tools/record/tables.hpp"
 
 namespace cradle::tools {
 
@@ -54,7 +54,7 @@ class Recorder {
       total_merges_ += meetings[seen_].stuck;
     }
     lost_.push_back(total_lost_);
-    contacts_.push_back(seen_);
+    collisions_.push_back(seen_);
     merges_.push_back(total_merges_);
     const bool swapped = second && !motion.first_is_left();
     if (!swapped) add(0, first);
@@ -71,7 +71,7 @@ class Recorder {
   void tables(std::vector<Group>& groups) && {
     auto tables = cluster_series_tables();
     groups.push_back(filled(std::move(tables[0]), std::move(time_), std::move(energy_), std::move(lost_),
-                            std::move(contacts_), std::move(merges_)));
+                            std::move(collisions_), std::move(merges_)));
     groups.push_back(filled(std::move(tables[1]), std::move(mass_), std::move(x_), std::move(v_), std::move(index_)));
   }
 
@@ -86,7 +86,7 @@ class Recorder {
   }
 
   std::vector<double> time_, energy_, lost_, mass_, x_, v_;
-  std::vector<std::uint64_t> contacts_, merges_, index_;
+  std::vector<std::uint64_t> collisions_, merges_, index_;
   std::size_t seen_ = 0;  // meetings until now, and what they came to
   double total_lost_ = 0;
   std::uint64_t total_merges_ = 0;
@@ -131,11 +131,11 @@ Group meetings_table(const std::vector<theory::ClusterMeeting>& meetings) {
 }  // namespace
 
 RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
-  if (options.witness != nullptr)
-    throw Error({"", 0, "initial.type"}, "no contacts to compare", "clusters, a model", "give a scene of bodies");
+  if (options.observer != nullptr)
+    throw Error({"", 0, "initial.type"}, "no collisions to compare", "clusters, a model", "give a scene of particles");
   const auto zone = zone_of(scene);
   Motion motion = motion_of(scene, zone);
-  const double loss = scene.initial.meeting == Meeting::energy ? scene.law.loss.value : 0;
+  const double loss = scene.initial.meeting == scene::Meeting::energy ? scene.law.loss.value : 0;
   Recorder recorder;
   RunOutcome end;
   for (const double time : series_times<double>(scene.output.series, scene.run.start.value, scene.run.until.value)) {
@@ -152,7 +152,7 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
     end.time = scene.run.until.value;
     motion.advance(end.time);
   }
-  end.contacts = motion.meetings().size();
+  end.collisions = motion.meetings().size();
   end.merges = recorder.merges();
   end.energy = recorder.energy();
   end.result.attributes = provenance(scene, precision_name(scene.run), end_row(end.end).text);

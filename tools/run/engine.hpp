@@ -1,5 +1,5 @@
 // What a run asks of its engine, whatever law and chain that is made of: so that everything beside the event loop is
-// compiled once per scalar type, not once per engine. It costs a virtual call per time looked at, none per contact.
+// compiled once per scalar type, not once per engine. It costs a virtual call per time looked at, none per collision.
 #pragma once
 
 #include <concepts>
@@ -8,15 +8,15 @@
 #include <string>
 #include <utility>
 
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/engine/state.hpp"
 #include "cradle/core/observe/sample.hpp"
-#include "cradle/core/segments.hpp"
-#include "cradle/core/simulation.hpp"
-#include "cradle/core/state.hpp"
-#include "cradle/tools/result/state_file.hpp"
+#include "cradle/core/parallel/segments.hpp"
+#include "cradle/tools/store/state_file.hpp"
 
 namespace cradle::tools {
 
-template <Real T> using Observer = std::function<void(const Contact<T>&)>;
+template <Real T> using Observer = std::function<void(const Collision<T>&)>;
 
 template <Real T> class Engine {
  public:
@@ -27,8 +27,8 @@ template <Real T> class Engine {
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
-  /// Those that make no contacts go from time to time without any.
-  virtual bool makes_contacts() const = 0;
+  /// Those that make no collisions go from time to time without any.
+  virtual bool makes_collisions() const = 0;
   /// `observer` may be empty.
   virtual Status advance(const T& until, const Observer<T>& observer) = 0;
 
@@ -37,27 +37,27 @@ template <Real T> class Engine {
   virtual T energy_lost() const = 0;
   virtual T kinetic_energy() const = 0;
   virtual T given_by_walls() const = 0;
-  virtual T last_contact_time() const = 0;
-  virtual const CollapseReport<T>* collapse() const = 0;  // none where no contacts are made
+  virtual T last_collision_time() const = 0;
+  virtual const CollapseReport<T>* collapse() const = 0;  // none where no collisions are made
 
-  /// Where rounding may decide whether there is one more contact up to a time not before the last one: the body on the
-  /// left. None where nobody estimates it.
-  virtual std::optional<BodyIndex> uncertain_at(const T& time) const = 0;
+  /// Where rounding may decide whether there is one more collision up to a time not before the last one: the particle
+  /// on the left. None where nobody estimates it.
+  virtual std::optional<ParticleIndex> uncertain_at(const T& time) const = 0;
 
   virtual bool on_ring() const = 0;
-  virtual BodyIndex collided_bodies() const = 0;
+  virtual ParticleIndex collided_particles() const = 0;
   virtual T front_left(const T& time) const = 0;
   virtual T front_right(const T& time) const = 0;
   virtual Configuration<T> configuration(const T& time) const = 0;
-  virtual Configuration<T> configuration_at_last_contact() const = 0;
+  virtual Configuration<T> configuration_at_last_collision() const = 0;
 
-  /// The state (core/state.hpp), and what its fields are.
+  /// The state (core/engine/state.hpp), and what its fields are.
   virtual void save(StateWriter& to) const = 0;
   virtual void load(StateReader& from) = 0;
   virtual std::string shape() const = 0;
 };
 
-// What takes a run through windows in segments; nothing for runs that cannot be cut.
+// What takes a run through time slabs in segments; nothing for runs that cannot be cut.
 struct NoSegments {
   explicit NoSegments(const Workers&) {}
 };
@@ -76,7 +76,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   explicit EngineOf(const Workers& workers, Arguments&&... arguments)
       : run_(std::forward<Arguments>(arguments)...), segments_(workers) {}
 
-  bool makes_contacts() const override { return has_chain; }
+  bool makes_collisions() const override { return has_chain; }
   Status advance(const T& until, const Observer<T>& observer) override {
     if constexpr (has_chain)
       if (observer) return run_.advance(until, observer);
@@ -91,7 +91,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   T energy_lost() const override { return run_.energy_lost(); }
   T kinetic_energy() const override { return run_.kinetic_energy(); }
   T given_by_walls() const override { return cradle::given_by_walls(run_); }
-  T last_contact_time() const override { return run_.last_contact_time(); }
+  T last_collision_time() const override { return run_.last_collision_time(); }
   const CollapseReport<T>* collapse() const override {
     if constexpr (has_chain)
       return &run_.collapse();
@@ -99,7 +99,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
       return nullptr;
   }
 
-  std::optional<BodyIndex> uncertain_at(const T& time) const override {
+  std::optional<ParticleIndex> uncertain_at(const T& time) const override {
     if constexpr (requires { run_.chain().uncertain_at(time); })
       return run_.chain().uncertain_at(run_.chain().local_time(time));
     else
@@ -107,11 +107,11 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   }
 
   bool on_ring() const override { return run_.on_ring(); }
-  BodyIndex collided_bodies() const override { return run_.collided_bodies(); }
+  ParticleIndex collided_particles() const override { return run_.collided_particles(); }
   T front_left(const T& time) const override { return run_.front_left(time); }
   T front_right(const T& time) const override { return run_.front_right(time); }
   Configuration<T> configuration(const T& time) const override { return run_.configuration(time); }
-  Configuration<T> configuration_at_last_contact() const override { return run_.configuration_at_last_contact(); }
+  Configuration<T> configuration_at_last_collision() const override { return run_.configuration_at_last_collision(); }
 
   void save(StateWriter& to) const override { cradle::save(to, run_); }
   void load(StateReader& from) override { cradle::load(from, run_); }

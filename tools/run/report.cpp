@@ -13,9 +13,9 @@ namespace cradle::tools {
 
 namespace {
 
-std::string place(BodyIndex left) {
-  if (left < 0) return "between the left wall and body 0";
-  return fmt::format("between bodies {} and {}", left, left + 1);
+std::string place(ParticleIndex left) {
+  if (left < 0) return "between the left wall and particle 0";
+  return fmt::format("between particles {} and {}", left, left + 1);
 }
 
 // Seven digits of a number that may be far below the range of double.
@@ -60,80 +60,83 @@ std::string within(const Figure& x, const Figure& error) {
 
 }  // namespace
 
-std::string collapse_report(const ToldCollapse& r, std::uint64_t contacts) {
+std::string collapse_report(const ReportedCollapse& r, std::uint64_t collisions) {
   std::string text = r.settled
                          ? fmt::format("inelastic collapse at t_c = {}\n", within(r.time, r.uncertainty))
                          : std::string("a gap fell below run.stop_gap: the run stops there as requested; that this is "
                                        "an inelastic collapse is not proved, and no time of it is known\n");
-  text += fmt::format("  last contact   t = {}, number {}, {}\n", r.last_contact.digits, contacts, place(r.body));
+  text +=
+      fmt::format("  last collision t = {}, number {}, {}\n", r.last_collision.digits, collisions, place(r.particle));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));
   if (r.interval.value != 0 || !r.interval.zero)
-    text += fmt::format("  interval       {} since the contact there before\n", brief(r.interval));
+    text += fmt::format("  interval       {} since the collision there before\n", brief(r.interval));
   if (r.settled)
     text += fmt::format("  ratio          {} of successive intervals there\n", within(r.ratio, r.ratio_uncertainty));
   text += "  to go on       give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
   return text;
 }
 
-Group collapse_table(const ToldCollapse& r) {
+Group collapse_table(const ReportedCollapse& r) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   return {"collapse",
-          {{"time", r.settled ? r.time.value : r.last_contact.value},
+          {{"time", r.settled ? r.time.value : r.last_collision.value},
            {"uncertainty", r.settled ? r.uncertainty.value : none},
-           {"last_contact", r.last_contact.value},
+           {"last_collision", r.last_collision.value},
            {"interval", r.interval.value},
            {"ratio", r.settled ? r.ratio.value : none},
            {"ratio_uncertainty", r.settled ? r.ratio_uncertainty.value : none},
            {"gap", r.gap.value},
-           {"body", static_cast<std::uint64_t>(r.body)}},
+           {"particle", static_cast<std::uint64_t>(r.particle)}},
           {}};
 }
 
-std::string account_warning(const ToldAccount& account, const Run& run) {
+std::string account_warning(const ReportedAccount& account, const Run& run) {
   std::string text;
   if (account.order_lost > 0)
     text += fmt::format(
-        "order of contacts lost ({} times, first at t = {} {}, gap {:.3e}): use more digits (run.precision){}\n",
-        account.order_lost, account.first_order_lost.time, place(account.first_order_lost.body),
+        "order of collisions lost ({} times, first at t = {} {}, gap {:.3e}): use more digits (run.precision){}\n",
+        account.order_lost, account.first_order_lost.time, place(account.first_order_lost.particle),
         account.first_order_lost.gap, run.coordinates == Coordinates::absolute ? " or run.coordinates = \"gaps\"" : "");
   if (account.unresolved > 0)
     text += fmt::format(
-        "gaps below 1e6 units in the last place of x ({} contacts, first at t = {} {}, gap {:.3e}): results that "
+        "gaps below 1e6 units in the last place of x ({} collisions, first at t = {} {}, gap {:.3e}): results that "
         "depend on such gaps cannot be trusted; use run.coordinates = \"gaps\" or more digits\n",
-        account.unresolved, account.first_unresolved.time, place(account.first_unresolved.body),
+        account.unresolved, account.first_unresolved.time, place(account.first_unresolved.particle),
         account.first_unresolved.gap);
   if (account.simultaneous > 0)
-    text += fmt::format("three bodies met within rounding ({} contacts): the tie rule decided their order; perturb the "
-                        "initial state where that matters (of law.restitution = 0, which leaves bodies together, take "
-                        "a small one)\n",
-                        account.simultaneous);
+    text += fmt::format(
+        "three particles met within rounding ({} collisions): the tie rule decided their order; perturb the "
+        "initial state where that matters (of law.restitution = 0, which leaves particles together, take "
+        "a small one)\n",
+        account.simultaneous);
   if (account.uncertain)
     text += fmt::format(
-        "contacts are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided which "
+        "collisions are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided "
+        "which "
         "one "
-        "was next ({:.0f} digits of a length of 1 are left in {}); the contacts after it are those of a system that "
+        "was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a system that "
         "starts a rounding away. Use more digits (run.precision), and `cradle trust` to see how many\n",
-        account.first_uncertain.time, account.first_uncertain.gap, place(account.first_uncertain.body),
+        account.first_uncertain.time, account.first_uncertain.gap, place(account.first_uncertain.particle),
         std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run));
   if (account.uncertain_end)
     text += fmt::format(
-        "rounding may decide whether there is one more contact before the end (t = {}, {}): use more digits "
+        "rounding may decide whether there is one more collision before the end (t = {}, {}): use more digits "
         "(run.precision), or another run.until\n",
-        account.first_uncertain.time, place(account.first_uncertain.body));
+        account.first_uncertain.time, place(account.first_uncertain.particle));
   return text;
 }
 
-std::string guard_message(const ToldGuard& g) {
+std::string guard_message(const ReportedGuard& g) {
   const char* what = "";
   switch (g.guard) {
   case Guard::order:
-    what = "order: two bodies have changed places, the gap is less than rounding can make it";
+    what = "order: two particles have changed places, the gap is less than rounding can make it";
     break;
   case Guard::past:
-    what = "past: the last contact is not between the one before and the time looked at";
+    what = "past: the last collision is not between the one before and the time looked at";
     break;
   case Guard::energy:
-    what = "energy: the sum over all bodies is not what the ledger of losses leaves";
+    what = "energy: the sum over all particles is not what the ledger of losses leaves";
     break;
   case Guard::momentum:
     what = "momentum: not what it was at the start";
@@ -145,14 +148,14 @@ std::string guard_message(const ToldGuard& g) {
   return fmt::format(
       "stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): the machine or the program is at fault. "
       "`cradle resume` goes on from the last checkpoint, made before; if it stops here again, please report the scene",
-      what, g.found, g.bound, g.time, g.body < 0 ? "" : ", " + place(g.body));
+      what, g.found, g.bound, g.time, g.particle < 0 ? "" : ", " + place(g.particle));
 }
 
-std::string exhausted_warning(const std::string& time, std::uint64_t contacts, const Run& run) {
-  const bool stops = run.collapse == CollapsePolicy::stop;
-  return fmt::format("resolution exhausted (t = {}, {} contacts): time or a gap can get no smaller in {}{}; use {}a "
+std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Run& run) {
+  const bool stops = run.collapse == scene::CollapsePolicy::stop;
+  return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}a "
                      "law.cutoff{}, or more digits (long double reaches gaps of 1e-4932, mpfr any)\n",
-                     time, contacts, precision_name(run),
+                     time, collisions, precision_name(run),
                      stops ? ", and that this is an inelastic collapse is not proved" : "",
                      run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "",
                      stops ? "" : ", or collapse = \"stop\"");

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "cradle/core/account.hpp"
-#include "cradle/core/collapse.hpp"
+#include "cradle/core/engine/account.hpp"
+#include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/result/result.hpp"
@@ -21,17 +21,17 @@ struct Figure {
 };
 template <Real T> Figure figure(const T& x) { return {to_double(x), to_text(x), x == T(0)}; }
 
-struct ToldCollapse {
-  Figure last_contact, interval, gap;
-  BodyIndex body = -1;
+struct ReportedCollapse {
+  Figure last_collision, interval, gap;
+  ParticleIndex particle = -1;
   bool settled = false;
   Figure time, uncertainty, ratio, ratio_uncertainty;  // where it is
 };
-template <Real T> ToldCollapse told(const CollapseReport<T>& r) {
-  return {figure(r.last_contact),
+template <Real T> ReportedCollapse reported(const CollapseReport<T>& r) {
+  return {figure(r.last_collision),
           figure(r.interval),
           figure(r.gap),
-          r.body,
+          r.particle,
           r.settled,
           figure(T(r.time.value())),
           figure(r.uncertainty),
@@ -39,24 +39,24 @@ template <Real T> ToldCollapse told(const CollapseReport<T>& r) {
           figure(r.ratio_uncertainty)};
 }
 /// For standard output: times with all digits that are known.
-std::string collapse_report(const ToldCollapse& collapse, std::uint64_t contacts);
-Group collapse_table(const ToldCollapse& collapse);
+std::string collapse_report(const ReportedCollapse& collapse, std::uint64_t collisions);
+Group collapse_table(const ReportedCollapse& collapse);
 
-struct ToldIncident {
+struct ReportedIncident {
   std::string time;
   double value = 0;  // of the time
   double gap = 0;
-  BodyIndex body = -1;
+  ParticleIndex particle = -1;
 };
-struct ToldAccount {
+struct ReportedAccount {
   std::uint64_t simultaneous = 0, order_lost = 0, unresolved = 0;
-  ToldIncident first_order_lost, first_unresolved;
+  ReportedIncident first_order_lost, first_unresolved;
   bool uncertain = false, uncertain_end = false;
-  ToldIncident first_uncertain;  // of both
+  ReportedIncident first_uncertain;  // of both
 };
-template <Real T> ToldAccount told(const Account<T>& account) {
+template <Real T> ReportedAccount reported(const Account<T>& account) {
   const auto incident = [](const Incident<T>& i) {
-    return ToldIncident{to_text(i.time), to_double(i.time), to_double(i.gap), i.body};
+    return ReportedIncident{to_text(i.time), to_double(i.time), to_double(i.gap), i.particle};
   };
   return {account.simultaneous,
           account.order_lost,
@@ -67,21 +67,21 @@ template <Real T> ToldAccount told(const Account<T>& account) {
           false,
           incident(account.first_uncertain)};
 }
-struct ToldGuard {
+struct ReportedGuard {
   Guard guard = Guard::order;
   double found = 0, bound = 0;
-  BodyIndex body = -1;
+  ParticleIndex particle = -1;
   std::string time;
 };
-template <Real T> ToldGuard told(const GuardReport<T>& r, const T& time) {
-  return {r.guard, to_double(r.found), to_double(r.bound), r.body, to_text(time)};
+template <Real T> ReportedGuard reported(const GuardReport<T>& r, const T& time) {
+  return {r.guard, to_double(r.found), to_double(r.bound), r.particle, to_text(time)};
 }
 /// Of a guard that stops a run.
-std::string guard_message(const ToldGuard& guard);
+std::string guard_message(const ReportedGuard& guard);
 
 /// For standard error; empty where all was resolved.
-std::string account_warning(const ToldAccount& account, const Run& run);
+std::string account_warning(const ReportedAccount& account, const Run& run);
 /// Where time or a gap can get no smaller.
-std::string exhausted_warning(const std::string& time, std::uint64_t contacts, const Run& run);
+std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Run& run);
 
 }  // namespace cradle::tools

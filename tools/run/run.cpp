@@ -4,9 +4,9 @@
 
 #include <type_traits>
 
+#include "cradle/tools/model/in_precision.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/clusters.hpp"
-#include "cradle/tools/run/in_precision.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
@@ -48,7 +48,7 @@ std::string precision_name(const Run& run) {
 }
 
 std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome) {
-  return {{"format_version", std::uint64_t{1}},
+  return {{"format_version", std::uint64_t{2}},
           {"cradle_version", std::string(version)},
           {"scene", effective_toml(scene)},
           {"name", scene.name},
@@ -68,7 +68,7 @@ void check_built(const Scene& scene) {
   if (scene.initial.type == InitialType::clusters && scene.run.precision != Precision::double_)
     not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
   if (scene.run.coordinates == Coordinates::absolute) {
-    if (particles_merge(scene)) not_built("run.coordinates", "absolute with bodies that merge", "gaps");
+    if (particles_merge(scene)) not_built("run.coordinates", "absolute with particles that merge", "gaps");
     if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   in_precision<void>(scene, [](auto) {});

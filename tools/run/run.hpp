@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/workers.hpp"
+#include "cradle/core/parallel/workers.hpp"
 #include "cradle/tools/model/ends.hpp"
 #include "cradle/tools/result/result.hpp"
-#include "cradle/tools/run/keeper.hpp"
-#include "cradle/tools/run/witness.hpp"
+#include "cradle/tools/run/run_observer.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/store/run_store.hpp"
 #include "cradle/tools/support/errors.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/progress.hpp"
@@ -23,19 +23,19 @@ RunEnd end_of(Status status, bool order_lost);
 
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
-  Witness* witness = nullptr;      // is told of every contact
-  Interrupt* interrupt = nullptr;  // asked now and then whether to stop; heeded once there is something to keep
-  Workers workers = {};            // for a run that is cut into segments
-  RunKeeper* keeper = nullptr;     // puts what is recorded where it is safe; without one it comes back in the result
+  RunObserver* observer = nullptr;  // is told of every collision
+  Interrupt* interrupt = nullptr;   // asked now and then whether to stop; heeded once there is something to keep
+  Workers workers = {};             // for a run that is cut into segments
+  RunStore* store = nullptr;        // puts what is recorded where it is safe; without one it comes back in the result
 };
 
 struct RunOutcome {
   Result result;  // without the rows that a keeper has
   RunEnd end = RunEnd::reached;
-  std::string report;                      // of a collapse, for standard output; else empty
-  std::string warning;                     // what was not resolved, for standard error; else empty
-  std::string collapse_time;               // where the run stopped at a collapse
-  std::uint64_t contacts = 0, merges = 0;  // at the end, as are time and energy
+  std::string report;                        // of a collapse, for standard output; else empty
+  std::string warning;                       // what was not resolved, for standard error; else empty
+  std::string collapse_time;                 // where the run stopped at a collapse
+  std::uint64_t collisions = 0, merges = 0;  // at the end, as are time and energy
   double time = 0, energy = 0;
   double energy_digits = 10;  // of those that the energy is given with, as rounding leaves them
   std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas

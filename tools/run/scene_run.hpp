@@ -15,61 +15,63 @@
 
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/tools/record/columns.hpp"
+#include "cradle/tools/record/recorder.hpp"
+#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/engine.hpp"
-#include "cradle/tools/run/recorder.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/run/run_journal.hpp"
-#include "cradle/tools/run/schedule.hpp"
+#include "cradle/tools/store/run_journal.hpp"
 
 namespace cradle::tools {
 
 template <Real T> class SceneRun {
-  static constexpr std::size_t most_rows = 1 << 14;              // that wait for a keeper
-  static constexpr std::uint64_t contacts_between_guards = 256;  // of each body; half as many before the end
-  static constexpr std::uint64_t most_guarded = 1 << 22;         // bodies: beyond, a look would double the memory
+  static constexpr std::size_t most_rows = 1 << 14;                // that wait for a keeper
+  static constexpr std::uint64_t collisions_between_guards = 256;  // of each particle; half as many before the end
+  static constexpr std::uint64_t most_guarded = 1 << 22;           // particles: beyond, a look would double the memory
 
  public:
-  SceneRun(const Scene& scene, std::shared_ptr<const cradle::Bodies<T>> bodies, Engine<T>& engine,
+  SceneRun(const Scene& scene, std::shared_ptr<const cradle::Particles<T>> particles, Engine<T>& engine,
            const RunOptions& options, Progress& progress)
-      : scene_(scene), options_(options), bodies_(std::move(bodies)), energy_(bodies_->kinetic_energy()),
+      : scene_(scene), options_(options), particles_(std::move(particles)), energy_(particles_->kinetic_energy()),
         engine_(engine), progress_(progress), plan_(schedule<T>(scene)), series_(scene),
-        contact_before_(number<T>(scene.run.start)) {
+        collision_before_(number<T>(scene.run.start)) {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
   }
 
   RunOutcome operator()() {
     if (options_.interrupt != nullptr) options_.interrupt->heed();
-    const auto also = [this](const Observer<T>& look) {
-      observer_ = observer_ ? [before = observer_, look](const Contact<T>& c) { before(c), look(c); } : look;
+    const auto also = [this](const Observer<T>& added) {
+      observer_ = observer_ ? [before = observer_, added](const Collision<T>& c) { before(c), added(c); } : added;
     };
-    if (scene_.output.events) also([this](const Contact<T>& c) { record_contact(c); });
+    if (scene_.output.events) also([this](const Collision<T>& c) { record_collision(c); });
     if (scene_.output.scenario)
-      also([this](const Contact<T>& c) {
-        scenario_.contact(c.left, c.right, to_double(T(c.time.value())), engine_.counts().merges);
+      also([this](const Collision<T>& c) {
+        scenario_.collision(c.left, c.right, to_double(T(c.time.value())), engine_.counts().merges);
       });
-    if (options_.witness != nullptr)
-      also([this](const Contact<T>& c) { options_.witness->contact(c.left, c.right, to_double(T(c.time.value()))); });
-    if (options_.keeper != nullptr && options_.keeper->loaded_from() != nullptr) load(*options_.keeper->loaded_from());
+    if (options_.observer != nullptr)
+      also([this](const Collision<T>& c) {
+        options_.observer->collision(c.left, c.right, to_double(T(c.time.value())));
+      });
+    if (options_.store != nullptr && options_.store->loaded_from() != nullptr) load(*options_.store->loaded_from());
     Status status = Status::reached;
     for (const T& stop : plan_.stops) {
-      if (looked_ && !(*looked_ < stop)) continue;
+      if (inspected_ && !(*inspected_ < stop)) continue;
       status = advance(stop);
-      if (status == Status::reached && !look(stop)) status = Status::interrupted;
+      if (status == Status::reached && !sample_at(stop)) status = Status::interrupted;
       if (status != Status::reached) break;
-      progress_.tell(to_double(stop), engine_.counts().contacts);
+      progress_.report(to_double(stop), engine_.counts().collisions);
     }
-    const T end = status == Status::reached ? plan_.stops.back() : engine_.last_contact_time();
-    const bool can_go_on = status == Status::reached || status == Status::interrupted;
-    if (options_.keeper != nullptr && can_go_on) keep(end, true);
-    if (!can_go_on || (options_.keeper == nullptr && status == Status::interrupted)) record_end(end);
+    const T end = status == Status::reached ? plan_.stops.back() : engine_.last_collision_time();
+    const bool can_continue = status == Status::reached || status == Status::interrupted;
+    if (options_.store != nullptr && can_continue) keep(end, true);
+    if (!can_continue || (options_.store == nullptr && status == Status::interrupted)) record_end(end);
     return finish(status, end);
   }
 
   // Beside the engine's state: what of the plan is done, and what observers have gathered.
   static auto state(auto& self) {
-    return std::tie(self.looked_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
-                    self.guarded_at_, self.contact_before_);
+    return std::tie(self.inspected_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
+                    self.guarded_at_, self.collision_before_);
   }
 
   void loaded() const { require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone"); }
@@ -89,21 +91,21 @@ template <Real T> class SceneRun {
     }
     from.end();
     // A state that is well formed may still be of no run, and would go on for ever.
-    const auto [guarded_at, last] = std::pair(guarded_at_, engine_.last_contact_time());
-    if (static_cast<std::uint64_t>(engine_.collided_bodies()) <= most_guarded)
-      look_at_all(looked_ && last < *looked_ ? *looked_ : last);
+    const auto [guarded_at, last] = std::pair(guarded_at_, engine_.last_collision_time());
+    if (static_cast<std::uint64_t>(engine_.collided_particles()) <= most_guarded)
+      inspect_all(inspected_ && last < *inspected_ ? *inspected_ : last);
     guarded_at_ = guarded_at;
-    progress_.go_on_from(to_double(engine_.last_contact_time()), engine_.counts().contacts);
+    progress_.continue_from(to_double(engine_.last_collision_time()), engine_.counts().collisions);
   }
   std::string shape() const { return engine_.shape() + state_shape<SceneRun>() + std::string(exact_part<T>); }
 
   // Rows that have been recorded go to the keeper, and now and then the state, which then follows from nothing else.
   void keep(const T& time, bool state_too) {
     put_rows();
-    RunStatus now = seen_;
+    RunStatus now = status_;
     now.time = to_double(time);
-    now.contacts = engine_.counts().contacts;
-    options_.keeper->keep(
+    now.collisions = engine_.counts().collisions;
+    options_.store->keep(
         now,
         [this](StateWriter& to) {
           to.put(shape());
@@ -120,11 +122,11 @@ template <Real T> class SceneRun {
   }
   // Decimals only where somebody keeps them: ensembles and proofs have no use for them.
   void put(Recorded<T>&& rows) {
-    for (Group& table : tables(std::move(rows), options_.keeper != nullptr)) put(std::move(table));
+    for (Group& table : tables(std::move(rows), options_.store != nullptr)) put(std::move(table));
   }
   void put(Group&& rows) {
-    if (options_.keeper != nullptr)
-      options_.keeper->add(std::move(rows));
+    if (options_.store != nullptr)
+      options_.store->add(std::move(rows));
     else
       tables_.add(std::move(rows));
   }
@@ -135,14 +137,14 @@ template <Real T> class SceneRun {
     for (;;) {
       const Status status = engine_.advance(until, observer_);
       if (status != Status::interrupted || stopped()) return status;
-      keep(engine_.last_contact_time(), false);
+      keep(engine_.last_collision_time(), false);
     }
   }
 
   // ---- what is recorded
   // False where a signal has stopped a walk over rows that can be longer than anybody waits for: then nothing of this
   // time is recorded yet.
-  bool look(const T& time) {
+  bool sample_at(const T& time) {
     const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
                masses = holds(plan_.masses, time), zone = holds(plan_.zone, time);
     std::optional<Configuration<T>> now;
@@ -151,53 +153,55 @@ template <Real T> class SceneRun {
     if (now) require_held(*now);
     try {
       if (profiled) seen = profile_at(*now, time);
-      if (zone) zone_->add(*now, *bodies_, T(time - number<T>(scene_.run.start)), [this] { return stopped(); });
+      if (zone) zone_->add(*now, *particles_, T(time - number<T>(scene_.run.start)), [this] { return stopped(); });
     } catch (const WalkStopped&) {
       return false;
     }
     if (holds(plan_.series, time)) record_sample(time);
     if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
     if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
-    if (masses) put(masses_table(*now, bodies_->least_mass(), numbered("masses", masses_)));
+    if (masses) put(masses_table(*now, particles_->least_mass(), numbered("masses", masses_)));
     guard(time);
-    looked_ = time;
-    if (options_.witness != nullptr) tell_witness(time, false);
-    if (options_.keeper == nullptr) return true;
-    options_.keeper->look();
-    if (options_.keeper->due() || series_.rows() >= most_rows) keep(time, false);
+    inspected_ = time;
+    if (options_.observer != nullptr) notify_observer(time, false);
+    if (options_.store == nullptr) return true;
+    options_.store->check_clock();
+    if (options_.store->due() || series_.rows() >= most_rows) keep(time, false);
     return true;
   }
-  // Looks at all bodies once in so many contacts of each, a hundredth of what these take, by the count of contacts and
-  // not by the clock, so that a run that stops here does so always. Throws Error (Exit::lost).
+  // Looks at all particles once in so many collisions of each, a hundredth of what these take, by the count of
+  // collisions and not by the clock, so that a run that stops here does so always. Throws Error (Exit::lost).
   void guard(const T& time) {
-    const std::uint64_t contacts = engine_.counts().contacts;
-    const auto active = static_cast<std::uint64_t>(std::max<BodyIndex>(engine_.collided_bodies(), 16));
-    const std::uint64_t between = contacts_between_guards / (time < plan_.stops.back() ? 1 : 2);
-    const bool put_off = guarded_at_ > contacts && time < plan_.stops.back();
-    const bool due = guarded_at_ > contacts ? contact_before_ < engine_.last_contact_time()  // the end is looked at
-                                            : contacts >= guarded_at_ + between * active;
-    if (!put_off && due && active <= most_guarded) look_at_all(time);
+    const std::uint64_t collisions = engine_.counts().collisions;
+    const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
+    const std::uint64_t between = collisions_between_guards / (time < plan_.stops.back() ? 1 : 2);
+    const bool put_off = guarded_at_ > collisions && time < plan_.stops.back();
+    const bool due = guarded_at_ > collisions
+                         ? collision_before_ < engine_.last_collision_time()  // the end is looked at
+                         : collisions >= guarded_at_ + between * active;
+    if (!put_off && due && active <= most_guarded) inspect_all(time);
   }
-  void look_at_all(const T& time) {
-    const std::uint64_t contacts = engine_.counts().contacts;
+  void inspect_all(const T& time) {
+    const std::uint64_t collisions = engine_.counts().collisions;
     const Account<T>& account = engine_.account();
     const Configuration<T> now = engine_.configuration(time);
-    const GuardLook<T> look =
-        guarded(now, *bodies_, contacts, T(energy_ - engine_.energy_lost()), T(time - number<T>(scene_.run.start)),
-                engine_.last_contact_time(), contact_before_, account.order_lost + account.unresolved == 0);
-    if (look.broken) throw Error(guard_message(told(*look.broken, time)), Exit::lost);
-    // A look goes over all bodies that have merged, too: the next one, but for that at the end, is put off by as many.
+    const GuardCheck<T> check =
+        guarded(now, *particles_, collisions, T(energy_ - engine_.energy_lost()), T(time - number<T>(scene_.run.start)),
+                engine_.last_collision_time(), collision_before_, account.order_lost + account.unresolved == 0);
+    if (check.broken) throw Error(guard_message(reported(*check.broken, time)), Exit::lost);
+    // A look goes over all particles that have merged, too: the next one, but for that at the end, is put off by as
+    // many.
     const auto merged = static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size();
-    guarded_at_ = contacts + contacts_between_guards * merged;
-    contact_before_ = engine_.last_contact_time();
-    seen_.gap_min = to_double(look.gap_min);
-    seen_.closure_gap = to_double(look.closure_gap);
-    seen_.closure_speed = to_double(look.closure_speed);
+    guarded_at_ = collisions + collisions_between_guards * merged;
+    collision_before_ = engine_.last_collision_time();
+    status_.gap_min = to_double(check.gap_min);
+    status_.closure_gap = to_double(check.closure_gap);
+    status_.closure_speed = to_double(check.closure_speed);
   }
 
-  void record_contact(const Contact<T>& c) {
+  void record_collision(const Collision<T>& c) {
     events_(c);
-    if (options_.keeper != nullptr && events_.rows() >= most_rows) put(events_.take());
+    if (options_.store != nullptr && events_.rows() >= most_rows) put(events_.take());
   }
   Profile profile_at(const Configuration<T>& now, const T& time) const {
     const auto& wanted = scene_.output.profiles;
@@ -205,13 +209,13 @@ template <Real T> class SceneRun {
     BinRange range{to_double(now.x.front()), to_double(now.x.back())};
     if (!wanted.range.empty())
       range = {wanted.range[0].value, wanted.range[1].value};
-    else if (engine_.collided_bodies() > 0 && !engine_.on_ring())
+    else if (engine_.collided_particles() > 0 && !engine_.on_ring())
       range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
     if (!(range.from < range.to)) range.to = range.from + 1;  // all in one place: one length around it
     if (!std::isfinite(range.to - range.from))
-      throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the bodies are where no double reaches",
+      throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the particles are where no double reaches",
                   to_text(time), "give it, or remove output.profiles", Exit::lost);
-    return profile(now, *bodies_, elapsed, range, wanted.bins, [this] { return stopped(); });
+    return profile(now, *particles_, elapsed, range, wanted.bins, [this] { return stopped(); });
   }
   // What follows from a number beyond the type's range is noise. Throws Error (Exit::lost).
   void require_held(const T& number, const char* what, const T& time) const {
@@ -226,7 +230,7 @@ template <Real T> class SceneRun {
   }
 
   void record_sample(const T& time) {
-    const Moment<T> now(engine_, bodies_, number<T>(scene_.run.start), time);
+    const Moment<T> now(engine_, particles_, number<T>(scene_.run.start), time);
     require_held(now.state.energy, "the energy", time);
     for (const auto& front : {now.state.front_left, now.state.front_right})
       if (front) require_held(*front, "a front", time);
@@ -234,28 +238,28 @@ template <Real T> class SceneRun {
     if (!has_clouds(scene_)) return;
     heaviest_.add(now.cloud());
     if (scene_.output.scenario)
-      scenario_.look(now.cloud(), to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
+      scenario_.sample(now.cloud(), to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
   }
 
-  void tell_witness(const T& time, bool at_contact) {
+  void notify_observer(const T& time, bool at_collision) {
     const Sample<T> now = sample(engine_, energy_, time);
     const auto text = [](const std::optional<T>& x) { return x ? to_text(*x) : std::string(); };
-    RunLook look{.time = to_double(time),
-                 .time_text = to_text(time),
-                 .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
-                 .asked = at_contact ? std::vector{AskedTime{Decimal(to_text(time)), true, false, true}}
-                                     : asked_times(scene_, plan_, time),
-                 .of_series = holds(plan_.series, time),
-                 .at_contact = at_contact,
-                 .counts = now.counts,
-                 .energy = to_text(now.energy),
-                 .front_left = text(now.front_left),
-                 .front_right = text(now.front_right),
-                 .bodies = {}};
-    if (!at_contact && holds(plan_.snapshots, time)) look.bodies = looked(engine_.configuration(time));
-    options_.witness->look(look);
+    RunSample look{.time = to_double(time),
+                   .time_text = to_text(time),
+                   .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
+                   .asked = at_collision ? std::vector{AskedTime{Decimal(to_text(time)), true, false, true}}
+                                         : asked_times(scene_, plan_, time),
+                   .of_series = holds(plan_.series, time),
+                   .at_collision = at_collision,
+                   .counts = now.counts,
+                   .energy = to_text(now.energy),
+                   .front_left = text(now.front_left),
+                   .front_right = text(now.front_right),
+                   .particles = {}};
+    if (!at_collision && holds(plan_.snapshots, time)) check.particles = looked(engine_.configuration(time));
+    options_.observer->sample(look);
   }
-  static LookedBodies looked(const Configuration<T>& c) {
+  static LookedParticles looked(const Configuration<T>& c) {
     const auto texts = [](const std::vector<T>& numbers) {
       std::vector<std::string> all;
       for (const T& number : numbers) all.push_back(to_text(number));
@@ -265,23 +269,23 @@ template <Real T> class SceneRun {
   }
   // A run that ends early leaves its last state.
   void record_end(const T& time) {
-    if (options_.witness != nullptr) tell_witness(time, true);
+    if (options_.observer != nullptr) notify_observer(time, true);
     record_sample(time);
-    put(snapshot_rows(engine_.configuration_at_last_contact(), numbered("snapshots", snapshots_)));
+    put(snapshot_rows(engine_.configuration_at_last_collision(), numbered("snapshots", snapshots_)));
   }
 
   static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
 
-  // Digits that rounding leaves in the energy at the end, about. C contacts of N bodies round a speed by eps each time,
-  // by eps sqrt(1 + C/N) in all, and the energy by twice that: of what they are then where closing speeds are held, of
-  // what they were at the start where velocities are.
+  // Digits that rounding leaves in the energy at the end, about. C collisions of N particles round a speed by eps each
+  // time, by eps sqrt(1 + C/N) in all, and the energy by twice that: of what they are then where closing speeds are
+  // held, of what they were at the start where velocities are.
   double energy_digits(double energy) const {
-    const auto active = static_cast<double>(std::max<BodyIndex>(engine_.collided_bodies(), 1));
+    const auto active = static_cast<double>(std::max<ParticleIndex>(engine_.collided_particles(), 1));
     const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
     const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene_.run.digits);
-    double error = 2 * std::sqrt(1 + static_cast<double>(engine_.counts().contacts) / active);
+    double error = 2 * std::sqrt(1 + static_cast<double>(engine_.counts().collisions) / active);
     const bool velocities = scene_.run.coordinates == Coordinates::absolute || scene_.law.type != LawType::inelastic ||
-                            scene_.run.collapse == CollapsePolicy::merge;
+                            scene_.run.collapse == scene::CollapsePolicy::merge;
     if (velocities && energy > 0) error *= std::sqrt(std::max(1., to_double(energy_) / energy));
     return std::max(0., held - std::log10(error));
   }
@@ -291,21 +295,21 @@ template <Real T> class SceneRun {
     RunOutcome end;
     end.end = end_of(status, engine_.account().order_lost > 0);
     if (end.end == RunEnd::collapsed && !engine_.collapse()->settled) end.end = RunEnd::small_gap;
-    end.contacts = counts.contacts;
+    end.collisions = counts.collisions;
     end.merges = counts.merges;
     end.time = to_double(time);
     end.energy = to_double(energy_now(engine_, energy_));
     end.energy_digits = energy_digits(end.energy);
-    ToldAccount account = told(engine_.account());
-    if (const auto body = engine_.uncertain_at(time); body && !account.uncertain && status == Status::reached) {
+    ReportedAccount account = reported(engine_.account());
+    if (const auto particle = engine_.uncertain_at(time); particle && !account.uncertain && status == Status::reached) {
       account.uncertain_end = true;
-      account.first_uncertain = {to_text(time), to_double(time), 0, *body};
+      account.first_uncertain = {to_text(time), to_double(time), 0, *particle};
     }
     end.warning = account_warning(account, scene_.run);
-    if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.contacts, scene_.run);
+    if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.collisions, scene_.run);
     end.result.attributes = provenance(scene_, precision_name(scene_.run), end_row(end.end).text);
     for (const Attribute& attribute :
-         {Attribute("simultaneous_contacts", account.simultaneous), Attribute("order_lost", account.order_lost),
+         {Attribute("simultaneous_collisions", account.simultaneous), Attribute("order_lost", account.order_lost),
           Attribute("unresolved_gaps", account.unresolved), Attribute("energy_digits", end.energy_digits),
           Attribute("ledger_error", to_double(T(energy_ - engine_.energy_lost() - engine_.kinetic_energy())))})
       end.result.attributes.push_back(attribute);
@@ -313,9 +317,9 @@ template <Real T> class SceneRun {
       end.result.attributes.emplace_back("uncertain_from", account.first_uncertain.value);
     put_tables(end);
     if (status == Status::collapsed) {
-      const ToldCollapse collapse = told(*engine_.collapse());
-      end.report = collapse_report(collapse, counts.contacts);
-      end.collapse_time = (collapse.settled ? collapse.time : collapse.last_contact).digits;
+      const ReportedCollapse collapse = reported(*engine_.collapse());
+      end.report = collapse_report(collapse, counts.collisions);
+      end.collapse_time = (collapse.settled ? collapse.time : collapse.last_collision).digits;
       end.result.groups.push_back(collapse_table(collapse));
     }
     return end;
@@ -325,14 +329,14 @@ template <Real T> class SceneRun {
     put_rows();
     std::vector<Group>& groups = end.result.groups;
     groups = std::move(tables_).in_order();
-    // There also where there was no contact.
-    if (scene_.output.events && options_.keeper != nullptr) append(groups, tables(events_.take(), true));
+    // There also where there was no collision.
+    if (scene_.output.events && options_.store != nullptr) append(groups, tables(events_.take(), true));
     if (scene_.output.events) {
-      const Configuration<T> now = engine_.configuration_at_last_contact();
-      append(groups, tables(initial_rows(*bodies_, now.from, now.to), options_.keeper != nullptr));
+      const Configuration<T> now = engine_.configuration_at_last_collision();
+      append(groups, tables(initial_rows(*particles_, now.from, now.to), options_.store != nullptr));
     }
     if (zone_) {
-      const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single bodies
+      const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single particles
       const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);
       groups.push_back(zone_result(*zone_, width, scene_));
       end.summary.emplace_back("zone_width", width.width);
@@ -346,12 +350,12 @@ template <Real T> class SceneRun {
 
   const Scene& scene_;
   const RunOptions& options_;
-  std::shared_ptr<const cradle::Bodies<T>> bodies_;
+  std::shared_ptr<const cradle::Particles<T>> particles_;
   T energy_;
   Engine<T>& engine_;
   Progress& progress_;
   Schedule<T> plan_;
-  std::optional<T> looked_;                                  // the last time looked at
+  std::optional<T> inspected_;                               // the last time looked at
   std::uint64_t snapshots_ = 0, profiles_ = 0, masses_ = 0;  // tables written
   SeriesRecorder<T> series_;
   HeaviestRecorder<T> heaviest_;
@@ -359,9 +363,10 @@ template <Real T> class SceneRun {
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Observer<T> observer_;
-  std::uint64_t guarded_at_ = 0;  // contacts made, at the last look at all bodies, and the time of the last of them
-  T contact_before_;
-  RunStatus seen_;        // then
+  std::uint64_t guarded_at_ =
+      0;  // collisions made, at the last look at all particles, and the time of the last of them
+  T collision_before_;
+  RunStatus status_;      // then
   GrowingTables tables_;  // where there is no keeper
 };
 

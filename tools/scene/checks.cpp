@@ -23,8 +23,8 @@ class Checks {
 
   void rows_meet() const {
     if (!scene_.initial.general_rows()) return;
-    const Row& left = scene_.initial.left;
-    const Row& right = scene_.initial.right;
+    const scene::Row& left = scene_.initial.left;
+    const scene::Row& right = scene_.initial.right;
     const Centre& centre = scene_.initial.centre;
     if (left.speed <= right.speed)
       throw Error(place("initial.right.speed"), "the rows do not meet",
@@ -32,40 +32,42 @@ class Checks {
                   "give the right row a lower velocity than the left row");
     if (centre.mass == Decimal("0")) {
       if (entries_.contains("initial.centre.speed") && !entries_.contains("initial.centre.mass"))
-        throw Error(place("initial.centre.speed"), "speed of a body that is not there", "initial.centre.mass = 0",
+        throw Error(place("initial.centre.speed"), "speed of a particle that is not there", "initial.centre.mass = 0",
                     "give initial.centre.mass too, or remove this key");
       return;
     }
     if (centre.speed > left.speed || centre.speed < right.speed)
-      throw Error(place("initial.centre.speed"), "a row does not reach the body between the rows",
+      throw Error(place("initial.centre.speed"), "a row does not reach the particle between the rows",
                   fmt::format("left row at {}, centre at {}, right row at {}", left.speed.text, centre.speed.text,
                               right.speed.text),
                   "give a velocity between those of the rows");
   }
 
-  void one_list_of_bodies() const {
+  void one_list_of_particles() const {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::list) return;
-    const bool inline_bodies = !initial.x.empty() || entries_.contains("initial.x");
-    if (initial.file && inline_bodies)
-      throw Error(place("initial.file"), "two lists of bodies", "initial.file and initial.x", "remove one of them");
+    const bool inline_particles = !initial.x.empty() || entries_.contains("initial.x");
+    if (initial.file && inline_particles)
+      throw Error(place("initial.file"), "two lists of particles", "initial.file and initial.x", "remove one of them");
     if (initial.file) {
       if (initial.file->empty())
-        throw Error(place("initial.file"), "no file name", "an empty text", "name a CSV file of bodies");
+        throw Error(place("initial.file"), "no file name", "an empty text", "name a CSV file of particles");
       for (const char* key : {"initial.v", "initial.m"})
         if (entries_.contains(key))
-          throw Error(place(key), "two lists of bodies", "initial.file too",
+          throw Error(place(key), "two lists of particles", "initial.file too",
                       "put it into the file, or remove the file");
       return;
     }
-    if (!inline_bodies)
-      throw Error(place("initial.file"), "missing", "", "name a CSV file of bodies, or give initial.x and initial.v");
-    if (initial.x.empty()) throw Error(place("initial.x"), "no bodies", "an empty list", "give at least one position");
+    if (!inline_particles)
+      throw Error(place("initial.file"), "missing", "",
+                  "name a CSV file of particles, or give initial.x and initial.v");
+    if (initial.x.empty())
+      throw Error(place("initial.x"), "no particles", "an empty list", "give at least one position");
     same_length("initial.v", initial.v.size());
     if (entries_.contains("initial.m")) same_length("initial.m", initial.m.size());
     for (std::size_t i = 1; i < initial.x.size(); ++i)
       if (const auto order = compare_decimals(initial.x[i], initial.x[i - 1]); std::is_lteq(order))
-        throw Error(item_place("initial.x", i), std::is_eq(order) ? "coincident bodies" : "not increasing",
+        throw Error(item_place("initial.x", i), std::is_eq(order) ? "coincident particles" : "not increasing",
                     fmt::format("{} after {}", initial.x[i], initial.x[i - 1]), "give increasing positions");
   }
 
@@ -93,31 +95,32 @@ class Checks {
     }
     for (const char* key : {"output.snapshots", "output.profiles.times", "output.masses", "output.events"})
       if (const auto text = value_text(*find_field(key, scene_), scene_); text && *text != "[]" && *text != "false")
-        throw Error(place(key), "nothing to write", "two clusters in the force of bodies that are not there",
+        throw Error(place(key), "nothing to write", "two clusters in the force of particles that are not there",
                     "remove it");
   }
 
-  // Where bodies are displaced at random, replicas are seen to when they are set up (core/walled.hpp).
+  // Where particles are displaced at random, replicas are seen to when they are set up (core/initial/walled.hpp).
   void walls_stand() const {
     const auto& [left, right] = scene_.walls;
     if (!scene_.walls.any()) return;
     const std::string first = left.position ? "walls.left.position" : "walls.right.position";
     const Initial& initial = scene_.initial;
     if (initial.type == InitialType::ring || initial.type == InitialType::clusters)
-      throw Error(place(first), "a wall without a line of bodies",
+      throw Error(place(first), "a wall without a line of particles",
                   "initial.type = " + value_text(*find_field("initial.type", scene_), scene_).value(),
-                  "remove [walls], or give bodies on a line");
-    if (scene_.run.collapse == CollapsePolicy::merge)
-      throw Error(place(first), "a wall for bodies that merge", "run.collapse = \"merge\"",
+                  "remove [walls], or give particles on a line");
+    if (scene_.run.collapse == scene::CollapsePolicy::merge)
+      throw Error(place(first), "a wall for particles that merge", "run.collapse = \"merge\"",
                   "remove [walls], or choose another collapse policy");
     if (scene_.output.core)
       throw Error(place("output.core"), "nothing to compare the core with", "walls, which the sticky gas does not have",
                   "remove it");
     const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
-    const auto outside = [&](const char* key, const Decimal& wall, const char* body, const bin_float& at, int sign) {
+    const auto outside = [&](const char* key, const Decimal& wall, const char* particle, const bin_float& at,
+                             int sign) {
       if (bin_float(sign) * (number(wall) - at) > 0) return;
-      throw Error(place(key), "a wall among the bodies, which would have met before the start",
-                  fmt::format("wall at {}, {} body at {:g}", wall.text, body, static_cast<double>(at)),
+      throw Error(place(key), "a wall among the particles, which would have met before the start",
+                  fmt::format("wall at {}, {} particle at {:g}", wall.text, particle, static_cast<double>(at)),
                   "move it outwards");
     };
     if (initial.type == InitialType::list && !initial.x.empty()) {
@@ -125,8 +128,8 @@ class Checks {
         if (!wall) return;
         const auto order = compare_decimals(wall->text, at);
         if (wall_left ? std::is_lt(order) : std::is_gt(order)) return;
-        throw Error(place(key), "a wall among the bodies, which would have met before the start",
-                    fmt::format("wall at {}, {} body at {}", wall->text, wall_left ? "first" : "last", at),
+        throw Error(place(key), "a wall among the particles, which would have met before the start",
+                    fmt::format("wall at {}, {} particle at {}", wall->text, wall_left ? "first" : "last", at),
                     "move it outwards");
       };
       among("walls.left.position", left.position, initial.x[0], true);
@@ -154,14 +157,14 @@ class Checks {
     if (period == 0) throw Error(place("initial.masses"), "no masses", "an empty list", "give at least one mass");
     if (initial.type == InitialType::ring && initial.particles % period != 0)
       throw Error(place("initial.masses"), "the pattern does not divide the ring",
-                  fmt::format("{} masses, {} bodies", period, initial.particles),
+                  fmt::format("{} masses, {} particles", period, initial.particles),
                   fmt::format("give initial.particles as a multiple of {}", period));
     if (!unequal_masses(scene_)) return;
     if (scene_.output.scenario)
-      throw Error(place("output.scenario"), "for bodies of mass 1", "initial.masses of others",
+      throw Error(place("output.scenario"), "for particles of mass 1", "initial.masses of others",
                   "remove one of the two");
     if (scene_.output.zone.from)
-      throw Error(place("output.zone.from"), "for bodies of mass 1", "initial.masses of others",
+      throw Error(place("output.zone.from"), "for particles of mass 1", "initial.masses of others",
                   "remove one of the two");
   }
 
@@ -170,7 +173,8 @@ class Checks {
     if (!(scene_.law.cutoff > Decimal("0")))
       throw Error(place("law.cutoff_exponent"), "no cut-off that sets in", "law.cutoff = 0",
                   "give law.cutoff too, or remove this key");
-    if (scene_.run.collapse == CollapsePolicy::contact_time || scene_.run.collapse == CollapsePolicy::merge)
+    if (scene_.run.collapse == scene::CollapsePolicy::contact_time ||
+        scene_.run.collapse == scene::CollapsePolicy::merge)
       throw Error(place("run.collapse"), "not built with a restitution that depends on the speed",
                   value_text(*find_field("run.collapse", scene_), scene_).value(),
                   "give run.collapse = \"cutoff\" or \"stop\", or remove law.cutoff_exponent");
@@ -201,7 +205,7 @@ class Checks {
       const NumberRange& range = is_double_anyway(field.key) ? of_doubles : of_type;
       for (const Decimal& number : numbers_of(field, scene_)) {
         range.check(number.text, place(field.key));
-        // What is above 0 for the scene is so for the run; a body between the rows may be none.
+        // What is above 0 for the scene is so for the run; a particle between the rows may be none.
         const bool above_zero =
             field.range.starts_with("(0,") || (field.key == "initial.centre.mass" && number > Decimal("0"));
         if (above_zero) range.check_positive(number.text, place(field.key));
@@ -247,22 +251,24 @@ class Checks {
     return entry == entries_.end() ? place(key) : entry->second.items.at(i).place;
   }
 
-  // Where the last body on one side may be at the start; nothing where that is only known once bodies are set up.
+  // Where the last particle on one side may be at the start; nothing where that is only known once particles are set
+  // up.
   std::optional<bin_float> outermost(int side) const {
     const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::rows) return {};
-    const Row& row = side < 0 ? initial.left : initial.right;
+    const scene::Row& row = side < 0 ? initial.left : initial.right;
     const bin_float spacing = initial.general_rows() ? bin_float(1) / number(row.density) : number(initial.spacing);
-    const bin_float bodies(static_cast<std::int64_t>(initial.general_rows() ? row.particles : initial.particles / 2));
-    return bin_float(side) * (bodies - bin_float(1) / bin_float(2) + number(initial.perturbation)) * spacing;
+    const bin_float particles(
+        static_cast<std::int64_t>(initial.general_rows() ? row.particles : initial.particles / 2));
+    return bin_float(side) * (particles - bin_float(1) / bin_float(2) + number(initial.perturbation)) * spacing;
   }
 
   void same_length(std::string_view key, std::size_t length) const {
-    const std::size_t bodies = scene_.initial.x.size();
-    if (length != bodies)
-      throw Error(place(key), "not one per body", fmt::format("{} for {} positions", length, bodies),
-                  fmt::format("give {} numbers", bodies));
+    const std::size_t particles = scene_.initial.x.size();
+    if (length != particles)
+      throw Error(place(key), "not one per particle", fmt::format("{} for {} positions", length, particles),
+                  fmt::format("give {} numbers", particles));
   }
 
   const Scene& scene_;
@@ -275,7 +281,7 @@ class Checks {
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file) {
   const Checks checks(scene, entries, scene_file);
   checks.rows_meet();
-  checks.one_list_of_bodies();
+  checks.one_list_of_particles();
   checks.two_clusters();
   checks.walls_stand();
   checks.masses_repeat();

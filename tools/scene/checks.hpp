@@ -1,5 +1,5 @@
-// What one key alone cannot tell: rows that do not meet, bodies out of order, two ways to say the same thing, numbers
-// that the working precision cannot hold.
+// What one key alone cannot tell: rows that do not meet, particles out of order, two ways to say the same thing,
+// numbers that the working precision cannot hold.
 #pragma once
 
 #include "cradle/tools/scene/scene.hpp"

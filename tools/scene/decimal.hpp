@@ -16,7 +16,7 @@
 namespace cradle::tools {
 
 /// The canonical form of a finite decimal literal: no underscores, no leading '+', a digit on both sides of the point
-/// ("+1_000" gives "1000", ".5" gives "0.5"); else as written. Nothing where `text` is not one (inf and nan included).
+/// ("+1_000" gives "1000", "0.5" gives "0.5"); else as written. Nothing where `text` is not one (inf and nan included).
 std::optional<std::string> canonical_decimal(std::string_view text);
 
 /// The same where TOML has no say, in CSV and on the command line: without underscores.
@@ -49,8 +49,8 @@ struct Decimal {
 /// start + k step, exactly; nothing where that has thousands of digits.
 std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step);
 
-/// Canonical decimals of many bodies, end to end in one text, since 2e7 bodies are as welcome as three. Copies share
-/// it until one of them grows.
+/// Canonical decimals of many particles, end to end in one text, since 2e7 particles are as welcome as three. Copies
+/// share it until one of them grows.
 class DecimalColumn {
  public:
   DecimalColumn() = default;

@@ -52,7 +52,7 @@ constexpr When cold{other_state, "initial.type", "initial.type = \"cold\"",
                     [](const Scene& s) { return s.initial.type == InitialType::cold; }};
 constexpr When one_hot{other_state, "initial.hot", "initial.type = \"cold\" with initial.hot = 1",
                        [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot == 1; }};
-constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" with several hot bodies",
+constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" with several hot particles",
                            [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot > 1; }};
 
 constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"",
@@ -76,11 +76,11 @@ constexpr When mpfr{"key of another precision", "run.precision", "run.precision 
 
 constexpr std::string_view other_policy = "key of another collapse policy";
 constexpr When contact_time{other_policy, "run.collapse", "run.collapse = \"contact-time\"",
-                            [](const Scene& s) { return s.run.collapse == CollapsePolicy::contact_time; }};
+                            [](const Scene& s) { return s.run.collapse == scene::CollapsePolicy::contact_time; }};
 constexpr When merge{other_policy, "run.collapse", "run.collapse = \"merge\"",
-                     [](const Scene& s) { return s.run.collapse == CollapsePolicy::merge; }};
+                     [](const Scene& s) { return s.run.collapse == scene::CollapsePolicy::merge; }};
 constexpr When stop{other_policy, "run.collapse", "run.collapse = \"stop\"",
-                    [](const Scene& s) { return s.run.collapse == CollapsePolicy::stop; }};
+                    [](const Scene& s) { return s.run.collapse == scene::CollapsePolicy::stop; }};
 
 constexpr std::string_view other_series = "second way to say when the series is sampled";
 constexpr When not_every{other_series, "output.series.every", "a series without every",
@@ -94,7 +94,7 @@ std::string hot_as_energy(const Scene& s) { return std::to_string(s.initial.hot)
 
 std::string collapse_by_cutoff(const Scene& s) { return s.law.cutoff > Decimal("0") ? "\"cutoff\"" : "\"stop\""; }
 
-constexpr auto law_type = member<&Scene::law, &Law::type>;
+constexpr auto law_type = member<&Scene::law, &scene::Law::type>;
 constexpr auto initial_type = member<&Scene::initial, &Initial::type>;
 constexpr auto collapse = member<&Scene::run, &Run::collapse>;
 
@@ -118,58 +118,58 @@ constexpr std::string_view within_run = "[run.start, run.until]";
 const Field all_fields[] = {
     {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
 
-    {"law.type", law_type, "", "required", "inelastic | wet | sticky", &always, "what happens at a contact"},
-    {"law.restitution", law_of<&Law::restitution>, "", "required", "[0, 1]", &inelastic,
-     "factor by which a contact reduces the closing speed; 1 is elastic"},
-    {"law.cutoff", law_of<&Law::cutoff>, "l/t", "0", "[0, inf)", &inelastic,
-     "closing speed below which contacts are elastic; 0: none, the plain law"},
-    {"law.cutoff_exponent", law_of<&Law::cutoff_exponent>, "", "", "(0, inf)", &inelastic,
+    {"law.type", law_type, "", "required", "inelastic | wet | sticky", &always, "what happens at a collision"},
+    {"law.restitution", law_of<&scene::Law::restitution>, "", "required", "[0, 1]", &inelastic,
+     "factor by which a collision reduces the closing speed; 1 is elastic"},
+    {"law.cutoff", law_of<&scene::Law::cutoff>, "l/t", "0", "[0, inf)", &inelastic,
+     "closing speed below which collisions are elastic; 0: none, the plain law"},
+    {"law.cutoff_exponent", law_of<&scene::Law::cutoff_exponent>, "", "", "(0, inf)", &inelastic,
      "how the cut-off sets in: the restitution at a closing speed w is r + (1 - r) exp(-(w/cutoff)^this); without it, "
      "at "
      "once"},
-    {"law.loss", law_of<&Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
+    {"law.loss", law_of<&scene::Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
      "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge"},
 
     {"initial.type", initial_type, "", "required", "rows | ring | list | clusters | cold", &always,
-     "which bodies there are at the start"},
-    {"initial.left.particles", initial_of<&Initial::left, &Row::particles>, "", "required", "[1, 1e15]", &general_rows,
-     "bodies of the left row"},
-    {"initial.left.speed", initial_of<&Initial::left, &Row::speed>, "l/t", "required", any, &general_rows,
+     "which particles there are at the start"},
+    {"initial.left.particles", initial_of<&Initial::left, &scene::Row::particles>, "", "required", "[1, 1e15]",
+     &general_rows, "particles of the left row"},
+    {"initial.left.speed", initial_of<&Initial::left, &scene::Row::speed>, "l/t", "required", any, &general_rows,
      "velocity of the left row, positive to the right"},
-    {"initial.left.density", initial_of<&Initial::left, &Row::density>, "1/l", "1", "(0, inf)", &general_rows,
-     "bodies per length of the left row"},
-    {"initial.right.particles", initial_of<&Initial::right, &Row::particles>, "", "required", "[1, 1e15]",
-     &general_rows, "bodies of the right row"},
-    {"initial.right.speed", initial_of<&Initial::right, &Row::speed>, "l/t", "required", any, &general_rows,
+    {"initial.left.density", initial_of<&Initial::left, &scene::Row::density>, "1/l", "1", "(0, inf)", &general_rows,
+     "particles per length of the left row"},
+    {"initial.right.particles", initial_of<&Initial::right, &scene::Row::particles>, "", "required", "[1, 1e15]",
+     &general_rows, "particles of the right row"},
+    {"initial.right.speed", initial_of<&Initial::right, &scene::Row::speed>, "l/t", "required", any, &general_rows,
      "velocity of the right row, positive to the right"},
-    {"initial.right.density", initial_of<&Initial::right, &Row::density>, "1/l", "1", "(0, inf)", &general_rows,
-     "bodies per length of the right row"},
+    {"initial.right.density", initial_of<&Initial::right, &scene::Row::density>, "1/l", "1", "(0, inf)", &general_rows,
+     "particles per length of the right row"},
     {"initial.centre.mass", initial_of<&Initial::centre, &Centre::mass>, "m", "0", "[0, inf)", &general_rows,
-     "mass of a body at x = 0 between the rows; 0: none"},
+     "mass of a particle at x = 0 between the rows; 0: none"},
     {"initial.centre.speed", initial_of<&Initial::centre, &Centre::speed>, "l/t", "0", any, &general_rows,
-     "velocity of the body between the rows"},
+     "velocity of the particle between the rows"},
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15] even", &plain_rows,
-     "bodies of both rows together; the first ones start at plus and minus half the spacing"},
-    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 1e15]", &ring, "bodies on the ring"},
+     "particles of both rows together; the first ones start at plus and minus half the spacing"},
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 1e15]", &ring, "particles on the ring"},
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15]", &cold,
-     "bodies of the gas, those that move included"},
+     "particles of the gas, those that move included"},
     {"initial.hot", initial_of<&Initial::hot>, "", "1", "[1, initial.particles]", &cold,
-     "how many bodies move at the start, one beside the other; the others are at rest"},
+     "how many particles move at the start, one beside the other; the others are at rest"},
     {"initial.place", initial_of<&Initial::place>, "", "\"middle\"", "middle | left", &cold,
-     "where the hot bodies are: in the middle of the others, about x = 0, or at the left end, from x = 0 on"},
+     "where the hot particles are: in the middle of the others, about x = 0, or at the left end, from x = 0 on"},
     {"initial.speed", initial_of<&Initial::speed>, "l/t", "1", "(0, inf)", &one_hot,
-     "velocity of the one hot body, to the right"},
+     "velocity of the one hot particle, to the right"},
     {"initial.energy", initial_of<&Initial::energy>, "m l^2/t^2", "initial.hot", "(0, inf)", &several_hot,
-     "energy of several hot bodies together: Gaussian velocities without total momentum", hot_as_energy},
+     "energy of several hot particles together: Gaussian velocities without total momentum", hot_as_energy},
     {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &cold, "distance between neighbours"},
     {"initial.speed", initial_of<&Initial::speed>, "l/t", "0.5", "(0, inf)", &plain_rows,
      "u0: the left row moves at +u0, the right one at -u0"},
     {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &plain_rows,
      "distance between neighbours in a row"},
     {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &in_order,
-     "each body is shifted uniformly by up to plus or minus this times the spacing"},
+     "each particle is shifted uniformly by up to plus or minus this times the spacing"},
     {"initial.masses", initial_of<&Initial::masses>, "m", "", "(0, inf)", &in_order,
-     "masses of the bodies, repeated from the first one on, 1 where not given; on a ring a whole number of times"},
+     "masses of the particles, repeated from the first one on, 1 where not given; on a ring a whole number of times"},
     {"initial.length", initial_of<&Initial::length>, "l", "initial.particles", "(0, inf)", &ring,
      "circumference of the ring", particles_as_length},
     {"initial.velocities", initial_of<&Initial::velocities>, "", "\"gaussian\"", "gaussian | uniform", &ring,
@@ -177,8 +177,8 @@ const Field all_fields[] = {
     {"initial.variance", initial_of<&Initial::variance>, "l^2/t^2", "1", "(0, inf)", &ring,
      "variance of the velocities"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
-     "CSV file of the bodies, relative to the scene: a line x,v or x,v,m, then decimals, x increasing; results hold "
-     "the bodies themselves"},
+     "CSV file of the particles, relative to the scene: a line x,v or x,v,m, then decimals, x increasing; results hold "
+     "the particles themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
     {"initial.v", initial_of<&Initial::v>, "l/t", "", any, &list, "velocities; instead of a file"},
     {"initial.m", initial_of<&Initial::m>, "m", "", "(0, inf)", &list, "masses, 1 where not given; instead of a file"},
@@ -199,26 +199,27 @@ const Field all_fields[] = {
      "number of the replica; each has its own random numbers"},
 
     {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "", any, &inelastic,
-     "position of a wall at the left end of the line, at run.start; without it, none. A wall is a body of infinite "
+     "position of a wall at the left end of the line, at run.start; without it, none. A wall is a particle of infinite "
      "mass"},
     {"walls.left.speed", walls_of<&WallPair::left, &WallAt::speed>, "l/t", "0", any, &left_wall,
      "constant velocity of the left wall, positive to the right: a piston"},
     {"walls.left.temperature", walls_of<&WallPair::left, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)", &left_wall,
-     "bodies leave the left wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
+     "particles leave the left wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
      "reflects them"},
     {"walls.left.restitution", walls_of<&WallPair::left, &WallAt::restitution>, "", "1", "[0, 1]", &left_reflects,
-     "factor by which a contact with the left wall reduces the closing speed; 1 is elastic"},
+     "factor by which a collision with the left wall reduces the closing speed; 1 is elastic"},
     {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &inelastic,
-     "position of a wall at the right end of the line, at run.start; without it, none. A wall is a body of infinite "
+     "position of a wall at the right end of the line, at run.start; without it, none. A wall is a particle of "
+     "infinite "
      "mass"},
     {"walls.right.speed", walls_of<&WallPair::right, &WallAt::speed>, "l/t", "0", any, &right_wall,
      "constant velocity of the right wall, positive to the right: a piston"},
     {"walls.right.temperature", walls_of<&WallPair::right, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)",
      &right_wall,
-     "bodies leave the right wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
+     "particles leave the right wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
      "reflects them"},
     {"walls.right.restitution", walls_of<&WallPair::right, &WallAt::restitution>, "", "1", "[0, 1]", &right_reflects,
-     "factor by which a contact with the right wall reduces the closing speed; 1 is elastic"},
+     "factor by which a collision with the right wall reduces the closing speed; 1 is elastic"},
 
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},
@@ -229,9 +230,9 @@ const Field all_fields[] = {
     {"run.collapse", collapse, "", "cutoff with a law.cutoff, else stop", "cutoff | contact-time | merge | stop",
      &always, "what to do at inelastic collapse", collapse_by_cutoff},
     {"run.contact_time", run_of<&Run::contact_time>, "t", "required", "(0, inf)", &contact_time,
-     "contacts are elastic if one of the two bodies had another contact less than this time before"},
+     "collisions are elastic if one of the two particles had another collision less than this time before"},
     {"run.merge_speed", run_of<&Run::merge_speed>, "l/t", "required", "(0, inf)", &merge,
-     "bodies that close slower than this stick"},
+     "particles that close slower than this stick"},
     {"run.stop_gap", run_of<&Run::stop_gap>, "l", "", "(0, inf)", &stop,
      "the run ends when a gap is below this; without it, when the extrapolated collapse time is settled"},
 
@@ -247,7 +248,7 @@ const Field all_fields[] = {
     {"output.series.spacing", output_of<&Output::series, &Series::spacing>, "", "\"linear\"", "linear | log",
      &by_points, "how the samples of the series are spaced"},
     {"output.snapshots", output_of<&Output::snapshots>, "t", "[]", within_run, &always,
-     "times at which all active bodies are written"},
+     "times at which all active particles are written"},
     {"output.profiles.times", output_of<&Output::profiles, &Profiles::times>, "t", "[]", within_run, &always,
      "times at which profiles, averages over bins, are written"},
     {"output.profiles.bins", output_of<&Output::profiles, &Profiles::bins>, "", "50", "[1, 1e6]", &always,
@@ -268,10 +269,10 @@ const Field all_fields[] = {
      "watch whether the two heaviest clusters pass or stick; needs a series with spacing = \"log\" and 100 points a "
      "decade"},
     {"output.core", output_of<&Output::core>, "", "false", "", &on_line,
-     "add to the series what the dense core of a shock is like, its mass, width, velocity window and median gap, and "
+     "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
      "the "
      "energy beyond that of the sticky gas that began alike"},
-    {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every contact"},
+    {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every collision"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",
      "[0, inf)", &always,
      "seconds of computing between checkpoints, from which `cradle resume` goes on; 0: only when the run ends or is "

@@ -1,4 +1,4 @@
-// CSV of bodies, line by line; every number is checked where it stands, so that messages can name the line.
+// CSV of particles, line by line; every number is checked where it stands, so that messages can name the line.
 #include "cradle/tools/scene/list_file.hpp"
 
 #include <algorithm>
@@ -46,22 +46,22 @@ class Reader {
   void add(const std::vector<std::string_view>& cells, std::size_t line) {
     line_ = line;
     const auto x = number(cells[0], "x");
-    if (!bodies_.x.empty()) {
-      const auto order = compare_decimals(x, bodies_.x.back());
+    if (!particles_.x.empty()) {
+      const auto order = compare_decimals(x, particles_.x.back());
       if (std::is_lteq(order))
-        throw Error(place("x"), std::is_eq(order) ? "coincident bodies" : "not increasing",
-                    fmt::format("{} after {}", x, bodies_.x.back()), "give the bodies in order of increasing x");
+        throw Error(place("x"), std::is_eq(order) ? "coincident particles" : "not increasing",
+                    fmt::format("{} after {}", x, particles_.x.back()), "give the particles in order of increasing x");
     }
-    bodies_.x.push_back(x);
-    bodies_.v.push_back(number(cells[1], "v"));
+    particles_.x.push_back(x);
+    particles_.v.push_back(number(cells[1], "v"));
     if (cells.size() == 2) return;
     const auto m = number(cells[2], "m");
     if (std::is_lteq(compare_decimals(m, "0"))) throw Error(place("m"), "out of range", m, "give a mass above 0");
     range_.check_positive(m, place("m"));
-    bodies_.m.push_back(m);
+    particles_.m.push_back(m);
   }
 
-  ListedBodies& bodies() { return bodies_; }
+  ListedParticles& particles() { return particles_; }
 
  private:
   Place place(const char* column) const { return {file_, line_, column}; }
@@ -78,12 +78,12 @@ class Reader {
   const std::string& file_;
   NumberRange range_;
   std::size_t line_ = 0;
-  ListedBodies bodies_;
+  ListedParticles particles_;
 };
 
 }  // namespace
 
-ListedBodies parse_list(std::istream& csv, const std::string& file_name, const Run& run) {
+ListedParticles parse_list(std::istream& csv, const std::string& file_name, const Run& run) {
   Reader reader(file_name, run);
   Place place{file_name, 0, {}};
   std::size_t columns = 0;  // 0: still to be named
@@ -110,22 +110,22 @@ ListedBodies parse_list(std::istream& csv, const std::string& file_name, const R
     reader.add(cells, place.line);
   }
   if (csv.bad()) throw Error({file_name, 0, {}}, "cannot be read", "a read error", "check the disk", Exit::io);
-  if (reader.bodies().x.empty())
-    throw Error({file_name, 0, {}}, "no bodies", columns == 0 ? "an empty file" : "only the names of the columns",
-                "give a line x,v or x,v,m and then one line per body");
-  return std::move(reader.bodies());
+  if (reader.particles().x.empty())
+    throw Error({file_name, 0, {}}, "no particles", columns == 0 ? "an empty file" : "only the names of the columns",
+                "give a line x,v or x,v,m and then one line per particle");
+  return std::move(reader.particles());
 }
 
 void read_list(const std::filesystem::path& path, Scene& scene) {
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path))
-    throw Error({path.string(), 0, {}}, "the list of bodies cannot be read", "no such file, or no permission",
+    throw Error({path.string(), 0, {}}, "the list of particles cannot be read", "no such file, or no permission",
                 "correct initial.file, which is relative to the scene file", Exit::io);
-  ListedBodies bodies = parse_list(file, path.string(), scene.run);
+  ListedParticles particles = parse_list(file, path.string(), scene.run);
   scene.initial.file.reset();
-  scene.initial.x = std::move(bodies.x);
-  scene.initial.v = std::move(bodies.v);
-  scene.initial.m = std::move(bodies.m);
+  scene.initial.x = std::move(particles.x);
+  scene.initial.v = std::move(particles.v);
+  scene.initial.m = std::move(particles.m);
 }
 
 }  // namespace cradle::tools

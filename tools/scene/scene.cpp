@@ -1,6 +1,6 @@
 // Reading a scene: text to entries (source.cpp), those of the command line on top (overrides.cpp), entries through the
-// table of fields into the struct (fields.cpp), then the checks that need more than one key (checks.cpp) and the bodies
-// of a list (list_file.cpp).
+// table of fields into the struct (fields.cpp), then the checks that need more than one key (checks.cpp) and the
+// particles of a list (list_file.cpp).
 #include "cradle/tools/scene/scene.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A scene: which bodies, which contact law, until when, and what to write. Plain values, read from TOML.
+// A scene: which particles, which collision law, until when, and what to write. Plain values, read from TOML.
 // Units: mass m = 1, lengths in the scene's own unit, times in lengths per speed. All keys, units, defaults and ranges
 // are in the one table of fields.cpp; this struct only holds what was read. Numbers are exact decimals
 // (decimal.hpp), to be converted in the working precision from Decimal::text.
@@ -22,24 +22,28 @@ namespace cradle::tools {
 // The enumerators stand in the order of the names in the table of fields.
 enum class LawType { inelastic, wet, sticky };
 enum class InitialType { rows, ring, list, clusters, cold };
-enum class HotPlace { middle, left };
 enum class Velocities { gaussian, uniform };
 enum class Coordinates { gaps, absolute };
-enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Spacing { linear, log };
+
+// What the engine has too, as a scene says it.
+namespace scene {
+
+enum class HotPlace { middle, left };
+enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Meeting { energy, pass, stick };
 
 struct Law {
   LawType type = LawType::inelastic;
   Decimal restitution;  // inelastic
-  Decimal cutoff;       // inelastic: closing speed below which contacts are elastic; 0: none
+  Decimal cutoff;       // inelastic: closing speed below which collisions are elastic; 0: none
   std::optional<Decimal>
       cutoff_exponent;  // inelastic: by what power of the speed the restitution falls there; none: sharp
   Decimal loss;         // wet: E_loss
   bool operator==(const Law&) const = default;
 };
 
-/// One side of a general Riemann problem: bodies at distance 1/density.
+/// One side of a general Riemann problem: particles at distance 1/density.
 struct Row {
   std::uint64_t particles = 0;
   Decimal speed;  // velocity of the row: positive to the right
@@ -47,7 +51,9 @@ struct Row {
   bool operator==(const Row&) const = default;
 };
 
-/// The body between two general rows, at x = 0; mass 0: there is none.
+}  // namespace scene
+
+/// The particle between two general rows, at x = 0; mass 0: there is none.
 struct Centre {
   Decimal mass;
   Decimal speed;
@@ -57,23 +63,23 @@ struct Centre {
 struct Initial {
   InitialType type = InitialType::rows;
   std::uint64_t particles = 0;  // rows (both together), ring, cold
-  Decimal
-      speed;  // rows: left row +speed, right row -speed; clusters: of the rows that feed them; cold: of one hot body
+  Decimal speed;    // rows: left row +speed, right row -speed; clusters: of the rows that feed them; cold: of one hot
+                    // particle
   Decimal spacing;  // rows, clusters, cold
-  Row left, right;  // rows given as tables: see general_rows()
+  scene::Row left, right;  // rows given as tables: see general_rows()
   Centre centre;
   Decimal perturbation;  // rows, ring, cold: uniform in plus/minus this times the spacing
   Decimal length;        // ring
   Velocities velocities = Velocities::gaussian;
-  Decimal variance;                   // ring
-  std::vector<Decimal> masses;        // rows, ring, cold: repeated from body 0 on; empty: all 1
-  std::uint64_t hot = 0;              // cold: bodies that move at the start
-  HotPlace place = HotPlace::middle;  // cold: where these are
-  Decimal energy;                     // cold: of several hot bodies together
-  std::optional<std::string> file;    // list: where a scene file has its bodies; a scene that was read has them here:
-  DecimalColumn x, v, m;              // list; m empty: all 1. clusters: two x, two v
-  std::vector<Decimal> growth;        // clusters: share of the incoming mass that each takes up
-  Meeting meeting = Meeting::energy;
+  Decimal variance;                                 // ring
+  std::vector<Decimal> masses;                      // rows, ring, cold: repeated from particle 0 on; empty: all 1
+  std::uint64_t hot = 0;                            // cold: particles that move at the start
+  scene::HotPlace place = scene::HotPlace::middle;  // cold: where these are
+  Decimal energy;                                   // cold: of several hot particles together
+  std::optional<std::string> file;  // list: where a scene file has its particles; a scene that was read has them here:
+  DecimalColumn x, v, m;            // list; m empty: all 1. clusters: two x, two v
+  std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
+  scene::Meeting meeting = scene::Meeting::energy;
   std::uint64_t seed = 0;
   std::uint64_t replica = 0;
 
@@ -103,7 +109,7 @@ struct Run {
   Precision precision = Precision::double_;
   std::uint64_t digits = 0;  // mpfr
   Coordinates coordinates = Coordinates::gaps;
-  CollapsePolicy collapse = CollapsePolicy::stop;
+  scene::CollapsePolicy collapse = scene::CollapsePolicy::stop;
   Decimal contact_time;             // contact-time
   Decimal merge_speed;              // merge
   std::optional<Decimal> stop_gap;  // stop
@@ -167,7 +173,7 @@ struct Sweep {
 struct Scene {
   std::string name;  // stem of the file, or the bundled scene's name
   std::string title;
-  Law law;
+  scene::Law law;
   Initial initial;
   WallPair walls;
   Run run;
@@ -175,8 +181,8 @@ struct Scene {
   Sweep sweep;
 };
 
-/// Whether initial.masses gives the bodies different masses, or one that is not 1: what formulas for bodies of mass 1
-/// do not hold for.
+/// Whether initial.masses gives the particles different masses, or one that is not 1: what formulas for particles of
+/// mass 1 do not hold for.
 bool unequal_masses(const Scene& scene);
 
 /// The same scene, wherever it was read from (the name does not count).
@@ -188,12 +194,12 @@ bool operator==(const Scene& a, const Scene& b);
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
 /// The same from text; `source_name` is what messages call it, its stem the scene's name, and its folder where a list
-/// of bodies is looked for.
+/// of particles is looked for.
 Scene parse_scene(std::string_view text, const std::string& source_name,
                   const std::vector<std::string>& overrides = {});
 
-/// The whole scene with every default filled in, listed bodies included, without what cannot change a result; the same
-/// text for the same scene, reads back as an equal scene wherever that is done.
+/// The whole scene with every default filled in, listed particles included, without what cannot change a result; the
+/// same text for the same scene, reads back as an equal scene wherever that is done.
 std::string effective_toml(const Scene& scene);
 
 /// Keys and values (TOML syntax) that apply to this scene, in the table's order: those that differ from their defaults,

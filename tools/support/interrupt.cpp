@@ -22,12 +22,12 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_alw
 // started is read before theirs is run, and in the plainest way, since nothing is set up yet.
 bool hang_ups_ignored = false;
 #ifdef __linux__
-__attribute__((no_sanitize("address"), no_sanitize("undefined"), no_sanitize("thread"))) void look_at_hang_ups() {
+__attribute__((no_sanitize("address"), no_sanitize("undefined"), no_sanitize("thread"))) void check_hang_ups() {
   unsigned long action[4] = {};  // the handler first
   if (::syscall(SYS_rt_sigaction, SIGHUP, nullptr, action, sizeof action[3]) == 0)
     hang_ups_ignored = action[0] == reinterpret_cast<unsigned long>(SIG_IGN);
 }
-[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = look_at_hang_ups;
+[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = check_hang_ups;
 #endif
 
 constexpr int noted[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};

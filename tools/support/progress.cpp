@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "cradle/tools/support/tell.hpp"
+#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -16,7 +16,8 @@ std::string duration(double seconds) {
   if (!(seconds < 360000)) return "more than 100 h";
   const auto s = static_cast<long>(seconds + 0.5);
   if (s < 60) return fmt::format("{} s", s);
-  return s >= 3600 ? fmt::format("{} h {:02} min", s / 3600, s / 60 % 60) : fmt::format("{} min {:02} s", s / 60, s % 60);
+  return s >= 3600 ? fmt::format("{} h {:02} min", s / 3600, s / 60 % 60)
+                   : fmt::format("{} min {:02} s", s / 60, s % 60);
 }
 
 namespace {
@@ -33,7 +34,7 @@ ProgressLine::ProgressLine(Show show)
       active_(show == Show::always || (show == Show::on_terminal && (terminal_ || socket_ >= 0))) {}
 
 ProgressLine::~ProgressLine() {
-  if (drawn_ && terminal_) tell("\r\033[K");
+  if (drawn_ && terminal_) notify("\r\033[K");
 }
 
 std::optional<double> ProgressLine::due() const {
@@ -49,9 +50,9 @@ void ProgressLine::draw(double share, const std::string& state) {
   } else if (terminal_) {
     constexpr int width = 30;
     const auto full = static_cast<int>(share * width);
-    tell(fmt::format("\r\033[K[{:#<{}}{: <{}}] {}", "", full, "", width - full, state));
+    notify(fmt::format("\r\033[K[{:#<{}}{: <{}}] {}", "", full, "", width - full, state));
   } else {
-    tell(state + "\n");
+    notify(state + "\n");
   }
   drawn_ = true;
   last_ = Clock::now();
@@ -60,7 +61,7 @@ void ProgressLine::draw(double share, const std::string& state) {
 Progress::Progress(Show show, double start, double until)
     : line_(show), start_(start), until_(until), last_time_(start) {}
 
-void Progress::tell(double time, std::uint64_t contacts) {
+void Progress::report(double time, std::uint64_t collisions) {
   const auto due = line_.due();
   if (!due) return;
   const double passed = *due;
@@ -68,12 +69,12 @@ void Progress::tell(double time, std::uint64_t contacts) {
   speed_ = speed_ > 0 ? 0.7 * speed_ + 0.3 * speed : speed;
   const double share = until_ > start_ ? std::clamp((time - start_) / (until_ - start_), 0.0, 1.0) : 1.0;
   const std::string state =
-      fmt::format("t = {:.6g} of {:.6g}, {:.4g} contacts, {:.3g} million/s, {} left", time, until_,
-                  static_cast<double>(contacts), static_cast<double>(contacts - last_contacts_) / passed * 1e-6,
+      fmt::format("t = {:.6g} of {:.6g}, {:.4g} collisions, {:.3g} million/s, {} left", time, until_,
+                  static_cast<double>(collisions), static_cast<double>(collisions - last_collisions_) / passed * 1e-6,
                   speed_ > 0 ? duration((until_ - time) / speed_) : "?");
   line_.draw(share, state);
   last_time_ = time;
-  last_contacts_ = contacts;
+  last_collisions_ = collisions;
 }
 
 ReplicaProgress::ReplicaProgress(ProgressLine::Show show, std::uint64_t before, std::uint64_t total)

@@ -1,6 +1,7 @@
 // Progress on standard error: a bar on a terminal, a plain line now and then elsewhere (where requested). Of a run:
-// simulated time, contacts, contacts/s, time left; of an ensemble: replicas, replicas/s, time left. For programs that
-// call this one: where CRADLE_PROGRESS_FD names a socket, each line goes there as `SHARE<tab>TEXT`, SHARE from 0 to 1.
+// simulated time, collisions, collisions/s, time left; of an ensemble: replicas, replicas/s, time left. For programs
+// that call this one: where CRADLE_PROGRESS_FD names a socket, each line goes there as `SHARE<tab>TEXT`, SHARE from 0
+// to 1.
 #pragma once
 
 #include <chrono>
@@ -44,15 +45,15 @@ class Progress {
   Progress(Show show, double start, double until);
 
   /// The run has been there already.
-  void go_on_from(double time, std::uint64_t contacts) { last_time_ = time, last_contacts_ = contacts; }
+  void continue_from(double time, std::uint64_t collisions) { last_time_ = time, last_collisions_ = collisions; }
   /// Cheap to call often: prints at most a few times a second on a terminal, every ten seconds elsewhere.
-  void tell(double time, std::uint64_t contacts);
+  void report(double time, std::uint64_t collisions);
 
  private:
   ProgressLine line_;
   double start_, until_;
   double last_time_;
-  std::uint64_t last_contacts_ = 0;
+  std::uint64_t last_collisions_ = 0;
   double speed_ = 0;  // simulated time per second, smoothed
 };
 

@@ -8,8 +8,8 @@
 namespace cradle::tools {
 
 void predict_cooling(const Scene& scene, Predictions& table) {
-  const auto bodies = static_cast<double>(scene.initial.particles);
-  const theory::FreeCooling gas{scene.initial.variance.value, bodies / scene.initial.length.value};
+  const auto particles = static_cast<double>(scene.initial.particles);
+  const theory::FreeCooling gas{scene.initial.variance.value, particles / scene.initial.length.value};
   const double until = scene.run.until.value - scene.run.start.value;
   const double flight = 1 / (gas.density * std::sqrt(gas.variance));  // a mean spacing at the thermal speed
   if (!(until > flight)) return;
@@ -17,12 +17,12 @@ void predict_cooling(const Scene& scene, Predictions& table) {
   if (dry) table.number("haff_time", "Haff 1983", "continuous", theory::haff_time(gas, scene.law.restitution.value));
   for (int k = 0; k <= curve_points; ++k) {
     const double t = flight * std::pow(until / flight, static_cast<double>(k) / curve_points);
-    table.point("energy_sticky", "t^(-2/3)", "continuous", t, bodies * theory::sticky_energy_per_body(gas, t));
+    table.point("energy_sticky", "t^(-2/3)", "continuous", t, particles * theory::sticky_energy_per_particle(gas, t));
     if (scene.law.type == LawType::sticky)
-      table.point("clusters", "t^(-2/3)", "continuous", t, bodies * theory::sticky_clusters_per_body(gas, t));
+      table.point("clusters", "t^(-2/3)", "continuous", t, particles * theory::sticky_clusters_per_particle(gas, t));
     if (dry)
       table.point("energy_haff", "Haff 1983", "continuous", t,
-                  bodies * theory::haff_energy_per_body(gas, scene.law.restitution.value, t));
+                  particles * theory::haff_energy_per_particle(gas, scene.law.restitution.value, t));
   }
 }
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "cradle/core/parallel/workers.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
-#include "cradle/core/workers.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
@@ -15,12 +15,13 @@ namespace {
 
 double span(const Scene& scene) { return scene.run.until.value - scene.run.start.value; }
 
-// Layers of either row that a body of the other could have met by a time if they did not slow each other: K = 2 u0 t/l.
+// Layers of either row that a particle of the other could have met by a time if they did not slow each other: K = 2 u0
+// t/l.
 double layers(const Scene& scene, double time) {
   return 2 * scene.initial.speed.value * time / scene.initial.spacing.value;
 }
 
-// A bound for the bodies of a cold gas that are reached: nothing is faster than one body with all of the energy.
+// A bound for the particles of a cold gas that are reached: nothing is faster than one particle with all of the energy.
 double reached_when_cold(const Scene& scene) {
   const Initial& initial = scene.initial;
   double least = initial.masses.empty() ? 1 : initial.masses.front().value, heaviest = least;
@@ -33,29 +34,30 @@ double reached_when_cold(const Scene& scene) {
   return std::min(static_cast<double>(initial.particles), hot + 2 * layers);
 }
 
-// Bodies of two rows that have run into each other.
+// Particles of two rows that have run into each other.
 double reached(const Scene& scene) {
   return std::min(static_cast<double>(scene.initial.particles), layers(scene, span(scene)));
 }
 
-double bodies_at_end(const Scene& scene) {
+double particles_at_end(const Scene& scene) {
   const Initial& initial = scene.initial;
   if (initial.type == InitialType::list) return static_cast<double>(initial.x.size());
   if (initial.type == InitialType::cold && scene.run.coordinates == Coordinates::gaps) return reached_when_cold(scene);
   if (initial.general_rows()) return static_cast<double>(initial.left.particles + initial.right.particles);
   const bool streamed = initial.type == InitialType::rows && scene.run.coordinates == Coordinates::gaps;
   if (!streamed) return static_cast<double>(initial.particles);
-  // Wet bodies end up in the clusters; 14 to 17 u0^2/E_loss of them are on their way in the scenes of Figs. 7 and 11.
+  // Wet particles end up in the clusters; 14 to 17 u0^2/E_loss of them are on their way in the scenes of Figs. 7 and
+  // 11.
   const double speed = initial.speed.value;
   return scene.law.type == LawType::wet ? std::min(reached(scene), 20 * speed * speed / scene.law.loss.value)
                                         : reached(scene);
 }
 
-// Contacts of two rows that bounce, as a share of those of elastic rows without end, K(K + 1)/2, by
-// s = K (1-eps)/(1+eps). Counted, not derived: the points are those of eps = .999, N = 8000. Runs of N = 16000 there
-// and of eps = .992 follow them closely below s = 3, eps = .9 within a tenth or two; eps = .5 does not. At first the
-// share falls as bodies lag behind, about ln(1+s)/s, which is what the first body of a row meets; from s = 1.8 on
-// bodies of the dense core meet again and again, ever more often up to inelastic collapse at s = 3.25.
+// Collisions of two rows that bounce, as a share of those of elastic rows without end, K(K + 1)/2, by
+// s = K (1-eps)/(1+eps). Counted, not derived: the points are those of eps = 0.999, N = 8000. Runs of N = 16000 there
+// and of eps = 0.992 follow them closely below s = 3, eps = 0.9 within a tenth or two; eps = 0.5 does not. At first the
+// share falls as particles lag behind, about ln(1+s)/s, which is what the first particle of a row meets; from s = 1.8
+// on particles of the dense core meet again and again, ever more often up to inelastic collapse at s = 3.25.
 struct Share {
   double s, share;
 };
@@ -91,47 +93,47 @@ void bouncing_rows(const Scene& scene, Cost& cost) {
   const double eps = scene.law.restitution.value, kappa = (1 - eps) / (1 + eps);
   const double particles = static_cast<double>(scene.initial.particles), half = particles / 2;
   double met = layers(scene, span(scene));
-  const auto onset = theory::collapse_onset_bodies(eps);
+  const auto onset = theory::collapse_onset_particles(eps);
   const bool may_collapse = onset && particles >= *onset;
   if (may_collapse && met * kappa > counted.back().s) {
     met = counted.back().s / kappa;
     cost.collapse = scene.run.start.value + span(scene) * met / layers(scene, span(scene));
   }
-  cost.contacts = met * (met + 1) / 2 * share_of_elastic(met * kappa);
-  // Rows that pass through each other before it comes to that: each body meets every one of the other row once, and
+  cost.collisions = met * (met + 1) / 2 * share_of_elastic(met * kappa);
+  // Rows that pass through each other before it comes to that: each particle meets every one of the other row once, and
   // some more often the nearer their number is to that of a collapse.
-  if (!may_collapse) cost.contacts = std::min(*cost.contacts, half * half * (1 + (onset ? particles / *onset : 0)));
+  if (!may_collapse) cost.collisions = std::min(*cost.collisions, half * half * (1 + (onset ? particles / *onset : 0)));
 }
 
-// Wet bodies that the front has reached lose their energy m u0^2/2 by E_loss a contact and half of that in the last one
-// (3 contacts a body at E_loss = .05, as counted in Fig. 11).
+// Wet particles that the front has reached lose their energy m u0^2/2 by E_loss a collision and half of that in the
+// last one (3 collisions a particle at E_loss = 0.05, as counted in Fig. 11).
 void wet_rows(const Scene& scene, Cost& cost) {
-  const double bodies = reached(scene), met = std::min(bodies, static_cast<double>(scene.initial.particles) / 2);
+  const double particles = reached(scene), met = std::min(particles, static_cast<double>(scene.initial.particles) / 2);
   const double energy = scene.initial.speed.value * scene.initial.speed.value / 2;
-  cost.contacts = std::min(met * (met + 1) / 2, bodies * (energy / scene.law.loss.value + 0.5));
+  cost.collisions = std::min(met * (met + 1) / 2, particles * (energy / scene.law.loss.value + 0.5));
 }
 
 // Each merges once.
-void sticky_rows(const Scene& scene, Cost& cost) { cost.contacts = std::max(0.0, reached(scene) - 1); }
+void sticky_rows(const Scene& scene, Cost& cost) { cost.collisions = std::max(0.0, reached(scene) - 1); }
 
 Cost expected_cost(const Scene& scene) {
   Cost cost;
-  cost.bodies = bodies_at_end(scene);
+  cost.particles = particles_at_end(scene);
   if (equal_rows(scene)) law_row(scene).cost_of_rows(scene, cost);
   const ScalarRow& type = scalar_row(scene.run.precision);
   const std::uint64_t digits = scene.run.digits;
   constexpr double fastest = 2e7;
-  cost.contacts_per_second =
+  cost.collisions_per_second =
       fastest / (scene.run.coordinates == Coordinates::gaps ? type.gaps : type.absolute).at(digits);
-  // Some 15 numbers a body; a sample is nine columns of doubles, and its time in the plan.
+  // Some 15 numbers a particle; a sample is nine columns of doubles, and its time in the plan.
   constexpr double program = 20e6, numbers = 15, bytes_per_event = 48, bytes_per_sample = 80;
   const Series& series = scene.output.series;
   const double samples = series.every    ? span(scene) / series.every->value
                          : series.points ? static_cast<double>(*series.points)
                                          : static_cast<double>(series.times.size());
   const double bytes = type.bytes.at(digits);
-  cost.memory = program + numbers * bytes * cost.bodies + (bytes_per_sample + 2 * bytes) * samples;
-  if (scene.output.events) cost.memory += bytes_per_event * cost.contacts.value_or(0);
+  cost.memory = program + numbers * bytes * cost.particles + (bytes_per_sample + 2 * bytes) * samples;
+  if (scene.output.events) cost.memory += bytes_per_event * cost.collisions.value_or(0);
   return cost;
 }
 
@@ -139,16 +141,16 @@ Threading expected_threading(const Scene& scene, const Cost& cost, unsigned thre
   const auto alone = [](const char* why) { return Threading{1, why}; };
   const bool merge = particles_merge(scene);
   if (merge && (!law_row(scene).needs_events || scene.initial.type != InitialType::ring))
-    return alone("bodies that merge");
+    return alone("particles that merge");
   if (scene.run.coordinates != Coordinates::gaps) return alone("absolute coordinates");
-  if (scene.run.collapse == CollapsePolicy::contact_time) return alone("contacts with a memory");
-  if (!merge && scene.run.collapse == CollapsePolicy::stop && scene.law.restitution < Decimal("1"))
+  if (scene.run.collapse == scene::CollapsePolicy::contact_time) return alone("collisions with a memory");
+  if (!merge && scene.run.collapse == scene::CollapsePolicy::stop && scene.law.restitution < Decimal("1"))
     return alone("a collapse to be found");
-  if (scene.output.events || scene.output.scenario) return alone("every contact to be told, in order");
+  if (scene.output.events || scene.output.scenario) return alone("every collision to be told, in order");
   // Two segments in two threads: 1.8 to 2.1 times the plain loop, bench/RESULTS.md.
-  constexpr double efficiency = .9;
-  const double segments = std::min<double>(threads, std::floor(cost.bodies / gaps_per_thread));
-  if (segments < 2) return alone(threads < 2 ? "one thread" : "few bodies");
+  constexpr double efficiency = 0.9;
+  const double segments = std::min<double>(threads, std::floor(cost.particles / gaps_per_thread));
+  if (segments < 2) return alone(threads < 2 ? "one thread" : "few particles");
   return {efficiency * segments, ""};
 }
 

@@ -1,5 +1,5 @@
-// What a run of a scene will cost, before it is run: contacts by the laws of the shock, time by how many contacts a
-// second each scalar type makes, memory by what a body takes in it. Orders of magnitude, to plan with.
+// What a run of a scene will cost, before it is run: collisions by the laws of the shock, time by how many collisions a
+// second each scalar type makes, memory by what a particle takes in it. Orders of magnitude, to plan with.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 namespace cradle::tools {
 
 struct Cost {
-  double bodies = 0;               // in the active zone at the end, at most
-  std::optional<double> contacts;  // none: not known beforehand for this initial state
-  std::optional<double> collapse;  // time from which on contacts have no limit, where that is before the end
-  double contacts_per_second = 0;
+  double particles = 0;              // in the active zone at the end, at most
+  std::optional<double> collisions;  // none: not known beforehand for this initial state
+  std::optional<double> collapse;    // time from which on collisions have no limit, where that is before the end
+  double collisions_per_second = 0;
   double memory = 0;  // bytes
 };
 
 Cost expected_cost(const Scene& scene);
 
-// Contacts of two equal rows, by law (tools/model/laws.hpp).
+// Collisions of two equal rows, by law (tools/model/laws.hpp).
 void bouncing_rows(const Scene& scene, Cost& cost);
 void wet_rows(const Scene& scene, Cost& cost);
 void sticky_rows(const Scene& scene, Cost& cost);

@@ -37,9 +37,10 @@ void add_curves(Predictions& table, const theory::InelasticShock<double>& shock,
 void predict_inelastic(const Scene& scene, Predictions& table) {
   if (unequal_masses(scene) || scene.law.cutoff_exponent) return;
   const double eps = scene.law.restitution.value;
-  table.number("three_body_collapse_limit", "7 - 4 sqrt 3", "continuous", theory::three_body_collapse_limit<double>());
-  if (eps < 1) table.number("collapse_onset_bodies", "N_c", "continuous", theory::collapse_onset_bodies(eps));
-  if (eps < 1) table.number("collapse_onset_bodies", "McNamara, Young", "cushion", theory::cushion_bodies(eps));
+  table.number("three_particle_collapse_limit", "7 - 4 sqrt 3", "continuous",
+               theory::three_particle_collapse_limit<double>());
+  if (eps < 1) table.number("collapse_onset_particles", "N_c", "continuous", theory::collapse_onset_particles(eps));
+  if (eps < 1) table.number("collapse_onset_particles", "McNamara, Young", "cushion", theory::cushion_particles(eps));
   if (!equal_rows(scene)) return;
 
   theory::InelasticShock<double> shock{eps};
@@ -49,7 +50,7 @@ void predict_inelastic(const Scene& scene, Predictions& table) {
   table.number("initial_energy", "N m u0^2/2", "continuous", theory::initial_energy(shock));
   table.number("turnover_time", "(4) = 0", "continuous", theory::turnover_time(shock));
   table.number("maximal_front", "x_max", "continuous", theory::maximal_front(shock));
-  if (const auto turned = theory::turnover_contact(shock)) {
+  if (const auto turned = theory::turnover_collision(shock)) {
     table.number("turnover_time", "t_n", "discrete", turned->time);
     table.number("maximal_front", "max(x_n - x_0)", "discrete", turned->position - shock.origin());
   }

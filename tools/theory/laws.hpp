@@ -30,7 +30,7 @@ class Predictions {
 inline constexpr int curve_points = 400;
 inline double curve_time(double end, int k) { return end * k / curve_points; }
 
-/// Two equal rows of bodies of mass 1 and of constant restitution, to which the paper's formulas apply.
+/// Two equal rows of particles of mass 1 and of constant restitution, to which the paper's formulas apply.
 inline bool equal_rows(const Scene& scene) {
   return scene.initial.type == InitialType::rows && !scene.initial.general_rows() && !unequal_masses(scene) &&
          !scene.law.cutoff_exponent;

@@ -16,7 +16,7 @@ struct Rows {
 Rows rows_of(const Initial& initial) {
   Rows rows;
   if (initial.general_rows()) {
-    const Row &l = initial.left, &r = initial.right;
+    const scene::Row &l = initial.left, &r = initial.right;
     const Centre& c = initial.centre;
     rows.shock = {l.density.value, l.speed.value, r.density.value, r.speed.value, c.mass.value, c.speed.value};
     rows.left = static_cast<double>(l.particles);

@@ -15,9 +15,9 @@ namespace cradle::tools {
 
 namespace {
 
-// Discrete forms go contact by contact: up to here they take some tenths of a second.
-constexpr double most_contacts = 3e7;
-// In s = E_loss t/(m u0 l): up to where the series for the energy is good (to 2e-4), and where bodies have surely
+// Discrete forms go collision by collision: up to here they take some tenths of a second.
+constexpr double most_collisions = 3e7;
+// In s = E_loss t/(m u0 l): up to where the series for the energy is good (to 2e-4), and where particles have surely
 // stuck.
 constexpr double last_progress = 1.1, sticking_progress = 1.2;
 
@@ -26,18 +26,18 @@ void add_front(Predictions& table, const theory::WetShock<double>& shock, double
   const auto turned = front.turnover();
   if (turned) {
     table.number("turnover_time", "(8)", "continuous", turned->time);
-    table.number("turnover_contacts", "(8)", "continuous", turned->contacts);
+    table.number("turnover_collisions", "(8)", "continuous", turned->collisions);
     table.number("maximal_front", "(8)", "continuous", turned->position - shock.origin());
-    if (turned->contacts < most_contacts)
-      if (const auto last = theory::turnover_contact(shock)) {
+    if (turned->collisions < most_collisions)
+      if (const auto last = theory::turnover_collision(shock)) {
         table.number("turnover_time", "t_n", "discrete", last->time);
-        table.number("turnover_contacts", "n", "discrete", static_cast<double>(last->contact));
+        table.number("turnover_collisions", "n", "discrete", static_cast<double>(last->collision));
         table.number("maximal_front", "max(x_n - x_0)", "discrete", last->position - shock.origin());
       }
   }
   const double end = turned ? std::min(until, 2 * turned->time) : until;
   theory::WetFrontRecursion<double> recursion(shock);
-  const bool step_by_step = 2 * shock.speed * end / shock.spacing < most_contacts;
+  const bool step_by_step = 2 * shock.speed * end / shock.spacing < most_collisions;
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(end, k);
     if (const auto here = front.at_time(t)) {
@@ -61,25 +61,25 @@ void add_energy(Predictions& table, const theory::WetShock<double>& shock, doubl
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(up_to(last_progress), k);
     const auto here = front.at_time(t);
-    if (!here || here->contacts > static_cast<double>(shock.particles / 2)) break;  // stuck, or through the other row
+    if (!here || here->collisions > static_cast<double>(shock.particles / 2)) break;  // stuck, or through the other row
     table.point("energy", "E_loss K(s)", "continuous", t, theory::energy(shock, t));
   }
 
   const double end = up_to(sticking_progress);
-  if (theory::wet_contacts(shock, end) > most_contacts) return;
-  std::vector<std::uint64_t> counts(curve_points + 1);  // by the first point of the curve that has the contact
+  if (theory::wet_collisions(shock, end) > most_collisions) return;
+  std::vector<std::uint64_t> counts(curve_points + 1);  // by the first point of the curve that has the collision
   const auto stuck = theory::cross_rows(shock, end, [&](double time, int pairs) {
     const auto place = static_cast<std::size_t>(std::ceil(time / end * curve_points));
     counts[std::min<std::size_t>(place, curve_points)] += static_cast<std::uint64_t>(pairs);
   });
   table.number("first_sticking_time", "pairs (i,j)", "discrete", stuck);
-  std::uint64_t contacts = 0;
+  std::uint64_t collisions = 0;
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(end, k);
     if (stuck && t >= *stuck) break;
-    contacts += counts[static_cast<std::size_t>(k)];
+    collisions += counts[static_cast<std::size_t>(k)];
     table.point("energy", "E_loss K(i,j)", "discrete", t,
-                theory::initial_energy(shock) - shock.loss * static_cast<double>(contacts));
+                theory::initial_energy(shock) - shock.loss * static_cast<double>(collisions));
   }
 }
 
@@ -88,9 +88,9 @@ void add_zone(Predictions& table, const theory::WetShock<double>& shock) {
   const theory::WetZone<double> zone(shock);
   table.number("density_excess", "(12) = (13)", "continuous", zone.excess());
   table.number("zone_width", "(13)", "continuous", zone.width());
-  table.number("contacts_to_rest", "j*", "continuous", theory::contacts_to_rest(shock));
-  table.number("speed_lost_per_contact", "before (13)", "continuous", theory::zone_speed_lost(shock));
-  table.number("speed_lost_per_contact", "before (13)", "printed", shock.loss / (shock.speed * shock.speed));
+  table.number("collisions_to_rest", "j*", "continuous", theory::collisions_to_rest(shock));
+  table.number("speed_lost_per_collision", "before (13)", "continuous", theory::zone_speed_lost(shock));
+  table.number("speed_lost_per_collision", "before (13)", "printed", shock.loss / (shock.speed * shock.speed));
   table.number("outer_force", "(15)", "continuous", zone.row_force());
   table.number("outer_force", "(15)", "printed", zone.row_force_printed());
   table.number("inner_force_at_edge", "(14)", "continuous", zone.inner_force(zone.half_width()));

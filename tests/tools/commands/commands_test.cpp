@@ -66,23 +66,24 @@ TEST_F(Commands, ScenesAreListedAndPrinted) {
 }
 
 TEST_F(Commands, CheckTellsEffectiveValuesAndCost) {
-  // Counted: 57079264, and 12153997, where many bodies have most of their contacts still before them.
+  // Counted: 57079264, and 12153997, where many particles have most of their collisions still before them.
   const std::string fig11 = shell("cradle check fig11").out;
-  for (const auto* text : {"contacts: about 5.7e+07\n", "end: 100 at most", "memory: about 20 MB"})
+  for (const auto* text : {"collisions: about 5.7e+07\n", "end: 100 at most", "memory: about 20 MB"})
     EXPECT_NE(fig11.find(text), std::string::npos) << text;
-  EXPECT_NE(shell("cradle check fig6").out.find("contacts: about 1.5e+07\n"), std::string::npos);
+  EXPECT_NE(shell("cradle check fig6").out.find("collisions: about 1.5e+07\n"), std::string::npos);
   // Counted: 34681883.
-  EXPECT_NE(shell("cradle check fig2").out.find("contacts: about 3.5e+07\ntime: about 1.7 s at 2e+07 contacts/s\n"),
+  EXPECT_NE(shell("cradle check fig2").out.find("collisions: about 3.5e+07\ntime: about 1.7 s at 2e+07 collisions/s\n"),
             std::string::npos);
   EXPECT_NE(shell("cradle check fig2 --set run.precision=mpfr --set run.digits=50").out.find("time: about 21 s at"),
             std::string::npos)
-      << "13.9 s at 2.5 million contacts/s, in proportion to the 2e7 assumed for double";
+      << "13.9 s at 2.5 million collisions/s, in proportion to the 2e7 assumed for double";
   EXPECT_NE(shell("cradle check fig2 --set run.until=9000").out.find("until inelastic collapse at about t = 6.5e+03"),
             std::string::npos);
-  EXPECT_NE(shell("cradle check cooling").out.find("bodies in the active zone at the end: 1e+05"), std::string::npos);
+  EXPECT_NE(shell("cradle check cooling").out.find("particles in the active zone at the end: 1e+05"),
+            std::string::npos);
   const Printed check = shell("cradle check fig2 --set run.until=100");
   EXPECT_EQ(check.status, 0) << check.err;
-  for (const auto* text : {"law.restitution = 0.999", "run.until = 100", "contacts: about", "memory: about"})
+  for (const auto* text : {"law.restitution = 0.999", "run.until = 100", "collisions: about", "memory: about"})
     EXPECT_NE(check.out.find(text), std::string::npos) << text;
   EXPECT_FALSE(std::filesystem::exists(folder / "fig2.h5"));
 }
@@ -140,7 +141,7 @@ type = "inelastic"
 restitution = 0.9
 [initial]
 type = "list"
-file = "bodies.csv"
+file = "particles.csv"
 [run]
 until = 10
 )";
@@ -149,7 +150,7 @@ struct BadInput {
   const char* name;
   const char* replace;  // in the good scene
   const char* by;
-  const char* bodies;
+  const char* particles;
   int status;
   const char* message;  // begins what is printed after "cradle: "
 };
@@ -163,7 +164,7 @@ TEST_P(BadInputs, EndInOneMessageAndTheDocumentedStatus) {
   std::string scene = good_scene;
   if (*bad.replace) scene.replace(scene.find(bad.replace), std::string(bad.replace).size(), bad.by);
   write("scene.toml", scene);
-  if (bad.bodies) write("bodies.csv", bad.bodies);
+  if (bad.particles) write("particles.csv", bad.particles);
   const Printed run = shell("cradle run scene.toml");
   EXPECT_EQ(run.status, bad.status);
   EXPECT_EQ(run.err.rfind(std::string("cradle: ") + bad.message, 0), 0U) << run.err;
@@ -172,26 +173,26 @@ TEST_P(BadInputs, EndInOneMessageAndTheDocumentedStatus) {
   EXPECT_FALSE(std::filesystem::exists(folder / "scene.h5"));
 }
 
-constexpr const char* good_bodies = "x,v\n0,1\n1,0\n";
+constexpr const char* good_particles = "x,v\n0,1\n1,0\n";
 INSTANTIATE_TEST_SUITE_P(
     Scenes, BadInputs,
-    testing::Values(BadInput{"UnknownKey", "restitution = 0.9", "restitution = 0.9\nresitution = 0.8", good_bodies, 2,
-                             "scene.toml:4: law.resitution: "},
-                    BadInput{"WrongType", "until = 10", "until = \"soon\"", good_bodies, 2,
+    testing::Values(BadInput{"UnknownKey", "restitution = 0.9", "restitution = 0.9\nresitution = 0.8", good_particles,
+                             2, "scene.toml:4: law.resitution: "},
+                    BadInput{"WrongType", "until = 10", "until = \"soon\"", good_particles, 2,
                              "scene.toml:8: run.until: "},
-                    BadInput{"OutOfRange", "0.9", "1.5", good_bodies, 2,
+                    BadInput{"OutOfRange", "0.9", "1.5", good_particles, 2,
                              "scene.toml:3: law.restitution: out of range (found 1.5): "},
-                    BadInput{"NaN", "0.9", "nan", good_bodies, 2, "scene.toml:3: law.restitution: "},
-                    BadInput{"Infinity", "until = 10", "until = inf", good_bodies, 2, "scene.toml:8: run.until: "},
-                    BadInput{"NotToml", "[run]", "[run", good_bodies, 2, "scene.toml:7: "},
-                    BadInput{"BodiesOutOfOrder", "", "", "x,v\n1,0\n0,1\n", 2, "bodies.csv:3: "},
-                    BadInput{"BodiesCoincident", "", "", "x,v\n0,1\n1,0\n1.0,0\n", 2, "bodies.csv:4: "},
-                    BadInput{"BodyBeyondTheType", "", "", "x,v\n0,1\n1,1e400\n", 2,
-                             "bodies.csv:3: v: too large for the precision (found 1e400 with \"double\"): "},
+                    BadInput{"NaN", "0.9", "nan", good_particles, 2, "scene.toml:3: law.restitution: "},
+                    BadInput{"Infinity", "until = 10", "until = inf", good_particles, 2, "scene.toml:8: run.until: "},
+                    BadInput{"NotToml", "[run]", "[run", good_particles, 2, "scene.toml:7: "},
+                    BadInput{"ParticlesOutOfOrder", "", "", "x,v\n1,0\n0,1\n", 2, "particles.csv:3: "},
+                    BadInput{"ParticlesCoincident", "", "", "x,v\n0,1\n1,0\n1.0,0\n", 2, "particles.csv:4: "},
+                    BadInput{"ParticleBeyondTheType", "", "", "x,v\n0,1\n1,1e400\n", 2,
+                             "particles.csv:3: v: too large for the precision (found 1e400 with \"double\"): "},
                     BadInput{"TooManySamples", "until = 10", "until = 10\n[output]\nseries = { every = 1e-9 }",
-                             good_bodies, 2, "scene.toml:10: output.series.every: too many samples (found 1e-9"},
-                    BadInput{"BodyNotANumber", "", "", "x,v\n0,1\n1,nan\n", 2, "bodies.csv:3: "},
-                    BadInput{"ListMissing", "", "", nullptr, 4, "bodies.csv: "}),
+                             good_particles, 2, "scene.toml:10: output.series.every: too many samples (found 1e-9"},
+                    BadInput{"ParticleNotANumber", "", "", "x,v\n0,1\n1,nan\n", 2, "particles.csv:3: "},
+                    BadInput{"ListMissing", "", "", nullptr, 4, "particles.csv: "}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST_F(Commands, MissingFilesAndUnwritableOutputAreStatus4) {

@@ -63,8 +63,8 @@ TEST_F(FirstHour, NewSceneTellsOfEveryKeyThatItCouldUse) {
   tools::Scene scene = tools::read_scene((folder / "shock.toml").string(), {});
   for (const tools::Field& field : tools::scene_fields()) {
     if (!field.when->holds(scene)) continue;
-    const std::string told = "# " + std::string(field.doc) + " (" + facts(field) + ")\n";
-    EXPECT_NE(text.find(told), std::string::npos) << field.key;
+    const std::string printed = "# " + std::string(field.doc) + " (" + facts(field) + ")\n";
+    EXPECT_NE(text.find(printed), std::string::npos) << field.key;
   }
   EXPECT_EQ(shell("cradle run shock.toml --quiet").status, 0);
 }

@@ -106,7 +106,7 @@ TEST_F(DamagedEnsembles, AreRefused) {
       << "listed as failed";
   EXPECT_EQ(merging([&](Result& r) { values<std::uint64_t>(r, "replicas", "index")[1] = 0; }).rfind(listed, 0), 0U);
   EXPECT_NE(merging([&](Result& r) {
-              values<std::uint64_t>(r, "replicas", "contacts").pop_back();
+              values<std::uint64_t>(r, "replicas", "collisions").pop_back();
             }).find("columns of /replicas of different lengths"),
             std::string::npos);
   EXPECT_NE(merging([&](Result& r) {

@@ -41,7 +41,7 @@ TEST_P(StatisticsOf, ReplicasAreThoseOfTheRunsOneByOne) {
       if (quantity.name == "time" || (quantity.name == "x" && !group.name.starts_with("series"))) continue;
       const std::string place = "ensemble/" + group.name + "/" + quantity.name;
       if (quantity.name == "index") {
-        EXPECT_EQ(all.find(place), nullptr) << "numbers that name bodies have no mean";
+        EXPECT_EQ(all.find(place), nullptr) << "numbers that name particles have no mean";
         continue;
       }
       const auto mean = numbers(all, place, "mean"), sem = numbers(all, place, "sem"),
@@ -81,10 +81,10 @@ TEST_P(StatisticsOf, ReplicasAreThoseOfTheRunsOneByOne) {
   for (std::size_t k = 0; k < n; ++k) {  // the table of replicas
     EXPECT_EQ(numbers(all, "replicas", "index")[k], static_cast<double>(k));
     EXPECT_EQ(numbers(all, "replicas", "outcome")[k], 0);
-    for (const auto* name : {"contacts", "merges", "energy"})
+    for (const auto* name : {"collisions", "merges", "energy"})
       EXPECT_EQ(numbers(all, "replicas", name)[k], numbers(runs[k], "series", name).back()) << name << k;
   }
-  EXPECT_NE(numbers(all, "replicas", "contacts")[0], numbers(all, "replicas", "contacts")[1]);
+  EXPECT_NE(numbers(all, "replicas", "collisions")[0], numbers(all, "replicas", "collisions")[1]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, StatisticsOf, testing::Values("shock", "wet"),
@@ -100,7 +100,7 @@ TEST_F(Ensembles, OneReplicaAloneIsTheRunOfThatReplica) {
 TEST_F(Ensembles, SeedIsPartOfTheScene) {
   run("ensemble shock.toml --replicas 3 --seed 1 -o a.h5");
   run("ensemble shock.toml --replicas 3 --seed 2 -o b.h5");
-  EXPECT_NE(numbers(result("a.h5"), "replicas", "contacts"), numbers(result("b.h5"), "replicas", "contacts"));
+  EXPECT_NE(numbers(result("a.h5"), "replicas", "collisions"), numbers(result("b.h5"), "replicas", "collisions"));
 }
 
 TEST_F(Ensembles, CollapseIsAnOutcome) {
@@ -122,7 +122,7 @@ TEST_F(Ensembles, CollapseIsAnOutcome) {
   EXPECT_GT(collapsed, 10U);
   EXPECT_LT(expected.back(), expected.front()) << "some collapse before the end";
   EXPECT_EQ(numbers(all, "ensemble/series/energy", "count"), expected);
-  for (std::size_t i = 0; i < 2; ++i)  // a bin without bodies has no number either, but a density
+  for (std::size_t i = 0; i < 2; ++i)  // a bin without particles has no number either, but a density
     EXPECT_EQ(profiled[i] < 40 ? numbers(all, fmt::format("ensemble/profiles/000{}/density", i), "count")[0] : 40,
               profiled[i])
         << i;
@@ -160,7 +160,7 @@ TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
   options.progress = tools::ProgressLine::Show::never;
   options.runner = [&](const Scene& replica, const tools::RunOptions& how) -> RunOutcome {
     Scene changed = replica;
-    if (fails(replica)) {  // an initial state that throws: bodies of a list out of order
+    if (fails(replica)) {  // an initial state that throws: particles of a list out of order
       changed.initial = {};
       changed.initial.type = tools::InitialType::list;
       changed.initial.x = {"1", "0"};
@@ -227,7 +227,7 @@ TEST_F(Ensembles, InfoTellsWhatFilesAndJournalsHold) {
   run("ensemble shock.toml --replicas 3 -o a.h5");
   const Printed file = shell("cradle info a.h5");
   for (const auto* text :
-       {"3 reached the end", "law.restitution = 0.99", "/replicas", "max of energy, energy_lost, contacts"})
+       {"3 reached the end", "law.restitution = 0.99", "/replicas", "max of energy, energy_lost, collisions"})
     EXPECT_NE(file.out.find(text), std::string::npos) << text << "\n" << file.out;
   EXPECT_EQ(file.out.find("ensemble/nodes"), std::string::npos) << "only with --all";
   EXPECT_EQ(shell(until_journalled("b.h5", "KILL")).status, 137);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/ensemble/store.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/store/ensemble_store.hpp"
 
 namespace cradle::tests {
 
@@ -38,7 +38,7 @@ snapshots = [100]
 profiles = { times = [50, 100], bins = 20, range = [-30, 30] }
 )";
 
-// Two of the three bodies collapse, at a time that depends on the replica, before until.
+// Two of the three particles collapse, at a time that depends on the replica, before until.
 inline constexpr const char* collapse = R"(
 [law]
 type = "inelastic"

@@ -43,16 +43,16 @@ class Failures : public Ensembles {
     EXPECT_EQ(numbers(result, below("replicas/failed"), "index"), lost);
     const auto first = static_cast<std::size_t>(lost.front());
     const auto& messages = attribute<std::string>(result.find(below("replicas/failed"))->attributes, "messages", file);
-    EXPECT_EQ(messages.rfind("replica " + std::to_string(first) + ": order of contacts lost", 0), 0U) << messages;
+    EXPECT_EQ(messages.rfind("replica " + std::to_string(first) + ": order of collisions lost", 0), 0U) << messages;
 
     std::smatch command;
     ASSERT_TRUE(std::regex_search(made.err, command, std::regex("the first of them again, alone: ([^\n]*)")))
         << made.err;
     const Printed alone = shell(command[1]);
     EXPECT_EQ(alone.status, 5) << command[1] << "\n" << alone.err;
-    EXPECT_NE(alone.err.find("order of contacts lost"), std::string::npos) << alone.err;
+    EXPECT_NE(alone.err.find("order of collisions lost"), std::string::npos) << alone.err;
     const Result replica = this->result("replica.h5");
-    EXPECT_EQ(numbers(replica, "series", "contacts").back(), numbers(result, below("replicas"), "contacts")[first]);
+    EXPECT_EQ(numbers(replica, "series", "collisions").back(), numbers(result, below("replicas"), "collisions")[first]);
     EXPECT_EQ(numbers(replica, "series", "energy").back(), numbers(result, below("replicas"), "energy")[first]);
   }
 };

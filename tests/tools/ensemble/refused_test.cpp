@@ -48,23 +48,23 @@ TEST_F(Ensembles, JournalOfAnotherSceneIsRefused) {
       << other.err;
 }
 
-TEST_F(Ensembles, ListedBodiesArePartOfTheScene) {
+TEST_F(Ensembles, ListedParticlesArePartOfTheScene) {
   write("list.toml", "[law]\ntype = \"inelastic\"\nrestitution = 0.9\n[initial]\ntype = \"list\"\nfile = "
-                     "\"bodies.csv\"\n[run]\nuntil = 5\n");
-  write("bodies.csv", "x,v\n0,1\n1,0\n");
+                     "\"particles.csv\"\n[run]\nuntil = 5\n");
+  write("particles.csv", "x,v\n0,1\n1,0\n");
   run("ensemble list.toml --replicas 2 -o list.h5");
-  write("bodies.csv", "x,v\n0,1\n2,0\n");
+  write("particles.csv", "x,v\n0,1\n2,0\n");
   run("ensemble list.toml --replicas 4 -o list.h5", 2);
 }
 
-TEST_F(Ensembles, OfListedBodiesAreMergedWhereverTheirFilesAre) {
+TEST_F(Ensembles, OfListedParticlesAreMergedWhereverTheirFilesAre) {
   write("list.toml", "[law]\ntype = \"inelastic\"\nrestitution = 0.9\n[initial]\ntype = \"list\"\nfile = "
-                     "\"bodies.csv\"\n[run]\nuntil = 5\n");
-  write("bodies.csv", "x,v\n0,1\n1.0000000000000000000000001,0\n");
+                     "\"particles.csv\"\n[run]\nuntil = 5\n");
+  write("particles.csv", "x,v\n0,1\n1.0000000000000000000000001,0\n");
   run("ensemble list.toml --replicas 2 -o a.h5");
   run("ensemble list.toml --first 2 --replicas 3 -o b.h5");
   run("ensemble list.toml --replicas 5 -o whole.h5");
-  std::filesystem::remove(folder / "bodies.csv");
+  std::filesystem::remove(folder / "particles.csv");
   const Printed merged = shell("mkdir elsewhere && cd elsewhere && cradle merge ../a.h5 ../b.h5 -o ../merged.h5");
   EXPECT_EQ(merged.status, 0) << merged.err;
   expect_same("merged.h5", "whole.h5");

@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
              "--set output.series.points=400",
              {"scaling", "energy"}},
         Kind{"ClusterModel", "cradle run fig10 --set run.until=500", {"scaling", "energy"}},
-        Kind{"Bodies", "cradle run collapse3", {}, 3},
+        Kind{"Particles", "cradle run collapse3", {}, 3},
         Kind{"Certificate",
              "cradle certify fig2 --set initial.particles=100 --set law.restitution=0.97 --set run.until=60 "
              "--set output.snapshots=[60] --set output.profiles.times=[] --set output.series.points=20",

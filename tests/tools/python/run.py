@@ -1,4 +1,5 @@
-"""run.py FILE: the unittest cases of a file test_*.py or *_test.py, or a script as it is. Status 77 where all cases were skipped."""
+"""run.py FILE: the unittest cases of a file test_*.py or *_test.py, or a script as it is. Status 77 where all cases
+were skipped."""
 import importlib
 import os
 import runpy

@@ -6,21 +6,21 @@ import cradle
 SHOCK = {"initial.particles": 200, "run.until": 60, "output.snapshots": [20, 60], "output.profiles.times": [30, 60],
          "output.series.points": 20}
 
-# Of "cooling", 1e18 contacts: a run that does not end by itself, however quick the machine is.
+# Of "cooling", 1e18 collisions: a run that does not end by itself, however quick the machine is.
 ENDLESS = {"law.type": "inelastic", "law.restitution": 1, "initial.particles": 2000, "run.until": "1e15",
            "output.checkpoint.every_seconds": 0.1}
 
 
 @functools.cache
 def shock():
-    """200 bodies with snapshots, profiles and events."""
+    """200 particles with snapshots, profiles and events."""
     cradle.run("fig2", set=SHOCK | {"output.events": True}, output="shock.h5").close()
     return "shock.h5"
 
 
 @functools.cache
 def ensemble():
-    """4 replicas of 40 bodies, which collapse."""
+    """4 replicas of 40 particles, which collapse."""
     cradle.ensemble("fig2", 4, output="ensemble.h5", set={
         "initial.particles": 40, "law.restitution": 0.6, "law.cutoff": 0, "run.until": 30, "output.snapshots": [],
         "output.series.points": 20, "output.profiles.times": [2, 4], "output.profiles.range": [-8, 8]}).close()
@@ -38,7 +38,7 @@ def sweep():
 
 @functools.cache
 def collapse():
-    """Three bodies, certified."""
+    """Three particles, certified."""
     cradle.certify("collapse3", output="collapse.h5").close()
     return "collapse.h5"
 

@@ -60,7 +60,7 @@ class Reader(unittest.TestCase):
         self.load(small.sweep)
         column = """(() => {
           const heads = Array.from(document.querySelectorAll('.sortable thead button'));
-          const head = heads.find(button => button.textContent.startsWith('contacts'));
+          const head = heads.find(button => button.textContent.startsWith('collisions'));
           head.click();
           const at = head.parentNode.cellIndex;
           return [head.parentNode.getAttribute('aria-sort'),

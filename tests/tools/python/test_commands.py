@@ -68,10 +68,10 @@ class Runs(unittest.TestCase):
 
     def test_resume_goes_further(self):
         with cradle.run("fig2", set=small.SHOCK, output="further.h5") as result:
-            contacts = result.series.contacts[-1]
+            collisions = result.series.collisions[-1]
         with cradle.resume("further.h5", until=80) as result:
             self.assertEqual(result.series.time[-1], 80)
-            self.assertGreater(result.series.contacts[-1], contacts)
+            self.assertGreater(result.series.collisions[-1], collisions)
 
     def test_without_the_program(self):
         kept = os.environ["CRADLE_PROGRAM"]
@@ -100,7 +100,7 @@ class Progress(unittest.TestCase):
         self.assertEqual(shares, sorted(shares))
         self.assertTrue(all(0 <= share <= 1 for share in shares))
         for _, text in seen:
-            self.assertRegex(text, r"^t = .* of 1e\+15, .* contacts, .* left$")
+            self.assertRegex(text, r"^t = .* of 1e\+15, .* collisions, .* left$")
 
     def test_a_terminal_is_left_as_it_was(self):
         class Terminal:

@@ -2,9 +2,9 @@
 at depths from 1 to 1e-290 is where exact rational arithmetic has it, and mouse, wheel, keys, touch, play, dark mode and
 high resolution do what they should.
 
-Exact: collapse of three bodies in fractions; two rows of elastic bodies, whose world lines are straight lines that
-cross (a million contacts). Twin: gaps against those of the program's snapshots. Bound of positions: a hundredth of a
-pixel, where doubles that are sums of local terms are good to 1e-9 of one.
+Exact: collapse of three particles in fractions; two rows of elastic particles, whose world lines are straight lines
+that cross (a million collisions). Twin: gaps against those of the program's snapshots. Bound of positions: a hundredth
+of a pixel, where doubles that are sums of local terms are good to 1e-9 of one.
 
 `CRADLE_MICROSCOPE_PICTURES=FOLDER` writes screenshots and `CRADLE_MICROSCOPE_SPEED=1` prints frames per second.
 """
@@ -103,10 +103,10 @@ def rational_collapse(least_gap=Fraction(1, 10**290)):
     """collapse3 in fractions: [(left, time, closing speed, positions, velocities after)], and the initial state."""
     restitution = Fraction(1, 20)
     x, v, t = [Fraction(0), Fraction(1), Fraction(3)], [Fraction(1), Fraction(0), Fraction(-1)], Fraction(0)
-    start, contacts = (list(x), list(v)), []
+    start, collisions = (list(x), list(v)), []
     while True:
         due = [((x[i + 1] - x[i]) / (v[i] - v[i + 1]), i) for i in (0, 1)
-               if v[i] > v[i + 1] and not (contacts and contacts[-1][0] == i)]
+               if v[i] > v[i + 1] and not (collisions and collisions[-1][0] == i)]
         step, left = min(due)
         t += step
         x = [place + speed * step for place, speed in zip(x, v)]
@@ -115,9 +115,9 @@ def rational_collapse(least_gap=Fraction(1, 10**290)):
         v = list(v)
         v[left] -= kick
         v[left + 1] += kick
-        contacts.append((left, t, w, list(x), list(v)))
+        collisions.append((left, t, w, list(x), list(v)))
         if min(x[i + 1] - x[i] for i in (0, 1) if i != left) < least_gap:
-            return start, contacts
+            return start, collisions
 
 
 def write_result(path, scene, start, left, right, moments, intervals, speeds, outcome="reached the end", **collapse):
@@ -139,18 +139,19 @@ def write_result(path, scene, start, left, right, moments, intervals, speeds, ou
     return types.SimpleNamespace(file=h5py.File(path, "r"), scene=scene)
 
 
-def collapse_result(folder, contacts):
+def collapse_result(folder, collisions):
     scene = {"title": "collapse3", "law": {"type": "inelastic", "restitution": 0.05, "cutoff": 0},
              "initial": {"type": "list", "x": [0, 1, 3], "v": [1, 0, -1]}, "run": {"until": 2, "collapse": "stop"}}
-    times = [contact[1] for contact in contacts]
-    return write_result(folder / "collapse3.h5", scene, ([0, 1, 3], [1, 0, -1]), [c[0] for c in contacts], [c[0] + 1 for c in contacts],
+    times = [collision[1] for collision in collisions]
+    return write_result(folder / "collapse3.h5", scene, ([0, 1, 3], [1, 0, -1]), [c[0] for c in collisions], [c[0] + 1 for c in collisions],
                         [float(t) for t in times], [float(b - a) for a, b in zip([0] + times, times)],
-                        [float(c[2]) for c in contacts], "inelastic collapse", time=12 / 7)
+                        [float(c[2]) for c in collisions], "inelastic collapse", time=12 / 7)
 
 
 def crossing_rows(half, restitution="1"):
-    """Contacts of 2 half elastic bodies in two rows at speeds 1/2 and -1/2: world lines are exchanged at contacts, so
-    that lines i and j of the two rows, straight all along, cross at (x_j - x_i); body i + j is then on the left."""
+    """Collisions of 2 half elastic particles in two rows at speeds 1/2 and -1/2: world lines are exchanged at
+    collisions, so that lines i and j of the two rows, straight all along, cross at (x_j - x_i); particle i + j is then
+    on the left."""
     scene = {"title": "crossing rows", "law": {"type": "inelastic", "restitution": float(restitution), "cutoff": 0},
              "initial": {"type": "rows", "particles": 2 * half, "speed": 0.5, "spacing": 1, "perturbation": 0.05,
                          "seed": 7, "replica": 0}, "run": {"until": 2.0 * half}}
@@ -158,7 +159,7 @@ def crossing_rows(half, restitution="1"):
     x = np.arange(2 * half) - half + 0.5 + shift
     moments = (x[None, half:] - x[:half, None]).ravel()
     places = ((x[None, half:] + x[:half, None]) / 2).ravel()
-    # Of the left row its body i has i lines of its own row below it, and those of the right row that it has met.
+    # Of the left row its particle i has i lines of its own row below it, and those of the right row that it has met.
     below = (np.arange(half)[:, None] + np.arange(half)[None, :]).ravel()
     order = np.argsort(moments, kind="stable")
     start = x, np.repeat([0.5, -0.5], half)
@@ -223,8 +224,8 @@ class InBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp())
-        cls.start, cls.contacts = rational_collapse()
-        with collapse_result(cls.folder, cls.contacts).file as file:
+        cls.start, cls.collisions = rational_collapse()
+        with collapse_result(cls.folder, cls.collisions).file as file:
             scene = json.loads(file.attrs["scene"])
             cls.page, cls.data = write_page(cls.folder, types.SimpleNamespace(file=file, scene=scene), "collapse3")
         cls.browser = Microscope()
@@ -250,8 +251,8 @@ class InBrowser(unittest.TestCase):
     def view(self):
         return self.browser.run("cradleMicroscopeTest.view()")
 
-    def position(self, body, contact):
-        return self.browser.run(f"cradleMicroscopeTest.position({body}, {contact})")
+    def position(self, particle, collision):
+        return self.browser.run(f"cradleMicroscopeTest.position({particle}, {collision})")
 
     def middle(self):
         """Of the picture, in pixels of the page, and the corner of the canvas."""
@@ -261,14 +262,14 @@ class InBrowser(unittest.TestCase):
 
     # Where things are, exactly
 
-    def exact_place(self, view, body, time):
-        """Pixels of a body at a time (a fraction), in fractions until the last step."""
+    def exact_place(self, view, particle, time):
+        """Pixels of a particle at a time (a fraction), in fractions until the last step."""
         event = view["anchor"]["e"]
-        left, origin, _, places, after = self.contacts[event]
+        left, origin, _, places, after = self.collisions[event]
         frame = (after[left] + after[left + 1]) / 2  # of the pair at the anchor
-        earlier = [contact for contact in self.contacts if contact[1] <= time]
-        since, at, speed = (earlier[-1][1], earlier[-1][3][body], earlier[-1][4][body]) if earlier else \
-            (Fraction(0), self.start[0][body], self.start[1][body])
+        earlier = [collision for collision in self.collisions if collision[1] <= time]
+        since, at, speed = (earlier[-1][1], earlier[-1][3][particle], earlier[-1][4][particle]) if earlier else \
+            (Fraction(0), self.start[0][particle], self.start[1][particle])
         x = at + speed * (time - since) - places[left] - frame * (time - origin)
         tau, box = time - origin, view["box"]
         across = (tau - Fraction(view["tau"])) / Fraction(view["T"]) + Fraction(1, 2)
@@ -276,28 +277,29 @@ class InBrowser(unittest.TestCase):
         return box["left"] + box["width"] * float(across), box["top"] + box["height"] * float(Fraction(1, 2) - up)
 
     def assert_exact(self, view, least=3):
-        """Every contact in sight, of both its bodies, and points of all lines between, are where they should be."""
+        """Every collision in sight, of both its particles, and points of all lines between, are where they should
+        be."""
         box, seen = view["box"], 0
-        for event, (left, moment, _, _, _) in enumerate(self.contacts):
+        for event, (left, moment, _, _, _) in enumerate(self.collisions):
             x, y = self.exact_place(view, left, moment)
             if not (0 < x - box["left"] < box["width"] and 0 < y - box["top"] < box["height"]):
                 continue
             seen += 1
-            for body in (left, left + 1):
-                drawn = self.position(body, event)
+            for particle in (left, left + 1):
+                drawn = self.position(particle, event)
                 self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
                 self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
         self.assertGreaterEqual(seen, least)
-        last = self.contacts[-1][1]
-        for body, part in itertools.product(range(3), (0.03, 0.21, 0.4, 0.55, 0.7)):
+        last = self.collisions[-1][1]
+        for particle, part in itertools.product(range(3), (0.03, 0.21, 0.4, 0.55, 0.7)):
             column = box["left"] + part * box["width"]
             tau = Fraction(view["tau"]) + Fraction(view["T"]) * (Fraction(column - box["left"]) / Fraction(box["width"])
                                                                  - Fraction(1, 2))
-            moment = self.contacts[view["anchor"]["e"]][1] + tau
+            moment = self.collisions[view["anchor"]["e"]][1] + tau
             if not 0 <= moment <= last:
                 continue
-            y = self.exact_place(view, body, moment)[1]
-            drawn = self.browser.run(f"cradleMicroscopeTest.height({body}, {column})")
+            y = self.exact_place(view, particle, moment)[1]
+            drawn = self.browser.run(f"cradleMicroscopeTest.height({particle}, {column})")
             self.assertAlmostEqual(drawn, y, delta=HUNDREDTH + 1e-9 * abs(y))
 
     def test_drawn_positions_are_exact_at_any_depth(self):
@@ -316,22 +318,22 @@ class InBrowser(unittest.TestCase):
 
     def test_what_doubles_do_not_hold_is_left_out_and_told(self):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
-        self.contacts = rational_collapse(Fraction(1, 10**700))[1]
-        with collapse_result(self.folder, self.contacts).file as file:
+        self.collisions = rational_collapse(Fraction(1, 10**700))[1]
+        with collapse_result(self.folder, self.collisions).file as file:
             scene = json.loads(file.attrs["scene"])
             page, data = write_page(self.folder, types.SimpleNamespace(file=file, scene=scene), "deeper")
-        self.assertLess(data["contacts"], data["total"])
-        self.assertGreater(data["contacts"], 325)
-        self.contacts = self.contacts[:data["contacts"]]
+        self.assertLess(data["collisions"], data["total"])
+        self.assertGreater(data["collisions"], 325)
+        self.collisions = self.collisions[:data["collisions"]]
         self.browser.open(page)
         self.browser.run("cradleMicroscopeTest.actions.deepest()")
-        self.browser.until(f"cradleMicroscopeTest.readout().endsWith('the first {data['contacts']} contacts are here')")
-        self.assertEqual(self.view()["anchor"]["e"], data["contacts"] - 1)
+        self.browser.until(f"cradleMicroscopeTest.readout().endsWith('the first {data['collisions']} collisions are here')")
+        self.assertEqual(self.view()["anchor"]["e"], data["collisions"] - 1)
         self.assert_exact(self.view(), 1)
 
     def test_gaps_are_exact(self):
-        for event in (0, 1, 2, 57, 144, 245, 320, len(self.contacts) - 1):
-            left, _, _, places, after = self.contacts[event]
+        for event in (0, 1, 2, 57, 144, 245, 320, len(self.collisions) - 1):
+            left, _, _, places, after = self.collisions[event]
             for a in (0, 1):
                 found = self.browser.run(f"cradleMicroscopeTest.gap({a}, {a + 1}, {event})")
                 exact, w = places[a + 1] - places[a], after[a] - after[a + 1]
@@ -344,7 +346,7 @@ class InBrowser(unittest.TestCase):
         x, y, corner, box = self.middle()
         self.browser.click(x, y)
         deepest, target = 1.0, self.browser.run("""(() => { const m = cradleMicroscopeTest, c = m.camera(),
-            last = c.chart.contacts.length - 1, s = microscopeScales(c.view, m.view().box);
+            last = c.chart.collisions.length - 1, s = microscopeScales(c.view, m.view().box);
             return [s.x(c.chart.tau[last]), s.y(c.chart.xi[last], c.chart.tau[last])]; })()""")
         for turn in range(700):
             self.browser.mouse("mouseWheel", corner[0] + target[0], corner[1] + target[1], deltaX=0, deltaY=-300)
@@ -411,7 +413,7 @@ class InBrowser(unittest.TestCase):
         self.browser.key("p")
         self.assertEqual(self.view()["anchor"]["e"], 1)
         self.browser.key("d")
-        self.assertEqual(self.view()["anchor"]["e"], len(self.contacts) - 1)
+        self.assertEqual(self.view()["anchor"]["e"], len(self.collisions) - 1)
         self.assertLess(self.view()["X"], 1e-285)
         self.browser.key("0")
         self.assertEqual(self.view(), home)
@@ -459,7 +461,7 @@ class InBrowser(unittest.TestCase):
         strip = corner[1] + box["top"] + box["height"] + 42 + 6 + 20
         self.browser.click(corner[0] + box["left"] + 0.5 * box["width"], strip)
         view = self.view()
-        self.assertAlmostEqual(view["anchor"]["e"] / len(self.contacts), 0.5, delta=0.01)
+        self.assertAlmostEqual(view["anchor"]["e"] / len(self.collisions), 0.5, delta=0.01)
         self.assert_exact(view)
 
     def test_play_flies_into_the_collapse(self):
@@ -479,17 +481,17 @@ class InBrowser(unittest.TestCase):
         _, _, corner, box = self.middle()
         place = self.position(1, 245)
         self.browser.mouse("mouseMoved", corner[0] + place["x"] + 2, corner[1] + place["y"])
-        self.browser.until("cradleMicroscopeTest.readout().startsWith('contact 246, bodies 1 and 2')")
+        self.browser.until("cradleMicroscopeTest.readout().startsWith('collision 246, particles 1 and 2')")
         said = self.browser.run("cradleMicroscopeTest.readout()")
-        mantissa, exponent = f"{float(self.contacts[245][2]):.5e}".split("e-")
+        mantissa, exponent = f"{float(self.collisions[245][2]):.5e}".split("e-")
         raised = "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in exponent)
         self.assertIn(f"closing speed {mantissa.rstrip('0')}×10⁻{raised} l/t", said)
         # Between two lines: their gap there, by fractions.
         view = self.view()
         column = box["left"] + 0.2 * box["width"]
-        heights = [self.browser.run(f"cradleMicroscopeTest.height({body}, {column})") for body in (0, 1)]
+        heights = [self.browser.run(f"cradleMicroscopeTest.height({particle}, {column})") for particle in (0, 1)]
         self.browser.mouse("mouseMoved", corner[0] + column, corner[1] + sum(heights) / 2)
-        self.browser.until("cradleMicroscopeTest.readout().startsWith('bodies 0 and 1: gap')")
+        self.browser.until("cradleMicroscopeTest.readout().startsWith('particles 0 and 1: gap')")
         gap = (heights[0] - heights[1]) / box["height"] * view["X"]
         said = self.browser.run("cradleMicroscopeTest.readout()").split("gap ")[1].split(" l")[0]
         number, power = said.split("×10")
@@ -510,7 +512,7 @@ class InBrowser(unittest.TestCase):
         self.browser.dark(True)
         while max(self.pixel(3, 3)) >= 60:
             time.sleep(0.05)
-        # A dot of a contact stands out in both.
+        # A dot of a collision stands out in both.
         view = self.browser.run("cradleMicroscopeTest.zoomTo({event: 100, depth: 1e-88})")
         dot = self.position(0, 100) or self.position(1, 100)
         colour = self.pixel(dot["x"], dot["y"])
@@ -525,20 +527,20 @@ class InBrowser(unittest.TestCase):
         self.assertEqual(sizes[0], 2 * sizes[1])
         self.assertEqual(sizes[2], 2 * sizes[3])
 
-    # Many contacts
+    # Many collisions
 
-    def test_a_million_contacts(self):
+    def test_a_million_collisions(self):
         result, moments, places, left = rows_result(self.folder, 1000)
         with result.file:
             begun = time.monotonic()
             page, data = write_page(self.folder, result, "million")
             took = time.monotonic() - begun
-        self.assertEqual(data["contacts"], 1_000_000)
+        self.assertEqual(data["collisions"], 1_000_000)
         self.assertIsNone(data["speed"])  # the law gives them again
         self.assertLess(page.stat().st_size, 15e6)
         self.browser.open(page)
         self.assertFalse(self.view()["exact"])
-        # What is drawn of the whole: contacts in the lens where the rows overlap, nothing beside them.
+        # What is drawn of the whole: collisions in the lens where the rows overlap, nothing beside them.
         view = self.view()
         box, anchor = view["box"], view["anchor"]["e"]
 
@@ -551,13 +553,13 @@ class InBrowser(unittest.TestCase):
         self.assertGreater(colourful(1000, -333.7), 30)
         self.assertLess(colourful(300, 600), 15)  # a row that nobody has met
         self.assertLess(colourful(1000, 900), 15)  # nobody
-        # Near by, contacts are where the straight lines cross.
+        # Near by, collisions are where the straight lines cross.
         for event in (12345, 500_000, 777_777):
             view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: 4, time: 6}})")
             self.assertTrue(view["exact"])
             box, seen = view["box"], 0
             for other in np.flatnonzero((np.abs(moments - moments[event]) < 3) & (np.abs(places - places[event]) < 2)):
-                # Pairs of equal elastic bodies: the frame at any contact is the lab's.
+                # Pairs of equal elastic particles: the frame at any collision is the lab's.
                 x = box["left"] + box["width"] * ((moments[other] - moments[event] - view["tau"]) / view["T"] + 0.5)
                 y = box["top"] + box["height"] * (0.5 - (places[other] - places[event] - view["V"] *
                                                          (moments[other] - moments[event]) - view["xi"]) / view["X"])
@@ -596,9 +598,9 @@ class InBrowser(unittest.TestCase):
         return types.SimpleNamespace(file=file, scene=tomllib.loads(file.attrs["scene"]))
 
     def assert_gaps_of_snapshots(self, result, bound):
-        """The gaps right after the contact before a snapshot, flown until then, are the snapshot's."""
+        """The gaps right after the collision before a snapshot, flown until then, are the snapshot's."""
         page, data = write_page(self.folder, result, "snapshots")
-        self.assertEqual(data["kind"], "contacts")
+        self.assertEqual(data["kind"], "collisions")
         self.browser.open(page)
         moments = result.file["events/time"][:] + result.file["events/time_low"][:]
         compared = 0
@@ -617,8 +619,8 @@ class InBrowser(unittest.TestCase):
         self.assertGreater(compared, 100)
 
     def assert_charts_are_where_positions_are(self, result):
-        """Contacts and lines of charts with some width, against places in the lab: every body that is drawn at a time
-        is there once, and where it should be."""
+        """Collisions and lines of charts with some width, against places in the lab: every particle that is drawn at a
+        time is there once, and where it should be."""
         page, _ = write_page(self.folder, result, "charts")
         self.browser.open(page)
         count, compared = len(result.file["events/left"]), 0
@@ -630,23 +632,23 @@ class InBrowser(unittest.TestCase):
                     const round = x => w.ring ? x - w.ring * Math.round(x / w.ring) : x;
                     let worst = 0, seen = 0;
                     if (!chart) return [0, 0];  // too crowded for one
-                    chart.contacts.forEach((k, i) => {{ ++seen;
+                    chart.collisions.forEach((k, i) => {{ ++seen;
                       const there = w.x[k] - w.x[e] - view.lab * chart.tau[i];
                       worst = Math.max(worst, Math.abs(round(there - chart.xi[i]))); }});
                     for (const part of [-0.45, -0.2, 0.01, 0.3]) {{
-                      const tau = view.tau + part * view.T, k = microscopeContactAt(w, e, tau), drawn = new Set();
+                      const tau = view.tau + part * view.T, k = microscopeCollisionAt(w, e, tau), drawn = new Set();
                       for (const line of chart.lines) if (line.from[0] < tau && line.to[0] > tau) {{
-                        const since = tau - microscopeBetween(w, e, k), there = microscopePlace(w, line.body, k) +
-                          microscopeVelocity(w, line.body, k) * since;
+                        const since = tau - microscopeBetween(w, e, k), there = microscopePlace(w, line.particle, k) +
+                          microscopeVelocity(w, line.particle, k) * since;
                         const off = round(there - w.x[e] - view.lab * tau - microscopeAlong(chart, line, tau));
-                        // On a ring a body may be in sight again, a turn away.
+                        // On a ring a particle may be in sight again, a turn away.
                         const turn = w.ring ? Math.round((there - microscopeAlong(chart, line, tau)) / w.ring) : 0;
-                        const image = `${{line.body}} ${{turn}}`;
+                        const image = `${{line.particle}} ${{turn}}`;
                         worst = Math.max(worst, Math.abs(off), drawn.has(image) ? 1 : 0);
                         drawn.add(image); ++seen;
                       }} }}
                     return [worst, seen]; }})()""")
-                self.assertLess(worst, 1e-9, f"contact {event}, {span} x {depth}")
+                self.assertLess(worst, 1e-9, f"collision {event}, {span} x {depth}")
                 compared += seen > 3
         self.assertGreaterEqual(compared, 8)
 

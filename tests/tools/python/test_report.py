@@ -65,7 +65,7 @@ class Reports(unittest.TestCase):
         with open(cradle.report("failed.h5"), encoding="utf-8") as file:
             page = html.unescape(file.read())
         warned = page[page.index('<ul class="warnings">'):page.index("</ul>")]
-        self.assertIn("order of contacts lost", warned)
+        self.assertIn("order of collisions lost", warned)
         command = re.search(r"alone: <code[^>]*>([^<]*)</code>", warned)[1]
         self.assertIn("failed/points/0001/scene.toml", command)
         folder = os.path.dirname(os.environ["CRADLE_PROGRAM"])
@@ -74,7 +74,7 @@ class Reports(unittest.TestCase):
         self.assertEqual(again.returncode, 5, again.stderr)
         replica = int(re.search("initial.replica=([0-9]+)", command)[1])
         with cradle.open("failed.h5") as sweep, cradle.open("replica.h5") as alone:
-            self.assertEqual(alone.series.contacts[-1], sweep.points[1].replicas.contacts[replica])
+            self.assertEqual(alone.series.collisions[-1], sweep.points[1].replicas.collisions[replica])
 
     def test_have_every_picture_of_the_result(self):
         for make, text in self.pages():
@@ -108,7 +108,7 @@ class Reports(unittest.TestCase):
 
     def test_tell_what_is_proved(self):
         text = small.page(small.collapse)
-        self.assertIn("<b>Proved</b>: each of the 322 contacts", text)
+        self.assertIn("<b>Proved</b>: each of the 322 collisions", text)
         with cradle.open(small.collapse()) as result:
             low, high = (str(result.exact.series[f"front_right_{side}"][-1]) for side in ("low", "high"))
         shown = re.search(r"right front at the end<td><span class=\"digits\">([\d.]+)", text)[1]

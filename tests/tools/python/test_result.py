@@ -50,8 +50,8 @@ class Run(unittest.TestCase):
         self.assertEqual(len(snapshot.gap), len(snapshot.x) - 1)
         self.assertEqual(snapshot.gap.unit, "l")
 
-    def test_events_are_every_contact(self):
-        self.assertEqual(len(self.result.events.time), int(self.result.series.contacts[-1]))
+    def test_events_are_every_collision(self):
+        self.assertEqual(len(self.result.events.time), int(self.result.series.collisions[-1]))
 
     def test_scene_is_a_dict_and_a_text(self):
         self.assertEqual(self.result.scene["initial"]["particles"], 200)
@@ -104,10 +104,10 @@ class Others(unittest.TestCase):
 
     def test_proofs_enclose_the_energy_in_exact_numbers(self):
         with cradle.open(small.collapse()) as result:
-            self.assertEqual((result.certificate.verdict, result.certificate.attributes["contacts"]), ("proved", 322))
+            self.assertEqual((result.certificate.verdict, result.certificate.attributes["collisions"]), ("proved", 322))
             low, high = result.enclosure("energy")
             self.assertIsInstance(low[0], Fraction)
-            # All bodies first fly freely: the energy is 1, and the bounds are tighter than 1e-300.
+            # All particles first fly freely: the energy is 1, and the bounds are tighter than 1e-300.
             self.assertLess(low[0], 1)
             self.assertGreater(high[0], 1)
             self.assertLess(high[0] - low[0], Fraction(1, 10 ** 300))
@@ -126,7 +126,7 @@ class Others(unittest.TestCase):
             self.assertEqual(mpmath.mp.dps, 15)
 
     def test_wide_runs_have_all_their_digits(self):
-        # Bodies that meet at t = 1 and part with a tenth of their closing speed, .2.
+        # Particles that meet at t = 1 and part with a tenth of their closing speed, 0.2.
         scene = {"law": {"type": "inelastic", "restitution": 0.1},
                  "initial": {"type": "list", "x": [0, 2], "v": [1, -1]},
                  "run": {"until": 4, "precision": "mpfr", "digits": 80},

@@ -23,11 +23,11 @@ constexpr double inf = std::numeric_limits<double>::infinity(), nan = std::numer
 
 Result result() {
   Result r;
-  r.attributes = {{"scene", "[run]\nuntil = 10\n"}, {"contacts", std::uint64_t{7}}, {"energy", 2.5}};
+  r.attributes = {{"scene", "[run]\nuntil = 10\n"}, {"collisions", std::uint64_t{7}}, {"energy", 2.5}};
   r.groups.push_back({"series",
                       {},
                       {Column{"time", "s", "when", std::vector<double>{0, 1, 2}},
-                       Column{"bodies", "", "how many", std::vector<std::uint64_t>{4, 5, 6}},
+                       Column{"particles", "", "how many", std::vector<std::uint64_t>{4, 5, 6}},
                        Column{"edges", "", "of bins", std::vector<double>{1, 2, 3, nan}, 2}}});
   r.groups.push_back({"snapshots/0000", {{"time", 1.5}}, {}});
   return r;
@@ -48,14 +48,14 @@ TEST(Difference, OfAResultAndItselfIsNone) {
 TEST(Difference, OfEachKindIsToldWhereItIs) {
   const struct {
     std::function<void(Result&)> change;
-    std::string told;
+    std::string reported;
   } kinds[] = {
       {[](Result& r) { r.attributes[0].second = "[run]\nuntil = 11\n"; },
        "@scene: line 2: \"until = 10\" against \"until = 11\""},
       {[](Result& r) { r.attributes[0].second = "[run]\nuntil = 10"; }, "@scene: line 2: not the same end"},
-      {[](Result& r) { r.attributes[1].second = std::uint64_t{9}; }, "@contacts: 7 against 9 (by 2)"},
+      {[](Result& r) { r.attributes[1].second = std::uint64_t{9}; }, "@collisions: 7 against 9 (by 2)"},
       {[](Result& r) { r.attributes[1].second = 7.; },
-       "@contacts: text, real or whole number against another of these"},
+       "@collisions: text, real or whole number against another of these"},
       {[](Result& r) { r.attributes[2].second = std::nextafter(2.5, 3.); },
        "@energy: 2.5 against 2.5000000000000004 (1 ULPs, 1.8e-16 relative)"},
       {[](Result& r) { r.attributes.pop_back(); }, "@energy: only in A"},
@@ -92,9 +92,9 @@ TEST(Difference, OfEachKindIsToldWhereItIs) {
   for (const auto& kind : kinds) {
     Result changed = result();
     kind.change(changed);
-    std::string told;
-    for (const std::string& line : lines(result(), changed)) told += (told.empty() ? "" : "\n") + line;
-    EXPECT_EQ(told, kind.told);
+    std::string reported;
+    for (const std::string& line : lines(result(), changed)) reported += (reported.empty() ? "" : "\n") + line;
+    EXPECT_EQ(reported, kind.reported);
     EXPECT_EQ(lines(changed, result()).size(), lines(result(), changed).size());
   }
 }
@@ -107,10 +107,10 @@ TEST(Difference, WithinAToleranceIsCounted) {
   EXPECT_TRUE(none.lines.empty());
   EXPECT_EQ(none.tolerated, 1U);
   EXPECT_EQ(lines(result(), near, 1e-10).size(), 1U);
-  EXPECT_EQ(lines(result(), far, .5).size(), 1U) << "nothing is near 0, relatively";
+  EXPECT_EQ(lines(result(), far, 0.5).size(), 1U) << "nothing is near 0, relatively";
   times(near)[2] = inf;
-  EXPECT_EQ(lines(result(), near, .5).size(), 1U);
-  EXPECT_TRUE(lines(near, near, .5).empty());
+  EXPECT_EQ(lines(result(), near, 0.5).size(), 1U);
+  EXPECT_TRUE(lines(near, near, 0.5).empty());
 }
 
 TEST(Difference, InUnitsInTheLastPlace) {

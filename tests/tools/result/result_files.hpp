@@ -16,7 +16,7 @@ namespace cradle::tests {
 inline tools::Result small_result() {
   tools::Result result;
   result.attributes = {
-      {"format_version", std::uint64_t{1}},
+      {"format_version", std::uint64_t{2}},
       {"cradle_version", std::string("1")},
       {"scene", std::string("[law]\ntype = \"sticky\"\n[initial]\ntype = \"rows\"\nparticles = 4\n[run]\nuntil = 3\n")},
       {"outcome", std::string("reached the end")}};
@@ -24,7 +24,7 @@ inline tools::Result small_result() {
                            {},
                            {{"time", "t", "time", std::vector<double>{0, 0.1, 3}},
                             {"energy", "m l^2/t^2", "energy", std::vector<double>{2, 1e-310, -0.0}},
-                            {"contacts", "1", "contacts", std::vector<std::uint64_t>{0, 7, ~std::uint64_t{0}}}}});
+                            {"collisions", "1", "collisions", std::vector<std::uint64_t>{0, 7, ~std::uint64_t{0}}}}});
   result.groups.push_back({"series/heaviest", {}, {{"x", "l", "x", std::vector<double>{1, 2, 3, 4, 5, 6}, 2}}});
   result.groups.push_back({"snapshots/0000", {{"time", 3.0}}, {{"v", "l/t", "v", std::vector<double>{1, -1}}}});
   result.groups.push_back({"snapshots/0001", {{"time", 3.5}}, {{"v", "l/t", "v", std::vector<double>{}}}});

@@ -1,6 +1,6 @@
 // How often a run is looked at changes nothing but the series: every other number in a result file, attributes
-// included, has the same bits. Also where very many contacts are simultaneous (a lattice), which is where the order of
-// events is hardest to keep.
+// included, has the same bits. Also where very many collisions are simultaneous (a lattice), which is where the order
+// of events is hardest to keep.
 #include <cstring>
 #include <type_traits>
 
@@ -54,7 +54,7 @@ const Lattice lattices[] = {
     {"Positions", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n", rows, "coordinates = 'absolute'"},
     {"Wet", "law = { type = 'wet', loss = 0.01 }\n", rows, ""},
     {"Sticky", "law.type = 'sticky'\n", rows, ""},
-    {"StickyContactByContact", "law.type = 'sticky'\noutput.events = true\n", rows, ""},
+    {"StickyCollisionByCollision", "law.type = 'sticky'\noutput.events = true\n", rows, ""},
     {"DoubleDouble", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n", rows,
      "precision = 'double-double'"},
     {"Ring", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n",

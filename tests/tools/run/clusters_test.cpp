@@ -168,7 +168,7 @@ TEST_F(RunClusters, Fig9HasBothScenarios) {
 }
 
 TEST_F(RunClusters, WetRuleTakesItsLossFromFastClusters) {
-  // From far outside they come in with some 0.06 each per unit of length: more than E_loss = .05.
+  // From far outside they come in with some 0.06 each per unit of length: more than E_loss = 0.05.
   const auto result = result_of(
       "fig9b --set initial.x=[-30,30] --set run.start=1000 --set run.until=20000 --set output.series.points=2000");
   const auto& energy = numbers(result, "meetings", "relative_energy");
@@ -232,7 +232,7 @@ TEST_F(RunClusters, WrongScenesAreRefusedByName) {
   EXPECT_NE(shell("cradle run sticky.toml").err.find("initial.type: clusters need the wet law"), std::string::npos);
   write("missing.toml", "law = { type = 'wet', loss = 0.05 }\ninitial.type = 'clusters'\nrun.until = 5\n");
   EXPECT_NE(shell("cradle run missing.toml").err.find("initial.x: missing: give a list of numbers"), std::string::npos);
-  EXPECT_NE(shell("cradle trust fig10").err.find("no contacts to compare"), std::string::npos);
+  EXPECT_NE(shell("cradle trust fig10").err.find("no collisions to compare"), std::string::npos);
 }
 
 }  // namespace clusters_test

@@ -122,8 +122,8 @@ TEST_P(ExactIn, DoublesAreTheDecimalsRounded) {
   }
 }
 
-// Two bodies at 0 and 1 with 0.3 and -0.4 and a restitution of 0.7 meet at t = 1/.7 and part with .49: their velocities
-// are then -.05 -+ .245.
+// Two particles at 0 and 1 with 0.3 and -0.4 and a restitution of 0.7 meet at t = 1/.7 and part with 0.49: their
+// velocities are then -0.05 -+ 0.245.
 TEST_P(ExactIn, DecimalsHaveTheDigitsOfTheType) {
   const std::vector<Result> results =
       run("law = { type = 'inelastic', restitution = 0.7 }\ninitial = { type = 'list', x = [0, 1], v = [0.3, -0.4] }\n"

@@ -69,7 +69,7 @@ TEST(Interrupts, EndWalksOverRows) {
     sender.join();
     EXPECT_EQ(run.end, RunEnd::interrupted) << scene;
     const auto* profiles = run.result.find("profiles/0000");
-    EXPECT_EQ(profiles, nullptr) << "of a part of the bodies";
+    EXPECT_EQ(profiles, nullptr) << "of a part of the particles";
   }
 }
 
@@ -98,13 +98,13 @@ TEST_F(Signals, KeepWhatARunHas) {
   for (const auto& [signal, status] :
        {std::pair("INT", 130), std::pair("TERM", 143), std::pair("USR1", 143), std::pair("HUP", 143)}) {
     const Printed run =
-        shell(endless_run("long.h5") + until_contacts("long.h5") + "kill -" + signal + " $pid; wait $pid");
+        shell(endless_run("long.h5") + until_collisions("long.h5") + "kill -" + signal + " $pid; wait $pid");
     EXPECT_EQ(run.status, status) << signal << run.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "long.h5"));
     EXPECT_NE(run.err.find("`cradle resume long.h5` goes on from there"), std::string::npos) << run.err;
     const Printed state = shell("cradle info long.h5.checkpoint");
     EXPECT_EQ(state.status, 0) << state.err;
-    EXPECT_EQ(state.out.find(" 0 contacts"), std::string::npos) << state.out;
+    EXPECT_EQ(state.out.find(" 0 collisions"), std::string::npos) << state.out;
     EXPECT_EQ(shell("cradle info long.h5.part").status, 0);
     std::filesystem::remove(folder / "long.h5.part");
     std::filesystem::remove(folder / "long.h5.checkpoint");
@@ -114,7 +114,7 @@ TEST_F(Signals, KeepWhatARunHas) {
 TEST_F(Signals, HangUpsAreIgnoredUnderNohup) {
   // It continues to keep its state, and ends by the next signal.
   const Printed run =
-      shell("nohup " + endless_run("a.h5") + until_contacts("a.h5") +
+      shell("nohup " + endless_run("a.h5") + until_collisions("a.h5") +
             "kill -HUP $pid; rm a.h5.checkpoint; until [ -e a.h5.checkpoint ]; do sleep 0.01; done; kill -INT $pid; "
             "wait $pid");
   EXPECT_EQ(run.status, 130) << run.err;

@@ -1,6 +1,6 @@
-// The program from scene to file: the Fig. 2 shock from a list of bodies against counts of an independent event-driven
-// N-body program (identical in double, binary128 and 100 digits), the three-body collapse against its closed form, and
-// the bits of result files.
+// The program from scene to file: the Fig. 2 shock from a list of particles against counts of an independent
+// event-driven N-particle program (identical in double, binary128 and 100 digits), the three-particle collapse against
+// its closed form, and the bits of result files.
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ class Run : public ProgramTest {
           static_cast<double>(static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072);
       csv += fmt::format("{:.28f},{}\n", (2 * i - n + 1) / 2.0 + units / 268435456.0, i < n / 2 ? "0.5" : "-0.5");
     }
-    write("bodies.csv", csv);
+    write("particles.csv", csv);
     write("shock.toml", R"(
 [law]
 type = "inelastic"
@@ -37,7 +37,7 @@ restitution = 0.999
 cutoff = 1e-5
 [initial]
 type = "list"
-file = "bodies.csv"
+file = "particles.csv"
 [run]
 until = 6000
 [output]
@@ -55,7 +55,7 @@ series = { times = [999.5, 1999, 4000, 6000] }
         if (column.name == name) return column.values;
       throw std::out_of_range(name);
     };
-    EXPECT_EQ(std::get<std::vector<std::uint64_t>>(named("contacts")),
+    EXPECT_EQ(std::get<std::vector<std::uint64_t>>(named("collisions")),
               (std::vector<std::uint64_t>{384155, 1299216, 4685816, 16156905}));
     const std::vector<double> energies{887.274363235560075, 738.145120941488556, 492.025770085541422,
                                        262.948286528987387};
@@ -176,7 +176,7 @@ series = { every = 500 }
   const auto result = read_result((folder / "wet-trust.h5").string());
   std::vector<double> times;
   for (const auto& group : result.groups)
-    times.push_back(tools::attribute<double>(group.attributes, "contacts_right_until", ""));
+    times.push_back(tools::attribute<double>(group.attributes, "collisions_right_until", ""));
   ASSERT_EQ(times.size(), 5U);
   EXPECT_LT(times[0], times[1]);
   EXPECT_LT(times[1], times[2]);
@@ -194,10 +194,10 @@ TEST_F(Run, EnergiesThatOverflow) {
   write("a.toml", overflowing);
   const Printed refused = shell("cradle run a.toml -o a.h5");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(
-      refused.err.find("a: initial: the bodies cannot be set up (found the kinetic energy of all bodies overflows "
-                       "(found no finite number): give smaller masses or speeds, or a scalar type of a wider range)"),
-      std::string::npos)
+  EXPECT_NE(refused.err.find(
+                "a: initial: the particles cannot be set up (found the kinetic energy of all particles overflows "
+                "(found no finite number): give smaller masses or speeds, or a scalar type of a wider range)"),
+            std::string::npos)
       << refused.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "a.h5"));
 
@@ -285,12 +285,12 @@ TEST_F(Run, OutputCadenceChangesNothingElse) {
           of_a.values);
     }
   }
-  for (const auto* name : {"simultaneous_contacts", "order_lost"})
+  for (const auto* name : {"simultaneous_collisions", "order_lost"})
     EXPECT_EQ(tools::attribute<std::uint64_t>(a.attributes, name, ""),
               tools::attribute<std::uint64_t>(b.attributes, name, ""));
 }
 
-TEST_F(Run, EventsAreEveryContactInOrder) {
+TEST_F(Run, EventsAreEveryCollisionInOrder) {
   ASSERT_EQ(shell("cradle run collapse3 --quiet").status, 3);
   const auto result = read_result((folder / "collapse3.h5").string());
   const auto* events = result.find("events");
@@ -300,7 +300,7 @@ TEST_F(Run, EventsAreEveryContactInOrder) {
     count = column.rows();
     if (column.name != "interval") continue;
     const auto& intervals = std::get<std::vector<double>>(column.values);
-    // Closed form: intervals shrink by lam-/lam+ = 5/16 per contact, resolved down to 1e-160.
+    // Closed form: intervals shrink by lam-/lam+ = 5/16 per collision, resolved down to 1e-160.
     for (std::size_t n = 20; n < intervals.size(); ++n) EXPECT_NEAR(intervals[n] / intervals[n - 1], 0.3125, 1e-6) << n;
     EXPECT_LT(intervals.back(), 1e-160);
   }
@@ -355,7 +355,7 @@ TEST_F(Run, EnergyAtACollapseHasDigits) {
         found = true;
       }
   EXPECT_TRUE(found);
-  // Of the run's own: digits and the ledger's difference; and the last snapshot is at the contact, not at a rounded
+  // Of the run's own: digits and the ledger's difference; and the last snapshot is at the collision, not at a rounded
   // time beside it.
   const auto result = read_result((folder / "a.h5").string());
   EXPECT_GT(tools::attribute<double>(result.attributes, "energy_digits", ""), 12);

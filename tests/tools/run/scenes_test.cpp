@@ -35,7 +35,7 @@ const Meant scenes[] = {
     {"classics/splash", "run", kicked},
     {"classics/splash", "sweep", kicked},
     {"classics/universality", "run", gas},
-    // With all its bodies: rounding decides some orders at restitution 0, from t = 6 on.
+    // With all its particles: rounding decides some orders at restitution 0, from t = 6 on.
     {"classics/universality", "sweep", " --replicas 1 --set run.until=10"},
     {"collapse3", "run", "", 3},
     {"collapse_times", "run", "", 3},

@@ -31,15 +31,15 @@ TEST_F(RunThreads, NeverChangeAResult) {
 }
 
 TEST_F(RunThreads, AreWhatCheckTellsBeforehand) {
-  const auto told = [&](const std::string& scene) { return shell("cradle check --threads 2 " + scene).out; };
-  EXPECT_NE(told("fig2").find("threads: 2, about 1.8 times as fast as one once all bodies are active\n"),
+  const auto printed = [&](const std::string& scene) { return shell("cradle check --threads 2 " + scene).out; };
+  EXPECT_NE(printed("fig2").find("threads: 2, about 1.8 times as fast as one once all particles are active\n"),
             std::string::npos);
-  EXPECT_NE(told("fig11").find("threads: one does the work (bodies that merge)\n"), std::string::npos);
-  EXPECT_NE(told("ring.toml").find("threads: 2, about 1.8 times"), std::string::npos);
-  EXPECT_NE(told("fig2 --set initial.particles=200").find("(few bodies)"), std::string::npos);
-  EXPECT_NE(told("fig2 --set run.coordinates=absolute").find("(absolute coordinates)"), std::string::npos);
-  EXPECT_NE(told("fig2 --set output.events=true").find("(every contact to be told, in order)"), std::string::npos);
-  EXPECT_NE(told("collapse3").find("(a collapse to be found)"), std::string::npos);
+  EXPECT_NE(printed("fig11").find("threads: one does the work (particles that merge)\n"), std::string::npos);
+  EXPECT_NE(printed("ring.toml").find("threads: 2, about 1.8 times"), std::string::npos);
+  EXPECT_NE(printed("fig2 --set initial.particles=200").find("(few particles)"), std::string::npos);
+  EXPECT_NE(printed("fig2 --set run.coordinates=absolute").find("(absolute coordinates)"), std::string::npos);
+  EXPECT_NE(printed("fig2 --set output.events=true").find("(every collision to be told, in order)"), std::string::npos);
+  EXPECT_NE(printed("collapse3").find("(a collapse to be found)"), std::string::npos);
 }
 
 }  // namespace run_threads_test

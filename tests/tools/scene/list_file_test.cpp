@@ -1,4 +1,4 @@
-// Lists of bodies: decimals of any length survive, and what is wrong in a file is named with its line.
+// Lists of particles: decimals of any length survive, and what is wrong in a file is named with its line.
 #include "cradle/tools/scene/list_file.hpp"
 
 #include <sstream>
@@ -8,7 +8,7 @@
 namespace cradle::tools {
 namespace list_file_test {
 
-ListedBodies parse(const std::string& text, Precision precision = Precision::double_) {
+ListedParticles parse(const std::string& text, Precision precision = Precision::double_) {
   std::istringstream csv(text);
   Run run;
   run.precision = precision;
@@ -27,21 +27,23 @@ std::string message(const std::string& text) {
 
 TEST(ListFile, AcceptsWhatEditorsWrite) {
   const std::string digits(60, '3');
-  const ListedBodies bodies = parse("\xEF\xBB\xBF# bodies\r\n\r\n x , v , m \r\n-1e-400, +10 ,2\r\n# middle\r\n0." +
-                                    digits + ",-0.5,1e-7\r\n\r\n");
-  ASSERT_EQ(bodies.x.size(), 2U);
-  EXPECT_EQ(bodies.x[0], "-1e-400");
-  EXPECT_EQ(bodies.v[0], "10");
-  EXPECT_EQ(bodies.m[0], "2");
-  EXPECT_EQ(bodies.x[1], "0." + digits);
-  EXPECT_EQ(bodies.v[1], "-0.5");
-  EXPECT_EQ(bodies.m[1], "1e-7");
+  const ListedParticles particles =
+      parse("\xEF\xBB\xBF# particles\r\n\r\n x , v , m \r\n-1e-400, +10 ,2\r\n# middle\r\n0." + digits +
+            ",-0.5,1e-7\r\n\r\n");
+  ASSERT_EQ(particles.x.size(), 2U);
+  EXPECT_EQ(particles.x[0], "-1e-400");
+  EXPECT_EQ(particles.v[0], "10");
+  EXPECT_EQ(particles.m[0], "2");
+  EXPECT_EQ(particles.x[1], "0." + digits);
+  EXPECT_EQ(particles.v[1], "-0.5");
+  EXPECT_EQ(particles.m[1], "1e-7");
   EXPECT_TRUE(parse("x,v\n0,1\n1,2").m.empty());  // no line end at the end
 }
 
 TEST(ListFile, RefusesWithTheLine) {
-  EXPECT_EQ(message(""), "b.csv: no bodies (found an empty file): give a line x,v or x,v,m and then one line per body");
-  EXPECT_TRUE(message("x,v\n\n").starts_with("b.csv: no bodies (found only the names of the columns)"));
+  EXPECT_EQ(message(""),
+            "b.csv: no particles (found an empty file): give a line x,v or x,v,m and then one line per particle");
+  EXPECT_TRUE(message("x,v\n\n").starts_with("b.csv: no particles (found only the names of the columns)"));
   EXPECT_EQ(message("0,1\n"),
             "b.csv:1: the columns are not named (found \"0,1\"): begin the file with a line x,v or x,v,m");
   EXPECT_TRUE(message("v,x\n").starts_with("b.csv:1:"));
@@ -57,10 +59,10 @@ TEST(ListFile, RefusesWithTheLine) {
 TEST(ListFile, OrderIsDecidedExactly) {
   const std::string zeros(40, '0');
   EXPECT_EQ(message("x,v\n1,0\n1." + zeros + "1,0\n"), "no error");
-  EXPECT_EQ(message("x,v\n1,0\n\n1." + zeros + ",0\n"),
-            "b.csv:4: x: coincident bodies (found 1." + zeros + " after 1): give the bodies in order of increasing x");
+  EXPECT_EQ(message("x,v\n1,0\n\n1." + zeros + ",0\n"), "b.csv:4: x: coincident particles (found 1." + zeros +
+                                                            " after 1): give the particles in order of increasing x");
   EXPECT_EQ(message("x,v\n-1,0\n-1e1,0\n"),
-            "b.csv:3: x: not increasing (found -1e1 after -1): give the bodies in order of increasing x");
+            "b.csv:3: x: not increasing (found -1e1 after -1): give the particles in order of increasing x");
 }
 
 // What other readers take for some number or other.
@@ -86,18 +88,19 @@ TEST(ListFile, NumbersAreSuchThatThePrecisionHoldsThem) {
   EXPECT_THROW(parse("x,v\n0,1e99999\n", Precision::long_double), Error);
 }
 
-TEST(ListFile, BodiesOfAScene) {
+TEST(ListFile, ParticlesOfAScene) {
   const std::string head = "law.type = 'sticky'\nrun.until = 1\ninitial.type = 'list'\n";
-  const Initial bodies = parse_scene(head + "initial.x = [0, 1e-500]\ninitial.v = [1, -1]", "s.toml").initial;
-  ASSERT_EQ(bodies.x.size(), 2U);
-  EXPECT_EQ(bodies.x[1], "1e-500");
-  EXPECT_TRUE(bodies.m.empty());
+  const Initial particles = parse_scene(head + "initial.x = [0, 1e-500]\ninitial.v = [1, -1]", "s.toml").initial;
+  ASSERT_EQ(particles.x.size(), 2U);
+  EXPECT_EQ(particles.x[1], "1e-500");
+  EXPECT_TRUE(particles.m.empty());
   try {
     parse_scene(head + "initial.file = 'absent.csv'", "nowhere/s.toml");
     FAIL() << "the file does not exist";
   } catch (const Error& error) {
     EXPECT_EQ(error.status, Exit::io);
-    EXPECT_TRUE(std::string(error.what()).starts_with("nowhere/absent.csv: the list of bodies cannot be read (found "));
+    EXPECT_TRUE(
+        std::string(error.what()).starts_with("nowhere/absent.csv: the list of particles cannot be read (found "));
   }
 }
 

@@ -90,8 +90,8 @@ TEST(Scene, DefaultsAreThoseOfTheTable) {
   EXPECT_FALSE(scene.initial.general_rows());
   EXPECT_EQ(scene.run.precision, Precision::double_);
   EXPECT_EQ(scene.run.coordinates, Coordinates::gaps);
-  EXPECT_EQ(scene.run.collapse, CollapsePolicy::stop);
-  EXPECT_EQ(parse(good, {"law.cutoff=1e-5"}).run.collapse, CollapsePolicy::cutoff);
+  EXPECT_EQ(scene.run.collapse, scene::CollapsePolicy::stop);
+  EXPECT_EQ(parse(good, {"law.cutoff=1e-5"}).run.collapse, scene::CollapsePolicy::cutoff);
   EXPECT_EQ(scene.output.series.points, 1000U);
   EXPECT_EQ(scene.output.profiles.bins, 50U);
   EXPECT_FALSE(scene.output.events);
@@ -163,13 +163,13 @@ TEST(Scene, NumbersThatThePrecisionTakesFor0) {
             std::string::npos);
   EXPECT_NE(message(list + mpfr + "output.profiles.range = [-1e400, 1]").find("not a range of doubles"),
             std::string::npos);
-  // A wall beside a body by less than any binary number of a hundred digits tells.
+  // A wall beside a particle by less than any binary number of a hundred digits tells.
   const std::string close = "1." + std::string(400, '0') + "1";
   parse(list + mpfr + "walls.right.position = " + close);
   EXPECT_NE(
       message("law = { type = 'inelastic', restitution = 0.5 }\nrun.until = 1\ninitial = { type = 'list', x = [0, " +
               close + "], v = [0, 0] }\nwalls.right.position = 1\n" + mpfr)
-          .find("a wall among the bodies"),
+          .find("a wall among the particles"),
       std::string::npos);
 }
 
@@ -327,7 +327,7 @@ TEST(Scene, GeneralRows) {
             "s.toml:9: initial.right.speed: the rows do not meet (found left row at 1, right row at 1.0): "
             "give the right row a lower velocity than the left row");
   EXPECT_EQ(message(head + left + right + "[initial.centre]\nmass = 1\nspeed = 2"),
-            "s.toml:13: initial.centre.speed: a row does not reach the body between the rows "
+            "s.toml:13: initial.centre.speed: a row does not reach the particle between the rows "
             "(found left row at 1, centre at 2, right row at 0.5): give a velocity between those of the rows");
   EXPECT_TRUE(begins(message(head + left + right + "[initial.centre]\nspeed = 2"), "s.toml:12: initial.centre.speed:"));
   EXPECT_EQ(message(head + "initial.particles = 8\n" + left + right),
@@ -337,7 +337,7 @@ TEST(Scene, GeneralRows) {
                      "s.toml:5: initial.left.particles: key of another initial st"));
 }
 
-TEST(Scene, WallsStandOutsideTheBodies) {
+TEST(Scene, WallsStandOutsideTheParticles) {
   const std::string dry = "law = { type = 'inelastic', restitution = 0.9 }\nrun = { until = 9, start = 1 }\n";
   const std::string three = dry + "initial = { type = 'list', x = [1, 2, 4], v = [0, 0, 0] }\n";
   const std::string rows = dry + "initial = { type = 'rows', particles = 8, perturbation = 0.25, spacing = 2 }\n";
@@ -357,19 +357,19 @@ TEST(Scene, WallsStandOutsideTheBodies) {
   EXPECT_TRUE(begins(message(three + "[walls]\nright.speed = 1"),
                      "s.toml:5: walls.right.speed: key of a wall that is not there"));
   EXPECT_EQ(message(three + "[walls]\nleft.position = 1"),
-            "s.toml:5: walls.left.position: a wall among the bodies, which would have met before the start "
-            "(found wall at 1, first body at 1): move it outwards");
+            "s.toml:5: walls.left.position: a wall among the particles, which would have met before the start "
+            "(found wall at 1, first particle at 1): move it outwards");
   EXPECT_EQ(message(three + "[walls]\nright.position = 3"),
-            "s.toml:5: walls.right.position: a wall among the bodies, which would have met before the start "
-            "(found wall at 3, last body at 4): move it outwards");
-  EXPECT_TRUE(
-      begins(message(rows + "walls.left.position = -7.5"), "s.toml:4: walls.left.position: a wall among the bodies"));
+            "s.toml:5: walls.right.position: a wall among the particles, which would have met before the start "
+            "(found wall at 3, last particle at 4): move it outwards");
+  EXPECT_TRUE(begins(message(rows + "walls.left.position = -7.5"),
+                     "s.toml:4: walls.left.position: a wall among the particles"));
   EXPECT_FALSE(parse(rows + "walls.left.position = -7.6").walls.right.position);
   EXPECT_EQ(message(three + "[walls]\nleft.position = 0\nleft.speed = 0.25\nright.position = 4.5\nright.speed = -0.5"),
             "s.toml:6: walls.left.speed: the walls meet before the run ends (found at t = 7): "
             "give smaller speeds, or an earlier run.until");
   EXPECT_TRUE(begins(message(dry + "initial.type = 'ring'\nwalls.left.position = -1"),
-                     "s.toml:4: walls.left.position: a wall without a line of bodies"));
+                     "s.toml:4: walls.left.position: a wall without a line of particles"));
   EXPECT_TRUE(begins(message("law = { type = 'wet', loss = 1 }\nrun.until = 1\ninitial.type = 'rows'\n"
                              "walls.left.position = -1e5"),
                      "s.toml:4: walls.left.position: key of another law"));
@@ -377,27 +377,28 @@ TEST(Scene, WallsStandOutsideTheBodies) {
       begins(message(three + "run.collapse = 'merge'\nrun.merge_speed = 1\nwalls.left.position = 0"), "s.toml:"));
 }
 
-TEST(Scene, RingIsAsLongAsItHasBodies) {
+TEST(Scene, RingIsAsLongAsItHasParticles) {
   const std::string text = "law.type = 'sticky'\nrun.until = 9\ninitial.type = 'ring'\ninitial.particles = 7\n";
   EXPECT_EQ(parse(text).initial.length.text, "7");
   EXPECT_EQ(parse(text + "initial.velocities = 'uniform'").initial.velocities, Velocities::uniform);
   EXPECT_EQ(parse(text + "initial.length = 1e-2").initial.length.text, "1e-2");
 }
 
-TEST(Scene, BodiesInTheScene) {
+TEST(Scene, ParticlesInTheScene) {
   const std::string head = "law.type = 'sticky'\nrun.until = 9\n[initial]\ntype = 'list'\n";
-  EXPECT_EQ(message(head), "s.toml: initial.file: missing: name a CSV file of bodies, or give initial.x and initial.v");
+  EXPECT_EQ(message(head),
+            "s.toml: initial.file: missing: name a CSV file of particles, or give initial.x and initial.v");
   EXPECT_EQ(message(head + "file = 'b.csv'\nx = [1]"),
-            "s.toml:5: initial.file: two lists of bodies (found initial.file and initial.x): remove one of them");
+            "s.toml:5: initial.file: two lists of particles (found initial.file and initial.x): remove one of them");
   EXPECT_EQ(message(head + "x = [1, 2]\nv = [1]"),
-            "s.toml:6: initial.v: not one per body (found 1 for 2 positions): give 2 numbers");
+            "s.toml:6: initial.v: not one per particle (found 1 for 2 positions): give 2 numbers");
   EXPECT_EQ(message(head + "x = [1, 2]"),
-            "s.toml: initial.v: not one per body (found 0 for 2 positions): give 2 numbers");
+            "s.toml: initial.v: not one per particle (found 0 for 2 positions): give 2 numbers");
   EXPECT_EQ(message(head + "x = [1,\n 1.0]\nv = [1, 2]"),
-            "s.toml:6: initial.x: coincident bodies (found 1.0 after 1): give increasing positions");
+            "s.toml:6: initial.x: coincident particles (found 1.0 after 1): give increasing positions");
   EXPECT_TRUE(
       begins(message(head + "x = [1, 2]\nv = [1, 2]\nm = [1, 0]"), "s.toml:7: initial.m: out of range (found 0"));
-  EXPECT_TRUE(begins(message(head + "x = []\nv = []"), "s.toml:5: initial.x: no bodies "));
+  EXPECT_TRUE(begins(message(head + "x = []\nv = []"), "s.toml:5: initial.x: no particles "));
 }
 
 TEST(Scene, MassesAreSuchThatThePrecisionHoldsThem) {
@@ -432,12 +433,12 @@ TEST(Scene, MassesRepeat) {
   EXPECT_EQ(texts(parse(ring, {"initial.masses=[1, 4.25]"}).initial.masses), (Strings{"1", "4.25"}));
   EXPECT_EQ(parse(good, {"initial.masses=[1,2,3]"}).initial.masses.size(), 3U);  // rows end with a part of the pattern
   EXPECT_EQ(message(ring, {"initial.masses=[1,2,3]"}),
-            "--set initial.masses: the pattern does not divide the ring (found 3 masses, 100 bodies): give "
+            "--set initial.masses: the pattern does not divide the ring (found 3 masses, 100 particles): give "
             "initial.particles as a multiple of 3");
   EXPECT_EQ(
       message(
           "[initial]\ntype = \"ring\"\nparticles = 7\nmasses = [1, 2]\n[law]\ntype = \"sticky\"\n[run]\nuntil = 1\n"),
-      "s.toml:4: initial.masses: the pattern does not divide the ring (found 2 masses, 7 bodies): give "
+      "s.toml:4: initial.masses: the pattern does not divide the ring (found 2 masses, 7 particles): give "
       "initial.particles as a multiple of 2");
   EXPECT_EQ(message(ring, {"initial.masses=[]"}),
             "--set initial.masses: no masses (found an empty list): give at least one mass");
@@ -447,10 +448,10 @@ TEST(Scene, MassesRepeat) {
   EXPECT_TRUE(begins(message(good, {"initial.masses=[1e-400]"}), "--set initial.masses: "));  // not in double
   EXPECT_TRUE(begins(
       message(good, {"law.type=wet", "law.restitution=", "law.loss=1", "initial.masses=[1,2]", "output.zone.from=1"}),
-      "--set output.zone.from: for bodies of mass 1 (found initial.masses of others)"));
+      "--set output.zone.from: for particles of mass 1 (found initial.masses of others)"));
   EXPECT_TRUE(begins(
       message(good, {"law.type=wet", "law.restitution=", "law.loss=1", "initial.masses=[2]", "output.scenario=true"}),
-      "--set output.scenario: for bodies of mass 1 (found initial.masses of others)"));
+      "--set output.scenario: for particles of mass 1 (found initial.masses of others)"));
   EXPECT_TRUE(unequal_masses(parse(good, {"initial.masses=[1,2]"})));
   EXPECT_TRUE(unequal_masses(parse(good, {"initial.masses=[2]"})));
   EXPECT_FALSE(unequal_masses(parse(good, {"initial.masses=[1,1.0]"})));
@@ -459,19 +460,19 @@ TEST(Scene, MassesRepeat) {
 TEST(Scene, ColdGas) {
   const Scene one = parse(cold);
   EXPECT_EQ(one.initial.hot, 1U);
-  EXPECT_EQ(one.initial.place, HotPlace::middle);
+  EXPECT_EQ(one.initial.place, scene::HotPlace::middle);
   EXPECT_EQ(one.initial.speed.text, "1");
   EXPECT_EQ(one.initial.spacing.text, "1");
   const Scene many = parse(cold, {"initial.hot=32", "initial.place=left"});
   EXPECT_EQ(many.initial.energy.text, "32");  // one each
-  EXPECT_EQ(many.initial.place, HotPlace::left);
+  EXPECT_EQ(many.initial.place, scene::HotPlace::left);
   EXPECT_EQ(message(cold, {"initial.hot=101"}),
             "--set initial.hot: out of range (found 101): give an integer from 1 to initial.particles = 100");
   EXPECT_EQ(message(cold, {"initial.hot=0"}),
             "--set initial.hot: out of range (found 0): give an integer from 1 to initial.particles = 100");
   EXPECT_EQ(message(cold, {"initial.energy=1"}),
             "--set initial.energy: key of another initial state (found initial.hot = 1): remove it, it belongs to "
-            "initial.type = \"cold\" with several hot bodies");
+            "initial.type = \"cold\" with several hot particles");
   EXPECT_EQ(message(cold, {"initial.hot=2", "initial.speed=1"}),
             "--set initial.speed: key of another initial state (found initial.hot = 2): remove it, it belongs to "
             "initial.type = \"cold\" with initial.hot = 1");
@@ -602,7 +603,7 @@ TEST(EffectiveScene, ReadsBackAsTheSameScene) {
   EXPECT_TRUE(parse(good) == parse(good, {"law.restitution=999e-3"}));
 }
 
-TEST(EffectiveScene, HoldsTheBodiesOfAFileWithAllTheirDigits) {
+TEST(EffectiveScene, HoldsTheParticlesOfAFileWithAllTheirDigits) {
   const auto folder = std::filesystem::temp_directory_path() / ("cradle_list_" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
   const std::string digits = "0.1234567890123456789012345678901234567890";
@@ -664,7 +665,7 @@ TEST(BundledScenes, HoldThePapersParameters) {
   const Scene collapse = read_scene("collapse3");
   EXPECT_EQ(texts(collapse.initial.x), (Strings{"0", "1", "3"}));
   EXPECT_EQ(texts(collapse.initial.v), (Strings{"1", "0", "-1"}));
-  EXPECT_EQ(collapse.run.collapse, CollapsePolicy::stop);
+  EXPECT_EQ(collapse.run.collapse, scene::CollapsePolicy::stop);
 }
 
 TEST(ReadScene, FilesComeBeforeBundledNames) {

@@ -36,15 +36,15 @@ TEST(WetPredictions, AreThoseOfTheValidationTable) {
   const auto table = table_of("fig6");  // E_loss = 1e-4, u0 = 1/2
   EXPECT_NEAR(*number(table, "turnover_time", "continuous"), 4998.99976654257587, 1e-11);
   EXPECT_NEAR(*number(table, "turnover_time", "discrete"), 4999.69313159489030, 1e-11);
-  EXPECT_EQ(*number(table, "turnover_contacts", "discrete"), 3750);
+  EXPECT_EQ(*number(table, "turnover_collisions", "discrete"), 3750);
   EXPECT_NEAR(*number(table, "maximal_front", "continuous"), 1249.80681947309957, 1e-11);
   EXPECT_NEAR(*number(table, "maximal_front", "discrete"), 1250.15343420255485, 1e-11);
   EXPECT_NEAR(*number(table, "zone_width", "continuous"), 561.862178, 5e-7);
   EXPECT_NEAR(*number(table, "density_excess", "continuous"), 2.449489742783178, 1e-15);
   EXPECT_NEAR(*number(table, "critical_closing_speed", "continuous"), 0.02, 1e-17);
   EXPECT_NEAR(*number(table, "critical_closing_speed", "printed"), 0.02 * std::sqrt(2.), 1e-17);
-  EXPECT_NEAR(*number(table_of("fig11"), "outer_force", "continuous"), .0563508, 5e-8);
-  EXPECT_EQ(*number(table_of("fig11"), "outer_force", "printed"), .05);
+  EXPECT_NEAR(*number(table_of("fig11"), "outer_force", "continuous"), 0.0563508, 5e-8);
+  EXPECT_EQ(*number(table_of("fig11"), "outer_force", "printed"), 0.05);
   EXPECT_EQ(*number(table, "frequency_exponent", "continuous"), -2. / 3);
   // NB: 1918 merges by t = 6000, none by 4999
   EXPECT_GT(*number(table, "first_sticking_time", "discrete"), 4999);
@@ -64,7 +64,7 @@ TEST(WetPredictions, EnergyIsThatOfTheRun) {
     EXPECT_NEAR(energy.back().value, 5481.7771, 4e-4 * 768.2229) << form;
   }
   const auto discrete = curve(table, "energy", "discrete");
-  EXPECT_NEAR(discrete.back().value, 5481.7771, 4e-4) << "a few contacts";
+  EXPECT_NEAR(discrete.back().value, 5481.7771, 4e-4) << "a few collisions";
   const auto sticky = curve(table, "energy_sticky", "continuous");
   EXPECT_NEAR(sticky.back().value, 6250 - 0.125 * 4999, 1e-9);
 }
@@ -85,7 +85,7 @@ TEST(WetPredictions, CurvesOfTheFrontMeetItsTurnover) {
 }
 
 TEST(WetPredictions, GoAsFarAsTheyApply) {
-  // bodies that stick at once (E > m u0^2), before they are slowed to rest (> m u0^2/4), or never (0)
+  // particles that stick at once (E > m u0^2), before they are slowed to rest (> m u0^2/4), or never (0)
   const std::vector<std::string> short_run{"run.until=50",
                                            "output.snapshots=", "output.profiles.times=", "output.masses="};
   const auto with_loss = [&](const std::string& loss) {
@@ -103,7 +103,7 @@ TEST(WetPredictions, GoAsFarAsTheyApply) {
   EXPECT_EQ(curve(free, "energy", "continuous").back().value, 6250);
   EXPECT_EQ(curve(free, "front_position", "discrete").back().value, 24.5);
   EXPECT_FALSE(number(free, "zone_width", "continuous"));
-  // forms that go contact by contact are left out where that would take long
+  // forms that go collision by collision are left out where that would take long
   const auto tiny = table_of(
       "fig6", {"law.loss=1e-12", "run.until=1e12", "output.snapshots=", "output.profiles.times=", "output.masses="});
   EXPECT_TRUE(number(tiny, "turnover_time", "continuous"));

@@ -30,7 +30,7 @@ def run(scene: Scene, set: Settings = None, *, output: Path = None, seed: int | 
     output: the result file; by default the scene's name with .h5 in the working folder, as the program has it.
     threads: at most so many, all processors by default; never changes a result.
     progress: True, False, or a function of the share done and a line of text; by default on terminals and in notebooks.
-    Raises Error with the program's message and status; where contacts were lost (5) its `result` is what there is.
+    Raises Error with the program's message and status; where collisions were lost (5) its `result` is what there is.
     """
     return compute("run", scene, set, [], output, ".h5", seed, threads, progress)
 
@@ -80,7 +80,7 @@ def trust(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), bot
 def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), replicas: int | None = None,
             output: Path = None, seed: int | None = None, threads: int | None = None,
             progress: Progress = None) -> Result:
-    """The run with a proof of its contacts; `result.certificate.verdict` is "proved" or "undecided" (status 5).
+    """The run with a proof of its collisions; `result.certificate.verdict` is "proved" or "undecided" (status 5).
 
     digits: of the proof, tried one after the other. replicas: proves so many and writes their statistics.
     """

@@ -16,10 +16,10 @@ function cradleMicroscope(element, data) {
   const bar = make("div", "microscope-bar", element), stage = make("div", "microscope-stage", element);
   const canvas = make("canvas", "microscope-canvas", stage), readout = make("div", "microscope-readout", element);
   make("div", "microscope-help", element, "drag: move · click, then wheel, or + −: zoom (shift: time only, alt: space " +
-       "only; over an axis: that one) · n, p: next, previous contact · d: deepest · 0: all · c: colours · space: play");
+       "only; over an axis: that one) · n, p: next, previous collision · d: deepest · 0: all · c: colours · space: play");
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", "world lines of the bodies in space and time");
+  canvas.setAttribute("aria-label", "world lines of the particles in space and time");
   readout.setAttribute("aria-live", "polite");
   const pen = canvas.getContext("2d"), state = { quantity: "speed", playing: false, pointer: null, moving: 0 };
   const stores = { raster: {}, strip: {} }, offscreen = document.createElement("canvas");
@@ -37,7 +37,7 @@ function cradleMicroscope(element, data) {
   // Drawing
 
   const style = name => getComputedStyle(element).getPropertyValue(name).trim();
-  const number = body => world.index ? world.index[body] : world.first + body;
+  const number = particle => world.index ? world.index[particle] : world.first + particle;
   function layout() {
     const ratio = window.devicePixelRatio || 1, width = stage.clientWidth, height = stage.clientHeight;
     canvas.width = Math.max(1, Math.round(width * ratio));
@@ -63,17 +63,17 @@ function cradleMicroscope(element, data) {
     request();
   }
 
-  // The logarithms that colour contacts, and their range in sight, led slowly so that colours do not flicker.
+  // The logarithms that colour collisions, and their range in sight, led slowly so that colours do not flicker.
   function colouring() {
     const value = state.quantity === "speed" ? world.logSpeed : world.lost, { chart, view } = camera, sample = [];
     if (chart) {
-      let before = -Infinity;  // of the contacts within a pixel one counts
-      for (let i = 0, skip = Math.ceil(chart.contacts.length / 4000); i < chart.contacts.length; i += skip) {
+      let before = -Infinity;  // of the collisions within a pixel one counts
+      for (let i = 0, skip = Math.ceil(chart.collisions.length / 4000); i < chart.collisions.length; i += skip) {
         const tau = chart.tau[i], xi = chart.xi[i] - view.V * tau - view.xi;
         if (Math.abs(tau - view.tau) > view.T / 2 || Math.abs(xi) > view.X / 2) continue;
-        if (chart.contacts.length < 4000 && tau - before < view.T / 400) continue;
+        if (chart.collisions.length < 4000 && tau - before < view.T / 400) continue;
         before = tau;
-        sample.push(value[chart.contacts[i]]);
+        sample.push(value[chart.collisions[i]]);
       }
     } else {
       const t = (view.anchor.e < 0 ? world.start : world.time[view.anchor.e]) + view.tau;
@@ -100,7 +100,7 @@ function cradleMicroscope(element, data) {
     pen.fillRect(0, 0, canvas.width, canvas.height);
     const t0 = e < 0 ? world.start : world.time[e], x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e];
     const tilt = Math.abs(view.V + view.lab) * view.T / view.X;  // of the frame against the lab
-    const name = e < 0 ? `body ${number(view.anchor.a)}` : `contact ${e + 1}`;
+    const name = e < 0 ? `particle ${number(view.anchor.a)}` : `collision ${e + 1}`;
     const origin = { t: t0, x: x0, moving: tilt > 0.02 };
     const labels = microscopeAxes(pen, view, box, colours, origin, name);
     pen.save();
@@ -132,31 +132,31 @@ function cradleMicroscope(element, data) {
     state.drawn = performance.now() - begun;
     const coarser = state.drawn > 14 ? 1.1 : state.drawn < 7 ? 0.95 : 1;
     if (state.moving && !chart) quality = Math.min(4, Math.max(1, quality * coarser));
-    tell();
+    describe();
   }
 
-  // The readout: the contact or the gap under the pointer, else where the view is.
-  function tell() {
-    const { view } = camera, where = view.anchor.e < 0 ? `t = ${world.start}, beside body ${number(view.anchor.a)}` :
-      `at contact ${view.anchor.e + 1} of ${world.total}, bodies ${pairName(view.anchor.e)}`;
+  // The readout: the collision or the gap under the pointer, else where the view is.
+  function describe() {
+    const { view } = camera, where = view.anchor.e < 0 ? `t = ${world.start}, beside particle ${number(view.anchor.a)}` :
+      `at collision ${view.anchor.e + 1} of ${world.total}, particles ${pairName(view.anchor.e)}`;
     const n = value => microscopeNumber(value, Math.min(6, world.digits));
     const view_ = `${where}: ${microscopeNumber(view.T, 3)} t across, ${microscopeNumber(view.X, 3)} l high`;
     const place = state.pointer && placeOf(state.pointer.x, state.pointer.y);
-    const cut = world.total > world.n && world.n ? `; the first ${world.n} contacts are here` : "";
+    const cut = world.total > world.n && world.n ? `; the first ${world.n} collisions are here` : "";
     if (!place) return say(view_ + cut);
-    const contact = contactAt(state.pointer, 10);
-    if (contact) {
-      const k = contact.e, time = world.time[k];
-      return say(`contact ${k + 1}, bodies ${pairName(k)}: t = ${time}, closing speed ${n(world.speed[k])} l/t, ` +
-                 `${n(world.interval[k])} t after the contact before, energy lost ${power(world.lost[k])} m l²/t²` +
-                 (k + 1 < world.n ? `; next contact in ${n(world.interval[k + 1])} t` : ""));
+    const collision = collisionAt(state.pointer, 10);
+    if (collision) {
+      const k = collision.e, time = world.time[k];
+      return say(`collision ${k + 1}, particles ${pairName(k)}: t = ${time}, closing speed ${n(world.speed[k])} l/t, ` +
+                 `${n(world.interval[k])} t after the collision before, energy lost ${power(world.lost[k])} m l²/t²` +
+                 (k + 1 < world.n ? `; next collision in ${n(world.interval[k + 1])} t` : ""));
     }
     const pair = microscopeGapAt(camera, place);
     if (!pair) return say(view_);
     const moves = pair.w > 0 ? `closing at ${n(pair.w)} l/t` : `opening at ${n(-pair.w)} l/t`;
-    const then = pair.next >= 0 ? `contact ${pair.next + 1} (${pairName(pair.next)}) in ${n(pair.until)} t` :
-      pair.until > 0 ? `they would meet in ${n(pair.until)} t` : "no further contact of theirs";
-    say(`bodies ${number(pair.below)} and ${number(pair.above)}: gap ${n(pair.gap)} l, ${moves}; ${then}`);
+    const then = pair.next >= 0 ? `collision ${pair.next + 1} (${pairName(pair.next)}) in ${n(pair.until)} t` :
+      pair.until > 0 ? `they would meet in ${n(pair.until)} t` : "no further collision of theirs";
+    say(`particles ${number(pair.below)} and ${number(pair.above)}: gap ${n(pair.gap)} l, ${moves}; ${then}`);
   }
   const power = log => log < -350 ? "0" : log > -307 ? microscopeNumber(10 ** log, 3) :
     `${(10 ** (log - Math.floor(log))).toFixed(2)}×${microscopePower(Math.floor(log))}`;
@@ -169,7 +169,7 @@ function cradleMicroscope(element, data) {
     return [view.tau + view.T * ((x - box.left) / box.width - 0.5),
             view.xi - view.X * ((y - box.top) / box.height - 0.5)];
   }
-  function contactAt({ x, y }, within) {
+  function collisionAt({ x, y }, within) {
     const { view, chart } = camera, place = placeOf(x, y);
     if (!place || !chart) return null;
     const found = camera.nearest(place[0], place[1], view.T * within / box.width, view.X * within / box.height);
@@ -194,7 +194,7 @@ function cradleMicroscope(element, data) {
     camera.pan(-dx / box.width * view.T, dy / box.height * view.X);
     changed();
   }
-  // To contact e, with the spans as they are where they still suit it, else with what closed in it in sight.
+  // To collision e, with the spans as they are where they still suit it, else with what closed in it in sight.
   function visit(e) {
     if (e < 0 || e >= world.n) return;
     const deep = 10 ** Math.max(-300, world.depth[e]), { view } = camera;
@@ -220,36 +220,36 @@ function cradleMicroscope(element, data) {
   button("All", "the whole run (0)", actions.home);
   button("+", "zoom in (+)", () => zoom(1.6, null));
   button("−", "zoom out (−)", () => zoom(1 / 1.6, null));
-  if (data.kind === "contacts") {
-    button("‹", "previous contact (p)", () => visit(camera.view.anchor.e - 1));
-    button("›", "next contact (n)", () => visit(camera.view.anchor.e + 1));
-    button("Deepest", "the contact with the smallest gap (d)", actions.deepest);
+  if (data.kind === "collisions") {
+    button("‹", "previous collision (p)", () => visit(camera.view.anchor.e - 1));
+    button("›", "next collision (n)", () => visit(camera.view.anchor.e + 1));
+    button("Deepest", "the collision with the smallest gap (d)", actions.deepest);
     button("Colours", "colour by closing speed or by energy lost (c)", actions.colours);
   }
 
   const handle = {
     view: () => ({ ...camera.view, exact: Boolean(camera.chart), box: { ...box }, depth: camera.view.X }),
-    // Shows contact `event`, or the first one as deep as that, with so much space (depth, in l) in sight.
+    // Shows collision `event`, or the first one as deep as that, with so much space (depth, in l) in sight.
     zoomTo: ({ event, depth, time }) => {
       const found = world.depth.findIndex(d => d > -330 && d <= Math.log10(depth / 3));
       const e = event === undefined ? (found < 0 ? world.n - 1 : found) : event;
-      if (!(e >= 0 && e < world.n)) throw new Error(`no such contact (${e}): give one from 0 to ${world.n - 1}`);
+      if (!(e >= 0 && e < world.n)) throw new Error(`no such collision (${e}): give one from 0 to ${world.n - 1}`);
       camera.goTo(e, time || depth / (1.3 * world.speed[e]), depth);
       changed();
       state.moving = 0;
       draw();
       return handle.view();
     },
-    // Where a contact of a body is drawn, in pixels of the canvas; null where it is not in the chart.
-    position: (body, event) => {
-      const { chart, view } = camera, found = chart && microscopeThrough(chart, body - world.first, event);
+    // Where a collision of a particle is drawn, in pixels of the canvas; null where it is not in the chart.
+    position: (particle, event) => {
+      const { chart, view } = camera, found = chart && microscopeThrough(chart, particle - world.first, event);
       if (!found) return null;
       const i = found[0].points[found[1]], scales = microscopeScales(view, box);
       return { x: scales.x(chart.tau[i]), y: scales.y(chart.xi[i], chart.tau[i]) };
     },
-    // Where a body's world line is drawn at a pixel column.
-    height: (body, x) => {
-      const line = camera.chart.byBody.get(body - world.first), { view } = camera;
+    // Where a particle's world line is drawn at a pixel column.
+    height: (particle, x) => {
+      const line = camera.chart.byParticle.get(particle - world.first), { view } = camera;
       const tau = view.tau + view.T * ((x - box.left) / box.width - 0.5);
       return microscopeScales(view, box).y(microscopeAlong(camera.chart, line, tau), tau);
     },
@@ -265,16 +265,16 @@ function cradleMicroscope(element, data) {
   };
   handle.ready = (async () => {
     say("unpacking …");
-    if (data.kind === "contacts") {
-      start(await microscopeContacts(data));
+    if (data.kind === "collisions") {
+      start(await microscopeCollisions(data));
     } else {
       const choice = make("select", "microscope-choice", bar);
       data.snapshots.forEach((shot, i) => { make("option", "", choice, `t = ${shot.time}`).value = i; });
-      const look = async () => start(await microscopeSnapshot(data, data.snapshots[choice.value]));
-      choice.addEventListener("change", look);
-      await look();
+      const show = async () => start(await microscopeSnapshot(data, data.snapshots[choice.value]));
+      choice.addEventListener("change", show);
+      await show();
     }
-    microscopeHands(canvas, { zoom, pan, visit, actions, contactAt, camera: () => camera, state, request,
+    microscopeHands(canvas, { zoom, pan, visit, actions, collisionAt, camera: () => camera, state, request,
                               box: () => box, strip: () => strip, deepest: () => stores.strip.deepest });
     new ResizeObserver(layout).observe(stage);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", layout);

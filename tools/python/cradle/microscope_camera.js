@@ -1,6 +1,6 @@
-// The camera: where one looks. It pans and zooms, and moves its anchor to a contact in sight, so that what is drawn is
-// never far from the anchor in units of the picture. Spans of time and of space are zoomed apart or together; together,
-// the span of space follows what the bodies around the middle do in the span of time.
+// The camera: where one looks. It pans and zooms, and moves its anchor to a collision in sight, so that what is drawn
+// is never far from the anchor in units of the picture. Spans of time and of space are zoomed apart or together;
+// together, the span of space follows what the particles around the middle do in the span of time.
 
 function microscopeCamera(world) {
   const camera = { world, chart: null, built: null };
@@ -15,8 +15,8 @@ function microscopeCamera(world) {
       high = Math.max(high, world.x[e]);
     }
     low = Math.min(low, world.x0[0]);
-    high = Math.max(high, world.x0[world.bodies - 1]);
-    const anchor = world.n ? { e: 0, a: world.left[0] } : { e: -1, a: Math.floor((world.bodies - 1) / 2) };
+    high = Math.max(high, world.x0[world.particles - 1]);
+    const anchor = world.n ? { e: 0, a: world.left[0] } : { e: -1, a: Math.floor((world.particles - 1) / 2) };
     const x = anchor.e < 0 ? world.x0[anchor.a] : world.x[0], lab = microscopeAnchor(world, anchor).lab;
     limits.T = 1.06 * span;
     limits.X = 1.08 * (high - low) || 1;
@@ -25,7 +25,7 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Looks at contact e, with given spans; the frame moves with the bodies there where the lab's would tilt it.
+  // Looks at collision e, with given spans; the frame moves with the particles there where the lab's would tilt it.
   camera.goTo = (e, T, X) => {
     const anchor = { e, a: world.left[e] };
     // Where the run ends soon after, the end stands at four fifths of the picture.
@@ -38,36 +38,36 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Span of space that shows what happens in a span of time around contact e.
+  // Span of space that shows what happens in a span of time around collision e.
   camera.natural = (e, T) => {
     if (e < 0) return T * limits.X / limits.T;
     const pair = microscopeAnchor(world, { e, a: world.left[e] }), order = microscopeOrder(world, e);
     let X = 1.3 * T * Math.max(world.speed[e], Math.abs(world.after[e]));
     for (const side of [1, -1]) {
-      let body = side > 0 ? pair.b : pair.a, xi = 0, u = side > 0 ? pair.speedB : pair.speedA;
+      let particle = side > 0 ? pair.b : pair.a, xi = 0, u = side > 0 ? pair.speedB : pair.speedA;
       for (let k = 0; k < 3; ++k) {
-        const next = side > 0 ? order.next(body) : order.previous(body);
+        const next = side > 0 ? order.next(particle) : order.previous(particle);
         if (next < 0) break;
-        const [left, right] = side > 0 ? [body, next] : [next, body];
+        const [left, right] = side > 0 ? [particle, next] : [next, particle];
         const { gap, w } = microscopeRelative(world, left, right, e);
         xi += gap;
         u -= side * w;
         if (xi > X) break;
         X = Math.max(X, 2.4 * xi + Math.abs(u) * T / 2);
-        body = next;
+        particle = next;
       }
     }
     return Math.min(X, limits.X);
   };
 
   // Velocity of the frame that suits the view: the lab's while that tilts little, else that of the centre of mass of
-  // the bodies in sight at the anchor, which contacts among them leave alone.
+  // the particles in sight at the anchor, which collisions among them leave alone.
   camera.frame = () => {
     const { view, chart } = camera;
     let momentum = 0, mass = 0;
-    for (const { body, xi, u } of chart ? chart.around : []) {
+    for (const { particle, xi, u } of chart ? chart.around : []) {
       if (Math.abs(xi) > view.X / 2) continue;
-      const m = microscopeMass(world, body, view.anchor.e);
+      const m = microscopeMass(world, particle, view.anchor.e);
       momentum += m * u;
       mass += m;
     }
@@ -95,7 +95,7 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // The span of space that goes with a new span of time: towards what is natural at contact e on the way in, straight
+  // The span of space that goes with a new span of time: towards what is natural at collision e on the way in, straight
   // (in logarithms) to the whole picture on the way out.
   camera.follow = e => (T, X) => {
     const change = Math.log(T / camera.view.T);
@@ -107,18 +107,18 @@ function microscopeCamera(world) {
     return X * Math.exp(change + clamp(0.3 * wanted, 0.9 * change, -0.9 * change));
   };
 
-  // The contact that says what space goes with the time in sight: near a place, but not so near that it is of the next
-  // scale in a collapse.
+  // The collision that says what space goes with the time in sight: near a place, but not so near that it is of the
+  // next scale in a collapse.
   camera.guide = ([tau, xi]) => {
     const { view, chart } = camera;
     if (!chart) return camera.nearestInPositions()?.e ?? view.anchor.e;
     let best = view.anchor.e, least = Infinity;
-    for (let i = 0; i < chart.contacts.length; ++i) {
+    for (let i = 0; i < chart.collisions.length; ++i) {
       const apart = Math.abs(chart.tau[i] - tau) / view.T;
       const distance = Math.hypot(apart, (chart.xi[i] - view.V * chart.tau[i] - xi) / view.X) + (apart < 0.1 ? 10 : 0);
       if (distance < least) {
         least = distance;
-        best = chart.contacts[i];
+        best = chart.collisions[i];
       }
     }
     return best;
@@ -130,7 +130,7 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Makes the chart where it does not do any longer, and moves the anchor to the contact nearest to the middle where
+  // Makes the chart where it does not do any longer, and moves the anchor to the collision nearest to the middle where
   // it has left the picture.
   camera.settle = () => {
     camera.chartFor();
@@ -142,22 +142,22 @@ function microscopeCamera(world) {
     camera.reanchor(to);
   };
 
-  // {e, tau, xi, distance} of the contact of the chart nearest to a place, null where there is none.
+  // {e, tau, xi, distance} of the collision of the chart nearest to a place, null where there is none.
   camera.nearest = (tau, xi, spanTau, spanXi) => {
     const { chart, view } = camera, { best, distance } = microscopeNearest(chart, tau, xi, spanTau, spanXi, view.V);
-    return best < 0 ? null : { e: chart.contacts[best], tau: chart.tau[best], xi: chart.xi[best], distance };
+    return best < 0 ? null : { e: chart.collisions[best], tau: chart.tau[best], xi: chart.xi[best], distance };
   };
-  // The deepest contact within parts of the picture of a place: what is held fast on the way in, so that the wheel over
-  // the tip of a collapse follows it.
+  // The deepest collision within parts of the picture of a place: what is held fast on the way in, so that the wheel
+  // over the tip of a collapse follows it.
   camera.deepest = ([tau, xi], partOfT, partOfX) => {
     const { chart, view } = camera;
     let best = -1;
-    for (let i = 0; i < chart.contacts.length; ++i) {
+    for (let i = 0; i < chart.collisions.length; ++i) {
       if (Math.abs(chart.tau[i] - tau) > partOfT * view.T) continue;
       if (Math.abs(chart.xi[i] - view.V * chart.tau[i] - xi) > partOfX * view.X) continue;
-      if (best < 0 || world.depth[chart.contacts[i]] < world.depth[chart.contacts[best]]) best = i;
+      if (best < 0 || world.depth[chart.collisions[i]] < world.depth[chart.collisions[best]]) best = i;
     }
-    return best < 0 ? null : { e: chart.contacts[best], tau: chart.tau[best], xi: chart.xi[best] };
+    return best < 0 ? null : { e: chart.collisions[best], tau: chart.tau[best], xi: chart.xi[best] };
   };
   camera.nearestInPositions = () => {
     const { view } = camera, { e } = view.anchor, t0 = e < 0 ? world.start : world.time[e];
@@ -171,7 +171,7 @@ function microscopeCamera(world) {
     return best;
   };
 
-  // The same picture, seen from another contact at (tau, xi).
+  // The same picture, seen from another collision at (tau, xi).
   camera.reanchor = ({ e, tau, xi }) => {
     const { view, chart } = camera, anchor = { e, a: world.left[e] }, pair = microscopeAnchor(world, anchor);
     // Velocity of the new pair's frame against the old one's: from the chart, or from the lab where there is none.
@@ -182,15 +182,15 @@ function microscopeCamera(world) {
     camera.chartFor();
   };
 
-  // Whether there are far too many contacts for a chart, told quickly from positions; false where these do not tell.
+  // Whether there are far too many collisions for a chart, told quickly from positions; false where these do not tell.
   camera.crowded = () => {
     const { view } = camera, { e } = view.anchor;
     const t0 = e < 0 ? world.start : world.time[e], x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e];
     if (!world.n || !world.keepsOrder || world.ring || view.X < 1e-6 * limits.X) return false;
     const row = (place, t) => 0.5 - (place - x0 - (view.lab + view.V) * (t - t0) - view.xi) / view.X;
     const [lowest, highest] = microscopeVisible(world, view, row, 1), { slotTime, begin } = world;
-    const before = (body, t) => {  // slots of the body before t
-      let low = begin[body], high = begin[body + 1];
+    const before = (particle, t) => {  // slots of the particle before t
+      let low = begin[particle], high = begin[particle + 1];
       while (low < high) {
         const middle = (low + high) >> 1;
         if (slotTime[middle] < t) low = middle + 1; else high = middle;
@@ -198,9 +198,9 @@ function microscopeCamera(world) {
       return low;
     };
     let count = 0;
-    for (let body = lowest; body <= highest && count < 2 * MICROSCOPE_CHART.contacts; ++body)
-      count += before(body, t0 + view.tau + view.T / 2) - before(body, t0 + view.tau - view.T / 2);
-    return count >= MICROSCOPE_CHART.contacts / 4;  // a chart is for nine times what is in sight
+    for (let particle = lowest; particle <= highest && count < 2 * MICROSCOPE_CHART.collisions; ++particle)
+      count += before(particle, t0 + view.tau + view.T / 2) - before(particle, t0 + view.tau - view.T / 2);
+    return count >= MICROSCOPE_CHART.collisions / 4;  // a chart is for nine times what is in sight
   };
 
   camera.chartFor = () => {
@@ -224,7 +224,7 @@ function microscopeCamera(world) {
   return camera;
 }
 
-// Signed time from contact i to contact j.
+// Signed time from collision i to collision j.
 function microscopeBetween(world, i, j) {
   return i <= j ? microscopeFlight(world, i, j) : -microscopeFlight(world, j, i);
 }
@@ -244,8 +244,8 @@ function microscopeAlong(chart, line, tau) {
   return span > 0 ? before[1] + (behind[1] - before[1]) * ((tau - before[0]) / span) : before[1];
 }
 
-// Velocity in the chart's frame of the pair of another contact in it: that of one of its bodies right after it, less
-// what that one has against the pair.
+// Velocity in the chart's frame of the pair of another collision in it: that of one of its particles right after it,
+// less what that one has against the pair.
 function microscopeSpeedAt(chart, world, anchor, pair) {
   const [line, at] = microscopeThrough(chart, pair.a, anchor.e);
   return line.speeds[at] - pair.speedA;

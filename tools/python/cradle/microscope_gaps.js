@@ -1,9 +1,9 @@
-// Gaps and the order of the bodies right after any contact (see microscope_world.js).
+// Gaps and the order of the particles right after any collision (see microscope_world.js).
 
-const MICROSCOPE_STEPS = 20000;  // contacts that are gone through at most to find a gap
+const MICROSCOPE_STEPS = 20000;  // collisions that are gone through at most to find a gap
 
-// Gap and closing speed of neighbours a (left) and b right after contact e (-1: the start), and by how much `path` the
-// gap changed since or until the contact that it is known from: its rounding is 1e-16 of that.
+// Gap and closing speed of neighbours a (left) and b right after collision e (-1: the start), and by how much `path`
+// the gap changed since or until the collision that it is known from: its rounding is 1e-16 of that.
 function microscopeRelative(world, a, b, e) {
   const past = microscopeFromPast(world, a, b, e);
   if (past && past.path === 0) return past;
@@ -36,7 +36,7 @@ function microscopeFromPast(world, a, b, e) {
   }
   if (from >= 0) {
     w = world.left[from] === a ? world.after[from] : -world.after[from];
-  } else if (b === a + 1 || (world.ring && b === 0 && a === world.bodies - 1)) {
+  } else if (b === a + 1 || (world.ring && b === 0 && a === world.particles - 1)) {
     gap = world.gap0[a];
     w = world.w0[a];
   } else {
@@ -71,12 +71,12 @@ function microscopeFromFuture(world, a, b, e) {
       break;
     }
     if (kicks.length >= MICROSCOPE_STEPS) return null;
-    const next = Math.min(ofA, ofB), isA = ofA < ofB, body = isA ? a : b;
+    const next = Math.min(ofA, ofB), isA = ofA < ofB, particle = isA ? a : b;
     kicks.push([next, isA ? microscopeKick(world, a, next) : -microscopeKick(world, b, next)]);
     if (isA) ++i; else ++j;
-    if (world.event[next] === MICROSCOPE.merge && microscopeGone(world, next) === body) {
+    if (world.event[next] === MICROSCOPE.merge && microscopeGone(world, next) === particle) {
       // What it merged into goes on in its place.
-      const heir = microscopeOther(world, body, next), slot = microscopeSlotAfter(world, heir, next);
+      const heir = microscopeOther(world, particle, next), slot = microscopeSlotAfter(world, heir, next);
       if (isA) { a = heir; i = slot; } else { b = heir; j = slot; }
     }
   }
@@ -95,44 +95,44 @@ function microscopeFromFuture(world, a, b, e) {
   return { gap, w, path };
 }
 
-// Place and velocity of a body right after contact e, in the lab: as good as positions are.
-function microscopePlace(world, body, e) {
-  const slot = microscopeSlotAfter(world, body, e) - 1;
-  if (slot < world.begin[body]) return world.x0[body] + world.v0[body] * microscopeFlight(world, -1, e);
-  const last = world.list[slot], turned = world.ring && world.right[last] === body ? world.turn[last] * world.ring : 0;
+// Place and velocity of a particle right after collision e, in the lab: as good as positions are.
+function microscopePlace(world, particle, e) {
+  const slot = microscopeSlotAfter(world, particle, e) - 1;
+  if (slot < world.begin[particle]) return world.x0[particle] + world.v0[particle] * microscopeFlight(world, -1, e);
+  const last = world.list[slot], turned = world.ring && world.right[last] === particle ? world.turn[last] * world.ring : 0;
   return world.x[last] + turned + world.velocity[slot] * microscopeFlight(world, last, e);
 }
-function microscopeVelocity(world, body, e) {
-  const slot = microscopeSlotAfter(world, body, e) - 1;
-  return slot < world.begin[body] ? world.v0[body] : world.velocity[slot];
+function microscopeVelocity(world, particle, e) {
+  const slot = microscopeSlotAfter(world, particle, e) - 1;
+  return slot < world.begin[particle] ? world.v0[particle] : world.velocity[slot];
 }
 
-// Mass of a body right after contact e.
-function microscopeMass(world, body, e) {
+// Mass of a particle right after collision e.
+function microscopeMass(world, particle, e) {
   if (!world.share) return 1;
-  if (world.keepsOrder) return world.mass0[body];
-  let mass = world.mass0 ? world.mass0[body] : 1;
-  // The mass follows from the share that the body has in the impulse at its next contact, or at its last one.
-  for (let slot = world.begin[body]; slot < world.begin[body + 1] && world.list[slot] <= e; ++slot) {
-    const contact = world.list[slot];
-    if (world.event[contact] !== MICROSCOPE.merge) continue;
-    const own = world.left[contact] === body ? 1 - world.share[contact] : world.share[contact];
+  if (world.keepsOrder) return world.mass0[particle];
+  let mass = world.mass0 ? world.mass0[particle] : 1;
+  // The mass follows from the share that the particle has in the impulse at its next collision, or at its last one.
+  for (let slot = world.begin[particle]; slot < world.begin[particle + 1] && world.list[slot] <= e; ++slot) {
+    const collision = world.list[slot];
+    if (world.event[collision] !== MICROSCOPE.merge) continue;
+    const own = world.left[collision] === particle ? 1 - world.share[collision] : world.share[collision];
     mass /= own;
   }
   return mass;
 }
 
-// The order of the bodies right after contact e: {next, previous}, functions of a body, -1 beyond the ends. Where
-// bodies merge or pass, it is made anew from the nearest of some orders that are kept.
+// The order of the particles right after collision e: {next, previous}, functions of a particle, -1 beyond the ends.
+// Where particles merge or pass, it is made anew from the nearest of some orders that are kept.
 function microscopeOrder(world, e) {
-  const { bodies, ring } = world;
+  const { particles, ring } = world;
   if (world.keepsOrder)
-    return { next: body => body + 1 < bodies ? body + 1 : ring ? 0 : -1,
-             previous: body => body > 0 ? body - 1 : ring ? bodies - 1 : -1 };
+    return { next: particle => particle + 1 < particles ? particle + 1 : ring ? 0 : -1,
+             previous: particle => particle > 0 ? particle - 1 : ring ? particles - 1 : -1 };
   if (!world.orders) {
-    const next = Int32Array.from({ length: bodies }, (_, i) => i + 1 < bodies ? i + 1 : ring ? 0 : -1);
-    const previous = Int32Array.from({ length: bodies }, (_, i) => i > 0 ? i - 1 : ring ? bodies - 1 : -1);
-    world.stride = Math.max(1024, Math.ceil(world.n * bodies / 8e6));
+    const next = Int32Array.from({ length: particles }, (_, i) => i + 1 < particles ? i + 1 : ring ? 0 : -1);
+    const previous = Int32Array.from({ length: particles }, (_, i) => i > 0 ? i - 1 : ring ? particles - 1 : -1);
+    world.stride = Math.max(1024, Math.ceil(world.n * particles / 8e6));
     world.orders = [[next, previous]];
   }
   const wanted = Math.floor((e + 1) / world.stride);
@@ -143,7 +143,7 @@ function microscopeOrder(world, e) {
   }
   const [next, previous] = world.orders[wanted].map(links => links.slice());
   for (let k = wanted * world.stride; k <= e; ++k) microscopeRelink(world, k, next, previous);
-  return { next: body => next[body], previous: body => previous[body] };
+  return { next: particle => next[particle], previous: particle => previous[particle] };
 }
 
 function microscopeRelink(world, e, next, previous) {

@@ -63,8 +63,8 @@ function microscopeHands(canvas, scope) {
   canvas.addEventListener("pointercancel", up);
   canvas.addEventListener("pointerleave", () => { state.pointer = null; scope.request(); });
   canvas.addEventListener("dblclick", event => {
-    const contact = scope.contactAt(at(event), 20);
-    if (contact) visit(contact.e); else zoom(2, at(event));
+    const collision = scope.collisionAt(at(event), 20);
+    if (collision) visit(collision.e); else zoom(2, at(event));
   });
 
   canvas.addEventListener("keydown", event => {
@@ -87,7 +87,7 @@ function microscopeHands(canvas, scope) {
   });
 }
 
-// Play. A collapse is flown into: zooming about its last contact at a steady rate, so that contacts pass by evenly.
+// Play. A collapse is flown into: zooming about its last collision at a steady rate, so that collisions pass by evenly.
 // Else time goes on, a picture's width in ten seconds. `frame` draws, `stop` is called at the end.
 function microscopePlay(camera, state, frame, stop) {
   const { world } = camera, last = world.n - 1;
@@ -96,8 +96,8 @@ function microscopePlay(camera, state, frame, stop) {
     const { view, chart } = camera, { e } = view.anchor;
     const tau = last < 0 || e < 0 ? NaN : microscopeFlight(world, e, last);
     if (!chart || !(Math.abs(tau - view.tau) <= 0.5 * view.T)) return null;
-    const i = chart.contacts.length - 1;
-    return i >= 0 && chart.contacts[i] === last && Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2
+    const i = chart.collisions.length - 1;
+    return i >= 0 && chart.collisions[i] === last && Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2
       ? [chart.tau[i], chart.xi[i] - view.V * chart.tau[i]] : null;
   };
   if (world.collapse && !inSight()) camera.home();
@@ -125,33 +125,33 @@ function microscopePlay(camera, state, frame, stop) {
   requestAnimationFrame(step);
 }
 
-// The two bodies below and above a place [tau, xi] of the picture: {below, above, gap, w, next, until}: gap and closing
-// speed then, the next contact of either of them (-1: none) and the time to it. null beyond the outermost.
+// The two particles below and above a place [tau, xi] of the picture: {below, above, gap, w, next, until}: gap and
+// closing speed then, the next collision of either of them (-1: none) and the time to it. null beyond the outermost.
 function microscopeGapAt(camera, [tau, xi]) {
-  const { world, chart, view } = camera, e = view.anchor.e, contact = microscopeContactAt(world, e, tau);
-  const since = tau - (contact < 0 && e < 0 ? 0 : microscopeBetween(world, e, contact));
+  const { world, chart, view } = camera, e = view.anchor.e, collision = microscopeCollisionAt(world, e, tau);
+  const since = tau - (collision < 0 && e < 0 ? 0 : microscopeBetween(world, e, collision));
   let below = -1, above = -1, low = -Infinity, high = Infinity;
-  const look = (body, place) => {
-    if (place <= xi && place > low) [below, low] = [body, place];
-    if (place > xi && place < high) [above, high] = [body, place];
+  const consider = (particle, place) => {
+    if (place <= xi && place > low) [below, low] = [particle, place];
+    if (place > xi && place < high) [above, high] = [particle, place];
   };
   if (chart) {
     for (const line of chart.lines)
-      if (line.from[0] <= tau && line.to[0] >= tau) look(line.body, microscopeAlong(chart, line, tau) - view.V * tau);
+      if (line.from[0] <= tau && line.to[0] >= tau) consider(line.particle, microscopeAlong(chart, line, tau) - view.V * tau);
   } else {
     const x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e], t = world.time[Math.max(0, e)] + tau;
-    for (let body = 0; body < world.bodies; ++body) {
-      if (!world.keepsOrder && world.begin[body + 1] > world.begin[body] && microscopeGoneAt(world, body) < t) continue;
-      const place = microscopePlace(world, body, contact) + microscopeVelocity(world, body, contact) * since;
-      look(body, place - x0 - (view.lab + view.V) * tau);
+    for (let particle = 0; particle < world.particles; ++particle) {
+      if (!world.keepsOrder && world.begin[particle + 1] > world.begin[particle] && microscopeGoneAt(world, particle) < t) continue;
+      const place = microscopePlace(world, particle, collision) + microscopeVelocity(world, particle, collision) * since;
+      consider(particle, place - x0 - (view.lab + view.V) * tau);
     }
   }
   if (below < 0 || above < 0) return null;
-  const { gap, w } = microscopeRelative(world, below, above, contact);
-  const following = [below, above].map(body => microscopeSlotAfter(world, body, contact))
+  const { gap, w } = microscopeRelative(world, below, above, collision);
+  const following = [below, above].map(particle => microscopeSlotAfter(world, particle, collision))
     .map((slot, i) => slot < world.begin[[below, above][i] + 1] ? world.list[slot] : Infinity);
   const next = Math.min(...following), known = Number.isFinite(next);
   const pending = gap - w * since, dueIn = world.n || !(w > 0) ? NaN : pending / w;
   return { below, above, gap: Math.max(0, pending), w, next: known ? next : -1,
-           until: known ? microscopeFlight(world, contact, next) - since : dueIn };
+           until: known ? microscopeFlight(world, collision, next) - since : dueIn };
 }

@@ -1,9 +1,9 @@
-// What stands for very many contacts: a picture made of one sample of a world line per column and of the mean colour
-// of the contacts in a pixel; and the strip that shows the depth of every contact, for finding one's way.
+// What stands for very many collisions: a picture made of one sample of a world line per column and of the mean colour
+// of the collisions in a pixel; and the strip that shows the depth of every collision, for finding one's way.
 
-// The picture of a view in positions, as ImageData of width x height pixels: world lines in `ink` and contacts coloured
-// by `value` over `range`. At most about `budget` samples of lines, and of contacts. (Pixels are written as words, in
-// the order of bytes that all machines with a browser have.)
+// The picture of a view in positions, as ImageData of width x height pixels: world lines in `ink` and collisions
+// coloured by `value` over `range`. At most about `budget` samples of lines, and of collisions. (Pixels are written as
+// words, in the order of bytes that all machines with a browser have.)
 function microscopeRaster(world, view, width, height, value, range, ink, budget, store) {
   if (!store.image || store.image.width !== width || store.image.height !== height) {
     Object.assign(store, { image: new ImageData(width, height), lines: new Float32Array(width * height),
@@ -22,17 +22,17 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   const perColumn = view.T / width;
   const firstColumn = Math.max(0, Math.ceil((world.start - begins) / perColumn));
   const lastColumn = Math.min(width - 1, Math.floor((world.end - begins) / perColumn));
-  for (let body = lowest; body <= highest; body += step) {
-    let slot = begin[body], next = begin[body + 1], before = NaN;
-    const t1 = begins + firstColumn * perColumn, none = begin[body], end = begin[body + 1];
+  for (let particle = lowest; particle <= highest; particle += step) {
+    let slot = begin[particle], next = begin[particle + 1], before = NaN;
+    const t1 = begins + firstColumn * perColumn, none = begin[particle], end = begin[particle + 1];
     while (slot < next) {
       const middle = (slot + next) >> 1;
       if (slotTime[middle] <= t1) slot = middle + 1; else next = middle;
     }
-    const gone = world.keepsOrder || end === none ? Infinity : microscopeGoneAt(world, body);
+    const gone = world.keepsOrder || end === none ? Infinity : microscopeGoneAt(world, particle);
     for (let column = firstColumn; column <= lastColumn; ++column) {
       const t = begins + column * perColumn;
-      // Steps that double find the next contact also where there are many to a column.
+      // Steps that double find the next collision also where there are many to a column.
       for (let jump = 1; slot < end && slotTime[slot] <= t; jump *= 2) {
         if (slot + jump < end && slotTime[slot + jump] <= t) slot += jump;
         else {
@@ -42,7 +42,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
       }
       if (t > gone) break;
       const last = slot - 1;
-      const place = last < none ? world.x0[body] + world.v0[body] * (t - world.start)
+      const place = last < none ? world.x0[particle] + world.v0[particle] * (t - world.start)
                                 : slotPlace[last] + velocity[last] * (t - slotTime[last]);
       const y = row(place, t), from = Math.min(before, y), to = Math.max(before, y);
       before = y;
@@ -56,7 +56,8 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
         lines[k * width + column] += 1;
     }
   }
-  // Contacts in sight: by time from the sorted list. Each is shared by two pixels, so that regular ones make no moiré.
+  // Collisions in sight: by time from the sorted list. Each is shared by two pixels, so that regular ones make no
+  // moiré.
   const first = microscopeFirstAfter(time, begins), last = microscopeFirstAfter(time, begins + view.T);
   const skip = Math.max(1, Math.ceil((last - first) / budget));
   for (let k = first; k < last; k += skip) {
@@ -77,7 +78,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   return image;
 }
 
-// From sums to pixels: world lines in ink, up to `opacity`, and over them the mean colour of the contacts.
+// From sums to pixels: world lines in ink, up to `opacity`, and over them the mean colour of the collisions.
 function microscopeTone({ image, lines, tint, count }, range, [red, green, blue], step, opacity) {
   const pixels = new Uint32Array(image.data.buffer), table = new Uint32Array(256);
   const scale = 255 / (range[1] - range[0]), low = range[0], paint = blue << 16 | green << 8 | red;
@@ -97,7 +98,7 @@ function microscopeTone({ image, lines, tint, count }, range, [red, green, blue]
   }
 }
 
-// Range of the logarithms that a raster shows, by the share of the picture, not of the contacts; null where there are
+// Range of the logarithms that a raster shows, by the share of the picture, not of the collisions; null where there are
 // none.
 function microscopeShown({ count, tint }) {
   const shown = [];
@@ -108,7 +109,7 @@ function microscopeShown({ count, tint }) {
   return [shown[Math.floor(0.02 * shown.length)], shown[Math.floor(0.98 * shown.length)]];
 }
 
-// First contact after a time.
+// First collision after a time.
 function microscopeFirstAfter(time, t) {
   let low = 0, high = time.length;
   while (low < high) {
@@ -118,26 +119,26 @@ function microscopeFirstAfter(time, t) {
   return low;
 }
 
-// When a body merges into another one; infinite where it does not.
-function microscopeGoneAt(world, body) {
-  const last = world.list[world.begin[body + 1] - 1];
-  return world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === body ? world.time[last] : Infinity;
+// When a particle merges into another one; infinite where it does not.
+function microscopeGoneAt(world, particle) {
+  const last = world.list[world.begin[particle + 1] - 1];
+  return world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === particle ? world.time[last] : Infinity;
 }
 
-// The bodies that come into sight. As long as they keep their order some columns tell, else all may.
+// The particles that come into sight. As long as they keep their order some columns tell, else all may.
 function microscopeVisible(world, view, row, height) {
-  if (!world.keepsOrder || world.ring) return [0, world.bodies - 1];
-  let lowest = world.bodies - 1, highest = 0;
+  if (!world.keepsOrder || world.ring) return [0, world.particles - 1];
+  let lowest = world.particles - 1, highest = 0;
   const t0 = view.anchor.e < 0 ? world.start : world.time[view.anchor.e];
   for (let k = 0; k <= 24; ++k) {
     const t = Math.min(world.end, Math.max(world.start, t0 + view.tau + view.T * (k / 24 - 0.5)));
-    const contact = microscopeFirstAfter(world.time, t) - 1;
-    const since = t - (contact < 0 ? world.start : world.time[contact]);
-    const above = edge => {  // how many bodies are left of what is shown at this row
-      let low = 0, high = world.bodies;
+    const collision = microscopeFirstAfter(world.time, t) - 1;
+    const since = t - (collision < 0 ? world.start : world.time[collision]);
+    const above = edge => {  // how many particles are left of what is shown at this row
+      let low = 0, high = world.particles;
       while (low < high) {
         const middle = (low + high) >> 1;
-        const place = microscopePlace(world, middle, contact) + microscopeVelocity(world, middle, contact) * since;
+        const place = microscopePlace(world, middle, collision) + microscopeVelocity(world, middle, collision) * since;
         if (row(place, t) > edge) low = middle + 1; else high = middle;
       }
       return low;
@@ -145,17 +146,17 @@ function microscopeVisible(world, view, row, height) {
     lowest = Math.min(lowest, above(1.2 * height));
     highest = Math.max(highest, above(-0.2 * height));
   }
-  return [Math.max(0, lowest - 2), Math.min(world.bodies - 1, highest + 2)];
+  return [Math.max(0, lowest - 2), Math.min(world.particles - 1, highest + 2)];
 }
 
-// The strip: depth of the contacts against their number, least and greatest of each column; where the view is.
+// The strip: depth of the collisions against their number, least and greatest of each column; where the view is.
 function microscopeStrip(pen, world, view, box, colours, store) {
   const { n, depth } = world, columns = Math.max(1, Math.floor(box.width));
   if (store.columns !== columns) {
     const low = new Float32Array(columns).fill(Infinity), high = new Float32Array(columns).fill(-Infinity);
     const deepest = new Int32Array(columns).fill(-1);
     for (let e = 0; e < n; ++e) {
-      if (depth[e] < -330) continue;  // two contacts within rounding
+      if (depth[e] < -330) continue;  // two collisions within rounding
       const column = Math.min(columns - 1, Math.floor(e / n * columns));
       if (depth[e] < low[column]) {
         low[column] = depth[e];
@@ -187,7 +188,7 @@ function microscopeStrip(pen, world, view, box, colours, store) {
     if (store.deepest[column] >= 0)
       pen.fillRect(box.left + column, y(store.high[column]) - 0.75, Math.max(1, 1.2 * columns / n),
                    Math.max(1.5, y(store.low[column]) - y(store.high[column])));
-  // Where the view is: its contact and its span of space.
+  // Where the view is: its collision and its span of space.
   const at = box.left + box.width * Math.max(0, view.anchor.e + 0.5) / n;
   const level = Math.min(box.top + box.height, Math.max(box.top, y(Math.log10(view.X))));
   pen.strokeStyle = colours.accent;
@@ -206,6 +207,6 @@ function microscopeStrip(pen, world, view, box, colours, store) {
   pen.fillStyle = colours.text;
   pen.textAlign = "center";
   pen.textBaseline = "top";
-  pen.fillText(`gap that closes in a contact, in l, against the number of the contact, 1 to ${n}`,
+  pen.fillText(`gap that closes in a collision, in l, against the number of the collision, 1 to ${n}`,
                box.left + box.width / 2, box.top + box.height + 5);
 }

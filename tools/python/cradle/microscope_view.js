@@ -1,7 +1,8 @@
-// Drawing: world lines and contacts of a chart, axes whose labels hold at any depth, and the strip of all depths.
+// Drawing: world lines and collisions of a chart, axes whose labels hold at any depth, and the strip of all depths.
 //
-// The view is {anchor, lab, tau, xi, T, X, V}: the middle of the picture at tau after the anchor's contact and xi from
-// it, its spans of time and space, and the velocity V of its frame against the anchor's (lab: the anchor's in the lab).
+// The view is {anchor, lab, tau, xi, T, X, V}: the middle of the picture at tau after the anchor's collision and xi
+// from it, its spans of time and space, and the velocity V of its frame against the anchor's (lab: the anchor's in the
+// lab).
 
 const MICROSCOPE_MARGIN = { left: 72, right: 14, top: 12, bottom: 42, strip: 92 };
 const MICROSCOPE_PALETTE = [[58, 82, 164], [41, 138, 171], [86, 175, 128], [226, 170, 52], [214, 73, 58]];
@@ -97,11 +98,11 @@ function microscopeLines(pen, chart, view, box, colours) {
   pen.stroke(path);
 }
 
-// Contacts of a chart as dots, coloured by `value(contact)`, a logarithm, over `range`.
+// Collisions of a chart as dots, coloured by `value(collision)`, a logarithm, over `range`.
 function microscopeDots(pen, chart, view, box, value, range) {
   const { x, y } = microscopeScales(view, box), bins = new Map();
   let seen = 0, lastX = NaN, lastY = NaN;
-  for (let i = 0; i < chart.contacts.length; ++i) {
+  for (let i = 0; i < chart.collisions.length; ++i) {
     const px = x(chart.tau[i]), py = y(chart.xi[i], chart.tau[i]);
     if (px < box.left - 5 || px > box.left + box.width + 5) continue;
     if (py < box.top - 5 || py > box.top + box.height + 5) continue;
@@ -109,7 +110,7 @@ function microscopeDots(pen, chart, view, box, value, range) {
     lastX = px;
     lastY = py;
     ++seen;
-    const part = (value[chart.contacts[i]] - range[0]) / (range[1] - range[0]);
+    const part = (value[chart.collisions[i]] - range[0]) / (range[1] - range[0]);
     const bin = Math.round(15 * Math.min(1, Math.max(0, part)));
     if (!bins.has(bin)) bins.set(bin, []);
     bins.get(bin).push(px, py);
@@ -126,7 +127,7 @@ function microscopeDots(pen, chart, view, box, value, range) {
   }
 }
 
-// The numbers of the bodies, where there are few: at the left edge, or where a line comes into sight.
+// The numbers of the particles, where there are few: at the left edge, or where a line comes into sight.
 function microscopeNames(pen, chart, view, box, colours, number) {
   const { x, y } = microscopeScales(view, box), places = [];
   for (const line of chart.lines) {
@@ -136,7 +137,7 @@ function microscopeNames(pen, chart, view, box, colours, number) {
       const px = x(tau) + 4, py = y(microscopeAlong(chart, line, tau), tau);
       if (px > box.left + box.width - 30) break;
       if (py < box.top + 9 || py > box.top + box.height - 9) continue;
-      places.push([px, py, String(number(line.body))]);
+      places.push([px, py, String(number(line.particle))]);
       break;
     }
   }
@@ -193,7 +194,7 @@ function microscopeAxes(pen, view, box, colours, origin, anchorName) {
     pen.rotate(-Math.PI / 2);
     pen.textBaseline = "middle";
     pen.fillText((space.absolute ? "position" : `x − x(${anchorName})`) + unit(space, "l") +
-                 (origin.moving ? ", moving with the bodies" : ""), 0, 0);
+                 (origin.moving ? ", moving with the particles" : ""), 0, 0);
     pen.restore();
   };
 }

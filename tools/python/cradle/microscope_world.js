@@ -1,9 +1,9 @@
-// The microscope's world: contacts and initial state of a run, and coordinates that stay exact at any depth.
+// The microscope's world: collisions and initial state of a run, and coordinates that stay exact at any depth.
 //
-// Nothing here is a difference of positions. A gap is the integral of the closing speed from the contact of its two
-// bodies that is nearer by path, a time the sum of intervals between contacts, a place in a chart (microscope_chart.js)
-// the sum of such gaps from the contact that the chart is anchored at. Doubles then have their relative precision down
-// to 1e-308.
+// Nothing here is a difference of positions. A gap is the integral of the closing speed from the collision of its two
+// particles that is nearer by path, a time the sum of intervals between collisions, a place in a chart
+// (microscope_chart.js) the sum of such gaps from the collision that the chart is anchored at. Doubles then have their
+// relative precision down to 1e-308.
 
 const microscopeTypes = { f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
 const MICROSCOPE = { bounce: 0, elastic: 1, merge: 2, pass: 3 };
@@ -22,41 +22,41 @@ async function microscopeArray(packed) {
   return new Type(bytes.buffer);
 }
 
-// The world of data of kind "contacts".
-async function microscopeContacts(data) {
+// The world of data of kind "collisions".
+async function microscopeCollisions(data) {
   const open = name => data[name] ? microscopeArray(data[name]) : null;
   const names = ["x", "v", "gap", "mass", "left", "right", "interval", "speed", "event"];
   const [x0, v0, gap0, mass, left, right, interval, speed, event] = await Promise.all(names.map(open));
-  const n = interval.length, bodies = x0.length;
+  const n = interval.length, particles = x0.length;
   const world = {
-    n, bodies, x0, v0, gap0, mass0: mass, left, interval, law: data.law, first: data.first, ring: data.length,
+    n, particles, x0, v0, gap0, mass0: mass, left, interval, law: data.law, first: data.first, ring: data.length,
     start: data.start, total: data.total, digits: data.digits, collapse: data.collapse, name: data.name,
-    right: right || left.map(body => body + 1 === bodies && data.length ? 0 : body + 1),
+    right: right || left.map(particle => particle + 1 === particles && data.length ? 0 : particle + 1),
     speed: speed || new Float64Array(n), speedGiven: Boolean(speed), event: event || new Uint8Array(n),
-    w0: gap0.map((_, body) => v0[body] - v0[body + 1 < bodies ? body + 1 : 0]), index: null, valid: null,
+    w0: gap0.map((_, particle) => v0[particle] - v0[particle + 1 < particles ? particle + 1 : 0]), index: null, valid: null,
   };
   microscopeReplay(world);
   world.end = data.end === null || n === 0 ? world.time[n - 1] : Math.max(data.end, world.time[n - 1]);
   return world;
 }
 
-// The world at a snapshot: no contacts, and world lines that are known until the next one (`valid`, by body).
+// The world at a snapshot: no collisions, and world lines that are known until the next one (`valid`, by particle).
 async function microscopeSnapshot(data, snapshot) {
   const open = name => snapshot[name] ? microscopeArray(snapshot[name]) : null;
   const [gap, w, mass, index] = await Promise.all(["gap", "speed", "mass", "index"].map(open));
-  const bodies = snapshot.bodies, x0 = new Float64Array(bodies), v0 = new Float64Array(bodies);
-  const valid = new Float64Array(bodies).fill(Infinity);
+  const particles = snapshot.particles, x0 = new Float64Array(particles), v0 = new Float64Array(particles);
+  const valid = new Float64Array(particles).fill(Infinity);
   x0[0] = snapshot.x;
   v0[0] = snapshot.v;
-  for (let body = 0; body + 1 < bodies; ++body) {
-    x0[body + 1] = x0[body] + gap[body];
-    v0[body + 1] = v0[body] - w[body];
-    const due = w[body] > 0 ? gap[body] / w[body] : Infinity;
-    valid[body] = Math.min(valid[body], due);
-    valid[body + 1] = due;
+  for (let particle = 0; particle + 1 < particles; ++particle) {
+    x0[particle + 1] = x0[particle] + gap[particle];
+    v0[particle + 1] = v0[particle] - w[particle];
+    const due = w[particle] > 0 ? gap[particle] / w[particle] : Infinity;
+    valid[particle] = Math.min(valid[particle], due);
+    valid[particle + 1] = due;
   }
   const none = () => new Float64Array(0), world = {
-    n: 0, bodies, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0), ring: 0,
+    n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0), ring: 0,
     interval: none(), speed: none(), event: new Uint8Array(0), law: data.law, first: snapshot.first, index, valid,
     start: snapshot.time, total: 0, digits: 9, collapse: null, name: data.name, speedGiven: true,
   };
@@ -67,25 +67,25 @@ async function microscopeSnapshot(data, snapshot) {
   return world;
 }
 
-// Goes through the contacts once: times (as unevaluated sums), places, velocities, what each contact does, and the
-// contacts of each body: body b has list[begin[b]] .. list[begin[b + 1] - 1], the left body of contact e is there at
-// slotLeft[e], the right one at slotRight[e].
+// Goes through the collisions once: times (as unevaluated sums), places, velocities, what each collision does, and the
+// collisions of each particle: particle b has list[begin[b]] .. list[begin[b + 1] - 1], the left particle of collision
+// e is there at slotLeft[e], the right one at slotRight[e].
 function microscopeReplay(world) {
-  const { n, bodies, left, right, speed, event, interval, law, ring } = world;
-  const begin = new Int32Array(bodies + 1), list = new Int32Array(2 * n);
+  const { n, particles, left, right, speed, event, interval, law, ring } = world;
+  const begin = new Int32Array(particles + 1), list = new Int32Array(2 * n);
   for (let e = 0; e < n; ++e) { ++begin[left[e] + 1]; ++begin[right[e] + 1]; }
-  for (let body = 0; body < bodies; ++body) begin[body + 1] += begin[body];
+  for (let particle = 0; particle < particles; ++particle) begin[particle + 1] += begin[particle];
   const fill = begin.slice(), slotLeft = new Int32Array(n), slotRight = new Int32Array(n);
   const time = new Float64Array(n), low = new Float64Array(n), x = new Float64Array(n), after = new Float64Array(n);
   const kickLeft = new Float64Array(n), depth = new Float32Array(n), velocity = new Float64Array(2 * n);
   const slotTime = new Float64Array(2 * n), slotPlace = new Float64Array(2 * n);  // together, for quick pictures
-  const mass = world.mass0 ? world.mass0.slice() : new Float64Array(bodies).fill(1);
+  const mass = world.mass0 ? world.mass0.slice() : new Float64Array(particles).fill(1);
   const merges = event.includes(MICROSCOPE.merge) || law.type !== "inelastic";
   const equal = !world.mass0 && !merges;
   const kickRight = equal ? kickLeft : new Float64Array(n), share = equal ? null : new Float64Array(n);
   const lost = new Float32Array(n), turn = ring ? new Int16Array(n) : null;
-  const v = world.v0.slice(), place = world.x0.slice(), since = new Float64Array(bodies).fill(world.start);
-  const sinceLow = new Float64Array(bodies);
+  const v = world.v0.slice(), place = world.x0.slice(), since = new Float64Array(particles).fill(world.start);
+  const sinceLow = new Float64Array(particles);
   Object.assign(world, { begin, list, slotLeft, slotRight, time, low, x, after, kickLeft, kickRight, share, depth,
                          velocity, slotTime, slotPlace, lost, turn, keepsOrder: !merges });
   let t = world.start, rest = 0;
@@ -106,7 +106,7 @@ function microscopeReplay(world) {
     } else if (event[e] !== MICROSCOPE.merge) {
       out = event[e] === MICROSCOPE.elastic ? -w : -law.restitution * w;
     }
-    after[e] = out;  // velocity of the body that came from the left, minus the other's
+    after[e] = out;  // velocity of the particle that came from the left, minus the other's
     kickLeft[e] = (w - out) * ofRight;
     if (!equal) {
       kickRight[e] = (w - out) * (mass[a] / total);
@@ -133,7 +133,7 @@ function microscopeReplay(world) {
     slotPlace[slotRight[e]] = place[b];
     velocity[slotLeft[e]] = v[a];
     velocity[slotRight[e]] = v[b];
-    // Depth: the gap that has closed since one of the two had its last contact.
+    // Depth: the gap that has closed since one of the two had its last collision.
     const before = Math.max(slotLeft[e] > begin[a] ? list[slotLeft[e] - 1] : -1,
                             slotRight[e] > begin[b] ? list[slotRight[e] - 1] : -1);
     depth[e] = microscopeLog(w) + microscopeLog(microscopeFlight(world, before, e));
@@ -142,7 +142,7 @@ function microscopeReplay(world) {
 
 function microscopeLog(x) { return x > 0 ? Math.log10(x) : -400; }
 
-// Time from right after contact i (-1: the start) to contact j >= i.
+// Time from right after collision i (-1: the start) to collision j >= i.
 function microscopeFlight(world, i, j) {
   if (j <= i) return 0;
   if (i < 0) return (world.time[j] - world.start) + world.low[j];
@@ -154,9 +154,9 @@ function microscopeFlight(world, i, j) {
   return sum;
 }
 
-// The slot of the first contact of a body after contact e.
-function microscopeSlotAfter(world, body, e) {
-  let low = world.begin[body], high = world.begin[body + 1];
+// The slot of the first collision of a particle after collision e.
+function microscopeSlotAfter(world, particle, e) {
+  let low = world.begin[particle], high = world.begin[particle + 1];
   while (low < high) {
     const middle = (low + high) >> 1;
     if (world.list[middle] <= e) low = middle + 1; else high = middle;
@@ -164,12 +164,12 @@ function microscopeSlotAfter(world, body, e) {
   return low;
 }
 
-// The other body of a contact, and what a contact adds to a body's velocity.
-function microscopeOther(world, body, e) { return world.left[e] === body ? world.right[e] : world.left[e]; }
-function microscopeKick(world, body, e) {
-  return world.left[e] === body ? -world.kickLeft[e] : world.kickRight[e];
+// The other particle of a collision, and what a collision adds to a particle's velocity.
+function microscopeOther(world, particle, e) { return world.left[e] === particle ? world.right[e] : world.left[e]; }
+function microscopeKick(world, particle, e) {
+  return world.left[e] === particle ? -world.kickLeft[e] : world.kickRight[e];
 }
-// The body that is gone after a merge: the lighter one, of two equal ones the right one.
+// The particle that is gone after a merge: the lighter one, of two equal ones the right one.
 function microscopeGone(world, e) {
   return world.share[e] > 0.5 ? world.left[e] : world.right[e];
 }

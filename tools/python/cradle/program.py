@@ -25,11 +25,11 @@ def find() -> str:
     chosen = os.environ.get("CRADLE_PROGRAM")
     here = os.path.dirname(os.path.abspath(__file__))
     own = (os.path.normpath(os.path.join(here, *where)) for where in WHERE)
-    looked_at = [chosen] if chosen else [*own, "cradle"]
-    for place in looked_at:
+    tried = [chosen] if chosen else [*own, "cradle"]
+    for place in tried:
         if found := shutil.which(place):
             return found
-    raise Error(f"the program cradle is missing (looked at {', '.join(looked_at)}): "
+    raise Error(f"the program cradle is missing (looked at {', '.join(tried)}): "
                 "build it with tools/quickstart.sh, or set CRADLE_PROGRAM to it", BAD_FILE)
 
 

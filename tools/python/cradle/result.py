@@ -28,7 +28,7 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     Raises Error (status 4) for what is missing, empty, half-written, damaged, or no result of this program.
     """
     path = os.fspath(path)
-    kind = look_at(path)
+    kind = inspect(path)
     if kind == "run":
         return so_far(path)
     if kind == "replicas":
@@ -47,7 +47,7 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     return Result(path, open_file(path), sealed)
 
 
-def look_at(path: str) -> str:
+def inspect(path: str) -> str:
     """What a file begins with: "run", "replicas", "checkpoint", or "result" for HDF5. Raises Error for others."""
     try:
         with builtins_open(path, "rb") as file:
@@ -149,7 +149,7 @@ class Result:
 
     @cached_property
     def attributes(self) -> dict[str, Any]:
-        """Those of the file: cradle_version, name, precision, outcome, simultaneous_contacts, ..."""
+        """Those of the file: cradle_version, name, precision, outcome, simultaneous_collisions, ..."""
         whole = Table(self.file, self.path).attributes
         return Table(self._group("ensemble"), self.path).attributes | whole
 
@@ -178,7 +178,8 @@ class Result:
 
     @cached_property
     def series(self) -> Table:
-        """Columns of shape (samples,): `time`, `energy`, `contacts`, `front_right`, ...; `heaviest` is a table inside.
+        """Columns of shape (samples,): `time`, `energy`, `collisions`, `front_right`, ...; `heaviest` is a table
+        inside.
 
         In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`, `.min`, `.max`.
         """
@@ -186,7 +187,8 @@ class Result:
 
     @cached_property
     def snapshots(self) -> Tables:
-        """Bodies at times: `x`, `v`, `m`, `index` of shape (bodies,), `gap`, `closing_speed` of shape (bodies - 1,)."""
+        """Particles at times: `x`, `v`, `m`, `index` of shape (particles,), `gap`, `closing_speed` of shape (particles
+        - 1,)."""
         return Tables(self._group("snapshots"), f"{self.path}: snapshots")
 
     @cached_property
@@ -201,12 +203,13 @@ class Result:
 
     @cached_property
     def events(self) -> Table:
-        """Every contact, shape (contacts,): `left`, `right`, `time` (add `time_low`), `interval`, `closing_speed`."""
+        """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`), `interval`,
+        `closing_speed`."""
         return self._table("events")
 
     @cached_property
     def replicas(self) -> Table:
-        """One row per replica: `index`, `outcome`, `contacts`, `merges`, `energy`, ..."""
+        """One row per replica: `index`, `outcome`, `collisions`, `merges`, `energy`, ..."""
         return self._table("replicas")
 
     @cached_property
@@ -226,12 +229,12 @@ class Result:
 
     @cached_property
     def trust(self) -> Tables:
-        """One table per precision of a comparison: attributes `precision`, `contacts_right_until`, ..."""
+        """One table per precision of a comparison: attributes `precision`, `collisions_right_until`, ..."""
         return Tables(self._group("trust"), f"{self.path}: trust")
 
     @cached_property
     def certificate(self) -> Table:
-        """Of a proof: attributes `verdict`, `contacts`, `digits`, ...; columns `time`, `gap`, `widest`, ..."""
+        """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`, `gap`, `widest`, ..."""
         return self._table("certificate")
 
     @cached_property

@@ -53,7 +53,7 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
 
     @property
     def unit(self) -> str:
-        """In m (mass of a body), l (length) and t (time) of the scene; "1" for pure numbers."""
+        """In m (mass of a particle), l (length) and t (time) of the scene; "1" for pure numbers."""
         return self.attributes.get("unit", "")
 
     @property
@@ -197,7 +197,7 @@ class Table(Mapping):
         along = next((name for name in ("time", "x", "index") if name in columns and columns[name].ndim == 1), "row")
         variables = {}
         for name, column in columns.items():
-            # gaps lie between bodies: one fewer
+            # gaps lie between particles: one fewer
             first = along if len(column) == length else f"between_{along}"
             dims = (first, "side")[:column.ndim]
             about = {key: value for key, value in (("units", column.unit), ("long_name", column.description)) if value}

@@ -2,8 +2,8 @@
 
     python long_run.py [PARTICLES] [UNTIL]
 
-Rows of 400 bodies by default, which takes a second; 8000 bodies to t = 9000 are the paper's shock past its collapse
-(some minutes). The run may be stopped with Ctrl-C and the script started again: it goes on where it was.
+Rows of 400 particles by default, which takes a second; 8000 particles to t = 9000 are the paper's shock past its
+collapse (some minutes). The run may be stopped with Ctrl-C and the script started again: it goes on where it was.
 """
 import os
 import sys
@@ -19,7 +19,7 @@ output = "long.h5"
 if os.path.exists(output + ".part"):
     result = cradle.resume(output)
 else:
-    # A restitution at which so many bodies are beyond the critical number N_c of section III.
+    # A restitution at which so many particles are beyond the critical number N_c of section III.
     result = cradle.run("beyond", output=output, set={
         "initial.particles": particles, "law.restitution": 0.999 if particles >= 8000 else 0.97, "run.until": until,
         "output.snapshots": [0.6 * until, 0.8 * until, until]})
@@ -27,7 +27,7 @@ else:
 series = result.series
 width = series.core_width.values
 collapsed = np.flatnonzero(width < 1e-2)
-print(f"{int(series.contacts[-1])} contacts, {int(series.contacts_below_cutoff[-1])} of them below the cut-off")
+print(f"{int(series.collisions[-1])} collisions, {int(series.collisions_below_cutoff[-1])} of them below the cut-off")
 if len(collapsed):
     print(f"half of the mass is in less than l/100 from t = {series.time[int(collapsed[0])]:.6g} on")
 for snapshot in result.snapshots:

@@ -18,7 +18,7 @@ scene = {"initial.particles": particles, "law.restitution": 0.9, "law.cutoff": 0
 proof = cradle.certify("fig2", set=scene, output="proof.h5", digits=[50, 100, 200])
 low, high = (bounds[-1] for bounds in proof.enclosure("energy"))
 print(f"{proof.certificate.verdict}: energy at the end {float((low + high) / 2):.17g} +- {float(high - low) / 2:.1g}, "
-      f"{proof.certificate.attributes['contacts']} contacts")
+      f"{proof.certificate.attributes['collisions']} collisions")
 
 print(f"{'type':>15} {'positions':>10} {'seconds':>8} {'digits right':>12}")
 for precision, coordinates in (("double", "gaps"), ("double", "absolute"), ("long double", "gaps"),
@@ -27,7 +27,7 @@ for precision, coordinates in (("double", "gaps"), ("double", "absolute"), ("lon
     try:
         run = cradle.run("fig2", output="run.h5", progress=False,
                          set=scene | {"run.precision": precision, "run.coordinates": coordinates})
-    except cradle.Error as error:  # positions lose the order of contacts, and say so
+    except cradle.Error as error:  # positions lose the order of collisions, and say so
         print(f"{precision:>15} {coordinates:>10} {'':>8} {error.message.splitlines()[0]}")
         continue
     seconds = time.perf_counter() - started

@@ -1,11 +1,11 @@
 """Past the collapse: energy beside that of the sticky gas, the dense core (core/observe/dense_core.hpp), how often
-bodies meet in it. Of a run, or of a sweep of cut-offs and of what replaces them."""
+particles meet in it. Of a run, or of a sweep of cut-offs and of what replaces them."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked, subplots
 
 MANY = 20         # snapshots that make a picture in space and time
-PATHS = 80        # of bodies in it
+PATHS = 80        # of particles in it
 NARROW = 1e-2     # of the spacing: a core is there once half of the mass is in less
 ARRIVING = 0.97   # rows are taken to last for this share of the time at which the sticky gas has all
 SETTLED = 100     # units of time after which rates are averaged
@@ -35,7 +35,7 @@ def has_core(result):
 
 
 def slowest(result):
-    """The closing speed below which a contact loses nothing (or all: merge_speed); 0 where there is none."""
+    """The closing speed below which a collision loses nothing (or all: merge_speed); 0 where there is none."""
     merging = result.text("run", "collapse") == "merge"
     return result.setting("run", "merge_speed", 0.0) if merging else result.setting("law", "cutoff", 0.0)
 
@@ -59,7 +59,7 @@ def onset(result):
 
 
 def used_up(result, units):
-    """When the sticky gas has the last body of equal rows."""
+    """When the sticky gas has the last particle of equal rows."""
     return result.setting("initial", "particles", np.nan) * units.t
 
 
@@ -78,18 +78,18 @@ def rate(result, name):
 
 
 def rates(result, since, units):
-    """Contacts per l/2u0 that dissipate, and elastic ones: mean and standard deviation between samples, from SETTLED
+    """Collisions per l/2u0 that dissipate, and elastic ones: mean and standard deviation between samples, from SETTLED
     after a time until the rows end."""
-    time, every = rate(result, "contacts")
-    elastic = rate(result, "contacts_below_cutoff")[1]
+    time, every = rate(result, "collisions")
+    elastic = rate(result, "collisions_below_cutoff")[1]
     late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up(result, units))
     return [(np.mean(values[late]) * units.t, np.std(values[late]) * units.t) if late.any() else (np.nan, np.nan)
             for values in (every - elastic, elastic)]
 
 
 def most_frequent(result, cutoff):
-    """Dissipative contacts per l/2u0 if each of them closed at the cut-off: one body arrives, with m u0^2/2, and each
-    contact takes (1 - eps^2) m delta^2/4."""
+    """Dissipative collisions per l/2u0 if each of them closed at the cut-off: one particle arrives, with m u0^2/2, and
+    each collision takes (1 - eps^2) m delta^2/4."""
     restitution, speed = result.setting("law", "restitution", 1.0), result.setting("initial", "speed", 0.5)
     return 2 * speed ** 2 / ((1 - restitution ** 2) * cutoff ** 2) if restitution < 1 else np.inf
 
@@ -106,7 +106,7 @@ def draw_excess(ax, result, since, units, colour, label=None, line="-"):
 
 
 def per_time(units):
-    return units.label("contacts per unit of time", r"contacts per $l/2u_0$")
+    return units.label("collisions per unit of time", r"collisions per $l/2u_0$")
 
 
 def length_label(units, name):
@@ -129,14 +129,14 @@ def draw_run(result, units, axes=None):
     time = series["time"][late] / units.t
     figure, axes = stacked(axes, 4, width=5.8, height=2.1, sharex=True)
     draw_excess(axes[0], result, onset(result), units, BLUE)
-    positive(axes[1], time, series["core_window"][late] / (scale or units.v), color=BLUE,
-             label="window of velocities" + (rf" / {scale:.4g}" if scale else ""))
+    positive(axes[1], time, series["core_velocity_range"][late] / (scale or units.v), color=BLUE,
+             label="velocity range" + (rf" / {scale:.4g}" if scale else ""))
     positive(axes[1], time, series["core_mass"][late] / result.setting("initial", "particles", 1.0), color=ORANGE,
              label="share of all mass")
     positive(axes[2], time, series["core_width"][late] / units.x, color=BLUE, label="length with half of the mass")
     positive(axes[2], time, series["core_gap"][late] / units.x, color=ORANGE, label="median gap")
-    middle, every = rate(result, "contacts")
-    elastic = rate(result, "contacts_below_cutoff")[1]
+    middle, every = rate(result, "collisions")
+    elastic = rate(result, "collisions_below_cutoff")[1]
     shown = middle >= onset(result)
     for values, colour, label in ((elastic, ORANGE, "elastic"), (every - elastic, BLUE, "dissipative")):
         positive(axes[3], middle[shown] / units.t, values[shown] * units.t, color=colour, label=label)
@@ -150,10 +150,10 @@ def draw_run(result, units, axes=None):
 
 
 def core_of(snapshot):
-    """Slice of the bodies in the core, as dense_core.hpp has it, and their gaps."""
+    """Slice of the particles in the core, as dense_core.hpp has it, and their gaps."""
     x, m = snapshot["x"], snapshot["m"]
     held = np.concatenate([[0.0], np.cumsum(m)])
-    last = np.searchsorted(held, held[:-1] + held[-1] / 2 * (1 + 1e-12), side="right") - 1  # from each body on
+    last = np.searchsorted(held, held[:-1] + held[-1] / 2 * (1 + 1e-12), side="right") - 1  # from each particle on
     first = np.flatnonzero(last < len(x))
     width = x[last[first]] - x[first]
     best = int(np.argmin(width))
@@ -166,8 +166,8 @@ def draw_distributions(snapshots, scale, units, axes=None):
     figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4), layout="constrained")
     chosen = snapshots[::max(1, len(snapshots) // 6)]
     for snapshot, colour in zip(chosen, shades(len(chosen))):
-        bodies, gap = core_of(snapshot)
-        v = (snapshot["v"][bodies] - np.median(snapshot["v"][bodies])) / scale
+        particles, gap = core_of(snapshot)
+        v = (snapshot["v"][particles] - np.median(snapshot["v"][particles])) / scale
         density, edges = np.histogram(v, bins=50, range=(-0.75, 0.75))
         left.stairs(density / len(v) / (edges[1] - edges[0]), edges, color=colour,
                     label=rf"$t={snapshot['time'] / units.t:.5g}$")
@@ -186,19 +186,19 @@ def draw_distributions(snapshots, scale, units, axes=None):
 
 
 def draw_spacetime(snapshots, units, axes=None):
-    """Paths of bodies spread evenly over the core as it is at the end, from the one in its middle; identical bodies
-    keep their order."""
+    """Paths of particles spread evenly over the core as it is at the end, from the one in its middle; identical
+    particles keep their order."""
     core, _ = core_of(snapshots[-1])
-    bodies = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
+    particles = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
     figure, ax = subplots(axes, figsize=(5.8, 4.6), layout="constrained")
     time = np.array([s["time"] for s in snapshots]) / units.t
     middle = int(snapshots[-1]["index"][core[len(core) // 2]])
     places = []
     for s in snapshots:
         at = dict(zip(s["index"].tolist(), s["x"] / units.x))
-        places.append({body: x - at.get(middle, np.nan) for body, x in at.items()})
-    for body, colour in zip(bodies.tolist(), shades(len(bodies))):
-        ax.plot(time, [at.get(body, np.nan) for at in places], color=colour, lw=0.6)
+        places.append({particle: x - at.get(middle, np.nan) for particle, x in at.items()})
+    for particle, colour in zip(particles.tolist(), shades(len(particles))):
+        ax.plot(time, [at.get(particle, np.nan) for at in places], color=colour, lw=0.6)
     reach = max(np.ptp(s["x"][core_of(s)[0]]) for s in snapshots) / units.x
     ax.set(xlabel=units.time_label(), xlim=(time[0], time[-1]), ylim=(-0.7 * reach, 0.7 * reach),
            ylabel=units.label(rf"$x-x_{{{middle}}}$", rf"$(x-x_{{{middle}}})\,/\,l$"))
@@ -219,9 +219,9 @@ def draw_points(points, since, units, axes=None):
         time = point.series["time"][late] / units.t
         draw_excess(axes[0], point, since, units, colour, label_of(point), line)
         if slowest(point):
-            positive(axes[1], time, point.series["core_window"][late] / slowest(point), color=colour, ls=line)
+            positive(axes[1], time, point.series["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
         positive(axes[2], time, point.series["core_width"][late] / units.x, color=colour, ls=line)
-    axes[1].set_ylabel("window of velocities\n/ cut-off or merging speed")
+    axes[1].set_ylabel("velocity range\n/ cut-off or merging speed")
     axes[2].set(ylabel=length_label(units, "length with half of the mass"), xlabel=units.time_label())
     axes[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1))
     return figure

@@ -69,7 +69,7 @@ def draw_front(ax, result, energy, rho):
     front = (series["front_right"][later] - series["front_left"][later]) / 2
     value = front ** 3 * rho / (energy * time ** 2)
     seen = np.isfinite(value) & (value < 4 * AMPLITUDE)
-    ax.semilogx(time[seen], value[seen], color=BLUE, lw=1.4, label="outermost bodies")
+    ax.semilogx(time[seen], value[seen], color=BLUE, lw=1.4, label="outermost particles")
     if "front_right" in result.statistics:
         sem = np.hypot(result.statistics["front_right"]["sem"], result.statistics["front_left"]["sem"])[later] / 2
         error = 3 * value * sem / front

@@ -22,12 +22,12 @@ def draw_certificate(result, units, axes=None):
         top.plot(time[known], proof[name][known], color=colour, label=label)
     top.axhline(0, color="k", lw=0.8, ls=":")
     top.set_ylabel(r"$\log_{10}$")
-    top.set_title(f"{proof['verdict']}: {int(proof['contacts_of_run']):,} contacts, run in {proof['precision']}, "
+    top.set_title(f"{proof['verdict']}: {int(proof['collisions_of_run']):,} collisions, run in {proof['precision']}, "
                   f"proved with {int(proof['digits'])} digits", fontsize="medium")
     top.legend(loc="best", fontsize="small")
-    below.plot(time, proof["contacts"], color=BLUE)
-    if proof["contacts"].max() > 1000:
+    below.plot(time, proof["collisions"], color=BLUE)
+    if proof["collisions"].max() > 1000:
         below.set_yscale("symlog")
-    below.set_ylabel("contacts proved")
+    below.set_ylabel("collisions proved")
     below.set_xlabel(units.time_label())
     return figure

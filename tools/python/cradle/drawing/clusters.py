@@ -20,7 +20,7 @@ def pictures(result, _theory, units):
 
 
 def hold_the_mass(result):
-    """Do the two hold most of what has collided, in the end? Before that they are the first bodies that stuck."""
+    """Do the two hold most of what has collided, in the end? Before that they are the first particles that stuck."""
     mass = result.heaviest["mass"].sum(axis=1)
     cloud = result.series.get("cloud_mass", mass)
     known = np.isfinite(mass) & (cloud > 0)

@@ -7,7 +7,7 @@ import numpy as np
 from .style import BLUE, GREEN, GREY, ORANGE, RED, power, stacked, thinned
 
 ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
-STRETCH = 80  # bodies of the last snapshot that are shown of the velocities
+STRETCH = 80  # particles of the last snapshot that are shown of the velocities
 
 
 def pictures(result, theory, _units):
@@ -25,7 +25,7 @@ def ring_of(result):
 
 
 def sticky_law(result, time):
-    """Energy per body."""
+    """Energy per particle."""
     _, speed, spacing = ring_of(result)
     with np.errstate(divide="ignore"):
         return ENERGY * speed ** 2 * (speed * time / spacing) ** (-2 / 3)
@@ -47,7 +47,7 @@ def draw_cooling(result, theory, axes=None):
         t, value = theory.curve(quantity)
         shown = (t >= time[0]) & (value / particles > 0.3 * energy.min())
         axes[0].plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
-    axes[0].set_ylabel(r"energy per body $E\,/\,N$")
+    axes[0].set_ylabel(r"energy per particle $E\,/\,N$")
     axes[0].legend(loc="lower left")
     ratio = (energy / law)[asymptotic]
     axes[1].semilogx(time[asymptotic], ratio, color=BLUE, lw=1.6)
@@ -62,7 +62,7 @@ def draw_cooling(result, theory, axes=None):
         axes[2].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
         axes[2].plot(time[tau > 1], CLUSTERS * tau[tau > 1] ** (-2 / 3), "k--",
                      label=r"sticky gas, $1.328\,\tau^{-2/3}$")
-        axes[2].set_ylabel(r"clusters per body")
+        axes[2].set_ylabel(r"clusters per particle")
         axes[2].legend(loc="lower left")
     axes[-1].set_xlabel(rf"time $t$   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
     return figure

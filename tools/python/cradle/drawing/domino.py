@@ -1,5 +1,6 @@
-"""Dominoes of two masses: when each heavy body is first hit, against the closed form t = n - 1 + 1/(2c), c =
-m/(m + mu), where the ratio of the masses makes the front ballistic (derived in core/theory/domino.hpp; arXiv:2605.16125)."""
+"""Dominoes of two masses: when each heavy particle is first hit, against the closed form t = n - 1 + 1/(2c), c =
+m/(m + mu), where the ratio of the masses makes the front ballistic (derived in core/theory/domino.hpp;
+arXiv:2605.16125)."""
 from decimal import Decimal, getcontext
 
 import numpy as np
@@ -25,7 +26,7 @@ def order(result):
 
 
 def first_hits(result):
-    """Heavy bodies and how much later than the closed form each is first hit, in times of a body to the next."""
+    """Heavy particles and how much later than the closed form each is first hit, in times of a particle to the next."""
     getcontext().prec = 120
     events, initial = result.events, result.scene["initial"]
     heavy, light = (Decimal(str(mass)) for mass in initial["masses"])
@@ -40,19 +41,19 @@ def first_hits(result):
 
 
 def draw(result, axes=None):
-    body, late = first_hits(result)
+    particle, late = first_hits(result)
     figure, (top, below) = stacked(axes, 2, height=2.6)
     events = result.events
     some = events["right"] <= 24
-    top.plot(events["time"][some], events["right"][some], "o", ms=3, color=GREY, label="contacts")
-    shown = body <= 24
-    top.plot((body - late)[shown] - delay_of(result), body[shown], "x", ms=5, color=ORANGE, label="closed form")
-    top.set(xlabel=r"time $t\,u/a$", ylabel="body on the right")
+    top.plot(events["time"][some], events["right"][some], "o", ms=3, color=GREY, label="collisions")
+    shown = particle <= 24
+    top.plot((particle - late)[shown] - delay_of(result), particle[shown], "x", ms=5, color=ORANGE, label="closed form")
+    top.set(xlabel=r"time $t\,u/a$", ylabel="particle on the right")
     top.legend(loc="upper left")
     size = np.abs(late)
     precision = str(result.attributes.get("precision", ""))
-    below.loglog(body[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=precision)
-    below.set(xlabel="heavy body $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
+    below.loglog(particle[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=precision)
+    below.set(xlabel="heavy particle $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
     exact = int((size == 0).sum())
     below.set_title(f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept", loc="right", fontsize=8)
     below.legend(loc="upper left")

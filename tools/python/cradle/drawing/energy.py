@@ -1,4 +1,4 @@
-"""Fig. 4: energy and number of contacts against time."""
+"""Fig. 4: energy and number of collisions against time."""
 import numpy as np
 
 from .style import BLUE, GREEN, GREY, ORANGE, panel_letter, subplots
@@ -12,7 +12,7 @@ def pictures(result, theory, units):
 
 
 def draw_energy(result, theory, units, axes=None):
-    """Energy, with equation (7) dotted and the sticky gas dashed; below it the number of contacts."""
+    """Energy, with equation (7) dotted and the sticky gas dashed; below it the number of collisions."""
     series = result.series
     time = series["time"] / units.t
     figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), layout="constrained",
@@ -35,21 +35,21 @@ def draw_energy(result, theory, units, axes=None):
     top.set_ylim(0, 1.05 * energy.max() if energy.max() > 0 else 1)
     top.set_ylabel(units.label(r"kinetic energy $E$", units.energy_label()))
     top.legend(loc="best")
-    draw_contacts(below, series, time)
+    draw_collisions(below, series, time)
     below.set_xlabel(units.time_label())
     for letter, ax in zip("ab", (top, below)):
         panel_letter(ax, letter)
     return figure
 
 
-def draw_contacts(ax, series, time):
-    for name, line, colour, label in (("contacts", "-", BLUE, "contacts"), ("merges", "-.", GREEN, "merges"),
-                                      ("contacts_below_cutoff", "--", ORANGE, "below the cut-off")):
+def draw_collisions(ax, series, time):
+    for name, line, colour, label in (("collisions", "-", BLUE, "collisions"), ("merges", "-.", GREEN, "merges"),
+                                      ("collisions_below_cutoff", "--", ORANGE, "below the cut-off")):
         count = series.get(name)
         if count is not None and count.max() > 0:
             count = count.astype(float)
             ax.plot(time[count > 0], count[count > 0], line, color=colour, label=label)
-    counts = series.get("contacts")
+    counts = series.get("collisions")
     if counts is not None and counts.max() > 1000:
         ax.set_yscale("log")
     ax.set_ylabel("number")

@@ -6,7 +6,7 @@ from .cooling import ring_of, sticky_law
 from .shock import draw_slope
 from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
 
-SERIES = (("energy", "energy"), ("contacts", "contacts"), ("merges", "merges"), ("front_right", "right front"),
+SERIES = (("energy", "energy"), ("collisions", "collisions"), ("merges", "merges"), ("front_right", "right front"),
           ("cloud_width", "width of the cloud"))
 
 
@@ -59,7 +59,7 @@ def draw_series(result, theory, units, axes=None):
 
 
 def show_cooling(axes, result, time):
-    """Logarithmic times from the first contacts on, and the law of the sticky gas."""
+    """Logarithmic times from the first collisions on, and the law of the sticky gas."""
     particles, speed, spacing = ring_of(result)
     later = time * speed / spacing > 0.03
     law = particles * sticky_law(result, time[later])

@@ -1,5 +1,6 @@
-"""How many bodies collapse: the part of the replicas of a ring that does, against their number, for each restitution of
-a sweep; and where half of them do, beside McNamara and Young's estimate and the exact number of bodies in free space."""
+"""How many particles collapse: the part of the replicas of a ring that does, against their number, for each restitution
+of a sweep; and where half of them do, beside McNamara and Young's estimate and the exact number of particles in free
+space."""
 import numpy as np
 
 from .scenarios import wilson
@@ -66,6 +67,6 @@ def draw(curves, axes=None):
     fine = np.geomspace((1 - eps).min() / 1.5, min((1 - eps).max() * 1.5, 0.95), 100)
     right.plot(fine, cushion(1 - fine), "k--", lw=1, label=r"$\ln(4/(1-\epsilon))/(1-\epsilon)$")
     right.plot(fine, free(1 - fine), "k:", lw=1, label="free space, exact")
-    right.set(xlabel=r"$1-\epsilon$", ylabel="bodies $N_c$")
+    right.set(xlabel=r"$1-\epsilon$", ylabel="particles $N_c$")
     right.legend(loc="lower left")
     return figure

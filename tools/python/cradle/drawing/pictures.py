@@ -7,14 +7,14 @@ import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (beyond, blast, bodies, certificate, clusters, cooling, domino, energy, ensemble, onset, scenarios, shock,
+from . import (beyond, blast, particles, certificate, clusters, cooling, domino, energy, ensemble, onset, scenarios, shock,
                spacetime, splash, sticky, structure, sweep, trust, walls, zone)
 from .reading import read_result
 from .style import Units, style
 
 CLASSICS = (onset, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
-ALONE = (trust, *CLASSICS, scenarios, sweep, ensemble, spacetime, bodies)
+ALONE = (trust, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 
 

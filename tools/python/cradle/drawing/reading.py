@@ -94,7 +94,7 @@ def read_tree(root):
     result.events = arrays(root.get("events", {}))
     if "certificate" in root:
         about = attributes(root["certificate"])
-        about["contacts_of_run"] = about.pop("contacts", 0)
+        about["collisions_of_run"] = about.pop("collisions", 0)
         result.certificate = about | arrays(root["certificate"])
     if ensemble is not None:
         result.statistics = statistics(ensemble.get("series", {}))

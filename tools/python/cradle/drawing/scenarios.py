@@ -117,7 +117,7 @@ def known_times(point):
 
 
 def draw_collapse(result, axes=None):
-    """Distributions of t_c over replicas, in units of the time when N_c bodies are engaged."""
+    """Distributions of t_c over replicas, in units of the time when N_c particles are engaged."""
     points = [point for point in result.points if known_times(point).size]
     figure, ax = subplots(axes, figsize=(5.2, 3.6), layout="constrained")
     for point, colour in zip(points, shades(len(points))):

@@ -1,13 +1,13 @@
 """Fig. 2, Fig. 6: velocities, mean velocity and density of a shock at several times.
 
-Where bodies stick, density of bodies and density of mass differ; then it is that of mass that is drawn.
+Where particles stick, density of particles and density of mass differ; then it is that of mass that is drawn.
 """
 import numpy as np
 
 from .structure import core_of
 from .style import GREY, beside, panel_letter, shades, subplots, thinned
 
-BIN_BODIES = 25       # bins of mean velocity are merged to hold so many: the two rows alternate, and fewer alias
+BIN_PARTICLES = 25       # bins of mean velocity are merged to hold so many: the two rows alternate, and fewer alias
 
 
 def pictures(result, theory, units):
@@ -32,11 +32,11 @@ def averaged(snapshot, bins=50):
 
 
 def merged(profile):
-    """Bin centres and mean velocities, bins merged until half of them hold BIN_BODIES, but not below five bins."""
+    """Bin centres and mean velocities, bins merged until half of them hold BIN_PARTICLES, but not below five bins."""
     x, count = profile["x"], profile["density"] * (profile["x"][1] - profile["x"][0])
     if not (count > 0).any():
         return x[:0], x[:0]
-    factor = int(np.clip(np.ceil(BIN_BODIES / np.median(count[count > 0])), 1, max(1, np.count_nonzero(count) // 5)))
+    factor = int(np.clip(np.ceil(BIN_PARTICLES / np.median(count[count > 0])), 1, max(1, np.count_nonzero(count) // 5)))
     weight = np.nan_to_num(profile.get("mass_density", profile["density"]))
     momentum = weight * np.nan_to_num(profile["velocity"])
     starts = np.arange(0, len(x), factor)
@@ -46,7 +46,7 @@ def merged(profile):
 
 
 def draw_shock(result, theory, units, axes=None):
-    """Velocities of single bodies, averaged velocities, density."""
+    """Velocities of single particles, averaged velocities, density."""
     most = 8 if result.law == "wet" else 7  # a wet shock goes through one stage more
     snapshots = thinned(result.snapshots, most)
     profiles = result.profiles or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
@@ -73,7 +73,7 @@ def draw_shock(result, theory, units, axes=None):
             label = None if group["time"] in named else name[group["time"]]
             x, mean = merged(group)
             if 2 * len(x) <= np.count_nonzero(group["density"]) + 1:
-                axes[0].set_title(f"bins with fewer than {BIN_BODIES} bodies merged", loc="right", fontsize=7)
+                axes[0].set_title(f"bins with fewer than {BIN_PARTICLES} particles merged", loc="right", fontsize=7)
             axes[0].plot(x / units.x, mean / units.v, "-", lw=1.1, marker=".", ms=3, color=colour[group["time"]],
                          label=label)
             axes[1].plot(group["x"] / units.x, group[density] * units.x, drawstyle="steps-mid", lw=1.1,
@@ -93,7 +93,7 @@ def draw_shock(result, theory, units, axes=None):
 
 
 def draw_velocities(ax, snapshots, theory, units, colour, name):
-    """Single bodies, and the front's path (x_f, u_f) with its mirror image."""
+    """Single particles, and the front's path (x_f, u_f) with its mirror image."""
     for group in snapshots:
         size = np.clip(1.6 * (3000 / len(group["x"])) ** 0.25, 1.6, 3.5)
         ax.plot(group["x"] / units.x, group["v"] / units.v, ".", ms=size, mew=0, color=colour[group["time"]],

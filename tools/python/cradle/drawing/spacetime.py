@@ -1,8 +1,9 @@
-"""Fig. 5: a few bodies that stick or pass through each other. Paths in space and time, the wider the heavier the body,
-with contacts marked; and Newton's cradle: the same seen by the single bodies that the clusters are made of."""
+"""Fig. 5: a few particles that stick or pass through each other. Paths in space and time, the wider the heavier the
+particle, with collisions marked; and Newton's cradle: the same seen by the single particles that the clusters are made
+of."""
 import numpy as np
 
-from .bodies import few
+from .particles import few
 from .style import BLUE, GREY, ORANGE, RED, panel_letter, shades, subplots
 
 MOST_SINGLE = 40  # of the cradle: more circles would not be told apart
@@ -15,25 +16,26 @@ def pictures(result, _theory, units):
 
 
 def legs_of(result):
-    """Per body a list of (times, positions, mass, known). Between snapshots a body flies with the first one's velocity
-    until its first contact and with the last one's after its last; between these two contacts its path is not known."""
+    """Per particle a list of (times, positions, mass, known). Between snapshots a particle flies with the first one's
+    velocity until its first collision and with the last one's after its last; between these two collisions its path is
+    not known."""
     events = result.events
-    contacts = {}
-    for body, time in zip(np.concatenate([events.get("left", []), events.get("right", [])]),
+    collisions = {}
+    for particle, time in zip(np.concatenate([events.get("left", []), events.get("right", [])]),
                           np.tile(events.get("time", []), 2)):
-        contacts.setdefault(int(body), []).append(time)
+        collisions.setdefault(int(particle), []).append(time)
     legs = {}
     for before, after in zip(result.snapshots[:-1], result.snapshots[1:]):
-        later = {int(body): k for k, body in enumerate(after["index"])}
-        for k, body in enumerate(before["index"].astype(int)):
+        later = {int(particle): k for k, particle in enumerate(after["index"])}
+        for k, particle in enumerate(before["index"].astype(int)):
             begin, end = before["time"], after["time"]
-            met = sorted(t for t in contacts.get(body, []) if begin < t <= end)
+            met = sorted(t for t in collisions.get(particle, []) if begin < t <= end)
             x, v, m = before["x"][k], before["v"][k], before["m"][k]
-            out = legs.setdefault(body, [])
+            out = legs.setdefault(particle, [])
             first = met[0] if met else end
             out.append(((begin, first), (x, x + v * (first - begin)), m, True))
-            if met and body in later:
-                j = later[body]
+            if met and particle in later:
+                j = later[particle]
                 x_last = after["x"][j] - after["v"][j] * (end - met[-1])
                 if met[-1] > first:
                     out.append(((first, met[-1]), (x + v * (first - begin), x_last), after["m"][j], False))
@@ -60,30 +62,30 @@ def draw_spacetime(result, units, axes=None):
 def draw_paths(ax, result, units, heaviest):
     legs = legs_of(result)
     meetings = []
-    for (body, parts), colour in zip(sorted(legs.items()), body_colours(len(legs))):
+    for (particle, parts), colour in zip(sorted(legs.items()), particle_colours(len(legs))):
         for number, (time, x, mass, known) in enumerate(parts):
             ax.plot(np.array(x) / units.x, np.array(time) / units.t, "-" if known else ":", color=colour,
                     lw=1 + 5 * np.sqrt(mass / heaviest) if heaviest > 1 else 1.5, solid_capstyle="projecting",
-                    label=f"body {body}, mass {mass:.4g}" if number == 0 and len(legs) <= 8 else None)
+                    label=f"particle {particle}, mass {mass:.4g}" if number == 0 and len(legs) <= 8 else None)
             if number and parts[number - 1][0][1] == time[0] and time[0] in result.events.get("time", ()):
                 meetings.append((x[0] / units.x, time[0] / units.t))
     if meetings:
-        ax.plot(*np.array(meetings).T, "o", ms=9, mfc="none", color=RED, mew=1.2, label="contact", zorder=5)
+        ax.plot(*np.array(meetings).T, "o", ms=9, mfc="none", color=RED, mew=1.2, label="collision", zorder=5)
     ax.set(xlabel=units.position_label(), ylabel=units.time_label())
     ax.set_ylim(result.snapshots[0]["time"] / units.t, result.snapshots[-1]["time"] / units.t)
     ax.legend(loc="upper left")
 
 
-def body_colours(count):
+def particle_colours(count):
     return (BLUE, ORANGE)[:count] if count <= 2 else shades(count)
 
 
 def draw_cradle(ax, snapshots, units):
-    """Single bodies never change places: each cluster is the next so many of them. Circles are not to scale."""
+    """Single particles never change places: each cluster is the next so many of them. Circles are not to scale."""
     x = np.concatenate([s["x"] for s in snapshots]) / units.x
     size = 0.032 * max(np.ptp(x), 1e-12)
     owner = np.repeat(np.arange(len(snapshots[0]["m"])), snapshots[0]["m"].round().astype(int))
-    colours = body_colours(len(snapshots[0]["m"]))
+    colours = particle_colours(len(snapshots[0]["m"]))
     for row, snapshot in enumerate(snapshots):
         count = snapshot["m"].round().astype(int)
         ends = np.cumsum(count)
@@ -98,7 +100,7 @@ def draw_cradle(ax, snapshots, units):
                 ax.annotate("", (tip[0] + np.sign(v) * 2 * size, row), tip, arrowprops={"arrowstyle": "->", "lw": 0.9})
     ax.set_yticks(range(len(snapshots)), [f"$t={s['time'] / units.t:.4g}$" for s in snapshots])
     ax.set_ylim(-0.7, len(snapshots) - 0.3)
-    ax.set_xlabel("the same as single bodies, which never change places (sizes not to scale)")
+    ax.set_xlabel("the same as single particles, which never change places (sizes not to scale)")
     ax.tick_params(axis="y", length=0)
 
 

@@ -1,5 +1,5 @@
-"""A splash: a cold gas on a half-line whose outermost body is kicked. Front and energy left at x > 0 against time, the
-exponents fitted for every point of a sweep over seeds, and those of Euler's equations (core/theory/splash.hpp)."""
+"""A splash: a cold gas on a half-line whose outermost particle is kicked. Front and energy left at x > 0 against time,
+the exponents fitted for every point of a sweep over seeds, and those of Euler's equations (core/theory/splash.hpp)."""
 import numpy as np
 
 from .style import BLUE, ORANGE, subplots

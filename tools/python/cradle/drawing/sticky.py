@@ -1,5 +1,5 @@
-"""Fig. 1: rows of sticky bodies and the weak solution. Velocity stands still as a step u_l, 0, u_r; density is that of
-the rows and a delta peak, which grows at sqrt(rho_l rho_r) (u_l - u_r), 2 rho_0 u_0 for equal rows, from m_0 on."""
+"""Fig. 1: rows of sticky particles and the weak solution. Velocity stands still as a step u_l, 0, u_r; density is that
+of the rows and a delta peak, which grows at sqrt(rho_l rho_r) (u_l - u_r), 2 rho_0 u_0 for equal rows, from m_0 on."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
@@ -24,7 +24,7 @@ def rows_of(result):
 
 
 def peak(snapshot):
-    """Position, velocity and mass of the heaviest body."""
+    """Position, velocity and mass of the heaviest particle."""
     k = int(np.argmax(snapshot["m"]))
     return snapshot["x"][k], snapshot["v"][k], snapshot["m"][k]
 
@@ -101,7 +101,7 @@ def draw_mass(ax, result, units, formula, core, growth):
             label=rf"{formula}, ${core:.4g}+{growth * units.t:.4g}\,t$")
     ax.plot(time[collided] / units.t, cloud[collided], color=BLUE, label="simulation")
     heaviest = np.array([(s["time"], peak(s)[2]) for s in result.snapshots])
-    ax.plot(heaviest[:, 0] / units.t, heaviest[:, 1], "o", color=ORANGE, ms=5, label="heaviest body of the snapshots")
+    ax.plot(heaviest[:, 0] / units.t, heaviest[:, 1], "o", color=ORANGE, ms=5, label="heaviest particle of the snapshots")
     off = np.abs(cloud - core - growth * time)[collided]
     ax.legend(loc="upper left", title=f"largest difference {off.max():.2g}" if off.size else None, title_fontsize=7.5)
     ax.set(xlabel=units.time_label(), ylabel="mass of the cluster $M$", ylim=(0, None), xlim=(time[0], time[-1]))

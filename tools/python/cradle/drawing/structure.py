@@ -4,8 +4,8 @@ import numpy as np
 from .style import BLUE, RED, plt, subplots
 
 CORE_GAP = 1e-2       # of the spacing: a quarter of the gaps below this makes a core
-CORE_SHARE = 16       # the innermost zoom holds one body in so many
-CORE_BODIES = 60      # but at least these
+CORE_SHARE = 16       # the innermost zoom holds one particle in so many
+CORE_PARTICLES = 60      # but at least these
 
 
 def pictures(result, _theory, units):
@@ -17,41 +17,42 @@ def core_of(result, units):
     """The last snapshot in which a quarter of the gaps are far below the spacing, or None."""
     for snapshot in reversed(result.snapshots):
         gap = snapshot.get("gap", ())
-        if len(gap) > 2 * CORE_BODIES and np.quantile(gap, 0.25) < CORE_GAP * units.x:
+        if len(gap) > 2 * CORE_PARTICLES and np.quantile(gap, 0.25) < CORE_GAP * units.x:
             return snapshot
     return None
 
 
-def distances(gap, body):
-    """Distance of every body from one of them, summed gap by gap outwards: below any resolution of the positions."""
-    right = np.concatenate([[0.0], np.cumsum(gap[body:])])
-    left = np.cumsum(gap[:body][::-1])[::-1]
+def distances(gap, particle):
+    """Distance of every particle from one of them, summed gap by gap outwards: below any resolution of the
+    positions."""
+    right = np.concatenate([[0.0], np.cumsum(gap[particle:])])
+    left = np.cumsum(gap[:particle][::-1])[::-1]
     return np.concatenate([-left, right])
 
 
-def densest(gap, bodies):
-    """The body in the middle of the narrowest run of so many bodies (at least 2), and that run's width.
+def densest(gap, particles):
+    """The particle in the middle of the narrowest run of so many particles (at least 2), and that run's width.
 
     Differences of one running sum would lose the small gaps behind the large: each window is the end of one block plus
     the beginning of the next, both summed from small terms only.
     """
-    size = bodies - 1
+    size = particles - 1
     blocks = np.concatenate([gap, np.zeros(-len(gap) % size)]).reshape(-1, size)
     ends = np.cumsum(blocks[:, ::-1], axis=1)[:, ::-1].ravel()
     starts = np.cumsum(blocks, axis=1).ravel()
     first = np.arange(len(gap) - size + 1)
     width = ends[first] + np.where(first % size == 0, 0.0, starts[first + size - 1])
     best = int(np.argmin(width))
-    return best + bodies // 2, float(width[best])
+    return best + particles // 2, float(width[best])
 
 
 def draw_structure(snapshot, units, axes=None):
-    """Each panel is the rectangle of the one before; all distances are from one body of the core."""
+    """Each panel is the rectangle of the one before; all distances are from one particle of the core."""
     gap, v = snapshot["gap"], snapshot["v"]
-    inmost = max(CORE_BODIES, len(v) // CORE_SHARE)
-    body, width = densest(gap, inmost)
-    x = distances(gap, body)
-    whole, core = 1.05 * max(-x[0], x[-1]), 1.05 * max(width / 2, -x[body - inmost // 2], x[body + (inmost - 1) // 2])
+    inmost = max(CORE_PARTICLES, len(v) // CORE_SHARE)
+    particle, width = densest(gap, inmost)
+    x = distances(gap, particle)
+    whole, core = 1.05 * max(-x[0], x[-1]), 1.05 * max(width / 2, -x[particle - inmost // 2], x[particle + (inmost - 1) // 2])
     boxes = []
     steps = np.arange(4) / 3
     # between equal ratios of width and equal ratios of number: a collapsed core would leave middle panels empty
@@ -59,11 +60,11 @@ def draw_structure(snapshot, units, axes=None):
     by_number = np.sort(np.abs(x))[held - 1] * 1.05
     for half in np.sqrt(whole * (core / whole) ** steps * by_number):
         inside = np.abs(x) <= half
-        # the first panel shows all; in the others a few fast bodies passing by would hide the rest
+        # the first panel shows all; in the others a few fast particles passing by would hide the rest
         low, high = np.quantile(v[inside], (0.01, 0.99) if boxes else (0, 1))
         pad = 0.12 * (high - low) or 1e-3 * units.v
         boxes.append((half, low - pad, high + pad, inside))
-    reference = rf"x_{{{int(snapshot['index'][body])}}}"
+    reference = rf"x_{{{int(snapshot['index'][particle])}}}"
     own = axes is None
     figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6), layout="constrained")
     dotted = False
@@ -82,9 +83,9 @@ def draw_structure(snapshot, units, axes=None):
             dotted = dotted or enlarged
         ax.set(xlabel=units.label(rf"$x-{reference}$", rf"$(x-{reference})\,/\,l$"), ylabel=units.velocity_label())
         ax.ticklabel_format(axis="both", style="sci", scilimits=(-2, 3), useMathText=True)
-        ax.set_title(rf"$\bf({'abcd'[k]})$  {int(inside.sum())} bodies", fontsize=8, loc="right")
+        ax.set_title(rf"$\bf({'abcd'[k]})$  {int(inside.sum())} particles", fontsize=8, loc="right")
     length = units.label("", r"$\,l$")
-    place = snapshot["x"][body] / units.x
+    place = snapshot["x"][particle] / units.x
     title = (rf"$t={snapshot['time'] / units.t:.6g}$,  ${reference}={place:.6g}${length},  "
              f"smallest gap {gap.min() / units.x:.1e}{length};  rectangle: the next panel"
              + (" (dotted: drawn larger)" if dotted else ""))

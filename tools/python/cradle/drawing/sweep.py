@@ -48,7 +48,7 @@ def numbers(result):
     found = [name for name, column in result.sweep.items()
              if "." not in name and name not in ("point", "replicas") and not name.endswith(BESIDE)
              and len(np.unique(column[np.isfinite(column)])) > 1]
-    return sorted(found, key=lambda name: name in ("contacts", "energy", "merges"))[:MOST]
+    return sorted(found, key=lambda name: name in ("collisions", "energy", "merges"))[:MOST]
 
 
 def error_of(result, name):
@@ -97,7 +97,7 @@ def draw_cooling(result, axes=None):
     shown = law < 2 * max(p.series["energy"].max() / ring_of(p)[0] for p in points)
     top.plot(time[shown], law[shown], ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
     below.axhline(1, color=GREY, lw=0.8, zorder=0)
-    top.set_ylabel(r"energy per body $E\,/\,N$")
+    top.set_ylabel(r"energy per particle $E\,/\,N$")
     below.set(xlabel=r"time $t$", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
     top.legend(loc="lower left")
     return figure

@@ -7,7 +7,7 @@ def pictures(result, _theory, _units):
 
 
 def draw_trust(result, axes=None):
-    """Digits of energy and front, and until when the sequence of contacts is right."""
+    """Digits of energy and front, and until when the sequence of collisions is right."""
     figure, panels = subplots(axes, 2, 1, sharex=True, figsize=(6.4, 6.4), constrained_layout=True)
     for ax, name, label in zip(panels, ("energy_digits", "front_digits"),
                                ("digits of the energy", "digits of the front")):
@@ -16,9 +16,9 @@ def draw_trust(result, axes=None):
             ax.plot(run["time"], run[name], line, color=colour,
                     label=f"{run['precision']}, {run['coordinates']}")
             if not run["right_to_end"]:
-                ax.axvline(run["contacts_right_until"], color=colour, linestyle=line, linewidth=0.8)
+                ax.axvline(run["collisions_right_until"], color=colour, linestyle=line, linewidth=0.8)
         ax.set_ylabel(label)
         ax.set_ylim(bottom=0)
     panels[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
-    panels[1].set_xlabel("time $t$   (vertical lines: until when the sequence of contacts is right)")
+    panels[1].set_xlabel("time $t$   (vertical lines: until when the sequence of collisions is right)")
     return figure

@@ -1,4 +1,4 @@
-"""A gas between walls: where its bodies are, who has the energy, and how much the walls have given (Du, Li and
+"""A gas between walls: where its particles are, who has the energy, and how much the walls have given (Du, Li and
 Kadanoff, Phys. Rev. Lett. 74, 1268, 1995)."""
 import numpy as np
 
@@ -21,16 +21,16 @@ def draw(result, axes):
     energies = [0.5 * s["m"] * s["v"] ** 2 for s in snapshots]
     fastest = np.array([s["x"][e.argmax()] for s, e in zip(snapshots, energies)])
     share = np.array([e.max() / e.sum() if e.sum() > 0 else np.nan for e in energies])
-    axes[0].fill_between(times, places[:, 0], places[:, 2], color=BLUE, alpha=0.3, lw=0, label="80 % of the bodies")
+    axes[0].fill_between(times, places[:, 0], places[:, 2], color=BLUE, alpha=0.3, lw=0, label="80 % of the particles")
     axes[0].plot(times, places[:, 1], color=BLUE, lw=1.2, label="median")
-    axes[0].plot(times, fastest, "o", color=ORANGE, ms=3, label="the body with most energy")
+    axes[0].plot(times, fastest, "o", color=ORANGE, ms=3, label="the particle with most energy")
     axes[0].set_ylabel(r"position $x$")
     low, high = axes[0].get_ylim()
     axes[0].set_ylim(low - 0.2 * (high - low), high)  # room for the legend
     axes[0].legend(loc="lower left", ncol=3, fontsize=7)
     axes[1].plot(times, share, "o-", color=ORANGE, ms=3, lw=0.8)
     axes[1].axhline(1 / len(snapshots[-1]["x"]), color=GREY, lw=0.8, ls="--", label="equal shares")
-    axes[1].set_ylabel("share of the energy\nthat one body has")
+    axes[1].set_ylabel("share of the energy\nthat one particle has")
     axes[1].set_ylim(0, 1.05)
     axes[1].legend(loc="center right", fontsize=7)
     positive = series["energy"] > 0

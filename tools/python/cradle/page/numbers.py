@@ -12,7 +12,7 @@ from .elements import code, enclosed, number, rows, text, unit
 
 END = {"energy": "energy at the end", "front_left": "left front at the end", "front_right": "right front at the end"}
 MOST_FAILURES = 5  # of an ensemble that are named
-COLLAPSE = {"time": "collapse", "last_contact": "last contact", "gap": "smallest gap", "interval": "last interval",
+COLLAPSE = {"time": "collapse", "last_collision": "last collision", "gap": "smallest gap", "interval": "last interval",
             "ratio": "ratio of intervals"}
 
 
@@ -25,7 +25,7 @@ def numbers(result: Result) -> str:
     note = ""
     if not proof and result.kind == "run" and entries:
         note = (f"<p class=note>In {text(result.attributes.get('precision', ''))}; not proved: "
-                "<code>cradle certify</code> proves contacts and encloses these numbers, <code>cradle trust</code> "
+                "<code>cradle certify</code> proves collisions and encloses these numbers, <code>cradle trust</code> "
                 "finds out how many of their digits are right.</p>\n")
     return proof + (rows(entries) if entries else "") + note
 
@@ -44,15 +44,15 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
     time, first, energy = last(series, "time"), series["energy"][0].item(), last(series, "energy")
     entries = [("time reached", number(time), unit("t")), ("energy at the start", number(first), unit("m l^2/t^2"))]
     lost = last(series, "energy_lost")
-    share = f" · {100 * lost / (energy + lost):.4g} % lost in contacts" if lost and energy + lost > 0 else ""
+    share = f" · {100 * lost / (energy + lost):.4g} % lost in collisions" if lost and energy + lost > 0 else ""
     digits = result.attributes.get("energy_digits")
     about = "" if digits is None else f" · about {digits:.0f} digits, estimated from rounding" if digits >= 1 \
         else " · rounding, no digits"
     entries.append((END["energy"], number(energy, min(12, max(1, int(digits if digits is not None else 12)))),
                     unit("m l^2/t^2") + about + share))
-    contacts, slow = last(series, "contacts"), last(series, "contacts_below_cutoff")
-    share = f"{100 * slow / contacts:.4g} % of them below the cut-off" if contacts and slow else ""
-    entries.append(("contacts", number(contacts or 0), share))
+    collisions, slow = last(series, "collisions"), last(series, "collisions_below_cutoff")
+    share = f"{100 * slow / collisions:.4g} % of them below the cut-off" if collisions and slow else ""
+    entries.append(("collisions", number(collisions or 0), share))
     if merges := last(series, "merges"):
         entries.append(("merges", number(merges), ""))
     for name in ("front_left", "front_right"):
@@ -80,7 +80,7 @@ def collapse(result: Result) -> list[tuple[str, str, str]]:
         if name in found and np.isfinite(found[name]):
             error = found.get({"time": "uncertainty", "ratio": "ratio_uncertainty"}.get(name, ""), np.nan)
             known = np.isfinite(error)
-            digits = resolved(found[name], error) if known else 17 if name == "last_contact" else 6
+            digits = resolved(found[name], error) if known else 17 if name == "last_collision" else 6
             within = f"± {number(error, 2)} " if known else ""
             entries.append((label, number(found[name], digits), within + {"gap": "l", "ratio": ""}.get(name, "t")))
     return entries
@@ -93,7 +93,7 @@ def snapshots(result: Result) -> list[tuple[str, str, str]]:
     if not gaps:
         return []
     gap, time = min(gaps)
-    held = "" if gap else ": two bodies in contact"
+    held = "" if gap else ": two particles in collision"
     entries = [("smallest gap of the snapshots", number(gap, 6), f"l, at t = {number(time)}{held}")]
     for name, label, symbol in (("closure_gap", "closure error of gaps", "l"),
                                 ("closure_speed", "closure error of speeds", "l/t")):
@@ -119,12 +119,12 @@ def scenario(result: Result) -> list[tuple[str, str, str]]:
 def certificate(result: Result) -> str:
     about = result.certificate.attributes
     if about.get("verdict") == "proved":
-        told = (f"<p class=proved><b>Proved</b>: each of the {number(about['contacts'])} contacts is that of the exact "
+        message = (f"<p class=proved><b>Proved</b>: each of the {number(about['collisions'])} collisions is that of the exact "
                 "system, the one with the scene's decimals as they are written, and none is missing. ")
     else:
-        told = (f"<p class=open><b>Undecided</b> after {number(about.get('contacts', 0))} contacts: "
+        message = (f"<p class=open><b>Undecided</b> after {number(about.get('collisions', 0))} collisions: "
                 f"{text(about.get('undecided', ''))}. ")
-    return told + f"Run in {text(about['precision'])}, proved with {number(about['digits'])} digits.</p>\n"
+    return message + f"Run in {text(about['precision'])}, proved with {number(about['digits'])} digits.</p>\n"
 
 
 def proved(result: Result) -> list[tuple[str, str, str]]:
@@ -156,7 +156,7 @@ def failures(result: Result, place: str = "") -> list[str]:
     command = (f"cradle export {shlex.quote(file)} --to {shlex.quote(folder)} && cradle run "
                f"{shlex.quote(folder)}/{place}scene.toml --set initial.replica={first} -o replica.h5")
     return [(f"{text(result.label)}: " if place else "") + f"{number(count)} replica{'s' * (count > 1)} failed: "
-            + ", ".join(code(told) for told in messages[:MOST_FAILURES]) + more * (count > MOST_FAILURES)
+            + ", ".join(code(message) for message in messages[:MOST_FAILURES]) + more * (count > MOST_FAILURES)
             + f". The first of them again, alone: {code(command)}"]
 
 
@@ -173,18 +173,18 @@ def warnings(result: Result, version: str) -> list[str]:
     elif result.outcome == "a gap below run.stop_gap":
         found.append("The run ended where a gap fell below <code>run.stop_gap</code>, before <code>run.until</code>; "
                      "that it is an inelastic collapse is not proved.")
-    elif result.outcome in ("order of contacts lost", "resolution exhausted"):
+    elif result.outcome in ("order of collisions lost", "resolution exhausted"):
         found.append(f"The run ended early: {text(result.outcome)}. More digits (<code>run.precision</code>) reach "
                      "further.")
-    for name, told in (("order_lost", "contacts came too late by more than rounding"),
-                       ("unresolved_gaps", "contacts beside a gap that positions do not resolve: take "
+    for name, message in (("order_lost", "collisions came too late by more than rounding"),
+                       ("unresolved_gaps", "collisions beside a gap that positions do not resolve: take "
                                            "<code>run.coordinates = \"gaps\"</code>"),
-                       ("simultaneous_contacts", "contacts at which three bodies met within rounding, decided by the "
+                       ("simultaneous_collisions", "collisions at which three particles met within rounding, decided by the "
                                                  "tie rule")):
         if about.get(name):
-            found.append(f"{number(about[name])} {told}.")
+            found.append(f"{number(about[name])} {message}.")
     if "uncertain_from" in about:
-        found.append(f"Contacts are certain up to t = {number(about['uncertain_from'])} only: from there on rounding may "
+        found.append(f"Collisions are certain up to t = {number(about['uncertain_from'])} only: from there on rounding may "
                      "have decided which one was next. More digits (<code>run.precision</code>) reach further.")
     found += failures(result)
     for place, point in enumerate(result.points):
@@ -193,7 +193,7 @@ def warnings(result: Result, version: str) -> list[str]:
         found.append("The proof is undecided: what comes after its place is not proved.")
     smallest = min((t.attributes["gap_min"] for t in result.snapshots if "gap_min" in t.attributes), default=1.0)
     if smallest < 0:
-        found.append("A snapshot has a gap below zero, by less than the rounding of the moment: contacts are in order.")
+        found.append("A snapshot has a gap below zero, by less than the rounding of the moment: collisions are in order.")
     if version and about.get("cradle_version") and version != about["cradle_version"]:
         found.append(f"Written by cradle {text(about['cradle_version'])}, this page by {text(version)}.")
     return found

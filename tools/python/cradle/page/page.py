@@ -21,7 +21,7 @@ from .tables import tables
 # What the browser is allowed: nothing that is not in the page.
 POLICY = ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
           "connect-src data: blob:; worker-src blob:")
-LONGEST_SCENE = 100_000  # characters; listed bodies may be many
+LONGEST_SCENE = 100_000  # characters; listed particles may be many
 
 
 def page(result: Result) -> str:
@@ -38,7 +38,7 @@ def page(result: Result) -> str:
     body = [f"<header>\n<h1>{text(result.scene.get('title') or result.attributes.get('name', ''))}</h1>\n"
             f"<p class=lead>{lead(result)}</p>\n<nav>{links}</nav>\n</header>\n<main>\n"]
     if warned:
-        body.append('<ul class="warnings">' + "".join(f"<li>{told}" for told in warned) + "</ul>\n")
+        body.append('<ul class="warnings">' + "".join(f"<li>{caption}" for caption in warned) + "</ul>\n")
     body += [section(*entry) for entry in sections]
     return (f"<!DOCTYPE html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n<title>{title}</title>\n"
             f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
@@ -67,10 +67,10 @@ def lead(result: Result) -> str:
     law, initial = scene.get("law", {}), scene.get("initial", {})
     parts = [result.kind if result.kind != "trust" else "comparison of precisions"]
     if initial.get("type") != "clusters":
-        bodies = initial.get("particles") or len(initial.get("x", ())) or sum(
+        particles = initial.get("particles") or len(initial.get("x", ())) or sum(
             int(float(initial.get(side, {}).get("particles", 0))) for side in ("left", "right"))
         parts.append(f"{law.get('type', '')} law")
-        parts.append(f"{number(int(float(bodies)))} bodies in {text(scene.get('run', {}).get('coordinates', ''))}")
+        parts.append(f"{number(int(float(particles)))} particles in {text(scene.get('run', {}).get('coordinates', ''))}")
     if about.get("replicas"):
         parts.append(f"{number(about['replicas'])} replicas")
     parts += [text(about.get("precision", "")), f"<b>{text(result.outcome)}</b>"]
@@ -80,9 +80,9 @@ def lead(result: Result) -> str:
 def pictures(result: Result) -> str:
     found = []
     for order, (name, draw) in enumerate(drawings(result).items()):
-        told = PICTURES.get(name, name)
-        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), order, told)}\n'
-                     f"<figcaption>{text(told)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
+        caption = PICTURES.get(name, name)
+        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), order, caption)}\n'
+                     f"<figcaption>{text(caption)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
                      "</figure>\n")
     return "".join(found)
 
@@ -132,33 +132,33 @@ def again(result: Result) -> str:
     scene, name = result.scene_text, str(result.attributes.get("name", "scene"))
     command = "cradle " + " ".join(command_of(result))
     version = text(result.attributes.get("cradle_version", ""))
-    told = (f"<p>With this scene as {code(name + '.toml')} the same cradle, {version}, gives the same bytes:</p>\n"
+    caption = (f"<p>With this scene as {code(name + '.toml')} the same cradle, {version}, gives the same bytes:</p>\n"
             + preformatted(command))
     if len(scene) > LONGEST_SCENE:
         export = f"cradle export {os.path.basename(result.path)} --to DIR"
-        return told + f"<p>The scene has {number(len(scene))} characters: {code(export)} writes it.</p>\n"
+        return caption + f"<p>The scene has {number(len(scene))} characters: {code(export)} writes it.</p>\n"
     link = "data:application/toml;base64," + base64.b64encode(scene.encode()).decode("ascii")
-    return told + ('<p class=screen><button type="button" class="copy" data-of="scene">copy the scene</button> '
+    return caption + ('<p class=screen><button type="button" class="copy" data-of="scene">copy the scene</button> '
                    f'<a download="{html.escape(name)}.toml" href="{link}">save it</a></p>\n'
                    + preformatted(scene).replace("<pre>", '<pre id="scene">', 1))
 
 
 def cost(result: Result) -> list[tuple[str, str, str]]:
     """What was done, and what the program expects of it; wall times are in no result."""
-    contacts = last(result.series, "contacts")
-    if contacts is None and "contacts" in result.replicas:
-        contacts = int(result.replicas["contacts"].values.sum())
-    if contacts is None and result.points:
-        contacts = sum(int(point.replicas["contacts"].values.sum()) for point in result.points
-                       if "contacts" in point.replicas)
-    entries = [("contacts", number(contacts), "of all replicas" if result.attributes.get("replicas") else "")
-               ] if contacts is not None else []
+    collisions = last(result.series, "collisions")
+    if collisions is None and "collisions" in result.replicas:
+        collisions = int(result.replicas["collisions"].values.sum())
+    if collisions is None and result.points:
+        collisions = sum(int(point.replicas["collisions"].values.sum()) for point in result.points
+                       if "collisions" in point.replicas)
+    entries = [("collisions", number(collisions), "of all replicas" if result.attributes.get("replicas") else "")
+               ] if collisions is not None else []
     if not result.on_its_way:
         entries.append(("file", number(os.path.getsize(result.path)), "bytes"))
     else:
         lines = of_program(["info", result.path]).splitlines()
         entries += [(text(line[:24].strip()), text(line[24:]), "when this page was made") for line in lines
-                    if line.startswith(("time ", "contacts/s ", "computing ", "smallest gap ", "checkpoint "))]
+                    if line.startswith(("time ", "collisions/s ", "computing ", "smallest gap ", "checkpoint "))]
     if result.kind == "run":
         from ..commands import scene_file
         with scene_file(result) as (path, _):

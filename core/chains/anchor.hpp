@@ -1,0 +1,59 @@
+#pragma once
+// Particles whose flight is known, from which positions and velocities of the others are told: one that has not
+// collided, or the one at an end of a line, which is followed from collision to collision.
+
+#include <tuple>
+
+#include "cradle/core/engine/clock.hpp"
+#include "cradle/core/initial/particles.hpp"
+
+namespace cradle {
+
+template <Real T> struct Flight {
+  Pair<T> x, v;
+  static auto state(auto& self) { return std::tie(self.x, self.v); }
+};
+
+// Of a particle that has not collided, so long after the start.
+template <Real T> Flight<T> undisturbed(const Particles<T>& particles, ParticleIndex particle, const T& elapsed) {
+  const T v = particles.velocity(particle);
+  return {two_sum(particles.position(particle), T(v * elapsed)), {v, T(0)}};
+}
+
+// Times are local ones of the chain whose clock is given.
+template <Real T> class Anchor {
+ public:
+  ParticleIndex particle() const { return particle_; }
+
+  Flight<T> flight(const Particles<T>& particles, const Clock<T>& clock, const T& time) const {
+    if (!collided_) return undisturbed(particles, particle_, clock.elapsed(time));
+    return {from_.x + T(from_.v.value() * difference(Pair<T>{time, T(0)}, since_)), from_.v};
+  }
+
+  T velocity(const Particles<T>& particles) const {
+    return collided_ ? from_.v.value() : particles.velocity(particle_);
+  }
+
+  // Goes over to a particle that has not collided.
+  void take(ParticleIndex particle) { particle_ = particle; }
+  // Goes over to the last particle of a line, which gains velocity in a collision now: Gain is T or Pair<T>.
+  template <class Gain>
+  void follow(ParticleIndex particle, const Particles<T>& particles, const Clock<T>& clock, const T& time,
+              const Gain& gain) {
+    particle_ = particle;
+    from_ = flight(particles, clock, time);
+    from_.v = from_.v + gain;
+    since_ = {time, T(0)};
+    collided_ = true;
+  }
+  void move_origin(const T& by) { since_ = since_ - by; }
+  static auto state(auto& self) { return std::tie(self.particle_, self.collided_, self.from_, self.since_); }
+
+ private:
+  ParticleIndex particle_ = 0;
+  bool collided_ = false;
+  Flight<T> from_;  // once it has collided: as its last collision, at the time since_, left it
+  Pair<T> since_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,103 @@
+#pragma once
+// What the event loop asks of a chain: the particles of a run in order, in coordinates of the chain's choice. A chain
+// knows the next collision of each gap, makes one collision at a time and says what came of it; which collision is next
+// is the loop's to decide.
+//
+// Slots number the gaps from left to right; those held are first() to last(), and two empty ones stand at either end.
+// Local times are the chain's own name for times of the scene: offsets from an origin that moves, or the times as they
+// are. A local time is good until the origin moves.
+
+#include <concepts>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/account.hpp"
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/laws/law.hpp"
+
+namespace cradle {
+
+template <class C>
+concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, Slot s, const typename C::Scalar time) {
+  typename C::Scalar;
+  // Whether queue times are the exact local times, not roundings of them; whether gaps can shrink without end.
+  { C::keys_are_exact } -> std::convertible_to<bool>;
+  { C::may_collapse } -> std::convertible_to<bool>;
+
+  // The time of the scene at which the run starts; times of the scene to local ones and back; local times as the queue
+  // takes them. `move_origin` takes the local time to become the new origin and returns what that time is called then.
+  { chain.start() } -> std::convertible_to<typename C::Scalar>;
+  { chain.local_time(time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.stamp(time) } -> std::same_as<Pair<typename C::Scalar>>;
+  { chain.queue_time(time) } -> std::same_as<double>;
+  { changing.move_origin(time) } -> std::convertible_to<typename C::Scalar>;
+
+  // The gaps held: how many slots there are, the neighbours of one, the particle on its left.
+  { chain.slots() } -> std::same_as<std::size_t>;
+  { chain.first() } -> std::same_as<Slot>;
+  { chain.last() } -> std::same_as<Slot>;
+  { chain.left(s) } -> std::same_as<Slot>;
+  { chain.right(s) } -> std::same_as<Slot>;
+  { chain.particle(s) } -> std::same_as<ParticleIndex>;
+  { chain.on_ring() } -> std::same_as<bool>;
+
+  // Closing speed; local time of the next collision of a gap that is closing; the same as queue time, `never` if it
+  // opens.
+  { chain.closing(s) } -> std::convertible_to<typename C::Scalar>;
+  { chain.due(s) } -> std::convertible_to<typename C::Scalar>;
+  { chain.queue_due(s) } -> std::same_as<double>;
+
+  // Collisions that leave a gap below the floor beside them say so. The smaller gap beside the last collision; by how
+  // much times of collisions at a place must differ to be told apart; what could not be resolved.
+  changing.set_floor(time);
+  { chain.nearest_gap(s) } -> std::convertible_to<typename C::Scalar>;
+  { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.account() } -> std::same_as<const Account<typename C::Scalar>&>;
+
+  // Energy that a collision at a gap has lost; all that was lost; the kinetic energy that all particles of the scene
+  // have.
+  changing.lose(s, time);
+  { chain.energy_lost() } -> std::convertible_to<typename C::Scalar>;
+  { chain.kinetic_energy() } -> std::convertible_to<typename C::Scalar>;
+
+  // Reading, at a local time not before the last collision: a gap; the outermost particles that have collided and how
+  // many there are from one to the other; everything.
+  { chain.gap_at(s, time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.front_left(time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.front_right(time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.collided_particles() } -> std::same_as<ParticleIndex>;
+  { chain.configuration(time) } -> std::same_as<Configuration<typename C::Scalar>>;
+};
+
+// Of the gaps held at the start; throws std::invalid_argument where one is not a number.
+template <Chain C> typename C::Scalar smallest_gap(const C& chain) {
+  using T = typename C::Scalar;
+  const T start = chain.local_time(chain.start());
+  T least = far_away<T>();
+  for (Slot s = chain.first(); s <= chain.last(); ++s) {
+    const T gap = chain.gap_at(s, start);
+    if (!is_finite(gap) || !is_finite(T(chain.closing(s))))
+      throw std::invalid_argument("the distance or closing speed of particles " + std::to_string(chain.particle(s)) +
+                                  " and the next is not finite: check their positions and velocities");
+    if (gap < least) least = gap;
+  }
+  return least;
+}
+
+// A chain that asks for slots (Notice::needs_slots) when particles come into it. Afterwards slots are others.
+template <class C>
+concept StreamingChain = Chain<C> && requires(C chain) {
+  chain.make_room();
+};
+
+// The collision at slot s, due at the local time given, by a law that this chain can follow.
+template <class C, class L>
+concept CollidesBy = Chain<C> && Law<L, typename C::Scalar> &&
+    requires(C chain, const L& law, Slot s, const typename C::Scalar& time) {
+  { chain.collide(law, s, time) } -> std::same_as<CollisionResult<typename C::Scalar>>;
+};
+
+}  // namespace cradle

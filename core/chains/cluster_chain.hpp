@@ -1,0 +1,305 @@
+#pragma once
+// The chain for laws whose particles merge or pass through each other: gaps and particle velocities, for any masses.
+//
+// Why velocities, where gap_chain.hpp keeps closing speeds: a collision changes the velocity of a cluster of mass M by
+// J/M, 1e-8 and less. The closing speed between it and a light particle is of order one and would round such a kick
+// away, and what the closing speeds lose drifts into the gaps. The cluster's own velocity, in the frame in which the
+// total momentum vanishes, is small itself and keeps the kick.
+//
+// Cells and what a collision does to them: cluster_line.hpp. Rows are streamed (held_range.hpp).
+//
+// Positions come from a particle at an end that has not collided, else from the centre of mass, which moves uniformly.
+// On a ring the cells are linked in a circle. Positions there are told once round from the first cell on, and a
+// particle that goes from the first cell to the last one, across the seam, is told one circumference L further right:
+// the mass that has done so is kept account of, since the centre of mass as told jumps by L times its share.
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/chains/anchor.hpp"
+#include "cradle/core/chains/cluster_line.hpp"
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/chains/held_range.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/initial/relative_motion.hpp"
+
+namespace cradle {
+
+// Cells that follow each other in slots that do.
+struct CellsInARow {
+  Slot first;
+  std::size_t count;
+};
+
+template <Real T> class ClusterChain {
+ public:
+  using Scalar = T;
+  using Line = ClusterLine<T>;
+  static constexpr bool may_collapse = false;
+  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
+
+  // Holds the particles at the gaps in motion and streams the others in as fronts reach them; `hold_all`: holds all.
+  ClusterChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
+      : ClusterChain(particles, start,
+                     hold_all || particles->on_ring() ? GapRange{0, particles->count() - 2}
+                                                      : particles->gaps_in_motion()) {}
+
+  // ---- times: local ones are offsets from an origin that moves
+  const Clock<T>& clock() const { return line_.gaps.clock(); }
+  const T& start() const { return clock().start(); }
+  T local_time(const T& time) const { return clock().offset(time); }
+  Pair<T> stamp(const T& local) const { return clock().stamp(local); }
+  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
+
+  // ---- slots: cells held are first() to last(), vacant ones among them; the last one's gap is none
+  std::size_t slots() const { return line_.gaps.slots(); }
+  Slot first() const { return range_.first(); }
+  Slot last() const { return range_.last(); }
+  Slot left(Slot s) const { return line_.left(s); }
+  Slot right(Slot s) const { return line_.right(s); }
+  ParticleIndex particle(Slot s) const { return line_.gaps[s].particle; }
+  ParticleIndex count() const { return particles_->count(); }
+  ParticleIndex collided_particles() const { return active_; }
+  bool on_ring() const { return range_.on_ring(); }
+
+  T due(Slot s) const { return line_.due(s); }
+  double queue_due(Slot s) const { return line_.queue_due(s); }
+  T closing(Slot s) const { return line_.closing(s); }
+
+  // ---- events (inlined by force, see gap_chain.hpp)
+  template <class Law>
+  [[gnu::always_inline]] CollisionResult<T> collide(const Law& law, Slot s,
+                                                    const T& time) requires(!LawWithMemory<Law, T>) {
+    const Outcome<T> outcome = law(closing(s), line_.masses(s));
+    Notice notice = Notice::none;
+    if (!range_.inside(s, right(s))) [[unlikely]] {
+      if (on_ring())
+        cross_seam(s, outcome.event);
+      else
+        notice = widen(s, time);
+    }
+    beyond_ = right(s);
+    if (outcome.event == Event::merge) notice |= merge(s, std::exchange(beyond_, s));
+    return line_.strike(s, time, outcome, notice);
+  }
+
+  T move_origin(const T& local) {
+    line_.gaps.move_origin(local, [this](auto&& each) {
+      for (Slot s = first(); s <= last(); ++s)
+        if (!line_.vacant(s)) each(s, closing(s));
+    });
+    return T(0);
+  }
+
+  // Drops vacant cells.
+  void make_room() {
+    std::vector<Slot> kept;
+    kept.reserve(last() + 1 - first());
+    kept.push_back(first());
+    while (kept.back() != last()) kept.push_back(right(kept.back()));
+    const auto beyond = std::lower_bound(kept.begin(), kept.end(), beyond_) - kept.begin();
+    lay_out(kept, kept.size());
+    link();
+    beyond_ = first() + static_cast<Slot>(beyond);
+  }
+
+  void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
+  // The smaller gap next to the last collision, as of its local time; an end of the line counts as far away.
+  T nearest_gap(Slot s) const {
+    const T far = far_away<T>();
+    const Slot p = left(s), n = beyond_;
+    const T on_left = !on_ring() && p < first() ? far : line_.gaps[p].gap,
+            on_right = !on_ring() && n >= last() ? far : line_.gaps[n].gap;
+    return on_left < on_right ? on_left : on_right;
+  }
+  const Account<T>& account() const { return line_.gaps.account(); }
+  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
+  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
+  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
+
+  // ---- reading, at a local time not before the last collision
+  T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
+  // Positions of the outermost particles that have collided; only once there are some.
+  T front_left(const T& time) const {
+    if (first() == range_.front_left()) return configuration(time).x.front();
+    const Slot beside = left(range_.front_left());
+    return (undisturbed_place(beside, time) + gap_at(beside, time)).value();
+  }
+  T front_right(const T& time) const {
+    const Slot front = range_.front_right();
+    if (last() == front) return configuration(time).x.back();
+    return (undisturbed_place(right(front), time) - gap_at(front, time)).value();
+  }
+  // Of all particles of the scene, now; takes all cells held. (cluster_chain_configuration.hpp)
+  T kinetic_energy() const;
+
+  static auto state(auto& self) {
+    return std::tie(self.line_, self.range_, self.vacated_, self.active_, self.beyond_, self.centre_, self.carried_);
+  }
+  void loaded() const {
+    const auto& cells = line_.gaps;
+    require_state(range_.fits(slots(), particles_->count()) && range_.on_ring() == particles_->on_ring(), "slots");
+    require_state(beyond_ < slots() && active_ >= 0 && active_ <= particles_->count() && vacated_ <= slots(), "counts");
+    const T heaviest = T(2) * particles_->total_mass();
+    for (Slot s = 0; s < slots(); ++s)
+      require_state(cells[s].left < slots() && cells[s].right < slots() && cells[s].particle >= 0 &&
+                        cells[s].particle < particles_->count() && is_positive(cells[s].mass),
+                    "cells");
+    // From the first to the last by their links, with vacant ones between them only.
+    int fronts = range_.has_fronts() ? 0 : 2;
+    for (Slot s = first();; s = right(s)) {
+      require_state(line_.fits(s, !on_ring() && s == last()) && cells[s].mass < heaviest, "numbers");
+      fronts += range_.has_fronts() ? (s == range_.front_left()) + (s == range_.front_right()) : 0;
+      if (s == last()) break;
+      require_state(right(s) > s && right(s) <= last() && left(right(s)) == s, "links");
+      for (Slot v = s + 1; v < right(s); ++v) require_state(line_.vacant(v), "vacant cells");
+    }
+    require_state(fronts == 2, "fronts");
+    require_state(on_ring() ? right(last()) == first() && left(first()) == last() && !range_.front_right()
+                            : line_.ends_beside(first(), last()),
+                  "ends");
+  }
+
+  // ---- for segments (segments.hpp), of a ring
+  const Line& line() const { return line_; }
+  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
+  ParticleIndex place(Slot s) const { return static_cast<ParticleIndex>(s); }
+  bool cramped(std::size_t) const { return sparse(); }
+  bool fronts_are_within(Slot, Slot) const { return on_ring(); }
+  // Goes over to the cells after a held range: those held, and the mass that has gone across the seam, collision by
+  // collision.
+  void continue_with(typename Line::Gaps& after, std::vector<CellsInARow> cells, const std::vector<T>& carried) {
+    line_.gaps.swap_gaps(after);
+    std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    active_ = 0;
+    Slot before = cells.back().first + cells.back().count - 1;
+    range_.hold(cells.front().first, before);
+    for (const auto& [slot, count] : cells) {
+      line_.link(before, slot);
+      before = slot + count - 1;
+      active_ += static_cast<ParticleIndex>(count);
+    }
+    vacated_ = last() + 1 - first() - static_cast<std::size_t>(active_);
+    for (const T& mass : carried) carried_.add(mass);
+  }
+
+  // What there is of it: the particles that have collided and the next one on each side, see
+  // cluster_chain_configuration.hpp.
+  Configuration<T> configuration(const T& time) const;
+
+ private:
+  ClusterChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
+      : particles_(std::move(particles)),
+        // No speed exceeds 1 + 2E/m >= sqrt(2E/m).
+        line_(start, particles_->energy_to_lose(), T(T(2) + T(4) * particles_->energy_over_least_mass())),
+        range_(particles_->on_ring(), held.first, particles_->count() - 2 - held.last, 3),
+        frame_(particles_->momentum() / particles_->total_mass()) {
+    require_particles(*particles_, start);
+    lay_out({}, static_cast<std::size_t>(held.last - held.first + 2));
+    for (Slot s = first(); s <= last(); ++s)
+      line_.gaps.put(s, load(held.first + static_cast<ParticleIndex>(s - first()), T(0), s < last() || on_ring()));
+    link();
+    if (on_ring()) active_ = particles_->count();
+  }
+
+  // Vacant cells make the queue's tree deep, and neighbours live in different branches of it.
+  bool sparse() const { return 2 * vacated_ > last() - first() + 24; }
+
+  // Position of a particle that has not collided.
+  Pair<T> undisturbed_place(Slot s, const T& time) const {
+    return undisturbed(*particles_, particle(s), clock().elapsed(time)).x;
+  }
+
+  // As at the start. A gap that is none yet, right of the last particle held, is not asked for: that would be random
+  // numbers in vain.
+  Cell<T> load(ParticleIndex b, const T& time, bool with_gap) const {
+    return {
+        {with_gap ? particles_->gap(b) : T(1), time}, particles_->velocity(b) - frame_, particles_->mass(b), 0, 0, b};
+  }
+
+  // Goes over to slots enough for the zone to grow by half on either side, with the cells at `kept`.
+  void lay_out(const std::vector<Slot>& kept, std::size_t held) {
+    const auto growth = static_cast<ParticleIndex>(std::max<std::size_t>(held / 2, 24));
+    const std::size_t slots = range_.lay_out(held, growth, kept);
+    line_.gaps.lay_out(slots, first(), kept);
+    vacated_ = 0;
+  }
+  // Links the cells held one to the next; those that are not are vacant, linked to themselves.
+  void link() {
+    for (Slot s = 0; s < slots(); ++s) {
+      const bool held = s >= first() && s <= last();
+      line_.gaps[s].left = held ? s - 1 : s;
+      line_.gaps[s].right = held ? s + 1 : s;
+    }
+    if (on_ring()) {
+      line_.link(last(), first());
+    } else {
+      line_.place_end(first() - 1, first());
+      line_.place_end(last() + 1, last());
+    }
+    for (Slot s = first(); s <= last(); ++s) line_.gaps.foresee(s, closing(s));
+  }
+
+  // A collision at an end of the active zone: takes in the next particle there, if there is one.
+  Notice widen(Slot s, const T& time) {
+    const Slot n = right(s);
+    const auto count = [&](Slot from, Slot to) {  // cells held from one to before the other
+      ParticleIndex cells = 0;
+      for (; from < to; from = right(from)) ++cells;
+      return cells;
+    };
+    active_ = range_.has_fronts() ? active_ + count(s, range_.front_left()) + count(range_.front_right(), n) : 2;
+    range_.reach(s, n);
+    if (range_.beyond_left(s) == HeldRange::Beyond::row) {
+      const ParticleIndex b = range_.take_in_left();
+      line_.gaps.put(first(), load(b, time, true));
+      line_.link(first(), s);
+      line_.place_end(first() - 1, first());
+    }
+    if (range_.beyond_right(n) == HeldRange::Beyond::row) {
+      // The gap right of n was not one before: it is as at the start.
+      line_.gaps.start(n, particles_->gap(particle(n)), time);
+      const ParticleIndex b = range_.take_in_right(particles_->count());
+      line_.gaps.put(last(), load(b, time, false));
+      line_.link(n, last());
+      line_.place_end(last() + 1, last());
+    }
+    const bool all_collided = range_.front_left() == first() && range_.front_right() == last();
+    if (all_collided && !centre_) centre_ = particles_->centre_of_mass();
+    return range_.cramped(slots()) || sparse() ? Notice::needs_slots : Notice::none;
+  }
+
+  // Keeps account of the mass that goes from the first cell of a ring to the last one, that is, by a turn to the right.
+  void cross_seam(Slot s, Event event) {
+    const Slot n = right(s);
+    if (n > s || event == Event::bounce) return;
+    carried_.add(line_.gaps[n].mass);
+    if (event == Event::pass) carried_.add(T(-line_.gaps[s].mass));
+  }
+
+  // The particle at `gone` is to go on as part of the one at s.
+  Notice merge(Slot s, Slot gone) {
+    range_.merge(s, gone, right(gone));
+    --active_;
+    ++vacated_;
+    return sparse() ? Notice::needs_slots : Notice::none;
+  }
+
+  std::shared_ptr<const Particles<T>> particles_;
+  Line line_;
+  HeldRange range_;
+  std::size_t vacated_ = 0;   // since the last layout
+  ParticleIndex active_ = 0;  // particles from one front to the other, both included
+  Slot beyond_ = 0;  // the cell that has the gap right of the last collision: of both particles where they have merged
+  T frame_;          // velocity of the centre of mass
+  std::optional<T> centre_;    // of mass at the start, on a line where positions can be told from nothing else
+  CompensatedSum<T> carried_;  // mass across the seam of a ring, see cross_seam
+};
+
+}  // namespace cradle
+
+#include "cradle/core/chains/cluster_chain_configuration.hpp"

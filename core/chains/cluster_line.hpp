@@ -1,0 +1,135 @@
+#pragma once
+// The bare line of cells that a chain in gaps and particle velocities works on, and what a collision does to it. What
+// is at its ends is the chain's (cluster_chain.hpp), or that of a segment (cluster_segment.hpp), which is a copy of a
+// part.
+//
+// A cell holds a particle and the gap between it and the next one (timed_gaps.hpp). Cells are linked from left to
+// right. When two particles merge they go on in the left one's cell, and the right one's is vacated: links pass over it
+// until the chain is laid out anew. Particles that pass exchange cells, so that cells stay in the order of the line.
+
+#include <tuple>
+#include <utility>
+
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/timed_gaps.hpp"
+#include "cradle/core/laws/law.hpp"
+
+namespace cradle {
+
+template <Real T> struct Cell : TimedGap<T> {
+  T velocity{0}, mass{1};
+  Slot left = 0, right = 0;
+  ParticleIndex particle = 0;  // by whose number at the start a cluster goes: its heaviest one's
+
+  static auto state(auto& self) {
+    return std::tuple_cat(TimedGap<T>::state(self),
+                          std::tie(self.velocity, self.mass, self.left, self.right, self.particle));
+  }
+};
+
+template <Real T> class ClusterLine {
+ public:
+  using Gaps = TimedGaps<T, Cell<T>, false>;
+
+  // `runaway`: no speed exceeds half of it.
+  ClusterLine(const T& start, const T& energy, const T& runaway) : gaps(start, energy), runaway_(runaway) {}
+
+  // Like another one, without any cells yet.
+  ClusterLine(const ClusterLine& other, std::size_t slots)
+      : gaps(other.gaps.clock().start(), T(1)), runaway_(other.runaway_) {
+    gaps.resemble(other.gaps, slots);
+  }
+
+  Gaps gaps;
+  static auto state(auto& self) { return std::tie(self.gaps); }
+
+  // ---- slots; a vacant one is linked to itself
+  Slot left(Slot s) const { return gaps[s].left; }
+  Slot right(Slot s) const { return gaps[s].right; }
+  bool vacant(Slot s) const { return gaps[s].right == s; }
+  void link(Slot s, Slot next) {
+    gaps[s].right = next;
+    gaps[next].left = s;
+  }
+  // Beyond the particles held something runs away, faster than any particle can. (Inlined, g++ 12 warns of a slot -1.)
+  [[gnu::noinline]] void place_end(Slot s, Slot beside) {
+    const bool on_left = s < beside;
+    gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), on_left ? s : beside, on_left ? beside : s, 0});
+    (on_left ? gaps[beside].left : gaps[beside].right) = s;
+  }
+  // Whether what is held can be a particle and the gap behind it, of the last one of a line a gap that never closes;
+  // whether beyond both ends there is what runs away.
+  bool fits(Slot s, bool last) const {
+    const T speed = magnitude(gaps[s].velocity);
+    return speed + speed <= runaway_ && gaps[s].fits(closing(s)) && (last || is_finite(gaps.lag(s)));
+  }
+  bool ends_beside(Slot first, Slot last) const {
+    const Slot p = left(first), n = right(last);
+    return p < first && right(p) == first && gaps[p].velocity == -runaway_ && n > last && gaps[n].velocity == runaway_;
+  }
+
+  T closing(Slot s) const { return gaps[s].velocity - gaps[gaps[s].right].velocity; }
+  TwoMasses<T> masses(Slot s) const { return {gaps[s].mass, gaps[gaps[s].right].mass}; }
+  T due(Slot s) const { return gaps.due(s, closing(s)); }
+  double queue_due(Slot s) const { return vacant(s) ? EventQueue::never : gaps.queue_due(s, closing(s)); }
+
+  // What a collision at the gap of a cell does to it and to its neighbours. (Inlined by force, see gap_line.hpp.)
+  [[gnu::always_inline]] CollisionResult<T> strike(Slot s, const T& time, const Outcome<T>& outcome, Notice notice) {
+    Cell<T>& l = gaps[s];
+    const Slot p = l.left, n = l.right;
+    Cell<T>& r = gaps[n];
+    const T since = gaps.flown(s, time);
+    notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
+    const T closing_left = closing(p), closing_right = closing(n);
+    const T before_left = l.velocity, before_right = r.velocity;
+    const T slowed = before_left - outcome.to_left, sped = before_right + outcome.to_right;
+    Slot beyond = n;
+    if (outcome.event == Event::merge) {
+      absorb_right(s, l.mass < r.mass ? sped : slowed);  // the heavier one's velocity hardly changes
+      beyond = s;
+    } else {
+      gaps.close(s, outcome.closing, since, time);
+      const bool pass = outcome.event == Event::pass;
+      l.velocity = pass ? sped : slowed;
+      r.velocity = pass ? slowed : sped;
+      if (pass) {
+        std::swap(l.mass, r.mass);
+        std::swap(l.particle, r.particle);
+      }
+    }
+    notice |= kick(p, closing_left, before_left, l.velocity, since, time);
+    notice |= kick(beyond, closing_right, gaps[beyond].velocity, before_right, since, time);
+    return {outcome, predict(p), predict(s), beyond == n ? predict(n) : EventQueue::never, notice, p, n};
+  }
+
+ private:
+  // The particles at s and right of it go on as one, in the cell s.
+  void absorb_right(Slot s, const T& velocity) {
+    Cell<T>& l = gaps[s];
+    const Slot n = l.right;
+    Cell<T>& r = gaps[n];
+    if (l.mass < r.mass) l.particle = r.particle;
+    l.velocity = velocity;
+    l.mass += r.mass;
+    gaps.carry(n, s);
+    gaps.forget(n);
+    link(s, r.right);
+    r.right = n;
+  }
+
+  // A gap between particles of which one has had a collision, by which it closes faster by as much as u_left exceeds
+  // u_right; `struck` is the time since the local time of the gap that had it.
+  [[gnu::always_inline]] Notice kick(Slot s, const T& so_far, const T& u_left, const T& u_right, const T& struck,
+                                     const T& time) {
+    const T since = gaps.kick(
+        s, so_far, [&] { return T(u_left - u_right); }, time);
+    if (gaps.below_floor(s)) [[unlikely]]
+      return gaps.note(s, closing(s), T(u_left - u_right), since, struck, gaps[s].particle, time);
+    return Notice::none;
+  }
+  [[gnu::always_inline]] double predict(Slot s) { return gaps.predict(s, closing(s)); }
+
+  T runaway_;
+};
+
+}  // namespace cradle

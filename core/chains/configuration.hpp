@@ -1,0 +1,69 @@
+#pragma once
+// A chain as it stands at one time, for whoever reads it: positions and velocities put together from the chain's own
+// coordinates, and the gaps and closing speeds themselves, since positions cannot resolve a collapsing core.
+// Lengths, speeds and masses in units of the scene.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "cradle/core/initial/particles.hpp"
+
+namespace cradle {
+
+template <Real T> struct Configuration {
+  T time{0};
+  ParticleIndex from = 0, to = -1;  // the particles at the start that are in here, merged or not
+  // Which of the n particles have had a collision or lie between such: [collided_from, collided_to).
+  std::size_t collided_from = 0, collided_to = 0;
+  std::vector<ParticleIndex> index;  // n particles from left to right, by their number at the start
+  std::vector<T> x, v, m;            // n
+  std::vector<T> gap;  // n - 1, between neighbours; n on a ring, the last one from the last particle to the first
+  std::vector<T> closing_speed;  // as many, u_left - u_right
+
+  // What the sum of all gaps (closing speeds) misses of the distance (velocity difference) of the two outermost
+  // particles, whose flight is known on its own; on a ring, of the circumference (of 0): the accumulated rounding of
+  // the run. None where nothing measures it: where gaps are differences of positions, closing speeds of velocities, or
+  // where the flight of one of the two is not known. Chains that have closing speeds spread both errors over the
+  // positions and velocities given here; the others tell positions from the left.
+  std::optional<T> closure_gap, closure_speed;
+  // Whether velocities are sums of closing speeds, each rounded in its own units, so that one has the errors of all.
+  bool speeds_are_sums = false;
+};
+
+// Takes out walls, which chains number -1 and `count` (wall.hpp), and the gaps to them.
+template <Real T> void leave_out_walls(Configuration<T>& c, ParticleIndex count) {
+  if (c.to == count) {
+    c.to -= 1;
+    c.index.pop_back();
+    for (auto* values : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}) values->pop_back();
+    c.collided_to = std::min(c.collided_to, c.x.size());
+  }
+  if (c.from == -1) {
+    c.from = 0;
+    c.index.erase(c.index.begin());
+    for (auto* values : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}) values->erase(values->begin());
+    if (c.collided_from > 0) c.collided_from -= 1;
+    if (c.collided_to > 0) c.collided_to -= 1;
+  }
+}
+
+// Folds positions on a ring, increasing and spanning less than its circumference, to 0 <= x < circumference, the
+// smallest first. Places so many turns away that they have no digits within one stay where they are.
+template <Real T> void fold(Configuration<T>& c, const T& circumference) {
+  if (c.x.empty()) return;
+  const double whole = std::floor(to_double(T(c.x.front() / circumference)));
+  if (!(std::abs(whole) < 0x1p62)) return;
+  const T turns = T(static_cast<std::int64_t>(whole));
+  for (T& x : c.x) x -= turns * circumference;
+  std::size_t first = 0;
+  const auto rotate = [&](auto& values) {
+    std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values.end());
+  };
+  for (std::size_t j = c.x.size(); j-- > 0 && !(c.x[j] < circumference); first = j) c.x[j] -= circumference;
+  rotate(c.index);
+  for (auto* values : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}) rotate(*values);
+}
+
+}  // namespace cradle

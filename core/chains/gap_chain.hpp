@@ -1,0 +1,326 @@
+#pragma once
+// The chain in gaps and closing speeds: for neighbours l, r the gap g >= 0 and the closing speed w = u_l - u_r. A
+// collision hands an impulse J from left to right and changes three gaps:
+//
+//   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
+//
+// Nothing is ever a difference of positions, so gaps keep their relative precision down to underflow, however small
+// they are against the size of the system (timed_gaps.hpp: how they are advanced, and what becomes of rounding).
+//
+// Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
+// active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
+// positions come from the centre of mass, velocities from the total momentum.
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/chains/anchor.hpp"
+#include "cradle/core/chains/collision_memory.hpp"
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/chains/gap_line.hpp"
+#include "cradle/core/chains/held_range.hpp"
+#include "cradle/core/engine/account.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/initial/relative_motion.hpp"
+
+namespace cradle {
+
+// How the front at one end of a line has moved in a held range (segments.hpp): the outermost slot with a collision, and
+// the collisions at the last gap of the line, with what each handed to the particle that ends it.
+template <Real T> struct FrontMove {
+  struct AtEnd {
+    T time, handed;
+  };
+  Slot reached = 0;
+  std::vector<AtEnd> at_end;
+  WallTally<T> wall;  // of the wall at this end
+};
+
+template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
+ public:
+  using Scalar = T;
+  using Line = GapLine<T, Masses>;
+  static constexpr bool may_collapse = true;
+  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
+
+  // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
+  // start. Throws std::invalid_argument for masses that are not identical where the chain is for such.
+  GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
+      : GapChain(particles, start, hold_all ? particles->gaps() : particles->gaps_in_motion()) {}
+
+  // ---- times: local ones are offsets from an origin that moves
+  const Clock<T>& clock() const { return line_.gaps.clock(); }
+  const T& start() const { return clock().start(); }
+  T local_time(const T& time) const { return clock().offset(time); }
+  Pair<T> stamp(const T& local) const { return clock().stamp(local); }
+  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
+
+  // ---- slots: the gaps held are first() to last()
+  std::size_t slots() const { return line_.gaps.slots(); }
+  Slot first() const { return range_.first(); }
+  Slot last() const { return range_.last(); }
+  Slot left(Slot s) const { return on_ring() && s == first() ? last() : s - 1; }
+  Slot right(Slot s) const { return on_ring() && s == last() ? first() : s + 1; }
+  bool on_ring() const { return range_.on_ring(); }
+  ParticleIndex particle(Slot s) const { return line_.particle(s); }
+  ParticleIndex count() const { return particles_->count(); }
+  ParticleIndex collided_particles() const {
+    if (on_ring()) return particles_->count();
+    return range_.has_fronts() ? front_particle(End::right) - front_particle(End::left) + 1 : 0;
+  }
+
+  // Local time of the next collision of a gap that is closing.
+  T due(Slot s) const { return line_.due(s); }
+  double queue_due(Slot s) const { return line_.queue_due(s); }
+  const T& closing(Slot s) const { return line_.closing(s); }
+
+  // ---- events (inlined by force, see gap_line.hpp)
+  template <class Law>
+  [[gnu::always_inline]] CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
+    if (!range_.inside(s, s)) [[unlikely]]
+      return collide_at_end(law, s, time);
+    return line_.strike(s - 1, s, s + 1, time, outcome(law, s, time), Notice::none);
+  }
+
+  // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
+  // times they are told in.
+  T move_origin(const T& local) {
+    if constexpr (Line::watched) line_.certainty.begin_anew(line_.gaps, first(), last());
+    line_.gaps.move_origin(local, [this](auto&& each) {
+      for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
+    });
+    memory_.move_origin(local);
+    for (Anchor<T>* anchor : {&left_, &right_}) anchor->move_origin(local);
+    return T(0);
+  }
+
+  void make_room() {
+    std::vector<Slot> kept(last() + 1 - first());
+    std::iota(kept.begin(), kept.end(), first());
+    lay_out(kept, static_cast<ParticleIndex>(kept.size()));
+  }
+
+  // Collisions that leave a gap below `floor` beside them are noticed (gap_below_floor).
+  void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
+  // The smaller gap next to a collision, as of its local time; an end of the line counts as far away.
+  T nearest_gap(Slot s) const {
+    const T far = far_away<T>();
+    const T on_left = on_ring() || s > first() ? line_.gaps[left(s)].gap : far,
+            on_right = on_ring() || s < last() ? line_.gaps[right(s)].gap : far;
+    return on_left < on_right ? on_left : on_right;
+  }
+  const Account<T>& account() const { return line_.gaps.account(); }
+  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
+  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
+  // What times of collisions are told apart by, as times since the start.
+  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
+
+  // The particle on the left of a gap where rounding may decide whether it closes up to a local time not before the
+  // last collision.
+  std::optional<ParticleIndex> uncertain_at(const T& time) const requires(Line::watched) {
+    for (Slot s = first(); s <= last(); ++s)
+      if (line_.certainty.open(line_.gaps, s, time)) return particle(s);
+    return {};
+  }
+  // What comes of a collision at the speed 1, where that says what comes of any.
+  template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
+    if (walls_.beside(particle(s)))
+      return walls_.at_unit_speed(particle(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+    return law(T(1), line_.masses.of_pair(s));
+  }
+
+  // ---- reading, at a local time not before the last collision
+  T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
+  // Positions of the outermost particles that have collided; only once there are some.
+  T front_left(const T& time) const;
+  T front_right(const T& time) const;
+  const Walls<T>& walls() const { return walls_; }
+  // Of all particles of the scene, now; takes all gaps held. (gap_chain_configuration.hpp)
+  T kinetic_energy() const;
+
+  static auto state(auto& self) {
+    return std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_);
+  }
+  void loaded() const {
+    const ParticleIndex count = particles_->count();
+    const GapRange all = particles_->gaps();
+    require_state(range_.fits(slots(), count) && range_.on_ring() == particles_->on_ring(), "slots");
+    const ParticleIndex first_held = all.first + range_.unheld_left();
+    require_state(line_.particle_of_slot_0 == first_held - static_cast<ParticleIndex>(first()), "particles");
+    require_state(on_ring() ? particle(first()) == 0 && particle(last()) + 1 == count
+                            : particle(last()) == all.last - range_.unheld_right(),
+                  "particles");
+    require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
+    require_state(!on_ring() || (range_.front_left() == first() && range_.front_right() == last()), "seam");
+    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Slots beyond the gaps held are filled anew before they are used.
+    const T fastest = particles_->walled() ? far_away<T>() : T(T(2) + T(4) * particles_->energy_over_least_mass());
+    for (Slot s = first(); s <= last(); ++s) {
+      const T& w = closing(s);
+      require_state(line_.gaps[s].fits(w) && is_finite(line_.gaps.lag(s)) && !(fastest < magnitude(w)) &&
+                        line_.has_mass(s, *particles_),
+                    "gaps");
+    }
+    for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
+    require_state(line_.has_mass(last() + 1, *particles_), "masses");
+    for (const Anchor<T>* anchor : {&left_, &right_})
+      require_state(on_ring() || (anchor->particle() >= all.first && anchor->particle() <= all.last + 1), "anchors");
+  }
+
+  // ---- for segments (segments.hpp)
+  const Particles<T>& particles() const { return *particles_; }
+  const Line& line() const { return line_; }
+  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
+  ParticleIndex place(Slot s) const { return particle(s); }  // in the order of the line, whatever slots are called
+  // Slots free for particles that the fronts reach.
+  std::size_t within_reach_left() const { return range_.free_left(); }
+  std::size_t within_reach_right() const { return range_.free_right(slots()); }
+  bool cramped(std::size_t particles) const { return range_.cramped(slots(), static_cast<ParticleIndex>(particles)); }
+  bool fronts_are_within(Slot left, Slot right) const {
+    return on_ring() || (range_.has_fronts() && range_.front_left() <= left && range_.front_right() >= right);
+  }
+  Slot front_slot_left() const { return range_.front_left(); }
+  Slot front_slot_right() const { return range_.front_right(); }
+  // Goes over to the gaps after a held range, at the same slots and at those that the fronts have reached.
+  void continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left, const FrontMove<T>& to_right) {
+    line_.gaps.swap_gaps(after);
+    if (on_ring()) return;
+    range_.reach(to_left.reached, to_right.reached);
+    while (first() >= range_.front_left() && range_.beyond_left(first()) == HeldRange::Beyond::row) {
+      range_.take_in_left();
+      line_.load_mass(first(), *particles_);
+    }
+    while (last() <= range_.front_right() && range_.beyond_right(last()) == HeldRange::Beyond::row) {
+      range_.take_in_right(particles_->count());
+      line_.load_mass(last() + 1, *particles_);
+    }
+    walls_.continue_with(to_left.wall, to_right.wall);
+    const ParticleIndex left = particle(range_.front_left()), right = particle(range_.front_right()) + 1;
+    const GapRange all = particles_->gaps();
+    if (left > all.first || walls_.has(End::left)) left_.take(std::max(left - 1, all.first));
+    if (right < all.last + 1 || walls_.has(End::right)) right_.take(std::min(right + 1, all.last + 1));
+    for (const auto& collision : to_left.at_end) follow_end(End::left, left, collision.time, T(-collision.handed));
+    for (const auto& collision : to_right.at_end) follow_end(End::right, right, collision.time, collision.handed);
+  }
+
+  // The particles that have collided and the next one on each side; all that are held before the first collision. On a
+  // ring all particles, from the first one right of x = 0. (gap_chain_configuration.hpp)
+  Configuration<T> configuration(const T& time) const;
+
+ private:
+  GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
+      : particles_(std::move(particles)), line_(*particles_, start),
+        range_(particles_->on_ring(), held.first - particles_->gaps().first, particles_->gaps().last - held.last, 2),
+        walls_(particles_->walls()) {
+    require_particles(*particles_, start);
+    lay_out({}, held.last - held.first + 1);
+    for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
+    left_.take(particle(first()));
+    right_.take(particle(last()) + 1);
+    if (!on_ring()) return;
+    range_.place_seam();
+    centre_ = particles_->centre_of_mass();
+  }
+
+  Configuration<T> line_configuration(const T& time) const;
+  Configuration<T> ring_configuration(const T& time) const;
+  Flight<T> flight(const Anchor<T>& anchor, const T& time) const { return anchor.flight(*particles_, clock(), time); }
+
+  Slot slot(ParticleIndex particle) const {
+    return static_cast<Slot>(particle - line_.particle_of_slot_0);
+  }  // of the gap right of it
+  // The outermost particle that has collided, walls not being particles here.
+  ParticleIndex front_particle(End end) const {
+    return end == End::left ? std::max<ParticleIndex>(particle(range_.front_left()), 0)
+                            : std::min(particle(range_.front_right()) + 1, particles_->count() - 1);
+  }
+
+  // The last particle of a line, or the wall there, has had a collision in which it gained velocity.
+  template <class Gain> void follow_end(End end, ParticleIndex particle, const T& time, const Gain& gain) {
+    Anchor<T>& anchor = end == End::left ? left_ : right_;
+    walls_.has(end) ? anchor.take(particle) : anchor.follow(particle, *particles_, clock(), time, gain);
+  }
+
+  // Goes over to slots enough for the zone to grow by half on either side, with the gaps at `kept`.
+  void lay_out(const std::vector<Slot>& kept, ParticleIndex held) {
+    const std::size_t slots = range_.lay_out(static_cast<std::size_t>(held), held / 2 + 8, kept);
+    line_.particle_of_slot_0 = particles_->gaps().first + range_.unheld_left() - static_cast<ParticleIndex>(first());
+    line_.gaps.lay_out(slots, first(), kept);
+    memory_.lay_out(slots, first(), kept);
+    line_.masses.resize(slots);
+    for (Slot s = first(); s <= last() + 1; ++s) line_.load_mass(s, *particles_);
+  }
+
+  template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
+    if constexpr (Line::watched && requires { law.cutoff(); })
+      line_.certainty.threshold(line_.gaps, s, particle(s), time, law.cutoff());
+    if constexpr (LawWithMemory<Law, T>)
+      if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots()))
+        return law.elastic(closing(s), line_.masses.of_pair(s));
+    const Outcome<T> outcome = law(closing(s), line_.masses.of_pair(s));
+    if constexpr (Line::watched && !requires { law.cutoff(); })
+      line_.certainty.slope(law, closing(s), line_.masses.of_pair(s), outcome);
+    return outcome;
+  }
+  template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
+    if constexpr (LawWithMemory<Law, T>) memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());
+    return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+  }
+  // A collision at an end of the active zone, at the seam of a ring or at a wall.
+  template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
+    const Outcome<T> of_law = walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time);
+    const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
+    return line_.strike(left(s), s, right(s), time, of_law, notice);
+  }
+
+  // A collision at an end of the active zone: takes in the next particle there, or, at an end of the line, follows the
+  // last one.
+  Notice widen(Slot s, const T& time, const Outcome<T>& outcome) {
+    range_.reach(s, s);
+    if (s == range_.front_left()) {
+      const HeldRange::Beyond beyond = range_.beyond_left(s);
+      if (beyond == HeldRange::Beyond::row) {
+        range_.take_in_left();
+        line_.load(s - 1, *particles_, time);
+        line_.load_mass(s - 1, *particles_);
+      }
+      if (beyond != HeldRange::Beyond::nothing) {
+        left_.take(particle(s) - 1);
+      } else {
+        follow_end(End::left, particle(s), time, -line_.handed(s, outcome).left);
+        line_.seal(s - 1, time, outcome.to_left);
+      }
+    }
+    if (s == range_.front_right()) {
+      const HeldRange::Beyond beyond = range_.beyond_right(s);
+      if (beyond == HeldRange::Beyond::row) {
+        range_.take_in_right(particles_->count());
+        line_.load(s + 1, *particles_, time);
+        line_.load_mass(s + 2, *particles_);
+      }
+      if (beyond != HeldRange::Beyond::nothing) {
+        right_.take(particle(s) + 2);
+      } else {
+        follow_end(End::right, particle(s) + 1, time, line_.handed(s, outcome).right);
+        line_.seal(s + 1, time, outcome.to_right);
+      }
+    }
+    return range_.cramped(slots()) ? Notice::needs_slots : Notice::none;
+  }
+
+  std::shared_ptr<const Particles<T>> particles_;
+  Line line_;
+  HeldRange range_;
+  CollisionMemory<T> memory_;
+  T centre_{0};  // on a ring: of mass, at the start
+  Anchor<T> left_, right_;
+  Walls<T> walls_;
+};
+
+}  // namespace cradle
+
+#include "cradle/core/chains/gap_chain_configuration.hpp"

@@ -1,0 +1,135 @@
+#pragma once
+// What a chain in gaps and closing speeds looks like in positions and velocities. On a line both are summed up from the
+// left anchor and must lead to the right one: what is missing, the closure error, is spread over the particles between.
+// On a ring positions are told from the centre of mass, velocities from the total momentum; there it is the
+// circumference that the gaps miss.
+
+#include "cradle/core/chains/gap_chain.hpp"
+
+namespace cradle {
+
+template <Real T, class Masses> T GapChain<T, Masses>::front_left(const T& time) const {
+  const Pair<T> x = flight(left_, time).x;
+  const ParticleIndex outermost = front_particle(End::left);  // next to the anchor, if not the anchor
+  return (outermost > left_.particle() ? x + gap_at(slot(outermost) - 1, time) : x).value();
+}
+template <Real T, class Masses> T GapChain<T, Masses>::front_right(const T& time) const {
+  const Pair<T> x = flight(right_, time).x;
+  const ParticleIndex outermost = front_particle(End::right);
+  return (outermost < right_.particle() ? x - gap_at(slot(outermost), time) : x).value();
+}
+
+// Particles that are not held move like the outermost one that is. Velocities are told from a wall, where there is one:
+// its own x is known, and its own velocity. On a ring the last gap follows from the others.
+template <Real T, class Masses> T GapChain<T, Masses>::kinetic_energy() const {
+  const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
+  const ParticleIndex count = particles_->count();
+  const bool from_wall = particle(first()) < 0, to_wall = !on_ring() && particle(last()) + 1 == count;
+  const T left = from_wall ? T(0) : particles_->mass_between(0, particle(first()) + 1);
+  const T right = to_wall ? T(0) : particles_->mass_between(on_ring() ? count - 1 : particle(last()) + 1, count);
+  const Slot end = on_ring() ? last() : last() + 1;
+  const T known = on_ring() || walls_.any() ? T(0) : T(left_.velocity(*particles_) - drift);
+  T at_end(0);  // the last one's x, with c = 0
+  const auto moving = relative_motion(total, known, [&](const T& c, const auto& add) {
+    EnergySum<T> slowing;
+    add(left, T(-c));
+    for (Slot s = first(); s < end; ++s) {
+      slowing.add(closing(s));
+      add(s + 1 < end ? line_.masses[s + 1] : right, less(slowing, c));
+    }
+    at_end = slowing.value();
+  });
+  const T speed = from_wall ? T(particles_->velocity(-1) - moving.mean)
+                  : to_wall ? T(particles_->velocity(count) + (at_end - moving.mean))
+                            : drift;
+  return total * speed * speed / T(2) + moving.energy;
+}
+
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configuration(const T& time) const {
+  return on_ring() ? ring_configuration(time) : line_configuration(time);
+}
+
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_configuration(const T& time) const {
+  Configuration<T> c;
+  c.time = clock().time(time);
+  c.speeds_are_sums = !line_.exact_sums();
+  c.to = particles_->count() - 1;
+  c.collided_to = static_cast<std::size_t>(particles_->count());
+  CompensatedSum<T> way, slowing, moment, momentum;
+  std::vector<T> ways;
+  std::vector<Pair<T>> slowings;  // from particle 0 to each one
+  std::size_t heaviest = 0;
+  for (Slot s = first(); s <= last(); ++s) {
+    c.index.push_back(particle(s));
+    c.m.push_back(line_.masses[s]);
+    ways.push_back(way.value());
+    slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
+    moment.add(c.m.back() * ways.back());
+    if (c.m[heaviest] < c.m.back()) heaviest = c.m.size() - 1;
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(closing(s));
+    way.add(c.gap.back());
+    line_.add_closing(s, slowing);
+  }
+  // Where masses are far apart, from the heaviest: what the sums lose is then lost of the light ones.
+  if (line_.exact_sums()) {
+    const Pair<T> own = slowings[heaviest];
+    for (Pair<T>& each : slowings) each = each - own;
+  }
+  for (std::size_t j = 0; j < slowings.size(); ++j) momentum.add(c.m[j] * slowings[j].value());
+  c.closure_gap = particles_->circumference() - way.value();
+  c.closure_speed = -slowing.value();
+  const T mass = particles_->total_mass(), drift = particles_->momentum() / mass;
+  const Pair<T> start = two_sum(centre_, T(drift * clock().elapsed(time))) - T(moment.value() / mass);
+  const T stretch = *c.closure_gap / way.value();
+  const T speed = drift + momentum.value() / mass;
+  for (std::size_t j = 0; j < ways.size(); ++j) {
+    c.x.push_back((start + T(ways[j] + stretch * ways[j])).value());
+    c.v.push_back(speed - slowings[j].value());
+  }
+  fold(c, particles_->circumference());
+  return c;
+}
+
+template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_configuration(const T& time) const {
+  const bool collided = range_.has_fronts();
+  const Slot from = collided && range_.front_left() > first() ? range_.front_left() - 1 : first();
+  const Slot to = collided && range_.front_right() < last() ? range_.front_right() + 1 : last();
+  const auto n = static_cast<std::size_t>(to + 2 - from);
+
+  Configuration<T> c;
+  c.time = clock().time(time);
+  c.speeds_are_sums = !line_.exact_sums();
+  for (Slot s = from; s <= to + 1; ++s) {
+    c.index.push_back(particle(s));
+    c.m.push_back(line_.masses[s]);
+  }
+  c.from = particle(from);
+  c.to = particle(to) + 1;
+  if (collided) c.collided_from = range_.front_left() - from, c.collided_to = range_.front_right() - from + 2;
+  CompensatedSum<T> way, slowing;
+  std::vector<T> ways{T(0)};
+  std::vector<Pair<T>> slowings{{}};  // from the left anchor to each particle
+  for (Slot s = from; s <= to; ++s) {
+    c.gap.push_back(gap_at(s, time));
+    c.closing_speed.push_back(closing(s));
+    way.add(c.gap.back());
+    line_.add_closing(s, slowing);
+    ways.push_back(way.value());
+    slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
+  }
+  const Flight<T> left = flight(left_, time), right = flight(right_, time);
+  c.closure_gap = difference(right.x, left.x) - way.value();
+  c.closure_speed = line_.exact_sums() ? T((left.v - right.v - slowing.pair()).value())
+                                       : T(difference(left.v, right.v) - slowing.value());
+  const T stretch = way.value() > T(0) ? T(*c.closure_gap / way.value()) : T(0);
+  for (std::size_t j = 0; j < n; ++j) {
+    c.x.push_back((left.x + T(ways[j] + stretch * ways[j])).value());
+    const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(static_cast<std::int64_t>(n - 1))) : T(0);
+    c.v.push_back((left.v - slowings[j].low - T(slowings[j].high + share * *c.closure_speed)).value());
+  }
+  leave_out_walls(c, particles_->count());
+  return c;
+}
+
+}  // namespace cradle

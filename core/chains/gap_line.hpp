@@ -1,0 +1,174 @@
+#pragma once
+// The bare line of gaps that a chain in gaps works on: timed gaps with their closing speeds, the masses of the
+// particles between them, and what a collision does to three of them. What is at its ends is the chain's
+// (gap_chain.hpp), or that of a segment (segments.hpp), which is a copy of a part of it.
+
+#include <concepts>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/masses.hpp"
+#include "cradle/core/chains/timed_gaps.hpp"
+#include "cradle/core/chains/watched_gap.hpp"
+#include "cradle/core/engine/certainty.hpp"
+
+namespace cradle {
+
+// What the line keeps of all its collisions where masses are not watched.
+struct NothingMore {
+  static std::tuple<> state(auto&) { return {}; }
+};
+
+template <Real T, class MassesOf> class GapLine {
+ public:
+  using Scalar = T;
+  using Masses = MassesOf;
+  static constexpr bool watched = Watched<Masses>;
+  using Gaps = TimedGaps<T, std::conditional_t<watched, WatchedGap<T>, Gap<T>>, true>;
+
+  GapLine(const Particles<T>& particles, const T& start)
+      : gaps(start, particles.energy_to_lose()), masses(particles),
+        exact_(cradle::far_apart(particles) && sums_can_be_exact<T>) {}
+
+  // Like another one, without any gaps yet.
+  explicit GapLine(const GapLine& other, std::size_t slots)
+      : gaps(other.gaps.clock().start(), T(1)), masses(other.masses.without_slots()), exact_(other.exact_) {
+    resemble(other, slots, 0);
+  }
+
+  Gaps gaps;
+  Masses masses;
+  ParticleIndex particle_of_slot_0 = 0;
+  [[no_unique_address]] std::conditional_t<watched, Certainty<T, Gaps>, NothingMore> certainty;
+
+  static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.particle_of_slot_0, self.certainty); }
+
+  // Whether closing speeds add up without error.
+  bool exact_sums() const { return watched && exact_; }
+
+  // ---- copies of a part (segments.hpp): with so many slots; slot s here is s + offset there
+  void resemble(const GapLine& other, std::size_t slots, std::ptrdiff_t offset) {
+    gaps.resemble(other.gaps, slots);
+    masses.resize(slots);
+    particle_of_slot_0 = other.particle_of_slot_0 + offset;
+  }
+  void copy(const GapLine& other, Slot from, Slot to, std::size_t count) {
+    gaps.copy(other.gaps, from, to, count);
+    masses.copy(other.masses, from, to, count + 1);
+  }
+  // A gap that no collision beside it closes.
+  void block(Slot s) { gaps.put(s, cell(T(1), T(0), T(-std::int64_t{1} << 62))); }
+
+  ParticleIndex particle(Slot s) const { return static_cast<ParticleIndex>(s) + particle_of_slot_0; }
+  const T& closing(Slot s) const { return gaps[s].closing; }
+  void add_closing(Slot s, CompensatedSum<T>& sum) const {
+    sum.add(closing(s));
+    if constexpr (watched) sum.add(gaps[s].rest);
+  }
+  // Local time of the next collision of a gap that is closing.
+  T due(Slot s) const { return gaps.due(s, closing(s)); }
+  double queue_due(Slot s) const { return gaps.queue_due(s, closing(s)); }
+
+  // As it is at the start, the gap right of a particle, and the mass of a particle.
+  void load(Slot s, const Particles<T>& particles, const T& time) {
+    const ParticleIndex b = particle(s);
+    gaps.put(s, cell(particles.gap(b), time, particles.closing_speed(b)));
+    if constexpr (watched) {
+      const ParticleIndex next = particles.on_ring() && b + 1 == particles.count() ? 0 : b + 1;
+      if (exact_) add(s, two_sum(particles.velocity(b), T(-particles.velocity(next))) - closing(s));
+      gaps[s].off = at_start(particles, b, next);
+    }
+    gaps.foresee(s, closing(s));
+  }
+  void load_mass(Slot s, const Particles<T>& particles) { masses.set(s, mass_of(s, particles)); }
+  bool has_mass(Slot s, const Particles<T>& particles) const { return masses[s] == mass_of(s, particles); }
+
+  // What a collision at the gap s does to it and to its neighbours p and n. Inlined by force: as a call this passes all
+  // results through memory, a fifth of the time per collision.
+  [[gnu::always_inline]] CollisionResult<T> strike(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
+                                                   Notice notice) {
+    const T since = gaps.flown(s, time);
+    notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
+    if constexpr (watched) certainty.collision(gaps, p, s, n, particle(s), time, outcome, masses.of_pair(s), exact_);
+    const auto handed = this->handed(s, outcome);
+    gaps.close(s, outcome.closing, since, time);
+    gaps[s].closing = outcome.closing;
+    if constexpr (watched) gaps[s].rest = T(0);
+    gaps.forget(s);
+    notice |= kick(p, handed.left, since, time);
+    notice |= kick(n, handed.right, since, time);
+    return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
+  }
+
+  // There is no gap beyond the last particle: what stands in its slot keeps opening, whatever it is handed.
+  void seal(Slot s, const T& time, const T& handed) { gaps.put(s, cell(T(1), time, T(-(handed + handed) - T(1)))); }
+
+  // What the neighbours gain in a collision at the gap s. Where sums are exact all three closing speeds add up as
+  // before: what rounding has left over goes where more is handed, to the side of the lighter particle.
+  struct Handed {
+    const T &left, &right;
+  };
+  struct HandedExactly {
+    Pair<T> left, right;
+  };
+  [[gnu::always_inline]] auto handed(Slot s, const Outcome<T>& outcome) const {
+    if constexpr (watched) {
+      const Pair<T> before{closing(s), gaps[s].rest};
+      const T over = exact_ ? T((before - outcome.closing - outcome.to_left - outcome.to_right).value()) : T(0);
+      const bool both = outcome.to_left == outcome.to_right, left = outcome.to_right < outcome.to_left;
+      return HandedExactly{{outcome.to_left, both   ? T(over / T(2))
+                                             : left ? over
+                                                    : T(0)},
+                           {outcome.to_right, both   ? T(over / T(2))
+                                              : left ? T(0)
+                                                     : over}};
+    } else {
+      return Handed{outcome.to_left, outcome.to_right};
+    }
+  }
+
+ private:
+  using Cell = std::remove_cvref_t<decltype(std::declval<Gaps&>()[Slot{}])>;
+  static Cell cell(const T& gap, const T& time, const T& closing) {
+    Cell made;
+    made.gap = gap;
+    made.time = time;
+    made.closing = closing;
+    return made;
+  }
+  static const T& high(const T& gain) { return gain; }
+  static const T& high(const Pair<T>& gain) { return gain.high; }
+  void add(Slot s, const Pair<T>& gain) {
+    if (!exact_) {
+      gaps[s].closing += gain.high;
+      return;
+    }
+    const Pair<T> sum = Pair<T>{closing(s), gaps[s].rest} + gain.high + gain.low;
+    gaps[s].closing = sum.high;
+    gaps[s].rest = sum.low;
+  }
+  // That of any particle where there is none, or a wall.
+  T mass_of(Slot s, const Particles<T>& particles) const {
+    return particles.mass(particle(s) >= 0 && particle(s) < particles.count() ? particle(s) : 0);
+  }
+  // Brings a gap up to date and adds to its closing speed; `struck` is the time since the local time of the gap beside
+  // it that had the collision.
+  template <class Gain> [[gnu::always_inline]] Notice kick(Slot s, const Gain& gain, const T& struck, const T& time) {
+    const T since = gaps.kick(
+        s, closing(s), [&]() -> const T& { return high(gain); }, time);
+    if constexpr (watched)
+      add(s, gain);
+    else
+      gaps[s].closing += gain;
+    if (gaps.below_floor(s)) [[unlikely]]
+      return gaps.note(s, closing(s), high(gain), since, struck, particle(s), time);
+    return Notice::none;
+  }
+
+  bool exact_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,125 @@
+#pragma once
+// How much of a line a chain holds, and how far collisions have come in it. Rows are streamed: particles of a row never
+// meet each other, so of each row only the particle next to the front is held, and the one after it is taken in by the
+// collision that hits it. From left to right:
+//
+//   unheld particles | first ... left front ~~~ collisions ~~~ right front ... last | unheld particles
+//
+// Slots are the chain's own: gaps, where the fronts are the outermost ones that have had a collision, or particles,
+// where they are the outermost ones that have. Empty slots are left for the held range to grow on either side;
+// `cramped` says when they are used up and the chain must be laid out anew. On a ring all particles are held, and there
+// are no fronts.
+
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+#include <vector>
+
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/initial/particles.hpp"
+
+namespace cradle {
+
+class HeldRange {
+ public:
+  // Where collisions have been made so far.
+  enum class Extent { nowhere, between_fronts, ring };
+  // What there is next to a front, away from the collisions.
+  enum class Beyond { held, row, nothing };
+
+  // `spare`: slots that stay empty at either end.
+  HeldRange(bool on_ring, ParticleIndex unheld_left, ParticleIndex unheld_right, Slot spare)
+      : extent_(on_ring ? Extent::ring : Extent::nowhere), unheld_left_(unheld_left), unheld_right_(unheld_right),
+        spare_(spare) {}
+
+  Slot first() const { return first_; }
+  Slot last() const { return last_; }
+  ParticleIndex unheld_left() const { return unheld_left_; }
+  ParticleIndex unheld_right() const { return unheld_right_; }
+
+  // Puts so many held slots in the middle of enough for the held range to grow by `growth` on either side, and returns
+  // how many those are. `kept`: which slots have been these so far, from the first one held on.
+  std::size_t lay_out(std::size_t held, ParticleIndex growth, const std::vector<Slot>& kept = {}) {
+    first_ = static_cast<Slot>(std::min(unheld_left_, growth)) + spare_;
+    last_ = first_ + held - 1;
+    if (has_fronts())
+      for (Slot* front : {&front_left_, &front_right_})
+        *front = first_ + static_cast<Slot>(std::lower_bound(kept.begin(), kept.end(), *front) - kept.begin());
+    return last_ + 1 + static_cast<Slot>(std::min(unheld_right_, growth)) + spare_;
+  }
+  // Slots free for the next particles of the rows.
+  std::size_t free_left() const { return std::min(static_cast<std::size_t>(unheld_left_), first_ - spare_); }
+  std::size_t free_right(std::size_t slots) const {
+    return std::min(static_cast<std::size_t>(unheld_right_), slots - 1 - spare_ - last_);
+  }
+  // Whether there are fewer than so many, although rows have them: by default, whether the next collision at a front
+  // could find no slot for the particle that it takes in.
+  bool cramped(std::size_t slots, ParticleIndex particles = 1) const {
+    return static_cast<ParticleIndex>(free_left()) < std::min(particles, unheld_left_) ||
+           static_cast<ParticleIndex>(free_right(slots)) < std::min(particles, unheld_right_);
+  }
+
+  // ---- fronts
+  bool on_ring() const { return extent_ == Extent::ring; }
+  bool has_fronts() const { return extent_ == Extent::between_fronts; }
+  Slot front_left() const { return front_left_; }
+  Slot front_right() const { return front_right_; }
+  // Whether a collision from one slot to the other is between the fronts and concerns neither.
+  bool inside(Slot left, Slot right) const { return (left > front_left_) & (right < front_right_); }
+  // There has been a collision from one slot to the other.
+  void reach(Slot left, Slot right) {
+    if (!has_fronts()) front_left_ = left, front_right_ = right;
+    extent_ = Extent::between_fronts;
+    front_left_ = std::min(front_left_, left);
+    front_right_ = std::max(front_right_, right);
+  }
+  // On a ring whose slots are gaps: those at either end are not `inside`, they are next to the seam.
+  void place_seam() { front_left_ = first_, front_right_ = last_; }
+
+  // ---- of a front
+  Beyond beyond_left(Slot s) const { return s != first_ ? Beyond::held : row_or_nothing(unheld_left_); }
+  Beyond beyond_right(Slot s) const { return s != last_ ? Beyond::held : row_or_nothing(unheld_right_); }
+  // Held are other slots now, fewer of them.
+  void hold(Slot first, Slot last) { first_ = first, last_ = last; }
+  // Takes in the next particle of a row, in the slot next to the last one held; returns its number, `count` particles
+  // in all.
+  ParticleIndex take_in_left() {
+    --first_;
+    return --unheld_left_;
+  }
+  ParticleIndex take_in_right(ParticleIndex count) {
+    ++last_;
+    return count - unheld_right_--;
+  }
+  // The particle at `gone` goes on as part of the one at `s` on its left; `next` is on its right.
+  void merge(Slot s, Slot gone, Slot next) {
+    if (last_ == gone) last_ = s;
+    if (first_ == gone) first_ = next;
+    if (front_right_ == gone) front_right_ = s;
+  }
+
+  static auto state(auto& self) {
+    return std::tie(self.extent_, self.first_, self.last_, self.front_left_, self.front_right_, self.unheld_left_,
+                    self.unheld_right_);
+  }
+  // Whether it can be that of a chain with so many slots, which hold all particles of `count` but the unheld ones, or
+  // some.
+  bool fits(std::size_t slots, ParticleIndex count) const {
+    const bool held = last_ < slots && slots - 1 - last_ >= spare_ && first_ >= spare_ && last_ + 1 >= first_;
+    const bool fronts = has_fronts() ? first_ <= front_left_ && front_left_ <= front_right_ && front_right_ <= last_
+                                     : on_ring() || (front_left_ == 0 && front_right_ == 0);
+    return extent_ <= Extent::ring && held && fronts && unheld_left_ >= 0 && unheld_right_ >= 0 &&
+           unheld_left_ <= count && unheld_right_ <= count - unheld_left_;
+  }
+
+ private:
+  static Beyond row_or_nothing(ParticleIndex unheld) { return unheld > 0 ? Beyond::row : Beyond::nothing; }
+
+  Extent extent_;
+  Slot first_ = 0, last_ = 0;
+  Slot front_left_ = 0, front_right_ = 0;  // as long as there are none both 0, between which nothing is inside
+  ParticleIndex unheld_left_, unheld_right_;
+  Slot spare_;
+};
+
+}  // namespace cradle

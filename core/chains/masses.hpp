@@ -1,0 +1,79 @@
+#pragma once
+// The masses of a chain's particles: one for all, or one for each. Identical masses cost nothing, neither memory nor
+// the divisions of the reduced mass. Watched ones take a chain that estimates what rounding does to the sequence of
+// collisions and, if they are far apart, keeps more of every closing speed (watched_gap.hpp).
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/initial/particles.hpp"
+#include "cradle/core/laws/law.hpp"
+
+namespace cradle {
+
+template <Real T> struct IdenticalMasses {
+  // Throws std::invalid_argument where they are not identical.
+  explicit IdenticalMasses(const Particles<T>& particles) : mass(particles.mass(0)), reduced_mass(mass / T(2)) {
+    if (particles.identical_masses()) return;
+    ParticleIndex other = 1;
+    while (other + 1 < particles.count() && particles.mass(other) == mass) ++other;
+    throw std::invalid_argument("unequal masses in a chain for identical ones (particle 0 has " + in_message(mass) +
+                                ", particle " + std::to_string(other) + " has " + in_message(particles.mass(other)) +
+                                "): use GapChain<T, IndividualMasses<T>>");
+  }
+  T mass, reduced_mass;
+  static std::tuple<> state(auto&) { return {}; }
+  IdenticalMasses without_slots() const { return *this; }
+  bool fits(std::size_t) const { return true; }
+  void resize(std::size_t) {}
+  void copy(const IdenticalMasses&, Slot, Slot, std::size_t) {}
+  void set(Slot, const T&) {}
+  const T& operator[](Slot) const { return mass; }
+  EqualMasses<T> of_pair(Slot) const { return {mass, reduced_mass}; }
+};
+
+template <Real T> struct IndividualMasses {
+  IndividualMasses() = default;
+  explicit IndividualMasses(const Particles<T>&) {}
+  IndividualMasses without_slots() const { return IndividualMasses(); }
+  std::vector<T> masses;  // of the particle on the left of each slot
+  static auto state(auto& self) { return std::tie(self.masses); }
+  bool fits(std::size_t slots) const { return masses.size() == slots; }
+  void resize(std::size_t slots) { masses.resize(slots, T(1)); }
+  void copy(const IndividualMasses& other, Slot from, Slot to, std::size_t particles) {
+    std::copy_n(&other.masses[from], particles, &masses[to]);
+  }
+  void set(Slot s, const T& mass) { masses[s] = mass; }
+  const T& operator[](Slot s) const { return masses[s]; }
+  TwoMasses<T> of_pair(Slot s) const { return {masses[s], masses[s + 1]}; }
+};
+
+template <Real T> struct WatchedMasses : IndividualMasses<T> {
+  using IndividualMasses<T>::IndividualMasses;
+  static constexpr bool watched = true;
+};
+template <class Masses>
+concept Watched = requires {
+  requires Masses::watched;
+};
+
+// Of particles that share their energy, closing speeds lose the digits of the root of the ratio of masses from a heavy
+// one's velocity: here two.
+template <Real T> bool far_apart(const Particles<T>& particles) {
+  return T(10000) * particles.least_mass() < particles.greatest_mass();
+}
+// Not in a type whose sums are not rounded to the nearest: a double-double has digits to spare.
+template <Real T> inline constexpr bool sums_can_be_exact = std::numeric_limits<T>::is_exact || requires {
+  requires std::numeric_limits<T>::round_style == std::round_to_nearest;
+};
+// Watching takes some three times the time per collision: it is done where masses are far apart, and for few particles.
+template <Real T> bool to_be_watched(const Particles<T>& particles) {
+  return !particles.identical_masses() && (particles.count() <= 1000 || far_apart(particles));
+}
+
+}  // namespace cradle

@@ -1,0 +1,32 @@
+#pragma once
+// Why a collision wants a closer look: what a chain asks of the event loop with a collision, off the hot path. A set,
+// named for what is to be done.
+
+namespace cradle {
+
+enum class Notice : unsigned {
+  none = 0,
+  origin_should_move = 1,  // the flight before the collision was short against the time since the origin, 2^-20 of it
+  origin_must_move = 2,    // so short, 2^-40, that time loses its digits unless the origin moves now
+  gap_below_floor = 4,     // the collision left a gap below the floor beside it (collapse, or a gap that closed unseen)
+  needs_slots = 8          // the chain has no slot for the next particle of a row: lay it out anew
+};
+
+constexpr Notice operator|(Notice a, Notice b) {
+  return static_cast<Notice>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr Notice& operator|=(Notice& a, Notice b) { return a = a | b; }
+constexpr Notice when(bool holds, Notice notice) {
+  return static_cast<Notice>(static_cast<unsigned>(holds) * static_cast<unsigned>(notice));
+}
+constexpr bool includes(Notice notices, Notice one) {
+  return (static_cast<unsigned>(notices) & static_cast<unsigned>(one)) != 0;
+}
+
+// Of a flight that ends at the given time since the origin, both as queue times.
+[[gnu::always_inline]] inline Notice of_flight(double flown, double time) {
+  return when(flown < time * 0x1p-20, Notice::origin_should_move) |
+         when(flown < time * 0x1p-40, Notice::origin_must_move);
+}
+
+}  // namespace cradle

@@ -1,0 +1,241 @@
+#pragma once
+// The chain in absolute positions and velocities, as conventional event-driven programs keep it: every particle has a
+// position, a velocity and the time of its last collision, and the next collision of neighbours is predicted from
+// differences of positions in absolute time. Plain on purpose: no streaming, no tuning. It is the reference twin of the
+// chain in gaps and one of the two sides of every comparison of precision; in a collapsing core its differences lose
+// their digits, which it keeps account of.
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/account.hpp"
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/engine/ledger.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/initial/relative_motion.hpp"
+
+namespace cradle {
+
+template <Real T> class PositionChain {
+ public:
+  using Scalar = T;
+  static constexpr bool keys_are_exact = false;
+  static constexpr bool may_collapse = true;
+
+  // Throws std::invalid_argument for particles on a ring.
+  PositionChain(std::shared_ptr<const Particles<T>> particles, const T& start)
+      : count_(static_cast<std::size_t>(particles->count())), start_(start), origin_(start),
+        first_particle_(particles->gaps().first), walls_(particles->walls()), of_walls_(particles),
+        lost_(particles->energy_to_lose()) {
+    require_particles(*particles, start);
+    if (particles->on_ring())
+      throw std::invalid_argument("a ring in absolute positions (circumference " +
+                                  in_message(particles->circumference()) + "): use a chain in gaps");
+    for (ParticleIndex b = first_particle_; b <= particles->gaps().last + 1; ++b)
+      particles_.push_back({particles->position(b), particles->velocity(b), start, particles->mass(b)});
+    due_.assign(slots(), T(0));
+    closing_.assign(slots(), T(0));
+    for (Slot s = first(); s <= last(); ++s) predict(s, start);
+  }
+
+  // ---- times: absolute; only the queue's keys are told from an origin that moves
+  T local_time(const T& time) const { return time; }
+  double queue_time(const T& time) const { return to_double(T(time - origin_)); }
+  const T& start() const { return start_; }
+  Pair<T> stamp(const T& time) const { return {time, T(0)}; }
+
+  // ---- slots: two empty ones at either end
+  std::size_t slots() const { return particles_.size() + 3; }
+  Slot first() const { return 2; }
+  Slot last() const { return particles_.size(); }
+  Slot left(Slot s) const { return s - 1; }
+  Slot right(Slot s) const { return s + 1; }
+  bool on_ring() const { return false; }
+  ParticleIndex particle(Slot s) const { return static_cast<ParticleIndex>(s) - 2 + first_particle_; }
+  Slot slot_of(ParticleIndex particle) const { return static_cast<Slot>(particle - first_particle_ + 2); }
+  ParticleIndex count() const { return static_cast<ParticleIndex>(count_); }
+  ParticleIndex collided_particles() const {
+    return front_right_ < front_left_ ? 0 : static_cast<ParticleIndex>(outermost_right() - outermost_left() + 1);
+  }
+
+  const T& due(Slot s) const { return due_[s]; }
+  double queue_due(Slot s) const { return closing_[s] > T(0) ? queue_time(due_[s]) : EventQueue::never; }
+
+  const T& closing(Slot s) const { return closing_[s]; }
+
+  template <class Law> CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
+    Particle &left = at(s), &right = at(s + 1);
+    const bool at_wall = walls_.beside(particle(s));
+    const Outcome<T> outcome = at_wall             ? strike_wall(s)
+                               : left.m == right.m ? outcome_of(law, s, time, EqualMasses<T>{left.m, T(left.m / T(2))})
+                                                   : outcome_of(law, s, time, TwoMasses<T>{left.m, right.m});
+    advance(left, time);
+    advance(right, time);
+    walls_.right_of(particle(s)) ? left.x = right.x : right.x = left.x;
+    left.v -= outcome.to_left;
+    right.v += outcome.to_right;
+    front_left_ = std::min(front_left_, s);
+    front_right_ = std::max(front_right_, s);
+
+    Notice notice = Notice::none;
+    predict(s, time);
+    if (s > first()) notice |= resolve(s - 1, time);
+    if (s < last()) notice |= resolve(s + 1, time);
+    return {outcome, queue_due(s - 1), queue_due(s), queue_due(s + 1), notice, s - 1, s + 1};
+  }
+
+  T move_origin(const T& local) { return origin_ = local; }
+
+  void set_floor(const T& floor) { floor_ = floor; }
+  T nearest_gap(Slot s) const {
+    const T far = far_away<T>();
+    const T time = at(s).time;
+    const T on_left = s > first() ? gap_at(s - 1, time) : far, on_right = s < last() ? gap_at(s + 1, time) : far;
+    return on_left < on_right ? on_left : on_right;
+  }
+  const Account<T>& account() const { return account_; }
+  void lose(Slot, const T& energy) { lost_.add(energy); }
+  T energy_lost() const { return lost_.value(); }
+  // What times of collisions are told apart by: a position is rounded, and a slow pair takes long for that way.
+  T time_resolution(Slot s, const T& time) const {
+    const T slowest = magnitude(closing_[s]);
+    const T way = T(std::numeric_limits<T>::epsilon()) * (magnitude(at(s).x) + magnitude(time * at(s).v));
+    return T(std::numeric_limits<T>::epsilon()) * magnitude(time) +
+           (is_positive(slowest) ? T(T(8) * way / slowest) : way);
+  }
+
+  // What comes of a collision at the speed 1, where that says what comes of any.
+  template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
+    if (walls_.beside(particle(s)))
+      return walls_.at_unit_speed(particle(s), at(walls_.left_of(particle(s)) ? s + 1 : s).m);
+    return law(T(1), TwoMasses<T>{at(s).m, at(s + 1).m});
+  }
+  const Particles<T>& particles() const { return *of_walls_; }
+
+  static auto state(auto& self) {
+    return std::tie(self.particles_, self.due_, self.closing_, self.floor_, self.origin_, self.front_left_,
+                    self.front_right_, self.account_, self.lost_, self.walls_);
+  }
+  void loaded() const {
+    require_state(particles_.size() == slots_of_particles() && due_.size() == slots() && closing_.size() == slots(),
+                  "lists");
+    const bool none = front_left_ == std::numeric_limits<Slot>::max() && front_right_ == 0;
+    require_state(none || (front_left_ >= first() && front_left_ <= front_right_ && front_right_ <= last()), "fronts");
+    bool right = is_finite(origin_);
+    for (const Particle& p : particles_) right = right && p.holds_numbers();
+    for (Slot s = 0; s < slots(); ++s)  // where there is no gap none closes; collisions may be beyond the range
+      right = right && due_[s] == due_[s] && is_finite(closing_[s]) &&
+              !(is_positive(closing_[s]) && (s < first() || s > last()));
+    require_state(right, "numbers");
+  }
+
+  T gap_at(Slot s, const T& time) const { return place(at(s + 1), time) - place(at(s), time); }
+  T front_left(const T& time) const { return place(at(outermost_left()), time); }
+  T front_right(const T& time) const { return place(at(outermost_right()), time); }
+  const Walls<T>& walls() const { return walls_; }
+  // Of all particles, now. Between walls nothing is known of their momentum but what they have.
+  T kinetic_energy() const {
+    const T total = of_walls_->total_mass(), drift = of_walls_->conserved_momentum() / total;
+    const auto moving = relative_motion(total, walls_.any() ? T(0) : drift, [&](const T& c, const auto& add) {
+      for (Slot s = slot_of(0); s < slot_of(count()); ++s) add(at(s).m, T(at(s).v - c));
+    });
+    const T speed = walls_.any() ? moving.mean : drift;
+    return total * speed * speed / T(2) + moving.energy;
+  }
+
+  Configuration<T> configuration(const T& time) const {
+    const bool collided = front_left_ <= front_right_;
+    const Slot from = collided && front_left_ > first() ? front_left_ - 1 : first();
+    const Slot to = collided && front_right_ < last() ? front_right_ + 1 : last();
+    Configuration<T> c;
+    c.time = time;
+    c.from = particle(from);
+    c.to = particle(to) + 1;
+    if (front_left_ <= front_right_) c.collided_from = front_left_ - from, c.collided_to = front_right_ - from + 2;
+    for (Slot s = from; s <= to + 1; ++s) {
+      c.index.push_back(particle(s));
+      c.m.push_back(at(s).m);
+      c.x.push_back(place(at(s), time));
+      c.v.push_back(at(s).v);
+    }
+    for (Slot s = from; s <= to; ++s) {
+      c.gap.push_back(gap_at(s, time));
+      c.closing_speed.push_back(at(s).v - at(s + 1).v);
+    }
+    leave_out_walls(c, count());
+    return c;
+  }
+
+ private:
+  struct Particle {
+    T x, v, time, m;  // time: of the last collision, or the start
+    bool collided = false;
+    static auto state(auto& self) { return std::tie(self.x, self.v, self.time, self.m, self.collided); }
+    bool holds_numbers() const { return is_finite(x) && is_finite(v) && is_finite(time) && is_positive(m); }
+    bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
+  };
+
+  Outcome<T> strike_wall(Slot s) {
+    return walls_.strike(particle(s), closing_[s], at(walls_.left_of(particle(s)) ? s + 1 : s).m);
+  }
+  template <class Law, class Masses>
+  Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
+    if constexpr (LawWithMemory<Law, T>)
+      if (!at(s).rested(time, law.contact_time()) || !at(s + 1).rested(time, law.contact_time()))
+        return law.elastic(closing_[s], masses);
+    return law(closing_[s], masses);
+  }
+
+  // Slots left of which the outermost particles that have collided are, walls not being particles here.
+  Slot outermost_left() const { return front_left_ + (walls_.left_of(particle(front_left_)) ? 1 : 0); }
+  Slot outermost_right() const { return front_right_ + (walls_.right_of(particle(front_right_)) ? 0 : 1); }
+  std::size_t slots_of_particles() const {
+    return count_ + (walls_.has(End::left) ? 1 : 0) + (walls_.has(End::right) ? 1 : 0);
+  }
+
+  Particle& at(Slot s) { return particles_[s - 2]; }  // the particle on the left of a gap
+  const Particle& at(Slot s) const { return particles_[s - 2]; }
+
+  static T place(const Particle& p, const T& time) { return p.x + p.v * (time - p.time); }
+  static void advance(Particle& p, const T& time) {
+    p.x = place(p, time);
+    p.time = time;
+    p.collided = true;
+  }
+
+  void predict(Slot s, const T& now) {
+    closing_[s] = at(s).v - at(s + 1).v;
+    due_[s] = closing_[s] > T(0) ? T(now + gap_at(s, now) / closing_[s]) : T(0);
+  }
+
+  // Predicts the next collision of a gap beside one that has just closed, and judges whether positions still resolve
+  // it.
+  Notice resolve(Slot s, const T& time) {
+    predict(s, time);
+    const T gap = gap_at(s, time), epsilon = std::numeric_limits<T>::epsilon();
+    const T x_left = magnitude(at(s).x), x_right = magnitude(at(s + 1).x);
+    const T unit = epsilon * (x_left < x_right ? x_right : x_left);
+    const T rounding = T(16) * (unit + epsilon * magnitude(time) * (magnitude(at(s).v) + magnitude(at(s + 1).v)));
+    if (gap < unit * T(1000000) && account_.unresolved++ == 0) account_.first_unresolved = {time, particle(s), gap};
+    if (!(gap > T(0))) account_.enter({time, particle(s), gap}, rounding);
+    return gap < floor_ ? Notice::gap_below_floor : Notice::none;
+  }
+
+  std::size_t count_;
+  std::vector<Particle> particles_;  // and walls
+  std::vector<T> due_, closing_;
+  T floor_{0};
+  T start_, origin_;
+  ParticleIndex first_particle_;
+  Walls<T> walls_;
+  std::shared_ptr<const Particles<T>> of_walls_;
+  Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;
+  Account<T> account_;
+  Ledger<T> lost_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,325 @@
+#pragma once
+// The gaps of a chain, each with its local time: the time at which it was last brought up to date, an offset from a
+// moving origin. What both chains in gaps do with a gap g that closes at the speed w is done here, whatever they keep
+// beside it (gap_chain.hpp: closing speeds; cluster_chain.hpp: velocities, from which w follows):
+//
+//   next collision    local time + g/w, if w > 0
+//   brought to t    g -= w (t - local time), local time = t
+//   in collision      g = 0 exactly
+//
+// Collisions may come late: of two that the queue cannot tell apart, or that commute, one beside a gap may be made that
+// is earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong. The
+// gap becomes what it would be had the collision come in time: the gain in closing speed has acted since then, g +=
+// gain (t - local time) with t before the local time; and a collision at the gap itself leaves it open by what it opens
+// in between. Where the order was truly lost the gap falls below zero, and is accounted for.
+//
+// When the origin moves, a local time is rounded. What it loses is kept (`lag`; the true local time is the sum of both)
+// so that a move touches no gap. A lag is other than zero only where the local time is negative, and is looked up only
+// there.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/timed_gap.hpp"
+#include "cradle/core/engine/account.hpp"
+#include "cradle/core/engine/clock.hpp"
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/engine/ledger.hpp"
+#include "cradle/core/engine/state.hpp"
+
+namespace cradle {
+
+// `may_collapse`: gaps and times shrink without end, beyond the range of double where the type goes further.
+template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class TimedGaps {
+ public:
+  static constexpr bool keys_are_exact = std::same_as<T, double>;
+  static constexpr bool beyond_double = may_collapse && WiderRange<T>;
+
+  TimedGaps(const T& start, const T& energy) : clock_(start), lost_(energy) {}
+
+  // ---- slots
+  std::size_t slots() const { return cells_.size(); }
+  Cell& operator[](Slot s) { return cells_[s]; }
+  const Cell& operator[](Slot s) const { return cells_[s]; }
+  // Goes on with so many slots, of which those from `first` on hold what was at `kept`, in that order.
+  void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept) {
+    std::vector<Cell> cells(slots);
+    std::vector<T> lag(slots, T(0));
+    for (const Slot s : kept) {
+      cells[first] = std::move(cells_[s]);
+      lag[first++] = std::move(lag_[s]);
+    }
+    cells_ = std::move(cells);
+    lag_ = std::move(lag);
+  }
+  void put(Slot s, Cell&& cell) {
+    cells_[s] = std::move(cell);
+    lag_[s] = T(0);
+  }
+  // A gap that is of interest only from now on.
+  void start(Slot s, const T& gap, const T& now) {
+    cells_[s].gap = gap;
+    cells_[s].time = now;
+    lag_[s] = T(0);
+  }
+  // A gap comes to another slot.
+  void carry(Slot from, Slot to) {
+    cells_[to].gap = cells_[from].gap;
+    cells_[to].time = cells_[from].time;
+    lag_[to] = lag_[from];
+    if constexpr (!Ledger<T>::in_any_order) cells_[to].lost += std::exchange(cells_[from].lost, T(0));
+  }
+
+  // ---- copies of a part (segments.hpp). Goes on with so many slots and all that belongs to no slot like `other`.
+  void resemble(const TimedGaps& other, std::size_t slots) {
+    resize(slots);
+    clock_ = other.clock_;
+    floor_ = other.floor_;
+    shift_ = other.shift_;
+    lost_ = other.lost_;
+    lost_.clear();
+  }
+  void copy(const TimedGaps& other, Slot from, Slot to, std::size_t gaps) {
+    std::copy_n(&other.cells_[from], gaps, &cells_[to]);
+    std::copy_n(&other.lag_[from], gaps, &lag_[to]);
+  }
+  void resize(std::size_t slots) {  // to be given gaps in so many slots
+    cells_.resize(slots);
+    lag_.resize(slots);
+  }
+  void swap_gaps(TimedGaps& other) {
+    cells_.swap(other.cells_);
+    lag_.swap(other.lag_);
+  }
+
+  static auto state(auto& self) {
+    return std::tie(self.cells_, self.lag_, self.clock_, self.floor_, self.blur_, self.shift_, self.account_,
+                    self.lost_);
+  }
+  void loaded() const {
+    require_state(lag_.size() == cells_.size(), "lists");
+    require_state(is_finite(blur_) && !is_negative(blur_), "times");
+  }
+
+  // ---- times
+  const Clock<T>& clock() const { return clock_; }
+  [[gnu::always_inline]] double queue_time(const T& local) const {
+    if constexpr (beyond_double) {
+      long exponent = 0;
+      const double mantissa = split(local, exponent);
+      return scale(mantissa, exponent + shift_);
+    } else {
+      return to_double(local);
+    }
+  }
+  const T& lag(Slot s) const { return lag_[s]; }
+  // Since the gap's local time.
+  [[gnu::always_inline]] T flown(Slot s, const T& now) const {
+    const T& then = cells_[s].time;
+    T way = now - then;
+    if (is_negative(then)) [[unlikely]]
+      way -= lag_[s];
+    return way;
+  }
+  // Local time of the next collision of a gap that is closing.
+  T due(Slot s, const T& closing) const {
+    if constexpr (keys_are_exact)
+      return cells_[s].due;
+    else
+      return collision_time(s, closing);
+  }
+  double queue_due(Slot s, const T& closing) const {
+    if constexpr (keys_are_exact)
+      return cells_[s].due;
+    else
+      return is_positive(closing) ? queue_time(collision_time(s, closing)) : EventQueue::never;
+  }
+  // What times of collisions are told apart by, as times since the start.
+  T time_resolution(const T& time) const {
+    return T(std::numeric_limits<T>::epsilon()) * magnitude(clock_.elapsed(time));
+  }
+  // The gap at a time not before its local time.
+  T gap_at(Slot s, const T& closing, const T& time) const { return cells_[s].gap - closing * flown(s, time); }
+
+  // ---- events. A collision at `time` beside the gap adds gain() to the closing speed that it has had so far. Returns
+  // the time since its local time, negative where the collision is late.
+  template <class Gain> [[gnu::always_inline]] T kick(Slot s, const T& closing, const Gain& gain, const T& time) {
+    Cell& cell = cells_[s];
+    const T since = flown(s, time);
+    if (is_negative(since)) [[unlikely]]
+      cell.gap += gain() * since;
+    else {
+      cell.gap -= closing * since;
+      renew(s, time);
+    }
+    return since;
+  }
+  // A collision at the gap itself, after which it closes at a speed <= 0; `since` as above.
+  [[gnu::always_inline]] void close(Slot s, const T& closing, const T& since, const T& time) {
+    Cell& cell = cells_[s];
+    if (is_negative(since)) [[unlikely]]
+      cell.gap = closing * since;
+    else {
+      cell.gap = T(0);
+      renew(s, time);
+    }
+  }
+  // Predicts the next collision of a gap touched just now, as a queue time: rounded, in wide types, which the queue
+  // knows.
+  [[gnu::always_inline]] double predict(Slot s, const T& closing) {
+    Cell& cell = cells_[s];
+    if constexpr (keys_are_exact) {
+      // Whether a gap closes cannot be predicted: choose by bits, where a positive number is a positive integer.
+      const auto bits = std::bit_cast<std::uint64_t>(cell.time + cell.gap / closing);
+      const auto opening = std::uint64_t{0} - (std::bit_cast<std::int64_t>(closing) <= 0);
+      return cell.due =
+                 std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
+    } else {
+      if (!is_positive(closing)) return EventQueue::never;
+      // Exact times of float are too far from those in double for the queue's slack.
+      if (std::same_as<T, float> || is_negative(cell.time)) [[unlikely]]
+        return queue_due(s, closing);
+      if constexpr (beyond_double) {
+        long of_gap = 0, of_closing = 0;
+        const double gap = split(cell.gap, of_gap), speed = split(closing, of_closing);
+        return in_range(queue_time(cell.time) + scale(gap / speed, of_gap - of_closing + shift_), s, closing);
+      } else {
+        return in_range(to_double(cell.time) + to_double(cell.gap) / to_double(closing), s, closing);
+      }
+    }
+  }
+  // The same for any gap, its collision foreseen.
+  double queue_key(Slot s, const T& closing) {
+    if constexpr (keys_are_exact)
+      return cells_[s].due;
+    else
+      return predict(s, closing);
+  }
+  // The same off the hot path, for a gap as old as it may be.
+  void foresee(Slot s, const T& closing) {
+    if constexpr (keys_are_exact) cells_[s].due = closing > 0 ? collision_time(s, closing) : EventQueue::never;
+  }
+  void forget(Slot s) {
+    if constexpr (keys_are_exact) cells_[s].due = EventQueue::never;
+  }
+
+  // The origin of time moves by so much. `each_held` calls what it is given with every gap held and its closing speed.
+  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held) {
+    clock_.move_origin(by);
+    if (magnitude(by) > blur_) blur_ = rounding_of(magnitude(by));
+    each_held([&](Slot s, const T& closing) {
+      const Pair<T> moved = two_sum(cells_[s].time, T(-by));
+      const T lag = lag_[s] + moved.low;
+      const bool past = is_negative(moved.high);  // not so where a late collision has left it ahead of the origin
+      cells_[s].time = past ? moved.high : T(moved.high + lag);
+      lag_[s] = past ? lag : T(0);
+      foresee(s, closing);
+    });
+    if constexpr (beyond_double) choose_shift(each_held);
+  }
+
+  // ---- what to look at more closely: gaps that a collision beside them leaves below the floor
+  void set_floor(const T& floor) { floor_ = floor; }
+  bool below_floor(Slot s) const { return cells_[s].gap < floor_; }
+  // Of a gap below the floor that a collision beside it has just closed faster by `gain`: `since` is what kick said,
+  // particle the one on its left, `struck` the time since the local time of the gap that had the collision. (Out of
+  // line and by value: inlined it costs the hot path 9 instructions per collision, of 410.)
+  [[gnu::noinline, gnu::cold]] Notice note(Slot s, T closing, T gain, T since, T struck, ParticleIndex particle,
+                                           T time) {
+    if (!is_positive(cells_[s].gap))
+      account_.enter({clock_.time(time), particle, cells_[s].gap}, below_zero(s, closing, gain, since, struck, time));
+    return Notice::gap_below_floor;
+  }
+  void doubt(const Incident<T>& collision) {
+    if (account_.uncertain++ == 0) account_.first_uncertain = collision;
+  }
+  const Account<T>& account() const { return account_; }
+
+  // ---- energy lost in a collision at the gap; in all of those from one slot to another
+  [[gnu::always_inline]] void lose(Slot s, const T& energy) {
+    if constexpr (Ledger<T>::in_any_order)
+      lost_.add(energy);
+    else
+      cells_[s].lost += energy;
+  }
+  void lose(const Ledger<T>& elsewhere) { lost_.add(elsewhere); }
+  const Ledger<T>& ledger() const { return lost_; }
+  T lost(Slot s) const {
+    if constexpr (Ledger<T>::in_any_order)
+      return T(0);
+    else
+      return cells_[s].lost;
+  }
+  T energy_lost(Slot first, Slot last) const {
+    if constexpr (Ledger<T>::in_any_order) return lost_.value();
+    T sum(0);
+    if constexpr (!Ledger<T>::in_any_order)
+      for (Slot s = first; s <= last; ++s) sum += cells_[s].lost;
+    return sum;
+  }
+
+ private:
+  // By how much rounding may have put a gap below zero, see `note`. Times are rounded in units of the offset, those due
+  // by when the origin moved last in units of the one then (`blur_`), ways flown in units of the way; either acts on
+  // the gap at its speed before or after the collision. A gap below zero stays so, and has its collision late, which
+  // its neighbours get at the rate of what it hands them: the order was lost, if it was, where that began.
+  T below_zero(Slot s, const T& closing, const T& gain, const T& since, const T& struck, const T& time) const {
+    const T& gap = cells_[s].gap;
+    const T before = is_negative(since) ? T(gap - gain * since) : T(gap + (closing - gain) * since);
+    T rounding = rounding_of(magnitude(time) + magnitude(since) + magnitude(struck));
+    if (time < blur_) rounding += blur_;
+    T most = (magnitude(closing) + magnitude(gain)) * rounding;
+    if (is_negative(before)) most -= before;
+    if (is_negative(struck)) most -= gain * struck;
+    return most;
+  }
+  static T rounding_of(const T& time) { return T(16) * T(std::numeric_limits<T>::epsilon()) * time; }
+
+  // A queue time, unless rounding on the way has made it infinite, which would be `never`.
+  [[gnu::always_inline]] double in_range(double rounded, Slot s, const T& closing) const {
+    return std::isfinite(rounded) ? rounded : queue_due(s, closing);
+  }
+  T collision_time(Slot s, const T& closing) const {
+    const Cell& cell = cells_[s];
+    T time = cell.time + cell.gap / closing;
+    if (is_negative(cell.time)) [[unlikely]]
+      time += lag_[s];
+    return time;
+  }
+  [[gnu::always_inline]] void renew(Slot s, const T& now) {
+    T& then = cells_[s].time;
+    if (is_negative(then)) [[unlikely]]
+      lag_[s] = T(0);
+    then = now;
+  }
+
+  // Queue times are local times in units of 2^-shift, such that the next collision is within the range of double.
+  template <class EachHeld> void choose_shift(const EachHeld& each_held) {
+    long least = std::numeric_limits<long>::max();
+    each_held([&](Slot s, const T& closing) {
+      if (!is_positive(closing)) return;
+      const T next = collision_time(s, closing);
+      long exponent = 0;
+      if (split(next, exponent) > 0) least = std::min(least, exponent);
+    });
+    shift_ = least < -500 || (least > 500 && least < std::numeric_limits<long>::max()) ? -least : 0;
+  }
+
+  std::vector<Cell> cells_;
+  std::vector<T> lag_;
+  Clock<T> clock_;
+  T floor_{0};
+  T blur_{0};  // what times were rounded by when the origin moved last: so late, or later, may come what was due then
+  long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
+  Account<T> account_;
+  Ledger<T> lost_;
+};
+
+}  // namespace cradle

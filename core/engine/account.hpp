@@ -1,0 +1,49 @@
+#pragma once
+// What could not be resolved, and how often; nothing is clamped or skipped.
+
+#include <cstdint>
+#include <tuple>
+
+#include "cradle/core/initial/particles.hpp"
+
+namespace cradle {
+
+// A place and time in a run that a report names.
+template <Real T> struct Incident {
+  T time{0};
+  ParticleIndex particle = -1;  // the particle on the left of the gap
+  T gap{0};
+  static auto state(auto& self) { return std::tie(self.time, self.particle, self.gap); }
+};
+
+template <Real T> struct Account {
+  // Gaps closed to zero, or below it by no more than rounding, at a collision next to them: three particles met. The
+  // tie rule (earlier time, then further left) decides the outcome.
+  std::uint64_t simultaneous = 0;
+  // Gaps found negative beyond rounding: a collision came too late in the order of events.
+  std::uint64_t order_lost = 0;
+  Incident<T> first_order_lost;
+  // Positions only: gaps next to a collision below 1e6 units in the last place of the position.
+  std::uint64_t unresolved = 0;
+  Incident<T> first_unresolved;
+  // Watched masses only: 1 from the first collision on that rounding may have decided (watched_gap.hpp); `gap` is how
+  // far that collision's gap may be off by then.
+  std::uint64_t uncertain = 0;
+  Incident<T> first_uncertain;
+
+  static auto state(auto& self) {
+    return std::tie(self.simultaneous, self.order_lost, self.first_order_lost, self.unresolved, self.first_unresolved,
+                    self.uncertain, self.first_uncertain);
+  }
+
+  // A gap that is not positive although no collision was made there.
+  void enter(const Incident<T>& closed, const T& rounding) {
+    if (-closed.gap > rounding) {
+      if (order_lost++ == 0) first_order_lost = closed;
+    } else {
+      ++simultaneous;
+    }
+  }
+};
+
+}  // namespace cradle

@@ -1,0 +1,190 @@
+#pragma once
+// Inelastic collapse: infinitely many collisions in a finite time, at a place where the intervals between collisions
+// shrink by a constant factor per cycle. What a run does about it is a declared policy:
+//
+//   cutoff   collisions below the law's velocity cut-off are elastic (the paper's way; nothing happens here)
+//   stop     exact dynamics; stop when the collapse time is settled, or when a gap falls below a given size
+//
+// It is settled where two gaps side by side are proved to collapse: by the closed form of their collisions
+// (two_gaps.hpp), with bounds on what rounding has done to it, and with all other particles too far away to come in
+// time. From then on the run follows them until the time left is less than the chain's resolution, or a gap is about to
+// underflow, for so many collisions at most. What shrinks without such a proof is no collapse that a run reports.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <unordered_map>
+
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/engine/two_gaps.hpp"
+#include "cradle/core/initial/particles.hpp"
+
+namespace cradle {
+
+enum class CollapsePolicy { cutoff, stop };
+
+// What is known of a collapse when the run stops.
+template <Real T> struct CollapseReport {
+  T last_collision{0};          // time of the last collision made
+  T interval{0};                // since the one before at the same gap, 0 where there was none
+  T gap{0};                     // smallest gap beside the last collision
+  ParticleIndex particle = -1;  // the particle on the left of the gap of the last collision
+  bool settled = false;
+  // Where it is settled: t_c, the ratio of successive intervals there in the end, and what their errors do not exceed.
+  Pair<T> time{};
+  T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
+
+  static auto state(auto& self) {
+    return std::tie(self.last_collision, self.interval, self.gap, self.particle, self.settled, self.time,
+                    self.uncertainty, self.ratio, self.ratio_uncertainty);
+  }
+};
+
+// A collapse of two gaps side by side that is proved, as well as it is known so far.
+template <Real T> struct KnownCollapse {
+  std::uint64_t collisions = 0;  // noticed there since
+  Pair<T> time;
+  T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
+  static auto state(auto& self) {
+    return std::tie(self.collisions, self.time, self.uncertainty, self.ratio, self.ratio_uncertainty);
+  }
+};
+
+template <Real T> struct CollapseWatch {
+  static constexpr std::uint64_t most_followed = 1024;  // collisions, once the collapse time is known
+  static constexpr ParticleIndex few = 16;
+
+  std::unordered_map<ParticleIndex, T> last;  // local times of collisions, by the particle left of the gap
+  std::unordered_map<ParticleIndex, KnownCollapse<T>> known;  // by the particle left of both gaps
+  CollapseReport<T> report;
+  T fastest{0};            // closing or opening speed of a gap so far
+  T greatest_approach{0};  // of any two particles, for good
+  static auto state(auto& self) { return std::tie(self.last, self.known, self.report, self.fastest); }
+
+  // To be called before the first collision; `least` is the smallest gap. Returns the gap below which one beside a
+  // collision is of interest: among few particles, which round least before their first collisions, any.
+  template <class Chain> T begin(const Chain& chain, const T& least) {
+    if constexpr (provable<Chain>) {
+      using std::sqrt;
+      greatest_approach = sqrt(chain.particles().greatest_approach_squared());
+      if (chain.particles().count() <= few) {
+        for (Slot s = chain.first(); s <= chain.last(); ++s) moves_at(chain.closing(s));
+        return far_away<T>();
+      }
+      fastest = greatest_approach;
+    }
+    return least / T(64);
+  }
+
+  // Takes note of the collision at slot s, which has left a small gap beside it; true when its collapse is settled and
+  // has been followed for long enough. `local` is its time as an offset, which resolves intervals that the full time no
+  // longer does; `collisions` is how many were made in all.
+  template <class Law, class Chain>
+  bool settled(const Law& law, const Chain& chain, Slot s, const T& local, std::uint64_t collisions) {
+    const ParticleIndex particle = chain.particle(s);
+    const Pair<T> now = chain.stamp(local);
+    const auto before = last.find(particle);
+    report = {now.value(), before == last.end() ? T(0) : T(local - before->second), chain.nearest_gap(s), particle};
+    last.insert_or_assign(particle, local);
+    for (const auto& gap : {left_of(chain, s), std::optional(s), right_of(chain, s)})
+      if (gap) moves_at(chain.closing(*gap));
+    if constexpr (ScaleFreeLaw<Law> && provable<Chain>)
+      if (law.scale_free())
+        for (const bool on_left : {true, false})
+          if (const KnownCollapse<T>* found = beside(law, chain, s, on_left, local, collisions)) {
+            report.settled = true;
+            report.time = found->time, report.uncertainty = found->uncertainty;
+            report.ratio = found->ratio, report.ratio_uncertainty = found->ratio_uncertainty;
+            const T left = difference(found->time, now);
+            return left < chain.time_resolution(s, local) || found->collisions >= most_followed;
+          }
+    return false;
+  }
+
+  void origin_moved(const T& by) {
+    for (auto& [particle, time] : last) time -= by;
+  }
+
+ private:
+  // Exact types have no square roots, chains of particles that merge no need of them.
+  template <class Chain>
+  static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
+    chain.particles();
+  };
+
+  void moves_at(const T& closing) {
+    if (fastest < magnitude(closing)) fastest = magnitude(closing);
+  }
+
+  // The collapse of the gap at s, where a collision has just been made, and the one on its left or right; null where
+  // none is known. Each collision may tell more of it than those before.
+  template <class Law, class Chain>
+  const KnownCollapse<T>* beside(const Law& law, const Chain& chain, Slot s, bool on_left, const T& local,
+                                 std::uint64_t collisions) {
+    const auto there = on_left ? left_of(chain, s) : right_of(chain, s);
+    if (!there) return nullptr;
+    const Slot left = on_left ? *there : s, right = on_left ? s : *there;
+    const auto ahead = collapse_of(law, chain, s, *there, local, collisions);
+    auto found = known.find(chain.particle(left));
+    if (ahead && (found != known.end() || alone(chain, left, right, ahead->time, local))) {
+      if (found == known.end()) found = known.try_emplace(chain.particle(left)).first;
+      KnownCollapse<T>& k = found->second;
+      // The times of the collisions up to here are rounded once each.
+      const T of_time = T(static_cast<std::int64_t>(collisions + 1)) * chain.time_resolution(s, local) / T(2);
+      const T uncertainty = of_time + ahead->time.error;
+      if (k.collisions == 0 || uncertainty < k.uncertainty)
+        k = {k.collisions, chain.stamp(local) + ahead->time.value, uncertainty, ahead->ratio.value, ahead->ratio.error};
+    }
+    if (found == known.end()) return nullptr;
+    ++found->second.collisions;
+    return &found->second;
+  }
+
+  template <class Law, class Chain>
+  std::optional<CollapseAhead<T>> collapse_of(const Law& law, const Chain& chain, Slot here, Slot there, const T& local,
+                                              std::uint64_t collisions) const {
+    const auto of_here = chain.at_unit_speed(law, here), of_there = chain.at_unit_speed(law, there);
+    if (!of_here || !of_there || !is_positive(chain.closing(there))) return {};
+    const bool to_left = there == chain.left(here);
+    // Of what a collision hands over: unequal masses take quotients, and may be rounded decimals.
+    const int of_share = chain.particles().identical_masses() ? 1 : 5;
+    const TwoGaps<T> two{T(-chain.closing(here)),
+                         chain.gap_at(there, local),
+                         chain.closing(there),
+                         T(-of_here->closing),
+                         T(-of_there->closing),
+                         to_left ? of_here->to_left : of_here->to_right,
+                         to_left ? of_there->to_right : of_there->to_left,
+                         of_share};
+    // Each collision so far has rounded speeds and ways by half a unit so often: shares, products and sums. None was
+    // larger than the fastest.
+    const T unit = T(std::numeric_limits<T>::epsilon()),
+            roundings = T((of_share + 2) * static_cast<std::int64_t>(collisions + 1)) / T(2);
+    return collapse_ahead(two, T(roundings * unit * fastest),
+                          T(roundings * (chain.time_resolution(here, local) * fastest + unit * two.gap)));
+  }
+
+  // Whether nobody else can get there before the collapse. A gap that is not held yet is nowhere.
+  template <class Chain>
+  bool alone(const Chain& chain, Slot left, Slot right, const Bounded<T>& ahead, const T& local) const {
+    const T reach = T(2) * greatest_approach * (ahead.value + ahead.error);
+    const auto far = [&](const std::optional<Slot>& outer, bool at_end) {
+      return outer ? reach < chain.gap_at(*outer, local) : at_end;
+    };
+    const GapRange all = chain.particles().gaps();
+    return far(left_of(chain, left), chain.particle(left) == all.first) &&
+           far(right_of(chain, right), chain.particle(right) == all.last);
+  }
+
+  template <class Chain> static std::optional<Slot> left_of(const Chain& chain, Slot s) {
+    return chain.on_ring() || s > chain.first() ? std::optional(chain.left(s)) : std::nullopt;
+  }
+  template <class Chain> static std::optional<Slot> right_of(const Chain& chain, Slot s) {
+    return chain.on_ring() || s < chain.last() ? std::optional(chain.right(s)) : std::nullopt;
+  }
+};
+
+}  // namespace cradle

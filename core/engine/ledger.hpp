@@ -1,0 +1,79 @@
+#pragma once
+// The ledger of energy: the sum of what collisions have lost. In the native types it is the same whatever the order of
+// its terms, for collisions that commute are not always made in one order (segments.hpp). Each term is rounded to a
+// grid on which sums of up to four times the energy E that there is are exact; what it lacks there is rounded to an
+// even finer one, of E eps / 2^22 or less, and summed up as an integer, for which 1e12 terms are few enough. A term is
+// off by half of that at most.
+//
+// Wider types have digits to spare for a plain sum, and no cheap way to this one: chains keep one sum for each gap
+// (timed_gaps.hpp).
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+#include "cradle/core/real.hpp"
+
+namespace cradle {
+
+template <Real T> class Ledger {
+ public:
+  static constexpr bool in_any_order =
+      std::same_as<T, float> || std::same_as<T, double> || std::same_as<T, long double>;
+
+  // `energy`: as much can be lost in all (Particles::energy_to_lose).
+  explicit Ledger(const T& energy = T(1)) {
+    if constexpr (in_any_order) {
+      T above(1);
+      const T least = std::numeric_limits<T>::min() / std::numeric_limits<T>::epsilon() * T(1 << 30);
+      while (above <= energy && is_finite(above)) above += above;
+      while (above > least && above > energy + energy) above /= T(2);
+      if (!is_finite(T(T(8) * above))) return;  // a plain sum
+      rounder_ = T(3) * above;
+      fine_ = above * std::numeric_limits<T>::epsilon() / T(1 << 22);
+      per_fine_ = T(1) / fine_;
+    }
+  }
+
+  [[gnu::always_inline]] void add(const T& loss) {
+    if constexpr (in_any_order) {
+      const T coarse = (loss + rounder_) - rounder_;
+      sum_ += coarse;
+      add_rest(std::llrint((loss - coarse) * per_fine_));  // an instruction
+    } else {
+      sum_ += loss;
+    }
+  }
+  // What another one of the same energy has taken in.
+  void add(const Ledger& other) {
+    sum_ += other.sum_;
+    add_rest(other.rest_);
+  }
+  void clear() {
+    sum_ = T(0);
+    rest_ = 0;
+  }
+
+  T value() const {
+    if constexpr (in_any_order)
+      return sum_ + static_cast<T>(rest_) * fine_;
+    else
+      return sum_;
+  }
+  static auto state(auto& self) { return std::tie(self.sum_, self.rest_); }
+
+ private:
+  // Wraps around where particles lose far more than there is: so they may by a state from a damaged file.
+  [[gnu::always_inline]] void add_rest(std::int64_t more) {
+    rest_ = static_cast<std::int64_t>(static_cast<std::uint64_t>(rest_) + static_cast<std::uint64_t>(more));
+  }
+
+  T rounder_{0};             // what is added to it and taken off again is rounded to the grid
+  T fine_{1}, per_fine_{1};  // the grid of the rest
+  T sum_{0};
+  std::int64_t rest_ = 0;  // in units of fine_
+};
+
+}  // namespace cradle

@@ -1,0 +1,307 @@
+#pragma once
+// The event loop: take the next collision, let the chain apply the law, tell the queue about the three gaps concerned,
+// enter the loss in the ledger. Scalar, law and chain are types; everything else happens in `review`, off the hot path.
+//
+// The order of collisions is (exact time, position in the line), whatever the queue's keys can tell: where they cannot,
+// exact times are compared among all collisions that might be first (ties.hpp).
+//
+// Nothing depends on how often or until when `advance` is called: same initial state, same collisions, same bits.
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "cradle/core/chains/chain.hpp"
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/collapse.hpp"
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/engine/pacing.hpp"
+#include "cradle/core/engine/standstill.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/engine/status.hpp"
+#include "cradle/core/engine/ties.hpp"
+#include "cradle/core/laws/law.hpp"
+
+namespace cradle {
+
+template <Real T, class Law, class Chain>
+requires CollidesBy<Chain, Law> && std::same_as<T, typename Chain::Scalar>
+class Simulation {
+ public:
+  using Scalar = T;
+
+  // Throws std::invalid_argument where the chain holds a number that is not finite.
+  Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
+      : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
+        queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
+        last_collision_(chain_.local_time(chain_.start())), pacing_(last_collision_, Chain::may_collapse),
+        standstill_(last_collision_), target_{chain_.start(), last_collision_, last_collision_} {
+    const T least = smallest_gap(chain_);
+    const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
+    const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());
+    chain_.set_floor(watched && floor < policy_.stop_gap ? policy_.stop_gap : floor);
+    fill_queue();
+    aim();
+  }
+
+  // Makes every collision at times <= until. Except for `reached`, the run ends with the collision that was made last.
+  // Throws std::invalid_argument for a time that is not finite, or before the last collision made.
+  Status advance(const T& until) {
+    head_for(until);
+    return make_collisions();
+  }
+  // The same in segments (segments.hpp), unless it is to stop at a collision.
+  template <class Segments>
+  requires requires { typename Segments::Slab; }
+  Status advance(const T& until, Segments& segments) {
+    head_for(until);
+    return policy_.collapse == CollapsePolicy::stop ? make_collisions() : make_slabs(segments);
+  }
+  // The same, observer(const Collision<T>&) being told of every collision. It may throw: the collision is then still to
+  // be made.
+  template <class Observer> Status advance(const T& until, Observer&& observer) {
+    head_for(until);
+    const struct Forget {
+      Simulation& run;
+      ~Forget() { run.observer_ = nullptr; }
+    } forget{*this};
+    observer_ = std::ref(observer);
+    aim();
+    return make_collisions();
+  }
+
+  // The same collision by collision, for several simulations side by side in one thread:
+  // `run.head_for(until); while (run.step()) ...; run.status()`.
+  void head_for(const T& until) {
+    require_ahead(until, last_collision_time());
+    target_.until = until;
+    status_ = Status::reached;
+    aim();
+  }
+  // Makes the next collision; false where there is none to make, or it is the last one.
+  [[gnu::always_inline]] bool step() {
+    const auto next = queue_.next();
+    Slot s = queue_.slot(next);
+    if (next >= target_.certainly_before) [[unlikely]] {
+      if (!first_within_target(s)) return false;
+      if (observer_) notify_observer(s);
+    } else if (queue_.contested()) [[unlikely]] {
+      s = first_of_tied();
+    }
+    const T time = chain_.due(s);
+    const CollisionResult<T> collision = chain_.collide(law_, s, time);
+    queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
+    last_collision_ = time;
+    chain_.lose(s, collision.outcome.energy_lost);
+    counts_.below_cutoff += collision.outcome.below_cutoff;
+    counts_.merges += collision.outcome.event == Event::merge;
+    if (++counts_.collisions >= pacing_.next_review || collision.notice != Notice::none) [[unlikely]] {
+      status_ = review(s, collision.notice);
+      return status_ == Status::reached;
+    }
+    return true;
+  }
+  Status status() const { return status_; }
+  const Chain& chain() const { return chain_; }
+  const Account<T>& account() const { return chain_.account(); }
+
+  // The state at a time not before the last collision made nor after the time advanced to.
+  Configuration<T> configuration(const T& time) const { return chain_.configuration(chain_.local_time(time)); }
+  // Right after the last collision made. The time of the scene that it is at is a rounded one: gaps that close within
+  // its rounding would be below zero there.
+  Configuration<T> configuration_at_last_collision() const { return chain_.configuration(last_collision_); }
+  bool on_ring() const { return chain_.on_ring(); }
+  ParticleIndex collided_particles() const { return chain_.collided_particles(); }
+  T front_left(const T& time) const { return chain_.front_left(chain_.local_time(time)); }
+  T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
+  const Counts& counts() const { return counts_; }
+  T energy_lost() const { return chain_.energy_lost(); }
+  T kinetic_energy() const { return chain_.kinetic_energy(); }
+  // The start if there was no collision yet.
+  T last_collision_time() const { return chain_.stamp(last_collision_).value(); }
+  const CollapseReport<T>& collapse() const { return watch_.report; }
+
+  // All that is to come depends on (state.hpp), between calls of `advance`, beside what the run was made from.
+  static auto state(auto& self) {
+    return std::tie(self.chain_, self.last_collision_, self.counts_, self.pacing_, self.standstill_, self.watch_);
+  }
+  void loaded() {
+    const T since = last_collision_time() - chain_.start();
+    require_state(pacing_.follows(counts_.collisions, last_collision_, since, chain_.count()), "pacing"),
+        release_queue();
+  }
+
+ private:
+  void fill_queue() {
+    queue_ = EventQueue(chain_.slots(), Chain::keys_are_exact, least_queue_bits_);
+    queue_holds_ = true;
+    refill_queue();
+  }
+  void refill_queue() {
+    if (!queue_holds_) return;
+    for (Slot s = chain_.first(); s <= chain_.last(); ++s) queue_.set(s, chain_.queue_due(s));
+    queue_.rebuild(chain_.first(), chain_.last());
+    ties_.forget();
+  }
+  // The plain loop needs a queue of the whole (and fills one where there is none), time slabs do not.
+  void release_queue() {
+    if (std::exchange(queue_holds_, false)) queue_ = EventQueue(8, Chain::keys_are_exact);
+  }
+  [[gnu::noinline]] Status make_collisions() {
+    while (step()) continue;
+    return status_;
+  }
+
+  // The slab loop: time slabs in segments, and where those do not do, collisions in the plain loop.
+  template <class Segments> Status make_slabs(Segments& segments) {
+    for (T from = last_collision_;;) {
+      const double ahead = pacing_.ahead(counts_.collisions, from, target_.stop);
+      if (auto plain = segments.plain_collisions(chain_, ahead)) {
+        for (; plain > 0; --plain)
+          if (!step()) return status_;
+        from = last_collision_;
+        continue;
+      }
+      const T end = segments.end(chain_, from, target_.stop, ahead);
+      release_queue();
+      const auto slab = segments.make(chain_, law_, end, pacing_.left(counts_.collisions));
+      if (!slab) continue;
+      counts_ += slab->counts;
+      if (slab->counts.collisions > 0) last_collision_ = slab->last_collision;
+      if (!(end < target_.horizon)) return status_;
+      from = end == target_.stop ? end_epoch() : end;
+      pacing_.passed(counts_.collisions, active());
+      status_ = policy_.poll(last_collision_time(), counts_);
+      if (status_ != Status::reached) return status_;
+    }
+  }
+
+  // Where to go, as chain and queue call it now. Observed collisions are all looked at closely, others pay nothing.
+  void aim() {
+    target_.horizon = chain_.local_time(target_.until);
+    target_.stop = pacing_.in_epochs && pacing_.epoch_end < target_.horizon ? pacing_.epoch_end : target_.horizon;
+    target_.certainly_before = observer_ ? 0 : queue_.certainly_before(chain_.queue_time(target_.stop));
+  }
+
+  // The next collision where keys do not tell whether it comes in time; false if it does not.
+  bool first_within_target(Slot& first) {
+    if (!queue_holds_) {
+      fill_queue();
+      aim();
+      first = queue_.slot(queue_.next());
+    }
+    while (!first_by(target_.stop, first)) {
+      if (!(target_.stop < target_.horizon)) return false;
+      end_epoch();
+      first = queue_.slot(queue_.next());
+    }
+    return true;
+  }
+  bool first_by(const T& time, Slot& first) {
+    if (queue_.next() > queue_.possibly_before(chain_.queue_time(time))) return false;
+    const bool contested = queue_.contested();
+    if (contested) first = ties_.first(queue_, chain_, counts_.collisions);
+    if (!(chain_.due(first) <= time)) return false;
+    if (contested) count_close_call();
+    return true;
+  }
+  Slot first_of_tied() {
+    count_close_call();
+    return ties_.first(queue_, chain_, counts_.collisions);
+  }
+  void notify_observer(Slot s) {
+    const T time = chain_.due(s);
+    observer_({chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_,
+               chain_.closing(s)});
+  }
+  // Once for every collision, however often it is asked for before it is made.
+  void count_close_call() {
+    if (counts_.collisions < close_calls_until_) return;
+    ++counts_.close_calls;
+    close_calls_until_ = counts_.collisions + 1;
+  }
+
+  // Looks after all that is not a collision, after the one at slot s. What it does depends on the history of collisions
+  // only. What the caller has asked to be called comes last, since it may throw.
+  Status review(Slot s, Notice notice) {
+    if (notice == Notice::origin_should_move && pacing_.in_epochs && counts_.collisions < pacing_.next_review)
+      return Status::reached;  // it does not, there
+    const Status judged = includes(notice, Notice::gap_below_floor) ? judge(s) : Status::reached;
+    if constexpr (StreamingChain<Chain>)
+      if (includes(notice, Notice::needs_slots)) {
+        chain_.make_room();
+        fill_queue();
+      }
+    const bool move = pacing_.origin_moves(notice, counts_.collisions, last_collision_, active());
+    const bool stands_still =
+        (move || !pacing_.in_epochs) && standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions,
+                                                       active(), policy_.follows_a_gap());
+    const bool moves = move && !stands_still, poll = moves || counts_.collisions >= pacing_.next_review;
+    const T before = last_collision_;
+    if (moves) move_origin(before);
+    if (moves || !pacing_.in_epochs) standstill_.time = last_collision_;
+    pacing_.reviewed(counts_.collisions, before, last_collision_, active(), moves);
+    aim();
+    if (stands_still) return Status::exhausted;
+    return judged == Status::reached && poll ? policy_.poll(last_collision_time(), counts_) : judged;
+  }
+  T elapsed(const T& local) const { return difference(chain_.stamp(local), Pair<T>{chain_.start(), T(0)}); }
+  std::uint64_t active() const { return static_cast<std::uint64_t>(chain_.collided_particles()); }
+
+  // There are no more collisions in this epoch. Returns what the local time of its end is called now.
+  T end_epoch() {
+    const T now = move_origin(pacing_.epoch_end);
+    pacing_.epoch_ended(counts_.collisions, now, active());
+    standstill_.epoch_ended(now, elapsed(now), counts_.collisions);
+    aim();
+    return now;
+  }
+  // Returns what the local time that it moves to is called now.
+  T move_origin(const T& to) {
+    const T called = chain_.move_origin(to);
+    const T by = to - called;
+    last_collision_ -= by;
+    watch_.origin_moved(by);
+    ++counts_.origin_moves;
+    refill_queue();
+    return called;
+  }
+
+  // Whether the gap that the last collision, at slot s, has left beside it ends the run.
+  Status judge(Slot s) {
+    const bool watched = policy_.collapse == CollapsePolicy::stop;
+    const bool followed = watched && watch_.settled(law_, chain_, s, last_collision_, counts_.collisions);
+    return policy_.after(chain_.nearest_gap(s), watched && watch_.report.settled, followed);
+  }
+
+  struct Target {
+    T until, horizon;                      // the time to go to, of the scene and as the chain calls it
+    T stop;                                // where an epoch ends before that, its end, else the horizon
+    EventQueue::Key certainly_before = 0;  // collisions with lesser keys come before it, and nobody observes them
+  };
+
+  Law law_;
+  Chain chain_;
+  Policy<T> policy_;
+  int least_queue_bits_;
+  EventQueue queue_;
+  bool queue_holds_ = true;
+  T last_collision_;  // local time; the start if there was none
+  Counts counts_;
+  std::uint64_t close_calls_until_ = 0;  // collisions up to this number have been looked at for close calls
+  Pacing<T> pacing_;
+  Standstill<T> standstill_;
+  CollapseWatch<T> watch_;
+  Ties<Chain> ties_;
+  Target target_;
+  std::function<void(const Collision<T>&)> observer_;  // of this advance only
+  Status status_ = Status::reached;
+};
+
+template <class L, class C> Simulation(L, C) -> Simulation<typename C::Scalar, L, C>;
+template <class L, class C, Real T> Simulation(L, C, Policy<T>) -> Simulation<T, L, C>;
+
+}  // namespace cradle

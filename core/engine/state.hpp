@@ -1,0 +1,212 @@
+#pragma once
+// The state of a run as a value: a class lists its fields once,
+//
+//   static auto state(auto& self) { return std::tie(self.gap, self.time); }
+//
+// and saving, loading and comparing follow from the list. What a run was made from (law, particles, policy) and what
+// follows from other fields (the queue) is in no list; a class that has something to do or to check once it is loaded
+// says `void loaded()`, which throws std::invalid_argument where its fields contradict each other.
+//
+// Numbers are kept exactly, little-endian: integers in 8 bytes, floating point as it is, other scalar types by a list
+// of their own or a specialisation of SavedNumber. `To` says put(const void*, size_t), `From` get(void*, size_t), which
+// throws at its end, and left(), the bytes to come.
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <limits>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace cradle {
+
+static_assert(std::endian::native == std::endian::little);
+
+// How a scalar type that is not one of the language's is kept: `save(To&, const X&)` and `load(From&, X&)`.
+template <class X> struct SavedNumber;
+
+template <class X>
+concept ListsState = requires(X& x) {
+  X::state(x);
+};
+
+namespace detail {
+
+template <class X> inline constexpr bool is_sequence = false;
+template <class X> inline constexpr bool is_sequence<std::vector<X>> = true;
+template <class X> inline constexpr bool is_sequence<std::deque<X>> = true;
+template <class X> inline constexpr bool is_map = false;
+template <class K, class V> inline constexpr bool is_map<std::map<K, V>> = true;
+template <class K, class V> inline constexpr bool is_map<std::unordered_map<K, V>> = true;
+template <class X> inline constexpr bool is_optional = false;
+template <class X> inline constexpr bool is_optional<std::optional<X>> = true;
+template <class X> inline constexpr bool is_pair = false;
+template <class A, class B> inline constexpr bool is_pair<std::pair<A, B>> = true;
+
+template <class X> inline constexpr bool is_whole = std::is_integral_v<X> || std::is_enum_v<X>;
+
+// Of a floating-point number without its padding.
+template <std::floating_point X>
+inline constexpr std::size_t bytes_of = std::numeric_limits<X>::digits == 64 ? 10 : sizeof(X);
+
+template <class X> using Plain = std::remove_cvref_t<X>;
+
+// The least that one takes as bytes: how many there can be in a file.
+template <class X> constexpr std::size_t least_bytes() {
+  if constexpr (is_whole<X>) {
+    return 8;
+  } else if constexpr (std::floating_point<X>) {
+    return bytes_of<X>;
+  } else if constexpr (is_pair<X>) {
+    return least_bytes<typename X::first_type>() + least_bytes<typename X::second_type>();
+  } else if constexpr (is_sequence<X> || is_map<X> || is_optional<X>) {
+    return 8;
+  } else if constexpr (ListsState<X>) {
+    return []<class... F>(std::type_identity<std::tuple<F...>>) {
+      return (std::size_t{1} + ... + least_bytes<Plain<F>>()) - (sizeof...(F) > 0 ? 1 : 0);
+    }(std::type_identity<decltype(X::state(std::declval<X&>()))>{});
+  } else {
+    return 1;
+  }
+}
+
+}  // namespace detail
+
+template <class To, class X> void save(To& to, const X& x) {
+  if constexpr (detail::is_whole<X>) {
+    const auto number = static_cast<std::uint64_t>(x);
+    to.put(&number, sizeof number);
+  } else if constexpr (std::floating_point<X>) {
+    to.put(&x, detail::bytes_of<X>);
+  } else if constexpr (detail::is_sequence<X>) {
+    save(to, x.size());
+    for (const auto& each : x) save(to, each);
+  } else if constexpr (detail::is_map<X>) {
+    const std::map<typename X::key_type, typename X::mapped_type> in_order(x.begin(), x.end());
+    save(to, in_order.size());
+    for (const auto& [key, value] : in_order) save(to, key), save(to, value);
+  } else if constexpr (detail::is_optional<X>) {
+    save(to, x.has_value());
+    if (x) save(to, *x);
+  } else if constexpr (detail::is_pair<X>) {
+    save(to, x.first), save(to, x.second);
+  } else if constexpr (ListsState<X>) {
+    std::apply([&](const auto&... field) { (save(to, field), ...); }, X::state(x));
+  } else {
+    SavedNumber<X>::save(to, x);
+  }
+}
+
+// Throws std::invalid_argument where the bytes cannot be of such a value, and whatever `from` throws at its end.
+template <class From, class X> void load(From& from, X& x) {
+  const auto count = [&](std::size_t least) {
+    std::uint64_t number = 0;
+    load(from, number);
+    if (number > from.left() / least)
+      throw std::invalid_argument("a list longer than what holds it (" + std::to_string(number) +
+                                  " entries): take the file from a copy");
+    return number;
+  };
+  if constexpr (detail::is_whole<X>) {
+    std::uint64_t number = 0;
+    from.get(&number, sizeof number);
+    x = static_cast<X>(number);
+    if (static_cast<std::uint64_t>(x) != number)
+      throw std::invalid_argument("a number out of range (" + std::to_string(number) + "): take the file from a copy");
+  } else if constexpr (std::floating_point<X>) {
+    from.get(&x, detail::bytes_of<X>);
+  } else if constexpr (detail::is_sequence<X>) {
+    x.resize(count(detail::least_bytes<typename X::value_type>()));
+    for (auto& each : x) load(from, each);
+  } else if constexpr (detail::is_map<X>) {
+    x.clear();
+    for (auto left = count(detail::least_bytes<typename X::key_type>()); left > 0; --left) {
+      typename X::key_type key{};
+      load(from, key);
+      load(from, x[key]);
+    }
+  } else if constexpr (detail::is_optional<X>) {
+    bool there = false;
+    load(from, there);
+    if (!there) return x.reset();
+    if constexpr (std::default_initializable<typename X::value_type>) {
+      if (!x) x.emplace();
+    }
+    if (!x) throw std::invalid_argument("a state of something else: take the file from a copy");
+    load(from, *x);
+  } else if constexpr (detail::is_pair<X>) {
+    load(from, x.first), load(from, x.second);
+  } else if constexpr (ListsState<X>) {
+    std::apply([&](auto&... field) { (load(from, field), ...); }, X::state(x));
+    if constexpr (requires { x.loaded(); }) x.loaded();
+  } else {
+    SavedNumber<X>::load(from, x);
+  }
+}
+
+// In memory. Two values are the same where their bytes are.
+class SavedState {
+ public:
+  SavedState() = default;
+  explicit SavedState(std::string bytes) : bytes_(std::move(bytes)) {}
+  template <class X> static SavedState of(const X& x) {
+    SavedState state;
+    save(state, x);
+    return state;
+  }
+  const std::string& bytes() const { return bytes_; }
+  bool operator==(const SavedState& other) const { return bytes_ == other.bytes_; }
+
+  void put(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  void get(void* data, std::size_t size) {
+    if (size > left()) throw std::invalid_argument("the state ends too early: take the file from a copy");
+    std::memcpy(data, bytes_.data() + read_, size);
+    read_ += size;
+  }
+  std::uint64_t left() const { return bytes_.size() - read_; }
+
+ private:
+  std::string bytes_;
+  std::size_t read_ = 0;
+};
+
+// The shape of a class's state, as text: which fields of which kind. States of one shape can be told apart by nothing
+// else.
+template <class X> std::string state_shape() {
+  if constexpr (detail::is_whole<X>) {
+    return "i";
+  } else if constexpr (std::floating_point<X>) {
+    return "f" + std::to_string(detail::bytes_of<X>);
+  } else if constexpr (detail::is_sequence<X>) {
+    return "[" + state_shape<typename X::value_type>() + "]";
+  } else if constexpr (detail::is_map<X>) {
+    return "{" + state_shape<typename X::key_type>() + state_shape<typename X::mapped_type>() + "}";
+  } else if constexpr (detail::is_optional<X>) {
+    return "?" + state_shape<typename X::value_type>();
+  } else if constexpr (detail::is_pair<X>) {
+    return state_shape<typename X::first_type>() + state_shape<typename X::second_type>();
+  } else if constexpr (ListsState<X>) {
+    return []<class... F>(std::type_identity<std::tuple<F...>>) {
+      return "(" + (std::string() + ... + state_shape<detail::Plain<F>>()) + ")";
+    }(std::type_identity<decltype(X::state(std::declval<X&>()))>{});
+  } else {
+    return "n";
+  }
+}
+
+// For `loaded`: throws where fields contradict each other.
+inline void require_state(bool holds, const char* what) {
+  if (!holds)
+    throw std::invalid_argument(std::string("a state that cannot be (") + what + "): take the file from a copy");
+}
+
+}  // namespace cradle

@@ -1,0 +1,248 @@
+#pragma once
+// The sticky gas without events: its state at a time t follows from the initial data alone. Particles that stick are
+// those whose free flights up to t would be out of order, averaged until they are not: from left to right, every
+// particle is pushed with its mass M, moment S = m (x + v t) and momentum P = m v; while the cluster below lies at or
+// beyond the top one, S/M against S/M, the two are one. What remains are the clusters, at S/M with velocity P/M (the
+// lower convex hull of moment against mass; weighted isotonic regression). O(N), and less from one time to the next,
+// since clusters never part: they are the particles of the next step.
+//
+// On a ring of circumference L the line must be cut between two clusters. Such a place is the least of
+//   F_k = S_k - (L/2M) M_k^2 - (S_N - L M/2) M_k/M,   M_k, S_k cumulative mass and moment, M = M_N,
+// found from its increments m [y - (L/M)(M_k + m/2) - (S_N/M - L/2)], y = x + v t: differences of terms of N^2 L would
+// not resolve it.
+//
+// Of incoming rows only what has been hit is held, and one particle more on either side, which flies freely; so do all
+// beyond it, in order with it. They are taken in at both ends as long as the outermost cluster held is more than one
+// particle.
+
+#include <algorithm>
+#include <deque>
+#include <memory>
+#include <utility>
+
+#include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/account.hpp"
+#include "cradle/core/engine/ledger.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/initial/relative_motion.hpp"
+
+namespace cradle {
+
+template <Real T> class StickyGas {
+ public:
+  using Scalar = T;
+
+  // Throws std::invalid_argument as chains do. Of the policy, what the caller wants done on the way.
+  StickyGas(std::shared_ptr<const Particles<T>> particles, const T& start, Policy<T> policy = {})
+      : particles_(std::move(particles)), policy_(std::move(policy)), ring_(particles_->on_ring()), start_(start),
+        time_(start), lost_(particles_->energy_to_lose()) {
+    require_particles(*particles_, start);
+    const GapRange moving = ring_ ? GapRange{0, particles_->count() - 2} : particles_->gaps_in_motion();
+    for (ParticleIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
+  }
+
+  // Goes on to the state at a time not before the last one: all that meet up to then have merged. Interrupted, it goes
+  // on where the same time is asked for again, to the same bits: what is held is in order already.
+  Status advance(const T& time) {
+    time_ = time;
+    elapsed_ = time - start_;
+    for (Lump& lump : held_) lump.x = place(lump);
+    if (ring_) cut();
+    std::deque<Lump> before = std::exchange(held_, {});
+    for (const Lump& lump : before) push_right(lump);
+    return ring_ ? Status::reached : take_in_rows();
+  }
+
+  const Counts& counts() const { return counts_; }
+  T energy_lost() const { return lost_.value(); }
+  // Of all particles of the scene; those not held move like the outermost one that is.
+  T kinetic_energy() const {
+    const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
+    const auto moving = relative_motion(total, drift, [&](const T& c, const auto& add) {
+      for (std::size_t k = 0; k < held_.size(); ++k) {
+        T mass = held_[k].mass;
+        if (!ring_ && k == 0) mass += particles_->mass_between(0, held_[k].first);
+        if (!ring_ && k + 1 == held_.size())
+          mass += particles_->mass_between(held_[k].first + held_[k].count, particles_->count());
+        add(mass, T(velocity(held_[k]) - c));
+      }
+    });
+    return total * drift * drift / T(2) + moving.energy;
+  }
+  T last_collision_time() const { return time_; }  // collisions have no times here: that of the state
+  const Account<T>& account() const { return account_; }
+  bool on_ring() const { return ring_; }
+
+  // ---- at the time advanced to
+  // Clusters between the outermost two that have collided, both included.
+  ParticleIndex collided_particles() const {
+    if (ring_) return static_cast<ParticleIndex>(held_.size());
+    const auto [from, to] = collided();
+    return static_cast<ParticleIndex>(to - from);
+  }
+  T front_left(const T&) const { return held_[collided().first].x; }
+  T front_right(const T&) const { return held_[collided().second - 1].x; }
+
+  // As that of a chain; a cluster goes by its heaviest particle, of equal ones the one furthest left.
+  Configuration<T> configuration(const T&) const {
+    Configuration<T> c;
+    c.time = time_;
+    auto [from, to] = ring_ ? std::pair{std::size_t{0}, held_.size()} : collided();
+    const bool begun = from < to;
+    const std::size_t first = begun && from > 0 ? from - 1 : 0;
+    const std::size_t last = begun && to < held_.size() ? to + 1 : held_.size();
+    if (begun) c.collided_from = from - first, c.collided_to = to - first;
+    for (std::size_t j = first; j < last; ++j) {
+      c.index.push_back(held_[j].heaviest);
+      c.m.push_back(held_[j].mass);
+      c.x.push_back(held_[j].x);
+      c.v.push_back(velocity(held_[j]));
+    }
+    for (std::size_t j = 0; j + 1 < c.x.size(); ++j) {
+      c.gap.push_back(c.x[j + 1] - c.x[j]);
+      c.closing_speed.push_back(c.v[j] - c.v[j + 1]);
+    }
+    c.from = held_[first].first;
+    c.to = held_[last - 1].first + held_[last - 1].count - 1;
+    if (ring_) {
+      c.from = 0, c.to = particles_->count() - 1;
+      c.gap.push_back(c.x.front() + (particles_->circumference() - c.x.back()));
+      c.closing_speed.push_back(c.v.back() - c.v.front());
+      fold(c, particles_->circumference());
+    }
+    return c;
+  }
+
+  Configuration<T> configuration_at_last_collision() const { return configuration(time_); }
+
+  static auto state(auto& self) { return std::tie(self.time_, self.elapsed_, self.held_, self.counts_, self.lost_); }
+  void loaded() const {
+    require_state(!held_.empty(), "no particles");
+    const ParticleIndex count = particles_->count();
+    ParticleIndex in_all = 0;
+    for (const Lump& lump : held_) {
+      require_state(lump.holds_numbers() && lump.first >= 0 && lump.first < count && lump.count > 0 &&
+                        lump.count <= (ring_ ? count - in_all : count - lump.first) && lump.heaviest >= 0 &&
+                        lump.heaviest < count,
+                    "clusters");
+      in_all += lump.count;
+    }
+    require_state(!ring_ || in_all == count, "clusters");
+    for (std::size_t k = 0; !ring_ && k + 1 < held_.size(); ++k)
+      require_state(held_[k].first + held_[k].count == held_[k + 1].first, "clusters");
+    require_state(is_finite(time_) && is_finite(elapsed_), "times");
+  }
+
+ private:
+  struct Lump {                   // particles that stick together
+    T mass, moment, momentum, x;  // moment: at the start; x: at the time advanced to
+    ParticleIndex first, count, heaviest;
+    T greatest;  // mass of the heaviest particle
+
+    static auto state(auto& self) {
+      return std::tie(self.mass, self.moment, self.momentum, self.x, self.first, self.count, self.heaviest,
+                      self.greatest);
+    }
+    bool holds_numbers() const {
+      return is_positive(mass) && is_positive(greatest) && is_finite(T(mass + greatest)) && is_finite(moment) &&
+             is_finite(momentum) && is_finite(x);
+    }
+  };
+
+  Lump single(ParticleIndex b) const {
+    const T m = particles_->mass(b);
+    Lump lump{m, m * particles_->position(b), m * particles_->velocity(b), T(0), b, 1, b, m};
+    lump.x = place(lump);
+    return lump;
+  }
+  T place(const Lump& c) const { return (c.moment + c.momentum * elapsed_) / c.mass; }
+  static T velocity(const Lump& c) { return c.momentum / c.mass; }
+
+  // Particles of equal velocity never meet, whatever rounding makes of their places far away.
+  static bool met(const Lump& left, const Lump& right) {
+    return !(left.x < right.x) && velocity(right) < velocity(left);
+  }
+  void push_right(Lump lump) {
+    for (; !held_.empty() && met(held_.back(), lump); held_.pop_back()) lump = merged(held_.back(), lump);
+    held_.push_back(std::move(lump));
+  }
+  void push_left(Lump lump) {
+    for (; !held_.empty() && met(lump, held_.front()); held_.pop_front()) lump = merged(lump, held_.front());
+    held_.push_front(std::move(lump));
+  }
+  Lump merged(const Lump& left, const Lump& right) {
+    const T mass = left.mass + right.mass, closing = velocity(left) - velocity(right);
+    lost_.add(left.mass * (right.mass / mass) * closing * closing / T(2));
+    ++counts_.merges;
+    ++counts_.collisions;
+    const Lump& name = left.greatest < right.greatest ? right : left;
+    Lump both{mass,
+              left.moment + right.moment,
+              left.momentum + right.momentum,
+              T(0),
+              left.first,
+              left.count + right.count,
+              name.heaviest,
+              name.greatest};
+    both.x = place(both);
+    return both;
+  }
+
+  // Half-open range of held lumps between the outermost that have collided.
+  std::pair<std::size_t, std::size_t> collided() const {
+    std::size_t from = 0, to = held_.size();
+    while (from < to && held_[from].count == 1) ++from;
+    while (to > from && held_[to - 1].count == 1) --to;
+    return {from, to};
+  }
+
+  Status take_in_rows() {
+    std::uint64_t taken = 0;
+    for (bool more = true; more;) {
+      if (++taken % (1 << 14) == 0 && policy_.ask(time_, counts_) != Status::reached) return Status::interrupted;
+      more = false;
+      const ParticleIndex left = held_.front().first - 1, right = held_.back().first + held_.back().count;
+      const bool reaches_left = held_.front().count > 1 && left >= 0;
+      if (held_.back().count > 1 && right < particles_->count()) push_right(single(right)), more = true;
+      if (reaches_left) push_left(single(left)), more = true;
+    }
+    return Status::reached;
+  }
+
+  // Turns the ring so that it is cut between two clusters.
+  void cut() {
+    CompensatedSum<T> mass_sum, moment_sum;
+    for (const Lump& lump : held_) {
+      mass_sum.add(lump.mass);
+      moment_sum.add(lump.mass * lump.x);
+    }
+    const T length = particles_->circumference(), mass = mass_sum.value();
+    const T middle = moment_sum.value() / mass - length / T(2), per_mass = length / mass;
+    CompensatedSum<T> height;
+    T least(0), passed(0);
+    std::size_t lowest = 0;
+    for (std::size_t k = 0; k + 1 < held_.size(); ++k) {
+      const Lump& lump = held_[k];
+      height.add(lump.mass * (lump.x - per_mass * (passed + lump.mass / T(2)) - middle));
+      passed += lump.mass;
+      if (height.value() < least) least = height.value(), lowest = k + 1;
+    }
+    for (std::size_t k = 0; k < lowest; ++k) {
+      held_[k].moment += held_[k].mass * length;
+      held_[k].x += length;
+    }
+    std::rotate(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(lowest), held_.end());
+  }
+
+  std::shared_ptr<const Particles<T>> particles_;
+  Policy<T> policy_;
+  bool ring_;
+  T start_, time_, elapsed_{0};
+  std::deque<Lump> held_;  // from left to right
+  Counts counts_;
+  Ledger<T> lost_;
+  Account<T> account_;  // stays empty: without events none can come too late
+};
+
+}  // namespace cradle

@@ -1,0 +1,105 @@
+#pragma once
+// Collisions that the queue's keys cannot tell apart: which of them is first by (exact time, position in the line)?
+//
+// All whose keys may belong to the same time as the root's are candidates, wherever on the line they are. To compare
+// neighbours only is right pair by pair and wrong in its consequences: far collisions overtake each other, by as much
+// as keys are wide, and what they set off meets in between in the wrong order.
+//
+// A few candidates are compared anew for every collision. On a lattice thousands are simultaneous: these are kept in a
+// heap from one collision to the next, and only the three gaps that a collision changes are looked at again. An entry
+// whose gap is due at another time by now is dropped when it comes to the top.
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/chains/chain.hpp"
+#include "cradle/core/engine/event_queue.hpp"
+
+namespace cradle {
+
+// C: a chain, or a segment of one.
+template <class C> class Ties {
+ public:
+  // The first of all collisions, where the queue is contested; so many collisions have been made.
+  Slot first(const EventQueue& queue, const C& chain, std::uint64_t collisions) {
+    const EventQueue::Key bound = queue.no_later_than(queue.next());
+    if (!brought_up_to_date(queue, chain, collisions, bound)) {
+      Slot first = 0;
+      if (found_among_few(queue, chain, bound, first)) return first;
+      gather(queue, chain, bound);
+    }
+    while (!stands(queue, chain, heap_.front())) pop();
+    const Slot first = heap_.front().slot;
+    changing_[0] = chain.left(first), changing_[1] = first, changing_[2] = chain.right(first);
+    collisions_ = collisions;
+    return first;
+  }
+
+  // Slots, times or keys have changed at large.
+  void forget() { heap_.clear(); }
+
+ private:
+  using T = typename C::Scalar;
+  struct Candidate {
+    T time;
+    Slot slot;
+    friend bool operator<(const Candidate& a, const Candidate& b) {
+      return a.time < b.time || (a.time == b.time && a.slot < b.slot);
+    }
+  };
+  static bool later(const Candidate& a, const Candidate& b) { return b < a; }
+  static constexpr std::size_t few = 16;
+
+  bool found_among_few(const EventQueue& queue, const C& chain, EventQueue::Key bound, Slot& first) {
+    heap_.clear();
+    std::size_t candidates = 0;
+    T earliest(0);
+    return queue.for_each_before(bound, [&](Slot s) {  // from left to right
+      const T time = chain.due(s);
+      if (candidates == 0 || time < earliest) first = s, earliest = time;
+      return ++candidates <= few;
+    });
+  }
+
+  void gather(const EventQueue& queue, const C& chain, EventQueue::Key bound) {
+    queue.for_each_before(bound, [&](Slot s) {
+      heap_.push_back({chain.due(s), s});
+      return true;
+    });
+    std::make_heap(heap_.begin(), heap_.end(), later);
+    bound_ = bound;
+    gathered_ = heap_.size();
+  }
+
+  // Whether the heap holds every collision up to the bound, after the one collision made since it was last asked.
+  bool brought_up_to_date(const EventQueue& queue, const C& chain, std::uint64_t collisions, EventQueue::Key bound) {
+    if (heap_.empty() || bound > bound_ || heap_.size() > 2 * gathered_) return false;
+    if (collisions == collisions_) return true;
+    if (collisions != collisions_ + 1) return false;
+    for (const Slot s : changing_)
+      if (queue.key_of(s) <= bound_) {
+        heap_.push_back({chain.due(s), s});
+        std::push_heap(heap_.begin(), heap_.end(), later);
+      }
+    return true;
+  }
+
+  bool stands(const EventQueue& queue, const C& chain, const Candidate& candidate) const {
+    return queue.key_of(candidate.slot) <= bound_ && chain.due(candidate.slot) == candidate.time;
+  }
+  void pop() {
+    std::pop_heap(heap_.begin(), heap_.end(), later);
+    heap_.pop_back();
+  }
+
+  std::vector<Candidate> heap_;   // the first on top; empty: nothing is kept
+  std::size_t gathered_ = 0;      // candidates there were when it was made
+  EventQueue::Key bound_ = 0;     // collisions with keys up to this are in it
+  std::uint64_t collisions_ = 0;  // made when it was last asked
+  Slot changing_[3] = {0, 0, 0};  // the gaps that the collision it then named touches
+};
+
+}  // namespace cradle

@@ -1,0 +1,143 @@
+#pragma once
+// A cold gas: particles at rest, spacing l apart or displaced at random, of mass 1 or of masses that repeat, some of
+// which move at the start: one that is kicked, or several with velocities drawn at random. The hot particles stand in
+// the middle of the others, about x = 0, or at the left end, the first one at x = 0. What they set in motion is a blast
+// (arXiv:2010.15868), a splash (arXiv:2203.11097) or a row of dominoes (arXiv:2605.16125).
+//
+// Only the gaps beside hot particles are held at the start; particles at rest are taken in as the fronts reach them
+// (held_range.hpp). Velocities are integers, less the velocity of their centre of mass, times a unit that gives them
+// their energy: all scalar types start from the same state, each rounded for itself.
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/initial/mass_pattern.hpp"
+#include "cradle/core/initial/particles.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
+
+namespace cradle {
+
+enum class HotPlace { middle, left };
+
+// The particles of a cold gas that move: particle first + j at the velocity (pace[j] - drift) unit.
+template <Real T> struct HotParticles {
+  ParticleIndex first = 0;
+  std::vector<std::int64_t> pace;
+  T drift{0}, unit{1};
+
+  ParticleIndex count() const { return static_cast<ParticleIndex>(pace.size()); }
+  ParticleIndex end() const { return first + count(); }
+  bool holds(ParticleIndex particle) const { return particle >= first && particle < end(); }
+  T velocity(ParticleIndex particle) const {
+    if (!holds(particle)) return T(0);
+    return (T(pace[static_cast<std::size_t>(particle - first)]) - drift) * unit;
+  }
+};
+
+// The first of so many hot particles among all.
+inline ParticleIndex first_hot(HotPlace place, ParticleIndex all, ParticleIndex hot) {
+  return place == HotPlace::left ? 0 : (all - hot) / 2;
+}
+
+// One particle with a velocity.
+template <Real T> HotParticles<T> kicked(ParticleIndex particle, const T& velocity) {
+  return {particle, {1}, T(0), velocity};
+}
+
+// Several particles with independent Gaussian velocities, of one variance whatever their masses, less the velocity of
+// their centre of mass; scaled to the energy given. Throws std::invalid_argument for fewer than two particles or an
+// energy that is not positive and finite.
+template <Real T>
+HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy, const MassPattern<T>& masses,
+                       std::uint64_t seed, std::uint64_t replica) {
+  using std::sqrt;
+  if (count < 2)
+    throw std::invalid_argument("random velocities of " + std::to_string(count) +
+                                " particles without momentum: give it two or more, or a kick");
+  require_finite(energy, "energy of the hot particles");
+  if (!(energy > T(0)))
+    throw std::invalid_argument("energy of the hot particles is not positive (" + in_message(energy) +
+                                "): give a positive one");
+  HotParticles<T> hot{first, {}, T(0), T(1)};
+  const VelocityDraw draw = gaussian_velocity(seed, replica);
+  CompensatedSum<T> momentum, twice;
+  for (ParticleIndex particle = first; particle < first + count; ++particle) {
+    hot.pace.push_back(draw(particle));
+    momentum.add(masses.of(particle) * T(hot.pace.back()));
+  }
+  hot.drift = momentum.value() / masses.total(first, first + count);
+  for (ParticleIndex particle = first; particle < first + count; ++particle) {
+    const T v = hot.velocity(particle);
+    twice.add(masses.of(particle) * v * v);
+  }
+  hot.unit = sqrt(T((energy + energy) / twice.value()));
+  return hot;
+}
+
+template <Real T> class Cold final : public Particles<T> {
+ public:
+  // Throws std::invalid_argument for no particles, more hot ones than there are or none, or a spacing or velocity that
+  // is not finite or, the spacing, not positive.
+  Cold(ParticleIndex count, const T& spacing, HotPlace place, HotParticles<T> hot, Displacement displacement,
+       MassPattern<T> masses = {})
+      : count_(count), left_(place == HotPlace::left), hot_(std::move(hot)), displacement_(std::move(displacement)),
+        masses_(std::move(masses)), unit_(spacing / T(displacement_unit)) {
+    if (hot_.count() < 1 || hot_.first < 0 || hot_.end() > count)
+      throw std::invalid_argument("hot particles " + std::to_string(hot_.first) + " to " +
+                                  std::to_string(hot_.end() - 1) + " of " + std::to_string(count) +
+                                  ": give at least one, and no more than there are");
+    require_finite(spacing, "spacing of the particles");
+    if (!(spacing > T(0)))
+      throw std::invalid_argument("spacing is not positive (" + in_message(spacing) + "): give a positive number");
+    CompensatedSum<T> twice, momentum;
+    for (ParticleIndex particle = hot_.first; particle < hot_.end(); ++particle) {
+      const T v = hot_.velocity(particle);
+      require_finite(v, "velocity of particle " + std::to_string(particle));
+      twice.add(mass(particle) * v * v);
+      momentum.add(mass(particle) * v);
+    }
+    energy_ = twice.value() / T(2);
+    momentum_ = hot_.count() > 1 ? T(0) : momentum.value();
+  }
+
+  ParticleIndex count() const override { return count_; }
+  T mass(ParticleIndex particle) const override { return masses_.of(particle); }
+  bool identical_masses() const override { return masses_.identical(); }
+  T velocity(ParticleIndex particle) const override { return hot_.velocity(particle); }
+  T position(ParticleIndex particle) const override {
+    const ParticleIndex half_steps = left_ ? 2 * particle : 2 * (particle - hot_.first) + 1 - hot_.count();
+    return place_of<T>(half_steps, displacement_(particle)) * unit_;
+  }
+  T gap(ParticleIndex particle) const override {
+    return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * unit_;
+  }
+  T closing_speed(ParticleIndex particle) const override {
+    if (!hot_.holds(particle) || !hot_.holds(particle + 1)) return velocity(particle) - velocity(particle + 1);
+    const auto pace = hot_.pace.begin() + (particle - hot_.first);
+    return T(pace[0] - pace[1]) * hot_.unit;
+  }
+  GapRange gaps_in_motion() const override {
+    return {std::max<ParticleIndex>(hot_.first - 1, 0), std::min(hot_.end() - 1, count_ - 2)};
+  }
+
+  T kinetic_energy() const override { return energy_; }
+  T momentum() const override { return momentum_; }
+  T total_mass() const override { return masses_.total(0, count_); }
+  T mass_between(ParticleIndex from, ParticleIndex to) const override { return masses_.total(from, to); }
+  T least_mass() const override { return masses_.least(); }
+  T greatest_mass() const override { return masses_.greatest(); }
+
+ private:
+  ParticleIndex count_;
+  bool left_;
+  HotParticles<T> hot_;
+  Displacement displacement_;
+  MassPattern<T> masses_;
+  T unit_, energy_{0}, momentum_{0};
+};
+
+}  // namespace cradle

@@ -1,0 +1,152 @@
+#pragma once
+// Free cooling: particles on a ring (a periodic line), of mass 1 or of masses that repeat, at equal distances or
+// displaced at random, with independent velocities of a given variance and zero total momentum. Velocities and
+// displacements are integers, times a unit that every scalar type rounds for itself, so that all types start from the
+// same state; particle and replica alone decide on them (counter_rng.hpp).
+//
+// Zero momentum: of identical masses the mean is taken off the integers, the remainder, less than one per particle,
+// from the first particles. Of masses that differ the velocity of the centre of mass, sum m_b n_b / sum m_b of the
+// integers n_b, is a fraction: it is taken off velocities in the working precision, and closing speeds do not have it.
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/initial/mass_pattern.hpp"
+#include "cradle/core/initial/particles.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/laws/portable_log.hpp"
+
+namespace cradle {
+
+// Velocity of a particle in units of 2^-28 standard deviations.
+using VelocityDraw = std::function<std::int64_t(ParticleIndex)>;
+
+namespace detail {
+
+// Independent of displacements, which use indices as they stand.
+inline std::uint64_t velocity_bits(std::uint64_t seed, std::uint64_t replica, ParticleIndex particle,
+                                   std::uint64_t attempt) {
+  return random_bits(seed, replica, static_cast<std::uint64_t>(particle) | (attempt + 1) << 56);
+}
+
+}  // namespace detail
+
+// Gaussian velocities, by Marsaglia's polar method (SIAM Rev. 6, 260, 1964, doi 10.1137/1006063).
+inline VelocityDraw gaussian_velocity(std::uint64_t seed, std::uint64_t replica) {
+  return [=](ParticleIndex particle) {
+    for (std::uint64_t attempt = 0;; ++attempt) {
+      const std::uint64_t bits = detail::velocity_bits(seed, replica, particle, attempt);
+      const double u = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-31 - 1;
+      const double v = (static_cast<double>(bits & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1;
+      const double square = u * u + v * v;
+      if (square >= 1) continue;
+      const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
+      return static_cast<std::int64_t>(std::floor(normal * static_cast<double>(displacement_unit) + 0.5));
+    }
+  };
+}
+
+// Uniform velocities between plus and minus sqrt(3) standard deviations.
+inline VelocityDraw uniform_velocity(std::uint64_t seed, std::uint64_t replica) {
+  constexpr std::int64_t bound = 464943848;  // sqrt(3) 2^28
+  return
+      [=](ParticleIndex particle) { return uniform_integer(detail::velocity_bits(seed, replica, particle, 0), bound); };
+}
+
+template <Real T> class Ring final : public Particles<T> {
+ public:
+  // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no particles, 2^31 or more of
+  // them, a length or deviation that is not positive and finite, or a pattern of masses that does not divide the ring.
+  // Draws every velocity once.
+  Ring(ParticleIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement,
+       MassPattern<T> masses = {})
+      : count_(count), length_(std::move(length)), velocity_(std::move(velocity)),
+        displacement_(std::move(displacement)), masses_(std::move(masses)),
+        unit_(length_ / (T(count) * T(displacement_unit))), velocity_unit_(deviation / T(displacement_unit)) {
+    if (count < 1 || count >= std::int64_t{1} << 31)
+      throw std::invalid_argument("a ring of " + std::to_string(count) + " particles: give it from 1 to 2147483647");
+    require_finite(length_, "length of the ring");
+    require_finite(deviation, "standard deviation of the velocities");
+    if (!(length_ > T(0) && deviation > T(0)))
+      throw std::invalid_argument("length or variance of the ring is not positive (length " + in_message(length_) +
+                                  ", standard deviation " + in_message(deviation) + "): give positive numbers");
+    if (count % masses_.period() != 0)
+      throw std::invalid_argument("a pattern of " + std::to_string(masses_.period()) +
+                                  " masses does not divide a ring of " + std::to_string(count) +
+                                  " particles: give a multiple of it");
+    if (masses_.identical())
+      take_off_mean();
+    else
+      take_off_drift();
+    CompensatedSum<T> twice;
+    for (ParticleIndex particle = 0; particle < count; ++particle) {
+      const T v = this->velocity(particle);
+      twice.add(mass(particle) * v * v);
+    }
+    energy_ = twice.value() / T(2);
+  }
+
+  ParticleIndex count() const override { return count_; }
+  T circumference() const override { return length_; }
+  T mass(ParticleIndex particle) const override { return masses_.of(particle); }
+  bool identical_masses() const override { return masses_.identical(); }
+  T velocity(ParticleIndex particle) const override {
+    return (masses_.identical() ? T(pace(particle)) : T(T(pace(particle)) - drift_)) * velocity_unit_;
+  }
+  T position(ParticleIndex particle) const override {
+    return T((2 * particle + 1) * (displacement_unit / 2) + displacement_(particle)) * unit_;
+  }
+  T gap(ParticleIndex particle) const override {
+    return T(displacement_unit + displacement_(next(particle)) - displacement_(particle)) * unit_;
+  }
+  T closing_speed(ParticleIndex particle) const override {
+    return T(pace(particle) - pace(next(particle))) * velocity_unit_;
+  }
+  GapRange gaps_in_motion() const override { return {0, count_ - 1}; }
+
+  T kinetic_energy() const override { return energy_; }
+  T momentum() const override { return T(0); }
+  T total_mass() const override { return masses_.total(0, count_); }
+  T mass_between(ParticleIndex from, ParticleIndex to) const override { return masses_.total(from, to); }
+  T least_mass() const override { return masses_.least(); }
+  T greatest_mass() const override { return masses_.greatest(); }
+
+ private:
+  ParticleIndex next(ParticleIndex particle) const { return particle + 1 < count_ ? particle + 1 : 0; }
+  std::int64_t pace(ParticleIndex particle) const {
+    return velocity_(particle) - shift_ - (particle < shifted_more_ ? 1 : 0);
+  }
+
+  void take_off_mean() {
+    std::int64_t sum = 0;
+    for (ParticleIndex particle = 0; particle < count_; ++particle) sum += velocity_(particle);
+    shift_ = sum / count_ - (sum % count_ < 0 ? 1 : 0);
+    shifted_more_ = sum - shift_ * count_;
+  }
+  // The sums of integers, one for each entry of the pattern, are exact.
+  void take_off_drift() {
+    std::vector<std::int64_t> sums(static_cast<std::size_t>(masses_.period()), 0);
+    for (ParticleIndex particle = 0; particle < count_; ++particle)
+      sums[static_cast<std::size_t>(particle % masses_.period())] += velocity_(particle);
+    CompensatedSum<T> momentum;
+    for (ParticleIndex entry = 0; entry < masses_.period(); ++entry)
+      momentum.add(masses_.of(entry) * T(sums[static_cast<std::size_t>(entry)]));
+    drift_ = momentum.value() / total_mass();
+  }
+
+  ParticleIndex count_;
+  T length_;
+  VelocityDraw velocity_;
+  Displacement displacement_;
+  MassPattern<T> masses_;
+  T unit_, velocity_unit_;
+  std::int64_t shift_ = 0, shifted_more_ = 0;
+  T drift_{0};  // of the centre of mass, in units of velocities
+  T energy_{0};
+};
+
+}  // namespace cradle

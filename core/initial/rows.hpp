@@ -1,0 +1,180 @@
+#pragma once
+// Two rows of particles that run into each other (the paper's Riemann problem, section II): the left one of velocity
+// u_l and spacing l_l = 1/n_l, the right one of u_r and l_r, a particle of any mass between them where the scene has
+// one. Their masses are 1, or repeat by a pattern from particle 0 on (in which the particle between the rows takes a
+// place but not a mass). The first particles are half a spacing from the origin. Every particle of a row is displaced
+// by a random multiple of 2^-28 of the spacing, so that every scalar type and both representations start from the same
+// places.
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/initial/mass_pattern.hpp"
+#include "cradle/core/initial/particles.hpp"
+
+namespace cradle {
+
+template <Real T> struct Row {
+  ParticleIndex count;
+  T velocity;
+  T spacing;
+};
+
+template <Real T> struct CentralParticle {
+  T mass;
+  T velocity;
+};
+
+// Displacement of a particle in units of 2^-28 of the spacing, below 2^27 in size: particles stay in order.
+using Displacement = std::function<std::int64_t(ParticleIndex)>;
+
+inline constexpr std::int64_t displacement_unit = std::int64_t{1} << 28;
+
+// The place of a particle that is so many half spacings from the origin, and displaced, in units of 2^-28 of the
+// spacing. 64 bits hold it up to 3e10 spacings; beyond, both factors are exact in any type of 53 bits, and so is the
+// product.
+template <Real T> T place_of(std::int64_t half_steps, std::int64_t displacement) {
+  constexpr std::int64_t half = displacement_unit / 2, most = std::numeric_limits<std::int64_t>::max() / half - 1;
+  if (-most <= half_steps && half_steps <= most) return T(half_steps * half + displacement);
+  return T(half_steps) * T(half) + T(displacement);
+}
+
+// Uniform in plus/minus `perturbation` spacings, 0 <= perturbation < 1/2.
+inline Displacement uniform_displacement(double perturbation, std::uint64_t seed, std::uint64_t replica) {
+  if (!(perturbation >= 0 && perturbation < 0.5))
+    throw std::invalid_argument("perturbation out of range (" + std::to_string(perturbation) +
+                                "): give a number from 0 to below 0.5 (in spacings)");
+  const auto bound = static_cast<std::int64_t>(std::floor(perturbation * static_cast<double>(displacement_unit)));
+  return [=](ParticleIndex particle) {
+    return uniform_integer(random_bits(seed, replica, static_cast<std::uint64_t>(particle)), bound);
+  };
+}
+
+template <Real T> class Rows final : public Particles<T> {
+ public:
+  // Throws std::invalid_argument for rows that are empty or do not approach each other, spacings or masses that are not
+  // positive, a central particle that no row reaches, numbers that are not finite.
+  Rows(Row<T> left, Row<T> right, std::optional<CentralParticle<T>> centre, Displacement displacement,
+       MassPattern<T> masses = {})
+      : left_(std::move(left)), right_(std::move(right)), centre_(std::move(centre)),
+        displacement_(std::move(displacement)), masses_(std::move(masses)),
+        left_unit_(left_.spacing / T(displacement_unit)), right_unit_(right_.spacing / T(displacement_unit)) {
+    for (const auto& [row, name] : {std::pair{&left_, "left row"}, {&right_, "right row"}}) {
+      require_finite(row->velocity, std::string("velocity of the ") + name);
+      require_finite(row->spacing, std::string("spacing of the ") + name);
+      if (row->count < 1)
+        throw std::invalid_argument(std::string("a row without particles (the ") + name + " has " +
+                                    std::to_string(row->count) + "): give each at least one");
+      if (!(row->spacing > T(0)))
+        throw std::invalid_argument("a row's spacing is not positive (" + in_message(row->spacing) + ", the " + name +
+                                    "): give a positive number");
+    }
+    if (!(left_.velocity > right_.velocity))
+      throw std::invalid_argument("the rows do not approach each other (left " + in_message(left_.velocity) +
+                                  ", right " + in_message(right_.velocity) + "): make the left one faster");
+    if (!centre_) return;
+    require_finite(centre_->mass, "mass of the central particle");
+    require_finite(centre_->velocity, "velocity of the central particle");
+    if (centre_->velocity > left_.velocity || centre_->velocity < right_.velocity)
+      throw std::invalid_argument("the central particle runs away from a row (" + in_message(centre_->velocity) +
+                                  "): give it a speed between those of the rows");
+    if (!(centre_->mass > T(0)))
+      throw std::invalid_argument("central mass is not positive (" + in_message(centre_->mass) +
+                                  "): give a positive one");
+  }
+
+  ParticleIndex count() const override { return left_.count + right_.count + (centre_ ? 1 : 0); }
+  T mass(ParticleIndex particle) const override { return is_centre(particle) ? centre_->mass : masses_.of(particle); }
+  bool identical_masses() const override { return masses_.identical() && (!centre_ || centre_->mass == masses_.of(0)); }
+
+  T velocity(ParticleIndex particle) const override {
+    return particle < left_.count ? left_.velocity : is_centre(particle) ? centre_->velocity : right_.velocity;
+  }
+
+  T position(ParticleIndex particle) const override {
+    if (is_centre(particle)) return T(0);
+    return place_of<T>(half_steps(particle), displacement_(particle)) *
+           (particle < left_.count ? left_unit_ : right_unit_);
+  }
+
+  T gap(ParticleIndex particle) const override {
+    const bool from_left = particle < left_.count, to_left = particle + 1 < left_.count;
+    if (from_left == to_left && !is_centre(particle)) {
+      const std::int64_t units = displacement_unit + displacement_(particle + 1) - displacement_(particle);
+      return T(units) * (from_left ? left_unit_ : right_unit_);
+    }
+    // Across the centre both distances from the origin are positive: their sum does not cancel.
+    if (left_.spacing == right_.spacing && !centre_)
+      return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * left_unit_;
+    return position(particle + 1) - position(particle);
+  }
+
+  T closing_speed(ParticleIndex particle) const override { return velocity(particle) - velocity(particle + 1); }
+
+  GapRange gaps_in_motion() const override { return {left_.count - 1, left_.count - (centre_ ? 0 : 1)}; }
+
+  T kinetic_energy() const override {
+    const T rows = left_mass() * left_.velocity * left_.velocity + right_mass() * right_.velocity * right_.velocity;
+    return (centre_ ? T(rows + centre_->mass * centre_->velocity * centre_->velocity) : rows) / T(2);
+  }
+  T momentum() const override {
+    const T rows = left_mass() * left_.velocity + right_mass() * right_.velocity;
+    return centre_ ? T(rows + centre_->mass * centre_->velocity) : rows;
+  }
+  T total_mass() const override {
+    const T rows = left_mass() + right_mass();
+    return centre_ ? T(rows + centre_->mass) : rows;
+  }
+  T mass_between(ParticleIndex from, ParticleIndex to) const override {
+    const bool centre = centre_ && from <= left_.count && left_.count < to;
+    return masses_.total(from, to) + (centre ? T(centre_->mass - masses_.of(left_.count)) : T(0));
+  }
+  T least_mass() const override {
+    const T rows = masses_.least();
+    return centre_ && centre_->mass < rows ? centre_->mass : rows;
+  }
+  T greatest_mass() const override {
+    const T rows = masses_.greatest();
+    return centre_ && rows < centre_->mass ? centre_->mass : rows;
+  }
+
+ private:
+  T left_mass() const { return masses_.total(0, left_.count); }
+  T right_mass() const { return masses_.total(count() - right_.count, count()); }
+  bool is_centre(ParticleIndex particle) const { return centre_ && particle == left_.count; }
+
+  // From the origin.
+  ParticleIndex half_steps(ParticleIndex particle) const {
+    return particle < left_.count ? 2 * (particle - left_.count) + 1
+                                  : 2 * (particle - left_.count - (centre_ ? 1 : 0)) + 1;
+  }
+
+  Row<T> left_, right_;
+  std::optional<CentralParticle<T>> centre_;
+  Displacement displacement_;
+  MassPattern<T> masses_;
+  T left_unit_, right_unit_;
+};
+
+// The paper's symmetric shock: `particles` particles, half of them in each row, closing in at plus and minus `speed`.
+// Throws std::invalid_argument for an odd number of them, too.
+template <Real T>
+Rows<T> symmetric_rows(ParticleIndex particles, const T& speed, const T& spacing, Displacement displacement,
+                       MassPattern<T> masses = {}) {
+  if (particles % 2 != 0)
+    throw std::invalid_argument("an odd number of particles for two equal rows (" + std::to_string(particles) +
+                                "): give an even one, or two rows of their own");
+  return {{particles / 2, speed, spacing},
+          {particles / 2, T(-speed), spacing},
+          std::nullopt,
+          std::move(displacement),
+          std::move(masses)};
+}
+
+}  // namespace cradle

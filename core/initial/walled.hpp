@@ -1,0 +1,102 @@
+#pragma once
+// Particles on a line with walls at one end or both (wall.hpp).
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "cradle/core/initial/particles.hpp"
+
+namespace cradle {
+
+template <Real T> class Walled final : public Particles<T> {
+ public:
+  // Throws std::invalid_argument for particles on a ring, walls that are not outside the particles, and numbers out of
+  // range.
+  Walled(std::shared_ptr<const Particles<T>> particles, std::optional<Wall<T>> left, std::optional<Wall<T>> right)
+      : particles_(std::move(particles)), left_(std::move(left)), right_(std::move(right)) {
+    if (particles_->on_ring())
+      throw std::invalid_argument("walls on a ring (circumference " + in_message(particles_->circumference()) +
+                                  "): leave them out, or give particles on a line");
+    if (left_) require_wall(*left_, "left"), require_outside(gap(-1), "left", left_->position, 0);
+    if (right_)
+      require_wall(*right_, "right"), require_outside(gap(count() - 1), "right", right_->position, count() - 1);
+  }
+
+  ParticleIndex count() const override { return particles_->count(); }
+  T position(ParticleIndex particle) const override {
+    return is_wall(particle) ? at(particle).position : particles_->position(particle);
+  }
+  T velocity(ParticleIndex particle) const override {
+    return is_wall(particle) ? at(particle).speed : particles_->velocity(particle);
+  }
+  T mass(ParticleIndex particle) const override { return particles_->mass(is_wall(particle) ? 0 : particle); }
+  bool identical_masses() const override { return particles_->identical_masses(); }
+  const Wall<T>* wall(End end) const override {
+    const auto& wall = end == End::left ? left_ : right_;
+    return wall ? &*wall : nullptr;
+  }
+
+  T gap(ParticleIndex particle) const override {
+    return is_wall(particle) || is_wall(particle + 1) ? T(position(particle + 1) - position(particle))
+                                                      : particles_->gap(particle);
+  }
+  T closing_speed(ParticleIndex particle) const override {
+    return is_wall(particle) || is_wall(particle + 1) ? T(velocity(particle) - velocity(particle + 1))
+                                                      : particles_->closing_speed(particle);
+  }
+  GapRange gaps_in_motion() const override {
+    const GapRange inner = particles_->gaps_in_motion(), all = this->gaps();
+    return {left_ ? all.first : inner.first, right_ ? all.last : inner.last};
+  }
+
+  T kinetic_energy() const override { return particles_->kinetic_energy(); }
+  T momentum() const override { return particles_->momentum(); }
+  T conserved_momentum() const override { return particles_->conserved_momentum(); }
+  T total_mass() const override { return particles_->total_mass(); }
+  T mass_between(ParticleIndex from, ParticleIndex to) const override { return particles_->mass_between(from, to); }
+  T least_mass() const override { return particles_->least_mass(); }
+  T greatest_mass() const override { return particles_->greatest_mass(); }
+  T rounded_place(ParticleIndex particle) const override {
+    return is_wall(particle) ? at(particle).position : particles_->rounded_place(particle);
+  }
+  // Walls give energy: a ledger for a million times as much as comes of them at once loses 20 of its spare bits.
+  T energy_to_lose() const override {
+    T twice_per_mass(0);
+    for (const auto* wall : {&left_, &right_})
+      if (*wall)
+        twice_per_mass += (*wall)->speed * (*wall)->speed + exactly<T>((*wall)->temperature / to_double(least_mass()));
+    return T(1 << 20) * (kinetic_energy() + total_mass() * twice_per_mass);
+  }
+
+ private:
+  bool is_wall(ParticleIndex particle) const { return particle < 0 || particle >= count(); }
+  const Wall<T>& at(ParticleIndex particle) const { return particle < 0 ? *left_ : *right_; }
+
+  static void require_wall(const Wall<T>& wall, const std::string& which) {
+    require_finite(wall.position, "position of the " + which + " wall");
+    require_finite(wall.speed, "speed of the " + which + " wall");
+    if (is_negative(wall.restitution) || T(1) < wall.restitution)
+      throw std::invalid_argument("restitution of the " + which + " wall is out of range (" +
+                                  in_message(wall.restitution) + "): give a number from 0 to 1");
+    if (!(wall.temperature >= 0 && wall.temperature <= std::numeric_limits<double>::max()))
+      throw std::invalid_argument("temperature of the " + which + " wall is negative or not finite (" +
+                                  std::to_string(wall.temperature) +
+                                  "): give a positive one, or 0 for a reflecting wall");
+  }
+  void require_outside(const T& gap, const std::string& which, const T& wall, ParticleIndex particle) const {
+    if (is_positive(gap)) return;
+    throw std::invalid_argument(
+        "the " + which + " wall is not outside the particles, which would have met it before the start (wall at " +
+        in_message(wall) + ", particle " + std::to_string(particle) + " at " +
+        in_message(particles_->position(particle)) + "): move it outwards");
+  }
+
+  std::shared_ptr<const Particles<T>> particles_;
+  std::optional<Wall<T>> left_, right_;
+};
+
+}  // namespace cradle

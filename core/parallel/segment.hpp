@@ -1,0 +1,157 @@
+#pragma once
+// One segment of a run (segments.hpp): the event loop over a copy of what the segment owns and of some ghosts on either
+// side, through a time slab, as if there were nothing beyond. What the copy is, what its cuts log and what goes
+// back is that of its chain: gap_segment.hpp, cluster_segment.hpp.
+//
+// Ties are not looked for at every collision. Of two collisions whose keys may belong to the same time, either the
+// second one is at the queue's root next, or it is beside the first one. If so, the segment begins its time slab again,
+// and compares exact times.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/notice.hpp"
+#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/engine/ledger.hpp"
+#include "cradle/core/engine/status.hpp"
+#include "cradle/core/engine/ties.hpp"
+
+namespace cradle {
+
+// The gaps that a segment owns, by slots of the chain, around the seam of a ring if need be.
+struct Own {
+  Slot first;
+  std::size_t gaps;
+};
+
+// What a segment has made of a time slab. Parts add what they hand back to their chain.
+template <Real T, class CutCollision> struct SegmentReport {
+  bool plain = false;         // a time slab for the plain loop
+  bool nothing_left = false;  // what the segment owned has merged with what others own
+  Counts counts;
+  T last_collision{0};  // if there was one
+  Ledger<T> lost;
+  std::vector<CutCollision> left, right;  // at the cuts on either side
+};
+
+// A collision in a segment, and whether it is at a gap of the segment's own.
+template <Real T> struct OwnedResult {
+  CollisionResult<T> collision;
+  bool own;
+};
+
+// The part of a chain that a segment works on.
+template <class Chain> struct PartOf;
+
+template <class Law, class Chain> class Segment {
+ public:
+  using T = typename Chain::Scalar;
+  using Part = typename PartOf<Chain>::Type;
+  using Report = typename Part::Report;
+
+  explicit Segment(const Chain& chain) : part_(chain), queue_(16, Chain::keys_are_exact) {}
+
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on a copy of a part of the chain, and puts
+  // what is the segment's own into `after`, at the chain's slots. Several segments of one chain may do so at once.
+  void run(const Chain& chain, const Law& law, const Own& own, std::size_t ghosts, const T& stop, std::uint64_t most,
+           typename Chain::Line::Gaps& after, Report& report) {
+    if (!begin(chain, own, ghosts, report)) return;
+    Made made = make_collisions<false>(law, stop, most, report);
+    if (made == Made::contested) {
+      begin(chain, own, ghosts, report);
+      made = make_collisions<true>(law, stop, most, report);
+    }
+    report.plain = made == Made::for_plain;
+    if (!report.plain && !report.nothing_left) part_.give(chain, own, after, report);
+  }
+
+ private:
+  enum class Made { all, contested, for_plain };
+
+  // Takes what is to be computed; false if there is nothing.
+  bool begin(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
+    report.left.clear(), report.right.clear();
+    report.nothing_left = report.plain = false;
+    report.counts = {};
+    const bool some = part_.take(chain, own, ghosts, report);
+    if (some) fill_queue();
+    return some;
+  }
+  void fill_queue() {
+    const std::size_t slots = part_.last() + 3;
+    if (queue_.slots() < slots || queue_.slots() > 4 * slots) queue_ = EventQueue(slots, Chain::keys_are_exact);
+    queue_.clear();
+    for (Slot s = part_.first(); s <= part_.last(); ++s) queue_.set(s, part_.queue_key(s));
+    queue_.rebuild(part_.first(), part_.last());
+    ties_.forget();
+  }
+  // What the plain loop looks after.
+  static bool is_for_plain(Notice notice) {
+    return includes(notice, Notice::origin_must_move) || includes(notice, Notice::gap_below_floor) ||
+           includes(notice, Notice::needs_slots);
+  }
+
+  // The event loop of a segment.
+  template <bool exact> Made make_collisions(const Law& law, const T& stop, std::uint64_t most, Report& report) {
+    const double latest = part_.queue_time(stop);
+    const EventQueue::Key certainly_before = queue_.certainly_before(latest);
+    const EventQueue::Key possibly_before = queue_.possibly_before(latest);
+    EventQueue::Key passed = 0;  // of the collision before: all that may be at the same time
+    T time = T(0);
+    Slot before = 0;  // slot of the collision before
+    Counts counts;
+    const auto end = [&](Made made) {
+      report.counts = counts;
+      return made;
+    };
+    for (std::uint64_t made = 0; made < most; ++made) {
+      const EventQueue::Key next = queue_.next();
+      Slot s = queue_.slot(next);
+      if (next >= certainly_before) [[unlikely]] {
+        if (next > possibly_before) return end(Made::all);
+        const bool contested = queue_.contested();
+        if (contested && !exact) return Made::contested;
+        if (contested) s = ties_.first(queue_, part_, made);
+        if (!(part_.due(s) <= stop)) return end(Made::all);
+      }
+      if constexpr (exact) {
+        if (queue_.contested()) {
+          if (part_.across_seam()) return Made::for_plain;  // positions are not in order there
+          s = ties_.first(queue_, part_, made);
+        }
+        const T now = part_.due(s);
+        if (made > 0 && (now < time || (now == time && s < before))) return Made::for_plain;
+        time = now;
+        before = s;
+      } else {
+        if (next <= passed || queue_.close(next, part_.left(s)) || queue_.close(next, part_.right(s)))
+          return Made::contested;
+        passed = queue_.no_later_than(next);
+        time = part_.due(s);
+      }
+      const auto [collision, own] = part_.collide(law, s, time, report);
+      queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
+      const Outcome<T>& outcome = collision.outcome;
+      if (collision.notice != Notice::none && is_for_plain(collision.notice)) [[unlikely]]
+        return Made::for_plain;
+      if (own || !Ledger<T>::in_any_order) part_.lose(s, outcome.energy_lost);
+      if (!own) [[unlikely]] {
+        if (report.nothing_left) return end(Made::all);
+        continue;
+      }
+      ++counts.collisions;
+      counts.below_cutoff += outcome.below_cutoff;
+      counts.merges += outcome.event == Event::merge;
+      report.last_collision = time;
+    }
+    return Made::for_plain;
+  }
+
+  Part part_;
+  EventQueue queue_;
+  Ties<Part> ties_;
+};
+
+}  // namespace cradle

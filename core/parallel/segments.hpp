@@ -1,0 +1,266 @@
+#pragma once
+// One run in segments: parts of the line that go through a time slab each alone, on several threads or, on one, in
+// the caches next to the processor. The result is that of the plain loop, bit for bit.
+//
+// Why it is exact. A collision at the gap i reads and changes the gaps i - 1, i and i + 1, and every gap has a local
+// time of its own: what becomes of a gap depends on the collisions at it and beside it, in their order, and on nothing
+// else. A segment owns the gaps from one cut to the next and is computed on a copy of them with some ghosts on either
+// side, gaps of its neighbours as they were when the time slab began. What lies beyond the ghosts is missing, and what
+// is wrong for that reason moves inwards by one gap per collision at most. At each cut both sides keep a log of the
+// collisions at the last gap before it and the first one behind it: which of the two, exact time, closing speed.
+//
+//   If both logs of every cut are the same, the owned gaps of all segments together are those of the plain loop.
+//
+// For let both sides make their collisions in increasing order of (exact time, position), as is made sure of below, and
+// let the plain loop have made some collisions like them. It takes the first of those pending, at a gap that one side
+// owns, A say. There all gaps that A owns and the first one behind its cut have had the same collisions, so the
+// collision is pending in A as well, and is the next that A makes at a gap it owns, unless A makes one behind the cut
+// before it. That one is in the log, hence the next of the other side's there, at an earlier time than the plain
+// loop's: B, which makes collisions in order, has it pending already, and so has the plain loop, which would have taken
+// it. So the plain loop goes on like the segments, to the end of the time slab.
+//
+// What a time slab must not contain is left to the plain loop, which goes through that time slab instead: collisions
+// out of order (a gap below zero), a collision after which the origin moves, or a gap falls below the floor. Where logs
+// differ the segments on either side of the cut are joined and computed again, until no logs differ. None of this shows
+// in the result; how long time slabs are, where the cuts lie, and how many ghosts there are, is chosen for speed alone.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/parallel/cluster_segment.hpp"
+#include "cradle/core/parallel/gap_segment.hpp"
+#include "cradle/core/parallel/workers.hpp"
+
+namespace cradle {
+
+// How segments are made. What is chosen here shows in how long a run takes, never in what it gives.
+struct Segmentation {
+  std::size_t gaps = 2800;  // owned by a segment, about
+  std::size_t ghosts = 64;  // on either side
+  double collisions = 0;    // per gap in a time slab; 0: as many as do well
+  bool anywhere = false;    // also where the plain loop is sure to be quicker
+};
+
+// Goes through time slabs in segments.
+template <class Law, class Chain>
+requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
+ public:
+  using T = typename Chain::Scalar;
+
+  explicit Segments(Workers workers = {}, Segmentation how = {})
+      : workers_(std::move(workers)), how_(how), segments_(workers_.count) {
+    how_.gaps = std::max<std::size_t>(how_.gaps, 1);
+    how_.ghosts = std::max<std::size_t>(how_.ghosts, 1);  // a cut has a gap on either side
+  }
+
+  // What a time slab has made.
+  struct Slab {
+    Counts counts;
+    T last_collision{0};
+  };
+
+  struct Statistics {
+    std::uint64_t slabs = 0, given_up = 0;  // made in segments; begun so, and left to the plain loop
+    std::uint64_t collisions = 0;           // in the former
+    std::uint64_t again = 0;                // collisions of joined segments
+    std::uint64_t largest = 0;              // collisions of the largest segment of each time slab, summed up
+  };
+  const Statistics& statistics() const { return statistics_; }
+
+  // Collisions to be made in the plain loop before the next time slab, where about so many are to come before the run
+  // stops or the epoch ends; none are if there are to be no time slabs.
+  std::uint64_t plain_collisions(const Chain& chain, double ahead) {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    if (!(ahead > 0)) return 64;
+    const std::size_t middle = (chain.first() + chain.last()) / 2;
+    if (!chain.fronts_are_within(middle, middle) || (chain.on_ring() && segments(chain, held) < 2)) return 256;
+    // A time slab looks at every gap.
+    if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64 + 1;
+    return std::exchange(plain_, 0);
+  }
+  // Where the next time slab should end, with so many collisions ahead up to `stop`.
+  T end(const Chain& chain, const T& from, const T& stop, double ahead) const {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    const double slabs = std::ceil(ahead / (per_gap_ * static_cast<double>(held)));
+    if (!(slabs > 1)) return stop;
+    return from + (stop - from) / T(static_cast<std::int64_t>(std::min(slabs, 0x1p40)));
+  }
+
+  // Makes all collisions up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain
+  // loop.
+  std::optional<Slab> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most) {
+    if (chain.cramped(how_.ghosts)) {
+      chain.make_room();
+      weights_.clear();
+    }
+    cut(chain);
+    if (!chain.fronts_are_within(own_.front().first + own_.front().gaps - 1, own_.back().first)) return give_up(chain);
+    // Anew where slots have become fewer: what is left in spare ones would name slots that there are no more.
+    if (!after_ || after_->slots() > chain.slots()) after_.emplace(chain.start(), T(1));
+    after_->resize(chain.slots());
+    std::vector<std::size_t> todo(own_.size());
+    std::iota(todo.begin(), todo.end(), std::size_t{0});
+    std::uint64_t again = 0, all = 0;
+    for (bool first = true; !todo.empty(); first = false) {
+      workers_.run(todo.size(), [&](std::size_t job, std::size_t worker) {
+        if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<Law, Chain>>(chain);
+        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, most, *after_, reports_[todo[job]]);
+      });
+      for (const std::size_t k : todo) {
+        if (reports_[k].plain) return give_up(chain);
+        (first ? all : again) += reports_[k].counts.collisions;
+      }
+      todo = join(chain);
+      if (own_.size() < 2 && !todo.empty()) return give_up(chain);
+    }
+    Slab slab;
+    std::uint64_t largest = 0;
+    bool first = true;
+    for (const Report& report : reports_) {
+      largest = std::max(largest, report.counts.collisions);
+      slab.counts += report.counts;
+      if (report.counts.collisions > 0 && (first || slab.last_collision < report.last_collision)) {
+        slab.last_collision = report.last_collision;
+        first = false;
+      }
+    }
+    if (slab.counts.collisions >= most || !Segment<Law, Chain>::Part::continue_with(chain, *after_, reports_))
+      return give_up(chain);
+    for (const Report& report : reports_) chain.lose(report.lost);
+    statistics_.slabs += 1;
+    statistics_.collisions += slab.counts.collisions;
+    statistics_.again += again;
+    statistics_.largest += largest;
+    adapt(chain, static_cast<double>(again) / static_cast<double>(all + 1));
+    return slab;
+  }
+
+ private:
+  using Report = typename Segment<Law, Chain>::Report;
+  static constexpr double least_per_gap = 1. / 8;
+
+  std::optional<Slab> give_up(const Chain& chain) {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    ++statistics_.given_up;
+    failed_ = true;
+    patience_ = std::min<std::size_t>(2 * patience_ + 1, 63);
+    plain_ = patience_ * held;
+    per_gap_ = std::max(per_gap_ / 2, least_per_gap);
+    return {};
+  }
+  void adapt(const Chain& chain, double again) {
+    patience_ /= 2;
+    failed_ = failed_ || again > 0;
+    per_gap_ *= again > 0 ? std::max(0.5, 1 - 10 * again) : failed_ ? 1.01 : 1.3;
+    per_gap_ = std::min(std::max(per_gap_, least_per_gap), how_.collisions > 0 ? how_.collisions : 8);
+    weights_.clear();
+    for (std::size_t k = 0; k < own_.size(); ++k)
+      weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.collisions});
+  }
+
+  // How many segments so many gaps make: as many for each thread. A ring has two cuts at least.
+  std::size_t segments(const Chain& chain, std::size_t held) const {
+    const std::size_t threads =
+        how_.anywhere ? workers_.count : std::max<std::size_t>(1, std::min(workers_.count, held / gaps_per_thread));
+    const std::size_t each = (held + threads * how_.gaps / 2) / (threads * how_.gaps);
+    const std::size_t least = chain.on_ring() && held >= 2 * gaps_per_thread ? 2 : 1;
+    return std::max(least, std::min(threads * std::max<std::size_t>(each, 1), held / 2));
+  }
+
+  // Cuts the line into segments of about as many collisions each, by those of the time slab before; gaps count for a
+  // quarter of a mean gap's collisions, so that no segment gets too long.
+  void cut(const Chain& chain) {
+    const std::size_t held = chain.last() + 1 - chain.first();
+    const std::size_t count = segments(chain, held);
+    own_.clear();
+    double collisions = 0;
+    for (const Weight& weight : weights_) collisions += static_cast<double>(weight.collisions);
+    if (!(collisions > 0)) weights_.clear();
+    // Weight of a gap: 1 where nothing is known.
+    const double per_collision = 0.8 * static_cast<double>(held) / collisions;
+    const double share = 1. / static_cast<double>(count);
+    Slot from = chain.first(), slot = from;
+    double passed = 0;                                 // of the whole weight, up to `slot`
+    const auto extend = [&](Slot to, double weight) {  // gaps up to `to` have so much of it each
+      while (slot < to && own_.size() + 1 < count) {
+        const double wanted = (share * static_cast<double>(own_.size() + 1) - passed) / weight;
+        const auto gaps = static_cast<std::size_t>(std::max(1., std::ceil(wanted)));
+        if (slot + gaps > to) break;
+        slot += gaps;
+        passed += static_cast<double>(gaps) * weight;
+        own_.push_back({from, slot - from});
+        from = slot;
+      }
+      if (slot < to) passed += static_cast<double>(to - slot) * weight, slot = to;
+    };
+    const double gap = 1. / static_cast<double>(held);
+    for (const Weight& weight : weights_) {
+      const ParticleIndex begin = std::max(weight.place, chain.place(chain.first()));
+      const ParticleIndex end =
+          std::min(weight.place + static_cast<ParticleIndex>(weight.gaps), chain.place(chain.last()) + 1);
+      if (end <= begin || chain.place(slot) > begin) continue;
+      const Slot at = chain.first() + static_cast<Slot>(begin - chain.place(chain.first()));
+      extend(at, gap);
+      extend(at + static_cast<Slot>(end - begin),
+             gap * (0.2 + per_collision * static_cast<double>(weight.collisions) / static_cast<double>(weight.gaps)));
+    }
+    extend(chain.last() + 1, gap);
+    own_.push_back({from, chain.last() + 1 - from});
+    reports_.resize(own_.size());
+  }
+
+  // Joins segments whose logs differ, and says which are to be made again; the only one where no cut is left.
+  std::vector<std::size_t> join(const Chain& chain) {
+    const std::size_t count = own_.size();
+    std::vector<char> kept(count);  // the cut on the left of each
+    for (std::size_t k = 0; k < count; ++k) {
+      const Report &left = reports_[(k + count - 1) % count], &right = reports_[k];
+      kept[k] = (k == 0 && !chain.on_ring()) || (!left.nothing_left && !right.nothing_left && left.right == right.left);
+    }
+    // On a ring begin behind a cut that is kept.
+    const auto begin = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), 1) - kept.begin());
+    if (begin == count) return own_.resize(1), std::vector<std::size_t>{0};
+    std::vector<std::size_t> again;
+    std::vector<Own> own;
+    std::vector<Report> reports;
+    for (std::size_t j = 0; j < count; ++j) {
+      const std::size_t k = (begin + j) % count;
+      if (kept[k]) {
+        own.push_back(own_[k]);
+        reports.push_back(std::move(reports_[k]));
+      } else {
+        own.back().gaps += own_[k].gaps;
+        if (again.empty() || again.back() + 1 != own.size()) again.push_back(own.size() - 1);
+      }
+    }
+    own_ = std::move(own);
+    reports_ = std::move(reports);
+    return again;
+  }
+
+  Workers workers_;
+  Segmentation how_;
+  Statistics statistics_;
+  double per_gap_ = 4;   // collisions that a time slab is to have
+  bool failed_ = false;  // whether a cut ever has
+  std::size_t patience_ = 0;
+  std::uint64_t plain_ = 0;  // collisions
+  struct Weight {
+    ParticleIndex place;  // of the first gap
+    std::size_t gaps;
+    std::uint64_t collisions;
+  };
+  std::vector<Weight> weights_;                                 // of the last time slab
+  std::vector<std::unique_ptr<Segment<Law, Chain>>> segments_;  // one for each worker
+  std::vector<Own> own_;
+  std::vector<Report> reports_;
+  std::optional<typename Chain::Line::Gaps> after_;  // the chain's gaps after the time slab
+};
+
+}  // namespace cradle

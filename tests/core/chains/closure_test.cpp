@@ -1,0 +1,99 @@
+// The closure error of laws by which particles merge or pass. Proves: as long as both rows have particles that have not
+// collided it is measured, against the flights that those are known to have; so it is on a ring; where it is not
+// measured there is no number. Two threads may read a chain at once.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/rational.hpp"
+
+namespace closure_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+// The distance of the outermost particles seen minus the sum of the gaps between, in long double: as velocities are 1/2
+// and times short, the places are exact in it, and n gaps add up to n/2 units of 2^-64 times their sum.
+TEST(Closure, IsMeasuredWhileRowsLast) {
+  const auto rows = rshock<double>(20000);
+  Simulation run(Wet<double>(0.05), ClusterChain<double>(rows, 0.));
+  double largest = 0;
+  for (double t = 250; t <= 8000; t += 250) {
+    ASSERT_EQ(run.advance(t), Status::reached);
+    const auto c = run.configuration(t);
+    ASSERT_TRUE(c.closure_gap.has_value()) << t;
+    EXPECT_FALSE(c.closure_speed.has_value()) << "closing speeds are differences of velocities";
+    const auto place = [&](ParticleIndex b) {
+      return static_cast<long double>(rows->position(b)) + static_cast<long double>(rows->velocity(b)) * t;
+    };
+    long double missing = place(c.to) - place(c.from), way = 0;
+    for (const double gap : c.gap) way += gap;
+    missing -= way;
+    const double rounding = static_cast<double>(static_cast<long double>(c.gap.size() + 2) * 0x1p-64L * way);
+    EXPECT_NEAR(*c.closure_gap, static_cast<double>(missing), rounding) << t;
+    largest = std::max(largest, std::abs(*c.closure_gap));
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_LT(largest, 1e-10);
+}
+
+TEST(Closure, IsZeroInExactArithmetic) {
+  Simulation run(Sticky<Rational>{}, ClusterChain<Rational>(rshock<Rational>(60), Rational(0)));
+  for (int t = 3; t <= 27; t += 3) {
+    ASSERT_EQ(run.advance(Rational(t)), Status::reached);
+    const auto c = run.configuration(Rational(t));
+    ASSERT_TRUE(c.closure_gap.has_value()) << t;
+    EXPECT_EQ(*c.closure_gap, 0);
+  }
+}
+
+TEST(Closure, IsNoNumberWhereNothingMeasuresIt) {
+  const auto rows = rshock<double>(100);
+  Simulation run(Wet<double>(0.05), ClusterChain<double>(rows, 0.));
+  run.advance(400);  // both rows are used up
+  EXPECT_FALSE(run.configuration(400).closure_gap.has_value());
+  auto positions = position_run(rows, Inelastic<double>(0.9, 1e-3));
+  positions.advance(20);
+  EXPECT_FALSE(positions.configuration(20).closure_gap.has_value()) << "gaps are differences of positions";
+  EXPECT_FALSE(positions.configuration(20).closure_speed.has_value());
+  StickyGas<double> gas(rows, 0.);
+  gas.advance(20);
+  EXPECT_FALSE(gas.configuration(20).closure_gap.has_value());
+  EXPECT_FALSE(gas.configuration(20).closure_speed.has_value());
+}
+
+TEST(Closure, IsMeasuredOnARing) {
+  const auto ring =
+      std::make_shared<Ring<double>>(200, 200., 1., gaussian_velocity(1, 0), uniform_displacement(0.1, 1, 0));
+  Simulation run(Wet<double>(0.1), ClusterChain<double>(ring, 0.));
+  run.advance(30);
+  const auto c = run.configuration(30);
+  long double way = 0;
+  for (const double gap : c.gap) way += gap;
+  ASSERT_TRUE(c.closure_gap.has_value());
+  EXPECT_NEAR(*c.closure_gap, static_cast<double>(200 - way), 200 * std::numeric_limits<double>::epsilon());
+  EXPECT_FALSE(c.closure_speed.has_value());
+}
+
+// Reading is const and means it: under ThreadSanitizer a cache that two readers fill is a race.
+TEST(Reading, ByTwoThreadsAtOnce) {
+  const auto ring =
+      std::make_shared<Ring<double>>(200, 200., 1., gaussian_velocity(1, 0), uniform_displacement(0.1, 1, 0));
+  for (const Scene<double>& particles : {Scene<double>(ring), rshock<double>(100)}) {
+    Simulation run(Wet<double>(0.05), ClusterChain<double>(particles, 0.));
+    run.advance(400);
+    Configuration<double> seen[2];
+    std::thread other([&] { seen[1] = run.configuration(400); });
+    seen[0] = run.configuration(400);
+    other.join();
+    EXPECT_TRUE(identical(seen[0], seen[1]));
+  }
+}
+
+}  // namespace closure_test

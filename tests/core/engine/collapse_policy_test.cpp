@@ -1,0 +1,199 @@
+// What a run does about inelastic collapse, on three particles whose collapse time t_c is known in closed form
+// (McNamara and Young, Phys. Fluids A 4, 496 (1992)). Proves: policy stop settles t_c to 15 digits from collisions that
+// a plain clock can still tell apart, two thirds of them where the collapse is slow, or follows the collapse down to
+// any gap asked for; without a policy, and in absolute positions, the run ends by itself, says why, and keeps account
+// of what it could not resolve.
+#include <gtest/gtest.h>
+
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace collapse_policy_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+struct Reference {
+  double restitution, collapse_time;
+  std::uint64_t passes_e16, passes_e34, passes_e100;  // collision at which the gap is first below 1e-16, ...
+  std::uint64_t plain_clock_stops;                    // last collision that moves it, in double
+
+  friend void PrintTo(const Reference& r, std::ostream* out) { *out << "eps=" << r.restitution; }
+};
+const Reference references[] = {{.05, 12. / 7, 18, 38, 111, 31},
+                                {.01, 1.6736937682559527405521559675475, 11, 21, 61, 13},
+                                {1. / 16, 1.7377984054260977582367587110959, 22, 45, 133, 49}};
+
+Scene<double> three_particles() { return list<double>({0, 1, 3}, {1, 0, -1}); }
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+class CollapsePolicies : public testing::TestWithParam<Reference> {
+ protected:
+  Inelastic<double> law() const { return Inelastic(GetParam().restitution); }
+  auto stopping_run(double stop_gap) const {
+    return gap_run(three_particles(), law(), {CollapsePolicy::stop, stop_gap, {}});
+  }
+};
+INSTANTIATE_TEST_SUITE_P(ThreeParticles, CollapsePolicies, testing::ValuesIn(references));
+
+TEST_P(CollapsePolicies, PlainClockStandsStillEarly) {
+  double t = 0;
+  std::uint64_t collisions = 0, moved_last = 0;
+  auto run = stopping_run(1e-100);
+  run.advance(2, [&](const Collision<double>& collision) {
+    ++collisions;
+    if (t + collision.interval > t) moved_last = collisions;
+    t += collision.interval;
+  });
+  EXPECT_EQ(moved_last, GetParam().plain_clock_stops);
+}
+
+TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
+  auto run = stopping_run(0);
+  ASSERT_EQ(run.advance(1e6), Status::collapsed);
+  const CollapseReport<double>& report = run.collapse();
+  ASSERT_TRUE(report.settled);
+  // Settled by the second collision, after at most six roundings each of a gap, of speeds and of time, none of which
+  // acts on t_c by more than a factor 3: t_c = 1 + g/(w - k u), g = u = 1 and w - k u > 1.
+  EXPECT_NEAR(report.time.value(), GetParam().collapse_time, 2 * epsilon * GetParam().collapse_time);
+  EXPECT_LE(std::abs(report.time.value() - GetParam().collapse_time), report.uncertainty);
+  EXPECT_LE(report.uncertainty, 27 * epsilon);
+  EXPECT_LE(run.counts().collisions, GetParam().plain_clock_stops);
+  // Intervals between collisions at the same gap span two collisions.
+  const double plus_minus = 1 + GetParam().restitution, a = plus_minus / 2;
+  const double root = std::sqrt(a * a - 4 * GetParam().restitution), factor = (a - root) / (a + root);
+  EXPECT_NEAR(report.ratio, factor * factor, report.ratio_uncertainty + 4 * epsilon * factor * factor);
+  EXPECT_LE(report.ratio_uncertainty, 1e3 * epsilon * factor * factor);
+  EXPECT_EQ(report.last_collision, run.last_collision_time());
+  EXPECT_LE(report.last_collision, report.time.value());
+}
+
+TEST_P(CollapsePolicies, StopAtAGapMakesExactlyTheCollisionsItTakes) {
+  const std::pair<double, std::uint64_t> decades[] = {
+      {1e-16, GetParam().passes_e16}, {1e-34, GetParam().passes_e34}, {1e-100, GetParam().passes_e100}};
+  for (const auto& [gap, collisions] : decades) {
+    auto run = stopping_run(gap);
+    ASSERT_EQ(run.advance(1e6), Status::collapsed) << gap;
+    EXPECT_EQ(run.counts().collisions, collisions) << gap;
+    EXPECT_LT(run.collapse().gap, gap);
+    EXPECT_GT(run.collapse().gap, 0) << gap;
+  }
+}
+
+TEST_P(CollapsePolicies, StopReachesGapsAtTheEndOfTheRange) {
+  auto run = stopping_run(1e-290);
+  ASSERT_EQ(run.advance(1e6), Status::collapsed);
+  EXPECT_LT(run.collapse().gap, 1e-290);
+  EXPECT_GT(run.collapse().gap, 1e-290 / 256);  // a collision takes it down by lam- > 1/50
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+TEST_P(CollapsePolicies, WithoutAPolicyTheRunEndsWhereGapsUnderflow) {
+  auto run = gap_run(three_particles(), law());
+  ASSERT_EQ(run.advance(1e6), Status::exhausted);
+  const double underflow = std::numeric_limits<double>::min() / epsilon;
+  const double gap = run.chain().nearest_gap(run.chain().first()) < run.chain().nearest_gap(run.chain().last())
+                         ? run.chain().nearest_gap(run.chain().first())
+                         : run.chain().nearest_gap(run.chain().last());
+  EXPECT_LT(gap, underflow);
+  EXPECT_NEAR(run.last_collision_time(), GetParam().collapse_time, 2 * epsilon * GetParam().collapse_time);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+TEST_P(CollapsePolicies, CutoffLetsTheParticlesPart) {
+  // Below the cut-off the three particles are elastic and separate after at most three more collisions.
+  auto run = gap_run(three_particles(), Inelastic<double>(GetParam().restitution, 1e-5));
+  ASSERT_EQ(run.advance(1e6), Status::reached);
+  EXPECT_GT(run.counts().below_cutoff, 0U);
+  EXPECT_LE(run.counts().below_cutoff, 3U);
+}
+
+TEST_P(CollapsePolicies, InterruptEndsTheRunAfterTheCurrentCollision) {
+  std::uint64_t calls = 0;
+  auto run = gap_run(three_particles(), law(), {CollapsePolicy::cutoff, 0, [&] { return ++calls == 5; }});
+  ASSERT_EQ(run.advance(1e6), Status::interrupted);
+  EXPECT_EQ(calls, 5U);
+  EXPECT_GE(run.counts().collisions, 5U);
+  const auto made = run.counts().collisions;
+  // Goes on where it stopped.
+  ASSERT_EQ(run.advance(1e6), Status::exhausted);
+  EXPECT_GT(run.counts().collisions, made);
+}
+
+// Positions near 1 resolve gaps of 1e-16 only: the run must end nonetheless, with an account of it, and no further from
+// t_c than it was when positions began to lose the gaps. A collapse time that it gives is right to what it says.
+TEST_P(CollapsePolicies, PositionsEndWithAnAccount) {
+  for (const CollapsePolicy policy : {CollapsePolicy::cutoff, CollapsePolicy::stop}) {
+    auto run = position_run(three_particles(), law(), {policy, 0, {}});
+    const bool settles = policy == CollapsePolicy::stop;
+    ASSERT_EQ(run.advance(1e6), settles ? Status::collapsed : Status::exhausted);
+    if (settles) {
+      ASSERT_TRUE(run.collapse().settled);
+      EXPECT_NEAR(run.collapse().time.value(), GetParam().collapse_time, run.collapse().uncertainty);
+      EXPECT_LE(run.collapse().uncertainty, 1e6 * epsilon);
+    }
+    const Account<double>& account = run.chain().account();
+    if (settles) continue;
+    EXPECT_GT(account.unresolved, 0U);
+    EXPECT_LT(account.first_unresolved.gap, 1e6 * epsilon * 2);
+    EXPECT_GT(account.first_unresolved.time, 1);
+    EXPECT_LE(account.first_unresolved.time, GetParam().collapse_time + 2 * epsilon);
+    EXPECT_NEAR(run.last_collision_time(), GetParam().collapse_time,
+                GetParam().collapse_time - account.first_unresolved.time);
+    EXPECT_EQ(account.order_lost, 0U);
+  }
+}
+
+// Three particles at one place at one time, soft enough to collapse: collisions follow each other without end while
+// time stands still. The run must notice, whatever the policy.
+TEST(CollapsePolicies, TripleCollisionWithoutEndIsNoticed) {
+  const auto particles = list<double>({0, 1, 2}, {1, 0, -1});
+  for (const CollapsePolicy policy : {CollapsePolicy::cutoff, CollapsePolicy::stop}) {
+    auto run = gap_run<double>(particles, Inelastic(0.05), {policy, 0, {}});
+    EXPECT_EQ(run.advance(2), Status::exhausted);
+    EXPECT_EQ(run.last_collision_time(), 1);
+    EXPECT_GT(run.chain().account().simultaneous, 0U);
+    auto in_positions = position_run<double>(particles, Inelastic(0.05), {policy, 0, {}});
+    EXPECT_EQ(in_positions.advance(2), Status::exhausted);
+  }
+}
+
+TEST(CollapsePolicies, TripleCollisionThatEndsIsResolvedFromTheLeft) {
+  // eps = 0.5: p_n = 1, 7/4, 13/16, -17/64 for left, right, left: by hand from p_{n+1} = 3/4 p_n - p_{n-1}/2.
+  auto run = gap_run<double>(list<double>({0, 1, 2}, {1, 0, -1}), Inelastic(0.5));
+  std::vector<std::pair<ParticleIndex, double>> collisions;
+  ASSERT_EQ(run.advance(2, [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.closing_speed); }),
+            Status::reached);
+  const std::vector<std::pair<ParticleIndex, double>> expected{{0, 1}, {1, 1.75}, {0, .8125}};
+  EXPECT_EQ(collisions, expected);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+// A light particle between two heavy ones: its closing speed tends to the heavy ones' speed over 1 - eps and never
+// falls below the cut-off, while the gaps shrink by a constant factor a collision, 1e5 collisions long.
+TEST(CollapsePolicies, CutoffDoesNotEndEveryCollapse) {
+  auto run = mass_run<double>(list<double>({0, 1, 3}, {1, 0, -1}, {1e6, 1, 1e6}), Inelastic(0.8, 1e-4));
+  EXPECT_EQ(run.advance(2), Status::exhausted);
+  EXPECT_EQ(run.counts().below_cutoff, 0U);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+// Many particles collapse in no steady pattern, of which nothing is proved: the run follows them to the end of the
+// range of double, and says that it ends there.
+TEST(CollapsePolicies, WhatIsNotProvedEndsWithTheRange) {
+  auto run = gap_run(rshock<double>(100), Inelastic<double>(0.5), {CollapsePolicy::stop, 0, {}});
+  ASSERT_EQ(run.advance(1e6), Status::exhausted);
+  EXPECT_FALSE(run.collapse().settled);
+  EXPECT_LT(run.collapse().gap, std::numeric_limits<double>::min());
+  EXPECT_GT(run.collapse().gap, 0);
+  EXPECT_EQ(run.chain().account().order_lost, 0U);
+}
+
+// Particles squeezed between dense clusters shrink their intervals by 2^40 and more, then part: near the elastic limit
+// the run in double and the run in more digits both go on (seen at t = 63.0 and 67.0 of this scene).
+TEST(CollapsePolicies, SqueezedParticlesAreNotTakenForACollapse) {
+  auto run = gap_run(rshock<double>(100), Inelastic(0.9), {CollapsePolicy::stop, 0, {}});
+  EXPECT_EQ(run.advance(63.5), Status::reached);
+}
+
+}  // namespace collapse_policy_test

@@ -1,0 +1,114 @@
+// When a run says that it collapses. Proves, on three particles, on four in the checkerboard pattern and on two and a
+// wall, on either side of the greatest restitution that collapses, 7 - 4 sqrt 3 or 3 - 2 sqrt 2: above it none is
+// reported, below it that of two gaps is, with t_c by the closed form and an error that holds; the ratio's too. A law
+// with a cut-off and particles that others reach in time have none. A run that no longer advances ends, by a rule that
+// knows no exponents.
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/theory/inelastic_collapse.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace collapse_proof_test {
+
+using namespace cradle;
+using namespace cradle::test;
+using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>, boost::multiprecision::et_off>;
+
+Policy<double> stop() {
+  Policy<double> policy;
+  policy.collapse = CollapsePolicy::stop;
+  return policy;
+}
+
+struct Family {
+  const char* name;
+  int particles;  // of the pattern; a wall is a mirror
+  bool wall;
+  friend void PrintTo(const Family& f, std::ostream* out) { *out << f.name; }
+};
+class Thresholds : public testing::TestWithParam<Family> {
+ protected:
+  static Wide limit() {
+    const Wide two(2), three(3);
+    return GetParam().particles == 3 ? Wide(Wide(7) - Wide(4) * sqrt(three)) : Wide(three - two * sqrt(two));
+  }
+  // In all of them the first collision is at t = 1, of gaps that close at 1, with the others then 1 wide and closing at
+  // 1 in proportion to sin(pi k/n).
+  static auto run(double restitution) {
+    const Inelastic<double> law(restitution);
+    if (GetParam().particles == 3) return mass_run(list<double>({0, 1, 3}, {1, 0, -1}), law, stop());
+    if (!GetParam().wall) return mass_run(list<double>({0, 1, 3, 4}, {1.5, 0.5, -0.5, -1.5}), law, stop());
+    Wall<double> wall{0};
+    wall.restitution = restitution;
+    const Scene<double> walled =
+        std::make_shared<Walled<double>>(list<double>({1, 2}, {-0.5, -1.5}), wall, std::nullopt);
+    return mass_run(walled, law, stop());
+  }
+  static Wide coupling(const Wide& e) {
+    const Wide four(4), two(2);
+    return (1 + e) * (GetParam().particles == 3 ? Wide(1 / two) : Wide(sqrt(two) / 2));
+  }
+  static std::optional<Wide> collapse_time(const Wide& e) {
+    const Wide p0 = GetParam().particles == 3 ? Wide(1) : Wide(sqrt(Wide(2)));
+    return theory::collapse_time(e, coupling(e), Wide(1), p0, Wide(1), Wide(1 + coupling(e) * p0));
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Collapse, Thresholds,
+                         testing::Values(Family{"three", 3, false}, Family{"four", 4, false}, Family{"wall", 4, true}));
+
+TEST_P(Thresholds, NoneIsReportedThatIsNone) {
+  for (int power = 3; power <= 9; ++power)
+    for (const int side : {-1, 1}) {
+      const double e = static_cast<double>(Wide(limit() + side * pow(Wide(10), -power)));
+      const auto exact = collapse_time(Wide(e));
+      ASSERT_EQ(exact.has_value(), side < 0);
+      auto run = Thresholds::run(e);
+      const Status status = run.advance(1e6);
+      SCOPED_TRACE(testing::Message() << "eps " << e << ", side " << side << ", 1e-" << power);
+      EXPECT_EQ(status == Status::collapsed, run.collapse().settled);
+      if (side > 0) {
+        EXPECT_NE(status, Status::collapsed);
+      }
+      if (side > 0 || (GetParam().particles == 4 && !GetParam().wall)) continue;  // three gaps have no proof
+      ASSERT_EQ(status, Status::collapsed);
+      const auto& found = run.collapse();
+      const Wide off = abs(Wide(found.time.high) + Wide(found.time.low) - *exact);
+      EXPECT_LE(off, Wide(found.uncertainty));
+      EXPECT_LE(found.uncertainty, 1e-11);
+      const auto rates = theory::collapse_rates(Wide(e), coupling(Wide(e)));
+      const Wide factor = rates->minus / rates->plus;
+      EXPECT_LE(abs(Wide(found.ratio) - factor * factor), Wide(found.ratio_uncertainty));
+      EXPECT_LE(found.ratio_uncertainty, 1e-6);
+    }
+}
+
+TEST(CollapseProof, TheFindingOfARestitutionJustAboveTheLimit) {
+  for (const double e : {.0717968, .071797}) {
+    auto run = gap_run(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic<double>(e), stop());
+    EXPECT_EQ(run.advance(1e6), Status::exhausted) << "it parts after thousands of collisions";
+    EXPECT_FALSE(run.collapse().settled);
+  }
+}
+
+TEST(CollapseProof, NotWithACutOff) {
+  auto run = gap_run(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic<double>(0.05, 1e-12), stop());
+  EXPECT_EQ(run.advance(1e6), Status::reached);
+}
+
+// A fourth particle reaches the three before they collapse at t = 12/7, or does not.
+TEST(CollapseProof, OthersMayNotComeInTime) {
+  for (const double speed : {-30., -1.}) {
+    auto run = gap_run(list<double>({0, 1, 3, 6}, {1, 0, -1, speed}), Inelastic<double>(0.05), stop());
+    ASSERT_EQ(run.advance(1e6), Status::collapsed);
+    const auto& found = run.collapse();
+    if (speed == -1)
+      EXPECT_NEAR(found.time.value(), 12. / 7, found.uncertainty);
+    else
+      EXPECT_GT(std::abs(found.time.value() - 12. / 7), 1e-3);
+  }
+}
+
+}  // namespace collapse_proof_test

@@ -1,0 +1,82 @@
+// Collisions made out of order, by hand, in exact arithmetic. Proves: two collisions at either side of a gap commute
+// exactly, since a gap's local time never goes back; where the gap between them should have closed in between, the
+// violation is seen and counted at the gap concerned, its collision falls due in the past and is not clamped.
+#include <gtest/gtest.h>
+
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/rational.hpp"
+
+namespace order_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+// Gaps 0 and 2 close at t = 1 and `late` at closing speed 1; the gap between them is `between` wide and at rest.
+Scene<Rational> four_particles(const Rational& late, const Rational& between) {
+  return list<Rational>({-1, 0, between, between + late}, {1, 0, 0, -1});
+}
+
+const Inelastic<Rational> half(Rational(1, 2), Rational(0));
+
+template <class Chain> void collide(Chain& chain, ParticleIndex gap) {
+  const Slot s = chain.first() + static_cast<Slot>(gap);
+  chain.collide(half, s, chain.due(s));
+}
+
+// The state after the collisions at the given gaps, in that order; every gap and closing speed, every position.
+template <class Chain> auto state_after(const Scene<Rational>& particles, std::initializer_list<ParticleIndex> gaps) {
+  Chain chain(particles, Rational(0));
+  for (const ParticleIndex gap : gaps) collide(chain, gap);
+  const auto c = chain.configuration(Rational(3));
+  EXPECT_EQ(chain.account().order_lost, 0U);
+  return std::tuple(c.gap, c.closing_speed, c.x, c.v);
+}
+
+TEST(Order, CollisionsEitherSideOfAGapCommute) {
+  const auto particles = four_particles(Rational(6, 5), Rational(10));
+  using Gaps = GapChain<Rational>;
+  using Masses = GapChain<Rational, IndividualMasses<Rational>>;
+  EXPECT_EQ((state_after<Gaps>(particles, {0, 2})), (state_after<Gaps>(particles, {2, 0})));
+  EXPECT_EQ((state_after<Masses>(particles, {0, 2})), (state_after<Masses>(particles, {2, 0})));
+  EXPECT_EQ((state_after<Gaps>(particles, {0, 2})), (state_after<PositionChain<Rational>>(particles, {0, 2})));
+}
+
+TEST(Order, CollisionsEitherSideOfAGapCommuteInTheChainOfClusters) {
+  const auto particles = four_particles(Rational(6, 5), Rational(10));
+  EXPECT_EQ((state_after<ClusterChain<Rational>>(particles, {0, 2})),
+            (state_after<ClusterChain<Rational>>(particles, {2, 0})));
+  EXPECT_EQ((state_after<ClusterChain<Rational>>(particles, {0, 2})),
+            (state_after<GapChain<Rational>>(particles, {0, 2})));
+}
+
+// After the collision at t = 1 the gap between, 3/200 wide, closes at speed 3/4, at t = 1.02; the collision on its
+// other side at t = 1.2 comes first here. As of that time the gap is -27/200: it should have closed.
+TEST(Order, AViolationIsSeenAndCounted) {
+  const auto expect_counted = [](auto chain) {
+    collide(chain, 2);
+    EXPECT_EQ(chain.account().order_lost, 0U);
+    collide(chain, 0);
+    EXPECT_EQ(chain.account().order_lost, 1U);
+    EXPECT_EQ(chain.account().first_order_lost.particle, 1);
+    EXPECT_EQ(chain.account().first_order_lost.gap, Rational(-27, 200));
+    // Both neighbours have handed it 3/4: due at 6/5 - (27/200)/(3/2).
+    EXPECT_EQ(chain.due(chain.first() + 1), Rational(111, 100));
+    EXPECT_EQ(chain.account().simultaneous, 0U);
+  };
+  const auto particles = four_particles(Rational(6, 5), Rational(3, 200));
+  expect_counted(GapChain<Rational>(particles, Rational(0)));
+  expect_counted(ClusterChain<Rational>(particles, Rational(0)));
+}
+
+TEST(Order, InDoubleTheSameViolationIsCounted) {
+  const auto particles = list<double>({-1, 0, 0.015, 1.215}, {1, 0, 0, -1});
+  GapChain<double> chain(particles, 0);
+  const Inelastic<double> law(0.5);
+  for (const Slot s : {chain.first() + 2, chain.first()}) chain.collide(law, s, chain.due(s));
+  EXPECT_EQ(chain.account().order_lost, 1U);
+  EXPECT_EQ(chain.account().first_order_lost.particle, 1);
+  EXPECT_NEAR(chain.account().first_order_lost.gap, -0.135, 8 * std::numeric_limits<double>::epsilon());
+}
+
+}  // namespace order_test

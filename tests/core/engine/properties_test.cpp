@@ -1,0 +1,159 @@
+// What no run may violate, whatever the initial state: momentum, the order of particles, energy = ledger, closure.
+//
+// Bounds. A collision rounds three closing speeds by u of themselves at most, u = 2^-53. Closing speeds differ from
+// collision to collision, so errors add up in squares: neighbours' being like the pair's own, allow 2 times 3 w^2 u^2 a
+// collision, and six standard deviations (as tests/precision/drift_test.cpp for 1e8 collisions). Each may shift the
+// velocity of every particle on one side: no velocity is off by more, and over a time t no place by more than t times
+// that, and as much again for the rounding of collision times. In absolute positions velocities are rounded themselves,
+// of at most 1 instead of w. A gap is 0 at its last collision: it knows the error of one flight only.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace properties_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+constexpr double u = std::numeric_limits<double>::epsilon() / 2;
+constexpr double largest_closing_speed = 2;  // of all scenes here
+
+struct Case {
+  const char* name;
+  Scene<double> particles;
+  Inelastic<double> law;
+  std::vector<double> times;
+  std::size_t resolved;  // the first of these: absolute positions still resolve what happens
+};
+
+Scene<double> alternating_masses(double ratio) {
+  const auto even = rmix<double>(100);
+  std::vector<double> x, v, m;
+  for (ParticleIndex b = 0; b < even->count(); ++b) {
+    x.push_back(even->position(b));
+    v.push_back(even->velocity(b));
+    m.push_back(b % 2 == 0 ? 1 : ratio);
+  }
+  return list(std::move(x), std::move(v), std::move(m));
+}
+
+Scene<double> unequal_rows() {
+  return std::make_shared<Rows<double>>(Row<double>{160, 0.75, .5}, Row<double>{240, -0.25, 1.5},
+                                        CentralParticle<double>{20, .125}, rshock_displacement);
+}
+
+std::vector<Case> cases() {
+  return {{"rows", rshock<double>(400), Inelastic(0.98, 1e-5), {1, 50, 250, 310}, 3},
+          {"rows beyond their collapse", rshock<double>(200), Inelastic(0.9, 1e-3), {10, 60, 80, 100}, 2},
+          {"mixed", rmix<double>(200), Inelastic(0.9375, 1e-6), {1, 10, 100, 1e6}, 3},
+          {"unequal rows", unequal_rows(), Inelastic(0.98, 1e-5), {1, 50, 200}, 3},
+          {"masses 1:7", alternating_masses(7), Inelastic(0.9, 1e-4), {1, 10, 100, 1e4}, 3},
+          {"masses 1:1e6", alternating_masses(1e6), Inelastic(0.999, 1e-4), {1, 5, 10}, 3}};
+}
+
+double total_mass(const Particles<double>& particles) {
+  double mass = 0;
+  for (ParticleIndex b = 0; b < particles.count(); ++b) mass += particles.mass(b);
+  return mass;
+}
+
+template <class Run> void expect_conservation(Run run, const Case& scene) {
+  constexpr bool in_positions = std::same_as<Run, PositionRun<double>>;
+  const double mass = total_mass(*scene.particles);
+  double before = 0, squares = 0;
+  for (const double t : scene.times) {
+    SCOPED_TRACE(testing::Message() << scene.name << ", t = " << t);
+    const auto observe = [&](const Collision<double>& collision) {
+      squares += std::max(collision.closing_speed * collision.closing_speed, in_positions ? 1. : 0.);
+    };
+    ASSERT_EQ(run.advance(t, observe), Status::reached);
+    const double velocity_error = 6 * u * std::sqrt(2 * 3 * squares);
+    const double flight_error = 4 * u * largest_closing_speed * t;
+    const auto c = configuration_at(run, t);
+    EXPECT_LE(std::abs(momentum_gained(c, *scene.particles)), velocity_error * mass);
+    for (std::size_t j = 0; j < c.gap.size(); ++j) {
+      ASSERT_GE(c.gap[j], -flight_error) << j;
+      ASSERT_GE(c.x[j + 1] - c.x[j], -flight_error - 2 * u * std::abs(c.x[j])) << j;
+      ASSERT_EQ(c.index[j + 1], c.index[j] + 1);
+    }
+    const double ledger = scene.particles->kinetic_energy() - run.energy_lost();
+    const double direct = kinetic_energy(c, *scene.particles);
+    EXPECT_NEAR(ledger, direct, velocity_error * std::sqrt(2 * direct * mass));
+    ASSERT_EQ(c.closure_speed.has_value(), !in_positions);
+    ASSERT_EQ(c.closure_gap.has_value(), !in_positions);
+    EXPECT_LE(std::abs(c.closure_speed.value_or(0)), velocity_error);
+    EXPECT_LE(std::abs(c.closure_gap.value_or(0)), 2 * velocity_error * t);
+    EXPECT_GE(run.energy_lost(), before);
+    before = run.energy_lost();
+    EXPECT_EQ(run.chain().account().order_lost, 0U);
+  }
+}
+
+TEST(Properties, MomentumOrderEnergyAndClosureInGaps) {
+  for (const Case& scene : cases()) {
+    if (scene.particles->identical_masses()) expect_conservation(gap_run(scene.particles, scene.law), scene);
+    expect_conservation(mass_run(scene.particles, scene.law), scene);
+  }
+}
+
+TEST(Properties, MomentumOrderAndEnergyInPositions) {
+  for (Case scene : cases()) {
+    scene.times.resize(scene.resolved);
+    expect_conservation(position_run(scene.particles, scene.law), scene);
+  }
+}
+
+// Equal masses, whatever their size, are not treated as a special case of unequal ones, nor otherwise.
+TEST(Properties, EqualMassesOneByOneHaveTheBitsOfIdenticalParticles) {
+  for (const double mass : {1., 3., .1}) {
+    const auto rows = rshock<double>(200);
+    std::vector<double> x, v;
+    for (ParticleIndex b = 0; b < rows->count(); ++b) {
+      x.push_back(rows->position(b));
+      v.push_back(rows->velocity(b));
+    }
+    const auto particles = list(x, v, std::vector<double>(x.size(), mass));
+    for (const double restitution : {.9, .4}) {
+      auto identical_particles = gap_run<double>(particles, Inelastic<double>(restitution, 1e-3));
+      auto individual = mass_run<double>(particles, Inelastic<double>(restitution, 1e-3));
+      for (const double t : {10., 50., 80.}) {
+        ASSERT_EQ(identical_particles.advance(t), Status::reached);
+        ASSERT_EQ(individual.advance(t), Status::reached);
+        ASSERT_TRUE(identical(configuration_at(identical_particles, t), configuration_at(individual, t)))
+            << "mass " << mass << ", eps " << restitution << ", t = " << t;
+        // The ledger forms mu = m^2/(2m) as m (m/2m): one rounding more where m is no power of two.
+        ASSERT_NEAR(identical_particles.energy_lost(), individual.energy_lost(), 4 * u * individual.energy_lost());
+      }
+    }
+  }
+}
+
+TEST(Properties, FewParticlesOrNoneInMotion) {
+  const Inelastic<double> law(0.5, 0);
+  const auto collisions = [&](const Scene<double>& particles) {
+    auto gaps = gap_run(particles, law);
+    auto positions = position_run(particles, law);
+    EXPECT_EQ(gaps.advance(1e9), Status::reached);
+    EXPECT_EQ(positions.advance(1e9), Status::reached);
+    EXPECT_EQ(gaps.counts().collisions, positions.counts().collisions);
+    const auto a = configuration_at(gaps, 1e9), b = configuration_at(positions, 1e9);
+    for (std::size_t j = 0; j < a.x.size(); ++j) {
+      EXPECT_NEAR(a.x[j], b.x[j], 4 * u * std::abs(b.x[j]));
+      EXPECT_NEAR(a.v[j], b.v[j], 4 * u);
+    }
+    return gaps.counts().collisions;
+  };
+  EXPECT_EQ(collisions(list<double>({3}, {1})), 0U) << "one particle";
+  EXPECT_EQ(collisions(list<double>({0, 1}, {-1, 1})), 0U) << "parting";
+  EXPECT_EQ(collisions(list<double>({0, 1}, {1, 1})), 0U) << "side by side";
+  EXPECT_EQ(collisions(list<double>({0, 1, 2}, {0, 0, 0})), 0U) << "at rest";
+  EXPECT_EQ(collisions(list<double>({0, 1}, {1, -1})), 1U);
+  EXPECT_EQ(collisions(list<double>({0, 1, 10}, {1, 0, 0})), 3U)
+      << "(1 + eps)/2 reaches the third particle, then again";
+}
+
+}  // namespace properties_test

@@ -1,0 +1,195 @@
+// The event queue against a sorted list, under random updates of three neighbouring gaps at a time, as the event loop
+// makes them. Times on a grid that every key resolves must come in exactly the list's order; times finer than a key
+// must be named as too close. And the width of the index in a key must not show in a run: same bits for 3, 13 and 20
+// bits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/sorted_list_queue.hpp"
+
+namespace queue_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+constexpr double never = EventQueue::never;
+
+class Queues : public testing::TestWithParam<std::size_t> {
+ protected:
+  std::size_t slots() const { return GetParam(); }
+  // Slots that an update may be centred on: the two at either end stay empty.
+  Slot any_slot() { return std::uniform_int_distribution<Slot>(3, slots() - 4)(random_); }
+  // A multiple of 2^-20 below 16: 24 bits, where a key keeps 52 less those of the index.
+  double any_time() {
+    if (std::uniform_int_distribution<int>(0, 3)(random_) == 0) return never;
+    return std::ldexp(std::uniform_int_distribution<int>(0, 1 << 24)(random_), -20);
+  }
+  std::mt19937_64 random_{20240607};
+};
+INSTANTIATE_TEST_SUITE_P(Sizes, Queues, testing::Values(7, 8, 9, 31, 64, 100, 1000, 5000));
+
+TEST_P(Queues, NameTheListsNextGapAfterEveryUpdate) {
+  EventQueue queue(slots(), true);
+  SortedListQueue list(slots());
+  for (int step = 0; step < 20000; ++step) {
+    const Slot s = any_slot();
+    const double times[] = {any_time(), any_time(), any_time()};
+    queue.replace(s, times[0], times[1], times[2]);
+    for (Slot k = 0; k < 3; ++k) list.set(s - 1 + k, times[k]);
+    if (list.time(list.next()) == never) continue;
+    ASSERT_EQ(queue.slot(queue.next()), list.next()) << "step " << step;
+  }
+}
+
+TEST_P(Queues, RebuildAfterSettingOneByOne) {
+  EventQueue queue(slots(), true);
+  SortedListQueue list(slots());
+  for (Slot s = 2; s + 2 < slots(); ++s) {
+    const double time = s % 7 == 0 ? never : any_time();
+    queue.set(s, time);
+    list.set(s, time);
+  }
+  queue.rebuild(2, slots() - 3);
+  ASSERT_NE(list.time(list.next()), never);
+  EXPECT_EQ(queue.slot(queue.next()), list.next());
+}
+
+TEST_P(Queues, EmptyOneInOrder) {
+  EventQueue queue(slots(), true);
+  SortedListQueue list(slots());
+  for (Slot s = 2; s + 2 < slots(); ++s) {
+    const double time = any_time();
+    queue.set(s, time);
+    list.set(s, time);
+  }
+  queue.rebuild(2, slots() - 3);
+  while (list.time(list.next()) != never) {
+    const Slot s = queue.slot(queue.next());
+    ASSERT_EQ(s, list.next());
+    queue.replace(s, list.time(s - 1), never, list.time(s + 1));
+    list.set(s, never);
+  }
+  EXPECT_GE(queue.next(), queue.key(never, 0));
+}
+
+TEST_P(Queues, VisitWhatIsDueFromLeftToRight) {
+  for (const bool exact_keys : {true, false}) {
+    EventQueue queue(slots(), exact_keys);
+    SortedListQueue list(slots());
+    for (Slot s = 2; s + 2 < slots(); ++s) {
+      const double time = any_time();
+      queue.set(s, time);
+      list.set(s, time);
+    }
+    queue.rebuild(2, slots() - 3);
+    for (const double t : {0., 0.5, 3.75, 15.}) {
+      std::vector<Slot> visited;
+      queue.for_each_before(queue.possibly_before(t), [&](Slot s) {
+        visited.push_back(s);
+        return true;
+      });
+      EXPECT_EQ(visited, list.before(t)) << "on this grid nothing lies between t and what its key covers";
+      for (Slot s = 2; s + 2 < slots(); ++s)
+        if (queue.key_of(s) < queue.certainly_before(t)) {
+          ASSERT_LT(list.time(s), t);
+        }
+    }
+  }
+}
+
+TEST(Queue, ANegativeTimeComesFirst) {
+  EventQueue queue(16, true);
+  queue.replace(5, 1, 2, 3);
+  queue.replace(9, 0.5, -1e-30, 4);
+  EXPECT_EQ(queue.slot(queue.next()), 9U);
+  queue.replace(12, 1, -1e300, 2);
+  EXPECT_EQ(queue.slot(queue.next()), 9U) << "of times left behind the leftmost: exact times decide among them";
+  EXPECT_TRUE(queue.close(queue.key_of(9), 12));
+  EXPECT_TRUE(queue.close(queue.key_of(12), 9));
+}
+
+TEST(Queue, TimesFinerThanAKeyAreClose) {
+  for (const int bits : {4, 13, 20}) {
+    EventQueue queue(16, true, bits);
+    const double resolution = std::ldexp(1, bits - 52);  // relative, of a key
+    queue.replace(6, 1 + 3 * resolution, 1, 1 + resolution / 2);
+    EXPECT_TRUE(queue.close(queue.key_of(6), 7)) << bits;
+    EXPECT_TRUE(queue.close(queue.key_of(7), 6)) << bits;
+    EXPECT_FALSE(queue.close(queue.key_of(6), 5)) << bits;
+    EXPECT_TRUE(queue.close(queue.key_of(5), 6)) << "earlier, so not later";
+  }
+}
+
+TEST(Queue, RoundedKeysAreCloseWithinTheirRounding) {
+  EventQueue exact(16, true), rounded(16, false);
+  const double resolution = std::ldexp(1, 4 - 52);
+  for (EventQueue* queue : {&exact, &rounded}) queue->replace(6, 1, 1 + resolution, 9);
+  EXPECT_FALSE(exact.close(exact.key_of(5), 6));
+  EXPECT_TRUE(rounded.close(rounded.key_of(5), 6));
+}
+
+struct Shock {
+  ParticleIndex particles;
+  Inelastic<double> law;
+  double end;
+  Displacement displacement;
+};
+
+// 16 slots and a million are the same run: what keys cannot tell apart is decided by exact times.
+std::uint64_t close_calls_of_the_same_run(const Shock& shock, int bits) {
+  const Scene<double> particles =
+      std::make_shared<Rows<double>>(symmetric_rows<double>(shock.particles, 0.5, 1, shock.displacement));
+  auto narrow = gap_run(particles, shock.law, {}, 0., {.least_queue_bits = 3});
+  auto wide = gap_run(particles, shock.law, {}, 0., {.least_queue_bits = bits});
+  EXPECT_EQ(narrow.advance(shock.end), Status::reached);
+  EXPECT_EQ(wide.advance(shock.end), Status::reached);
+  EXPECT_TRUE(identical(configuration_at(narrow, shock.end), configuration_at(wide, shock.end))) << bits;
+  EXPECT_TRUE(same_collisions(narrow.counts(), wide.counts())) << bits;
+  EXPECT_EQ(narrow.energy_lost(), wide.energy_lost()) << bits;
+  EXPECT_EQ(narrow.counts().origin_moves, wide.counts().origin_moves) << bits;
+  return wide.counts().close_calls;
+}
+
+TEST(Queue, WidthOfTheIndexDoesNotChangeABitUpToTheFirstCollapse) {
+  const Shock shock{400, Inelastic(0.98, 1e-5), 312, rshock_displacement};
+  close_calls_of_the_same_run(shock, 13);
+  close_calls_of_the_same_run(shock, 20);
+}
+
+TEST(Queue, WidthOfTheIndexDoesNotChangeABitInACollapse) {
+  const Shock shock{200, Inelastic(0.9, 1e-3), 100, rshock_displacement};
+  for (const int bits : {13, 18}) close_calls_of_the_same_run(shock, bits);
+}
+
+// Without perturbation collisions are simultaneous all the time, two gaps apart.
+TEST(Queue, WidthOfTheIndexDoesNotChangeABitOnALattice) {
+  const Shock shock{200, Inelastic(0.98, 1e-5), 150, [](ParticleIndex) { return std::int64_t{0}; }};
+  for (const int bits : {13, 20}) EXPECT_GT(close_calls_of_the_same_run(shock, bits), 0U) << bits;
+}
+
+// Displacements of a few 2^-28: collisions all along the line come within 1e-8 of each other, which a key with 20 bits
+// of index does not resolve at t = 100, and a key with 8 does. Those far apart commute, but the origin of time must not
+// move between them in another order.
+TEST(Queue, WidthOfTheIndexDoesNotChangeABitWhereCollisionsAreNearlySimultaneous) {
+  std::uint64_t few = 0, many = 0;
+  for (const ParticleIndex particles : {100, 200, 300}) {
+    for (ParticleIndex seed = 0; seed < 20; ++seed) {
+      SCOPED_TRACE(testing::Message() << particles << " particles, seed " << seed);
+      const Shock shock{particles, Inelastic(0.98, 1e-5), 0.75 * static_cast<double>(particles),
+                        [seed](ParticleIndex particle) { return bits_of(particle + 1000 * seed, 0, 0xF) - 8; }};
+      few += close_calls_of_the_same_run(shock, 8);
+      many += close_calls_of_the_same_run(shock, 18);
+    }
+  }
+  EXPECT_GT(many, few);
+}
+
+TEST(Queue, WidthOfTheIndexDoesNotChangeABitInThePapersShock) {
+  close_calls_of_the_same_run({8000, Inelastic(0.999, 1e-5), 4000, rshock_displacement}, 20);
+}
+
+}  // namespace queue_test

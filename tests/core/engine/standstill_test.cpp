@@ -1,0 +1,47 @@
+// When a run ends because it no longer advances, whatever exponents its type has. Proves: collisions at one time since
+// the start have a bound, by which a collapse that tends to that time is over, and a cut-off that ends one below the
+// clock's resolution is not; a gap that is to be followed has none.
+#include <gtest/gtest.h>
+
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace standstill_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+// Reviews at which offsets from a moving origin advance, and the time since the start does not.
+std::uint64_t collisions_until_it_ends(std::uint64_t active, bool endless) {
+  Standstill<double> standstill(0);
+  double local = 1;
+  for (std::uint64_t collisions = 1; collisions < 3000000; ++collisions, local *= 1.00001)
+    if (standstill.at(local, 1, collisions, active, endless)) return collisions;
+  return 0;
+}
+
+TEST(Standstill, CollisionsAtOneTimeHaveABound) {
+  EXPECT_EQ(collisions_until_it_ends(2, false), 1U + (1U << 20) + 4096U * 4U + 1U);
+  EXPECT_EQ(collisions_until_it_ends(3, false), 1U + (1U << 20) + 4096U * 9U + 1U);
+  EXPECT_EQ(collisions_until_it_ends(1000, false), 0U) << "many particles may have billions";
+  EXPECT_EQ(collisions_until_it_ends(2, true), 0U);
+}
+
+TEST(Standstill, IsOverWhereTheTimeSinceTheStartAdvances) {
+  Standstill<double> standstill(0);
+  constexpr std::uint64_t million = 1000000;
+  EXPECT_FALSE(standstill.at(1, 1, million, 2, false));
+  EXPECT_FALSE(standstill.at(2, 1, 2 * million, 2, false));
+  standstill.epoch_ended(0, 1.5, 2 * million);
+  EXPECT_FALSE(standstill.at(3, 1.5, 3 * million, 2, false));
+  EXPECT_TRUE(standstill.at(4, 1.5, 3 * million + (1 << 20), 2, false));
+}
+
+// Three particles whose speeds fall to 1e-280 at t = 12/7, 700 collisions long, and who then part.
+TEST(Standstill, ACutOffBelowTheClocksResolutionIsReached) {
+  auto run = gap_run(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic<double>(0.05, 1e-110));
+  EXPECT_EQ(run.advance(100), Status::reached);
+  EXPECT_GT(run.counts().below_cutoff, 0U);
+}
+
+}  // namespace standstill_test

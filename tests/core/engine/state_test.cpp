@@ -1,0 +1,208 @@
+// The state of a run as a value: saved anywhere and loaded into a run of the same scene, it goes on with the same bits;
+// what has been cut or does not fit together is refused, and takes no memory beforehand.
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/parallel/segments.hpp"
+
+namespace state_test {
+
+using namespace cradle;
+
+template <class X> X there_and_back(const X& x) {
+  SavedState state = SavedState::of(x);
+  X y{};
+  load(state, y);
+  EXPECT_EQ(state.left(), 0U);
+  return y;
+}
+
+TEST(State, NumbersComeBackAsTheyWere) {
+  const double never = std::numeric_limits<double>::infinity();
+  for (const double x : {0., -0., 1. / 3, 5e-324, -1e308, never, -never})
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(there_and_back(x)), std::bit_cast<std::uint64_t>(x)) << x;
+  EXPECT_TRUE(there_and_back(std::numeric_limits<double>::quiet_NaN()) != there_and_back(0.));
+  const long double x = 1.L / 3;
+  EXPECT_EQ(there_and_back(x), x);
+  EXPECT_EQ(there_and_back(1.f / 3), 1.f / 3);
+  for (const std::int64_t n : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(), std::int64_t{1} << 62})
+    EXPECT_EQ(there_and_back(n), n);
+  EXPECT_EQ(there_and_back(-7), -7);
+  EXPECT_TRUE(there_and_back(true));
+}
+
+TEST(State, ListsComeBackAsTheyWere) {
+  const std::map<int, std::pair<double, double>> map{{-3, {1, 2}}, {4, {3, 4}}};
+  EXPECT_EQ(there_and_back(map), map);
+  const std::optional<std::vector<double>> there{{1, 2, 3}}, none;
+  EXPECT_EQ(there_and_back(there), there);
+  EXPECT_EQ(there_and_back(none), none);
+  std::unordered_map<std::int64_t, double> one, other;  // the same, filled in another order
+  for (std::int64_t k = 0; k < 100; ++k) one[k] = 1, other[99 - k] = 1;
+  EXPECT_TRUE(SavedState::of(one) == SavedState::of(other));
+}
+
+TEST(State, ListsLongerThanTheFileAreRefusedBeforeTheyAreMade) {
+  SavedState state;
+  save(state, std::uint64_t{1} << 60);
+  std::vector<double> values;
+  EXPECT_THROW(load(state, values), std::invalid_argument);
+  EXPECT_LT(values.capacity(), 1000U);
+}
+
+template <class Run> void expect_same_from_anywhere(const std::function<Run()>& make) {
+  for (double cut = 0; cut < 40; cut += 3.7) {
+    Run whole = make();
+    whole.advance(cut);
+    SavedState state = SavedState::of(whole);
+    const SavedState then = state;
+    Run later = make();
+    load(state, later);
+    EXPECT_EQ(state.left(), 0U);
+    EXPECT_TRUE(SavedState::of(later) == then) << cut;
+    whole.advance(40);
+    later.advance(40);
+    const SavedState wanted = SavedState::of(whole);
+    EXPECT_TRUE(SavedState::of(later) == wanted) << cut;
+    EXPECT_EQ(later.energy_lost(), whole.energy_lost());
+    EXPECT_EQ(later.last_collision_time(), whole.last_collision_time());
+  }
+}
+
+std::shared_ptr<const Particles<double>> rows(ParticleIndex count) {
+  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));
+}
+std::shared_ptr<const Particles<double>> ring(ParticleIndex count) {
+  return std::make_shared<Ring<double>>(count, 20., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
+}
+template <class Law, class Chain>
+void expect_same(const Law& law, const std::shared_ptr<const Particles<double>>& particles) {
+  expect_same_from_anywhere<Simulation<double, Law, Chain>>(
+      [&] { return Simulation<double, Law, Chain>(law, Chain(particles, 0.)); });
+}
+
+using Dry = Inelastic<double>;
+
+TEST(State, RunsGoOnWithTheSameBits) {
+  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), rows(60));
+  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), ring(20));
+  expect_same<Dry, GapChain<double, IndividualMasses<double>>>(Dry(0.9, 1e-4), rows(60));
+  expect_same<ContactTime<double>, GapChain<double, IndividualMasses<double>>>(ContactTime<double>(Dry(0.9, 0.), 1e-3),
+                                                                               rows(60));
+  expect_same<Dry, PositionChain<double>>(Dry(0.9, 1e-4), rows(60));
+  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), rows(60));
+  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), ring(20));
+  expect_same_from_anywhere<StickyGas<double>>([] { return StickyGas<double>(rows(60), 0.); });
+  expect_same<Dry, GapChain<double>>(Dry(0.95, 1e-2), rows(1200));  // in epochs
+}
+
+// After a collision by which cells are laid out anew, fewer than before, nothing points beyond them.
+TEST(State, OfCellsLaidOutAnewIsTaken) {
+  using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
+  const auto particles =
+      std::make_shared<Ring<double>>(60, 60., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
+  const auto make = [&] { return Run(Sticky<double>(), ClusterChain<double>(particles, 0.)); };
+  Run run = make();
+  for (double time = 0; time <= 300; time += 5) {
+    run.advance(time);
+    SavedState state = SavedState::of(run);
+    Run later = make();
+    EXPECT_NO_THROW(load(state, later)) << time;
+  }
+}
+
+// Every byte of a state changed: it is refused, or a run that can go on.
+TEST(State, WhatDoesNotFitTogetherIsRefused) {
+  using Run = Simulation<double, Wet<double>, ClusterChain<double>>;
+  const auto make = [] { return Run(Wet<double>(0.01), ClusterChain<double>(ring(12), 0.)); };
+  Run run = make();
+  run.advance(3);
+  const std::string bytes = SavedState::of(run).bytes();
+  int refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0x40);
+    SavedState state(changed);
+    Run later = make();
+    try {
+      load(state, later);
+    } catch (const std::invalid_argument&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 200) << "lengths, links, numbers of particles";
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    SavedState state(bytes.substr(0, size));
+    Run later = make();
+    EXPECT_THROW(load(state, later), std::invalid_argument) << size;
+  }
+}
+
+// Slots beyond the gaps that are held keep what a time slab of segments has left there.
+TEST(State, OfRowsThatWereRunInSegmentsIsTaken) {
+  using Run = Simulation<double, Inelastic<double>, GapChain<double>>;
+  const auto rows =
+      std::make_shared<Rows<double>>(symmetric_rows<double>(4000, 0.5, 1., uniform_displacement(0.05, 1, 0)));
+  const auto begun = [&] { return Run(Inelastic<double>(0.999, 1e-5), GapChain<double>(rows, 0.)); };
+  Run run = begun();
+  Workers workers;
+  workers.count = 1;
+  Segments<Inelastic<double>, GapChain<double>> segments(workers);
+  for (int k = 1; k <= 30; ++k) {
+    run.advance(37.3 * k, segments);
+    SavedState state;
+    save(state, run);
+    Run other = begun();
+    EXPECT_NO_THROW(load(state, other)) << k;
+  }
+}
+
+// A chain with fewer slots than before takes over none that name those it had.
+TEST(State, OfRingsThatWereRunInSegmentsIsTaken) {
+  using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const auto count = static_cast<ParticleIndex>(600 + 37 * seed);
+    const auto ring = std::make_shared<Ring<double>>(count, static_cast<double>(count), 1., gaussian_velocity(seed, 0),
+                                                     uniform_displacement(0.05, seed, 0));
+    const auto begun = [&] { return Run(Sticky<double>(), ClusterChain<double>(ring, 0.)); };
+    Run run = begun();
+    Workers workers;
+    workers.count = 1;
+    Segments<Sticky<double>, ClusterChain<double>> segments(workers, {60, 8, 0, true});
+    for (int k = 1; k <= 120; ++k) {
+      run.advance(0.4 * k, segments);
+      SavedState state;
+      save(state, run);
+      Run other = begun();
+      ASSERT_NO_THROW(load(state, other)) << seed << ", " << k;
+    }
+  }
+}
+
+// In absolute positions a collision may be due beyond the range of the type.
+TEST(State, WithCollisionsThatNeverComeIsTaken) {
+  const auto begun = [] {
+    const auto particles =
+        std::make_shared<List<double>>(std::vector<double>{0, 1, 3}, std::vector<double>{1e-310, 0, -1});
+    return Simulation<double, Inelastic<double>, PositionChain<double>>(Inelastic<double>(0.9),
+                                                                        PositionChain<double>(particles, 0.));
+  };
+  auto run = begun(), other = begun();
+  run.advance(1);
+  SavedState state;
+  save(state, run);
+  EXPECT_NO_THROW(load(state, other));
+}
+
+}  // namespace state_test

@@ -1,0 +1,156 @@
+// The whole engine on a scalar that converts to and from nothing in silence (strict_real.hpp). Proves: core/ speaks of
+// the scalar only through the concept Real; the general code, written for types whose queue keys are rounded times,
+// makes the same collisions as the code for double and leaves the same bits.
+#include <gtest/gtest.h>
+
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/profile.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/core/theory/inelastic_collapse.hpp"
+#include "cradle/core/theory/inelastic_shock.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/strict_real.hpp"
+
+namespace strict_scalar_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+static_assert(Real<StrictReal>);
+static_assert(!std::convertible_to<double, StrictReal> && !std::convertible_to<int, StrictReal>);
+static_assert(!std::convertible_to<StrictReal, double> && !std::default_initializable<StrictReal>);
+
+template <class T> T number(double x) {
+  if constexpr (std::same_as<T, StrictReal>)
+    return StrictReal::of(x);
+  else
+    return x;
+}
+
+std::vector<double> doubles(const std::vector<StrictReal>& strict) {
+  std::vector<double> values;
+  for (const StrictReal& x : strict) values.push_back(to_double(x));
+  return values;
+}
+std::optional<double> double_of(const std::optional<StrictReal>& x) {
+  return x ? std::optional(to_double(*x)) : std::nullopt;
+}
+Configuration<double> doubles(const Configuration<StrictReal>& c) {
+  return {to_double(c.time),
+          c.from,
+          c.to,
+          c.collided_from,
+          c.collided_to,
+          c.index,
+          doubles(c.x),
+          doubles(c.v),
+          doubles(c.m),
+          doubles(c.gap),
+          doubles(c.closing_speed),
+          double_of(c.closure_gap),
+          double_of(c.closure_speed)};
+}
+
+template <class T> Scene<T> unequal_rows() {
+  return std::make_shared<Rows<T>>(Row<T>{80, T(3) / T(4), T(1) / T(2)}, Row<T>{120, T(-1) / T(4), T(3) / T(2)},
+                                   CentralParticle<T>{T(20), T(1) / T(8)}, rshock_displacement);
+}
+template <class T> Inelastic<T> law() { return Inelastic<T>(number<T>(0.9), number<T>(1e-3)); }
+
+// make(T) gives the same run in the scalar T.
+template <class Make> void expect_the_bits_of_double(Make make, const std::vector<double>& times) {
+  auto strict = make(StrictReal(0));
+  auto plain = make(0.);
+  for (const double t : times) {
+    const Status status = plain.advance(t);
+    ASSERT_EQ(strict.advance(number<StrictReal>(t)), status) << "t = " << t;
+    ASSERT_TRUE(same_collisions(strict.counts(), plain.counts())) << "t = " << t;
+    ASSERT_EQ(strict.counts().origin_moves, plain.counts().origin_moves) << "t = " << t;
+    ASSERT_TRUE(identical(doubles(configuration_at(strict, number<StrictReal>(t))), configuration_at(plain, t)))
+        << "t = " << t;
+    // In double the ledger is compensated, in unknown types it is a plain sum of positive terms.
+    ASSERT_NEAR(to_double(strict.energy_lost()), plain.energy_lost(),
+                static_cast<double>(plain.counts().collisions) * std::numeric_limits<double>::epsilon() *
+                    plain.energy_lost())
+        << "t = " << t;
+  }
+}
+
+TEST(StrictScalar, GapsOfIdenticalParticles) {
+  expect_the_bits_of_double([]<class T>(T) { return gap_run(rshock<T>(200), law<T>()); }, {.5, 20, 50, 62, 70, 100});
+  expect_the_bits_of_double([]<class T>(T) { return gap_run(rmix<T>(100), law<T>()); }, {1, 10, 100, 1000});
+}
+
+TEST(StrictScalar, GapsOfUnequalMasses) {
+  expect_the_bits_of_double([]<class T>(T) { return mass_run(unequal_rows<T>(), law<T>()); }, {.5, 20, 50});
+}
+
+TEST(StrictScalar, Positions) {
+  expect_the_bits_of_double([]<class T>(T) { return position_run(unequal_rows<T>(), law<T>()); }, {.5, 20, 50});
+}
+
+TEST(StrictScalar, ClustersOfWetAndStickyParticles) {
+  expect_the_bits_of_double(
+      []<class T>(T) { return Simulation(Wet<T>(number<T>(0.01)), ClusterChain<T>(rshock<T>(200), T(0))); },
+      {.5, 20, 55, 100});
+  expect_the_bits_of_double(
+      []<class T>(T) { return Simulation(Sticky<T>(), ClusterChain<T>(unequal_rows<T>(), T(0))); }, {.5, 20, 50});
+  expect_the_bits_of_double(
+      []<class T>(T) {
+        return Simulation(InelasticMerging<T>(law<T>(), number<T>(1e-2)), ClusterChain<T>(rmix<T>(100), T(0)));
+      },
+      {1, 10, 100});
+}
+
+TEST(StrictScalar, CollapsePolicies) {
+  const auto collapse = []<class T>(T zero) {
+    auto run = gap_run<T>(list<T>({T(0), T(1), T(3)}, {T(1), zero, T(-1)}), Inelastic<T>(number<T>(0.05)),
+                          {CollapsePolicy::stop, zero, {}});
+    EXPECT_EQ(run.advance(T(100)), Status::collapsed);
+    return std::pair(to_double(run.collapse().time.value()), run.counts().collisions);
+  };
+  EXPECT_EQ(collapse(StrictReal(0)), collapse(0.));
+}
+
+TEST(StrictScalar, Observers) {
+  const auto observe = []<class T>(T zero) {
+    const auto particles = rshock<T>(100);
+    auto run = gap_run(particles, law<T>());
+    std::vector<double> seen;
+    run.advance(T(20), [&](const Collision<T>& c) {
+      seen.push_back(to_double(c.interval));
+      seen.push_back(to_double(c.closing_speed));
+    });
+    const auto c = configuration_at(run, T(20));
+    const auto s = sample(run, particles->kinetic_energy(), T(20));
+    const auto p = profile(c, *particles, T(20), {-20, 20}, 10);
+    for (const auto& values : {p.density, p.velocity, p.temperature})
+      seen.insert(seen.end(), values.begin(), values.end());
+    for (const T& value : {*s.front_left, *s.front_right, gap_statistics(c).least, gap_statistics(c).median,
+                           kinetic_energy(c, *particles), momentum_gained(c, *particles), zero})
+      seen.push_back(to_double(value));
+    return seen;
+  };
+  EXPECT_EQ(observe(StrictReal(0)), observe(0.));
+}
+
+TEST(StrictScalar, Theory) {
+  const auto evaluate = []<class T>(T) {
+    theory::InelasticShock<T> shock{number<T>(0.99)};
+    shock.particles = 400;
+    std::vector<double> values;
+    const T t(100);
+    for (const T& value :
+         {theory::front_position(shock, t), theory::front_position_discrete(shock, t), *theory::turnover_time(shock),
+          *theory::maximal_front(shock), theory::mean_velocity_slope(shock, t), theory::energy(shock, t),
+          *theory::collapse_onset_time(shock), theory::collapse_limit<T>(3), theory::checkerboard_coupling(T(0), 5),
+          *theory::three_particle_collapse_time(number<T>(0.05), T(1), T(1), T(2), T(1))})
+      values.push_back(to_double(value));
+    return values;
+  };
+  EXPECT_EQ(evaluate(StrictReal(0)), evaluate(0.));
+}
+
+}  // namespace strict_scalar_test

@@ -1,0 +1,185 @@
+// Masses that repeat, on rows, rings and in cold gases. Proves: particles have the masses of the pattern and their sums
+// are those particle by particle; a pattern of equal masses changes no bit; a ring has no momentum; rows and cold gases
+// that are streamed have the bits of those held, as lists have that know nothing of rows, in segments and at any
+// cadence; gaps and positions make the same collisions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/initial/cold.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/tests/core/segmented.hpp"
+
+namespace mass_pattern_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+const MassPattern<double> three({1, 4.25, .5});
+const MassPattern<double> two({1, 2});
+
+Scene<double> rows(MassPattern<double> masses, std::optional<CentralParticle<double>> centre = {},
+                   ParticleIndex times = 1) {
+  return std::make_shared<Rows<double>>(Row<double>{160 * times, 0.75, .5}, Row<double>{240 * times, -0.25, 1.5},
+                                        centre, rshock_displacement, std::move(masses));
+}
+Scene<double> ring(MassPattern<double> masses, ParticleIndex count = 300) {
+  return std::make_shared<Ring<double>>(count, 300., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0),
+                                        std::move(masses));
+}
+Scene<double> cold(ParticleIndex hot, HotPlace place) {
+  HotParticles<double> moving =
+      hot == 1 ? kicked(first_hot(place, 2000, 1), 0.75) : heated(first_hot(place, 2000, hot), hot, 10., two, 5, 2);
+  return std::make_shared<Cold<double>>(2000, 1., place, std::move(moving), rshock_displacement, two);
+}
+
+void expect_sums(const Particles<double>& particles) {
+  double mass = 0, momentum = 0, energy = 0, least = INFINITY;
+  for (ParticleIndex b = 0; b < particles.count(); ++b) {
+    const double m = particles.mass(b), v = particles.velocity(b);
+    mass += m, momentum += m * v, energy += m * v * v / 2, least = std::min(least, m);
+    if (b + 1 == particles.count()) continue;
+    // Positions below 2^9, velocities below 4: a difference of two rounds each of them.
+    EXPECT_NEAR(particles.gap(b), particles.position(b + 1) - particles.position(b), 0x1p-43);
+    EXPECT_NEAR(particles.closing_speed(b), v - particles.velocity(b + 1), 0x1p-50);
+  }
+  EXPECT_NEAR(particles.total_mass(), mass, 1e-12 * mass);
+  EXPECT_NEAR(particles.momentum(), momentum, 1e-12 * mass);
+  EXPECT_NEAR(particles.kinetic_energy(), energy, 1e-12 * energy);
+  EXPECT_EQ(particles.least_mass(), least);
+}
+
+TEST(MassPattern, RepeatsFromTheFirstParticleOn) {
+  const auto scene = rows(three);
+  EXPECT_EQ(scene->mass(0), 1);
+  EXPECT_EQ(scene->mass(1), 4.25);
+  EXPECT_EQ(scene->mass(2), 0.5);
+  EXPECT_EQ(scene->mass(399), 1);  // 399 = 3 * 133
+  EXPECT_FALSE(scene->identical_masses());
+  const auto with_centre = rows(three, CentralParticle<double>{20, .125});
+  EXPECT_EQ(with_centre->mass(160), 20);
+  EXPECT_EQ(with_centre->mass(161), 0.5);  // 161 = 3 * 53 + 2
+  EXPECT_TRUE(rows(MassPattern<double>({2, 2}))->identical_masses());
+  EXPECT_TRUE(rows(MassPattern<double>({2, 2}), CentralParticle<double>{2, 0})->identical_masses());
+  EXPECT_FALSE(rows(MassPattern<double>({2, 2}), CentralParticle<double>{1, 0})->identical_masses());
+}
+
+TEST(MassPattern, SumsAreThoseOfTheParticles) {
+  for (const auto& scene : {rows(three), rows(three, CentralParticle<double>{20, .125}), ring(three), ring(two),
+                            ring(MassPattern<double>({2, 2})), cold(1, HotPlace::left), cold(1, HotPlace::middle),
+                            cold(32, HotPlace::middle), cold(7, HotPlace::left)})
+    expect_sums(*scene);
+}
+
+TEST(MassPattern, RingsHaveNoMomentum) {
+  for (const auto& scene : {ring(two), ring(three)}) {
+    CompensatedSum<double> momentum;
+    for (ParticleIndex b = 0; b < 300; ++b) momentum.add(scene->mass(b) * scene->velocity(b));
+    EXPECT_NEAR(momentum.value(), 0, 300 * 4.25 * 4 * 0x1p-52);  // every velocity, up to 4, and product is rounded
+    EXPECT_EQ(scene->momentum(), 0);
+  }
+}
+
+TEST(MassPattern, ColdGasHasItsEnergyAndNoMomentum) {
+  const auto hot = cold(32, HotPlace::middle);
+  EXPECT_NEAR(hot->kinetic_energy(), 10, 10 * 64 * 0x1p-53);
+  EXPECT_EQ(hot->momentum(), 0);
+  EXPECT_EQ(hot->velocity(983), 0);
+  EXPECT_NE(hot->velocity(984), 0);
+  EXPECT_NE(hot->velocity(1015), 0);
+  EXPECT_EQ(hot->velocity(1016), 0);
+  const auto kick = cold(1, HotPlace::left);
+  EXPECT_EQ(kick->velocity(0), 0.75);
+  EXPECT_EQ(kick->kinetic_energy(), 0.75 * 0.75 / 2);
+  EXPECT_EQ(kick->momentum(), 0.75);
+}
+
+// Equal masses in a pattern are masses that are equal: same particles, same chain, same bits.
+TEST(MassPattern, OfOnesChangesNoBit) {
+  const std::vector<std::pair<Scene<double>, Scene<double>>> pairs{{rows({}), rows(MassPattern<double>({1, 1}))},
+                                                                   {ring({}), ring(MassPattern<double>({1, 1, 1}))}};
+  for (const auto& [plain, ones] : pairs) {
+    EXPECT_EQ(plain->kinetic_energy(), ones->kinetic_energy());
+    EXPECT_EQ(plain->momentum(), ones->momentum());
+    EXPECT_EQ(plain->total_mass(), ones->total_mass());
+    auto first = gap_run(plain, Inelastic<double>(0.9, 1e-3)), second = gap_run(ones, Inelastic<double>(0.9, 1e-3));
+    ASSERT_EQ(first.advance(60.), Status::reached);
+    ASSERT_EQ(second.advance(60.), Status::reached);
+    expect_same_state(first, second, 60.);
+  }
+}
+
+TEST(MassPattern, StreamedIsHeldIsListedInAnyCadence) {
+  const Inelastic<double> law(0.9, 1e-2);
+  for (const auto& scene : {rows(three), rows(three, CentralParticle<double>{20, .125}), cold(1, HotPlace::left),
+                            cold(1, HotPlace::middle), cold(32, HotPlace::middle), cold(7, HotPlace::left)}) {
+    auto streamed = mass_run(scene, law), held = mass_run(scene, law, {}, 0., {.hold_all = true}),
+         often = mass_run(scene, law);
+    for (int step = 1; step <= 160; ++step) ASSERT_EQ(often.advance(step), Status::reached);
+    for (const double t : {10., 80., 160.}) {
+      ASSERT_EQ(streamed.advance(t), Status::reached);
+      ASSERT_EQ(held.advance(t), Status::reached);
+      EXPECT_TRUE(identical(configuration_at(streamed, t), configuration_at(held, t)));
+      EXPECT_EQ(streamed.energy_lost(), held.energy_lost());
+    }
+    expect_same_state(streamed, often, 160.);
+    EXPECT_GT(streamed.counts().collisions, 40U);
+    EXPECT_LT(mass_run(scene, law).chain().last() - mass_run(scene, law).chain().first(), 33U);  // held at the start
+    const auto now = configuration_at(streamed, 160.);
+    const double rounding = static_cast<double>(streamed.counts().collisions) * 0x1p-50 * 400;
+    EXPECT_NEAR(kinetic_energy(now, *scene), scene->kinetic_energy() - streamed.energy_lost(), rounding);
+    EXPECT_NEAR(momentum_gained(now, *scene), 0, rounding);
+  }
+}
+
+TEST(MassPattern, GapsAndPositionsMakeTheSameCollisions) {
+  const Inelastic<double> law(0.9, 1e-2);
+  for (const auto& scene : {rows(three), cold(32, HotPlace::middle)}) {
+    auto gaps = mass_run(scene, law);
+    auto positions = position_run(scene, law);
+    Sequence of_gaps, of_positions;
+    ASSERT_EQ(gaps.advance(100., [&](const Collision<double>& c) { of_gaps.add(c.left); }), Status::reached);
+    ASSERT_EQ(positions.advance(100., [&](const Collision<double>& c) { of_positions.add(c.left); }), Status::reached);
+    EXPECT_TRUE(of_gaps == of_positions);
+    EXPECT_GT(gaps.counts().collisions, 400U);
+  }
+}
+
+TEST(MassPattern, SegmentsHaveTheBitsOfThePlainLoop) {
+  SlabsMade all;
+  for (const std::size_t k : {1U, 3U}) {
+    const SegmentsAs as = segmentations()[k];
+    using Chain = GapChain<double, IndividualMasses<double>>;
+    const Inelastic<double> law(0.999, 1e-5), elastic(1.);
+    all += expect_same_in_segments<Chain>(rows(three, {}, 3), law, as, std::vector{500., 520.});
+    all += expect_same_in_segments<Chain>(ring(three, 900), law, as, std::vector{2., 10.});
+    all += expect_same_in_segments<Chain>(cold(32, HotPlace::middle), elastic, as, std::vector{1200., 1300.});
+  }
+  EXPECT_GT(all.slabs, 20U);
+}
+
+TEST(MassPattern, MergesInClusters) {
+  for (const auto& scene : {rows(three), ring(three), cold(8, HotPlace::middle)}) {
+    Simulation run(Sticky<double>(), ClusterChain<double>(scene, 0.));
+    ASSERT_EQ(run.advance(200.), Status::reached);
+    EXPECT_GT(run.counts().merges, 5U);
+    const double rounding = static_cast<double>(run.counts().collisions) * 0x1p-50 * 400;
+    EXPECT_NEAR(momentum_gained(configuration_at(run, 200.), *scene), 0, rounding);
+  }
+}
+
+TEST(MassPattern, BadOnesAreRefused) {
+  EXPECT_THROW(MassPattern<double>({1, 0}), std::invalid_argument);
+  EXPECT_THROW(MassPattern<double>({1, -2}), std::invalid_argument);
+  EXPECT_THROW(MassPattern<double>({1, INFINITY}), std::invalid_argument);
+  EXPECT_THROW(ring(MassPattern<double>({1, 2, 3, 4, 5, 6, 7})), std::invalid_argument);  // 300 = 42 * 7 + 6
+  EXPECT_THROW(heated(0, 1, 1., two, 1, 0), std::invalid_argument);
+  EXPECT_THROW(heated(0, 2, 0., two, 1, 0), std::invalid_argument);
+  EXPECT_THROW((Cold<double>(4, 1., HotPlace::left, heated(0, 5, 1., two, 1, 0), rshock_displacement)),
+               std::invalid_argument);
+  EXPECT_THROW((Cold<double>(4, 0., HotPlace::left, kicked<double>(0, 1.), rshock_displacement)),
+               std::invalid_argument);
+}
+
+}  // namespace mass_pattern_test

@@ -1,0 +1,110 @@
+// Guards are silent on every run that is right, up to very many collisions, and each one speaks where its own thing is
+// wrong by far less than what is to be seen in a result.
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/chains/position_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/core/observe/guards.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace guards_test {
+
+using namespace cradle;
+using cradle::test::gaussian_ring;
+using cradle::test::uniform_rows;
+
+using Dry = Inelastic<double>;
+
+template <class Run>
+GuardCheck<double> inspect(const Run& run, const Particles<double>& particles, const Configuration<double>& c) {
+  return guarded(c, particles, run.counts().collisions, particles.kinetic_energy() - run.energy_lost(), c.time,
+                 run.last_collision_time(), 0., true);
+}
+
+template <class Run> void expect_silent(Run&& run, const Particles<double>& particles) {
+  for (const double time : {1., 10., 100., 500.}) {
+    run.advance(time);
+    const auto check = inspect(run, particles, run.configuration(time));
+    ASSERT_FALSE(check.broken) << time << ": guard " << static_cast<int>(check.broken->guard) << ", "
+                               << check.broken->found << " > " << check.broken->bound;
+  }
+}
+template <class Chain, class Law>
+void expect_silent(const Law& law, const std::shared_ptr<const Particles<double>>& particles) {
+  expect_silent(Simulation<double, Law, Chain>(law, Chain(particles, 0.)), *particles);
+}
+
+TEST(Guards, AreSilentOnRunsThatAreRight) {
+  for (const auto& particles : {uniform_rows(300), gaussian_ring(200, 200)}) {
+    expect_silent<GapChain<double>>(Dry(0.99, 1e-3), particles);
+    expect_silent<GapChain<double>>(Dry(1., 0.), particles);
+    expect_silent<ClusterChain<double>>(Wet<double>(0.01), particles);
+    expect_silent(StickyGas<double>(particles, 0.), *particles);
+  }
+  expect_silent<PositionChain<double>>(Dry(0.99, 1e-2), uniform_rows(300));
+}
+
+class Broken : public testing::Test {
+ protected:
+  Broken() : particles_(uniform_rows(300)), run_(Dry(0.99, 1e-3), GapChain<double>(particles_, 0.)) {
+    run_.advance(200);
+    now_ = run_.configuration(200);
+  }
+  void expect(Guard guard) const {
+    const auto check = inspect(run_, *particles_, now_);
+    ASSERT_TRUE(check.broken);
+    EXPECT_EQ(check.broken->guard, guard);
+  }
+
+  std::shared_ptr<const Particles<double>> particles_;
+  Simulation<double, Dry, GapChain<double>> run_;
+  Configuration<double> now_;
+};
+
+TEST_F(Broken, ParticlesThatHaveChangedPlaces) {
+  now_.gap[40] = -1e-6;
+  expect(Guard::order);
+  EXPECT_EQ(inspect(run_, *particles_, now_).broken->particle, now_.index[40]);
+}
+TEST_F(Broken, ACollisionThatIsStillToCome) {
+  now_.time = run_.last_collision_time() - 1e-6;
+  expect(Guard::past);
+}
+TEST_F(Broken, NotATimeThatIsRoundedAnewFromAnOriginThatHasMoved) {
+  now_.time = std::nextafter(run_.last_collision_time(), 0.);
+  EXPECT_FALSE(inspect(run_, *particles_, now_).broken);
+}
+TEST_F(Broken, Energy) {
+  // Momentum stays: two particles that differ by 1 in velocity are brought nearer to each other by a part in a million.
+  now_.v[30] += 1e-6 * (now_.v[60] > now_.v[30] ? -1 : 1);
+  now_.v[60] -= 1e-6 * (now_.v[60] > now_.v[30] ? -1 : 1);
+  expect(Guard::energy);
+}
+TEST_F(Broken, Momentum) {
+  // Energy stays: a particle that is turned round.
+  const double before = now_.v[10];
+  now_.v[10] = -before;
+  expect(Guard::momentum);
+}
+TEST_F(Broken, Closure) {
+  now_.closure_gap = 1e-5;
+  expect(Guard::closure);
+  now_.closure_gap = 0;
+  now_.closure_speed = -1e-6;
+  expect(Guard::closure);
+}
+TEST_F(Broken, WhatIsNoNumber) {
+  now_.gap[5] = std::numeric_limits<double>::quiet_NaN();
+  expect(Guard::order);
+  now_.v[5] = std::numeric_limits<double>::quiet_NaN();
+  expect(Guard::energy);
+}
+
+}  // namespace guards_test

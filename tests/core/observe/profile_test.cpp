@@ -1,0 +1,189 @@
+// Profiles over bins and the row of the time series. Proves, on configurations whose numbers are known: every particle
+// in range is counted once, unreached particles of the rows included; means are weighted by mass; the temperature is
+// the variance of the velocity to all digits, also where it is small against the velocity squared.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "cradle/core/engine/state.hpp"
+#include "cradle/core/initial/cold.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/profile.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/core/observe/zone.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace profile_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+double total(const std::vector<double>& density, double width) {
+  return width * std::accumulate(density.begin(), density.end(), 0.);
+}
+
+TEST(Profile, OfAKnownConfiguration) {
+  // Bins [0, 2) and [2, 4); the particle at 5 is outside, the one at rest moves neither way.
+  const auto particles = list<double>({0, 0.5, 1.5, 2, 3, 5}, {1, 3, -1, 0, 4, 9}, {1, 2, 1, 6, 2, 1});
+  const MassRun<double> run = mass_run(particles, Inelastic(0.5));
+  const Profile p = profile(configuration_at(run, 0.), *particles, 0., {0, 4}, 2);
+  EXPECT_EQ(p.x, (std::vector<double>{1, 3}));
+  EXPECT_EQ(p.density, (std::vector<double>{1.5, 1}));
+  EXPECT_EQ(p.mass_density, (std::vector<double>{2, 4}));
+  EXPECT_DOUBLE_EQ(p.velocity[0], 6. / 4);
+  EXPECT_DOUBLE_EQ(p.velocity[1], 8. / 8);
+  EXPECT_DOUBLE_EQ(p.temperature[0], (1 + 18 + 1) / 4. - 1.5 * 1.5);
+  EXPECT_DOUBLE_EQ(p.temperature[1], 32. / 8 - 1);
+  EXPECT_EQ(p.density_right, (std::vector<double>{1, .5}));
+  EXPECT_EQ(p.density_left, (std::vector<double>{.5, 0}));
+  EXPECT_EQ(p.velocity_right, (std::vector<double>{2, 4}));
+  EXPECT_EQ(p.velocity_left[0], -1);
+  EXPECT_TRUE(std::isnan(p.velocity_left[1]));
+}
+
+TEST(Profile, EmptyBinsHaveNoVelocity) {
+  const auto particles = list<double>({0, 1}, {0, 0});
+  const Profile p = profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {10, 20}, 3);
+  for (std::size_t b = 0; b < 3; ++b) {
+    EXPECT_EQ(p.density[b], 0);
+    EXPECT_EQ(p.mass_density[b], 0);
+    EXPECT_TRUE(std::isnan(p.velocity[b]) && std::isnan(p.temperature[b]));
+  }
+  EXPECT_THROW(profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {1, 1}, 3),
+               std::invalid_argument);
+  EXPECT_THROW(profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {0, 1}, 0),
+               std::invalid_argument);
+}
+
+// The place of a particle in units of bins is rounded, and can come out as their number: not the particle's fault.
+TEST(Profile, ParticleJustBelowTheEndIsInTheLastBin) {
+  for (const BinRange range : {BinRange{0, 1}, BinRange{-0.3, .7}, BinRange{-400, 400}, BinRange{1e6, 1e6 + .1}}) {
+    const List<double> particles({range.from, std::nextafter(range.to, range.from)}, {0, 0});
+    Configuration<double> c;
+    c.to = 1;
+    c.x = {particles.position(0), particles.position(1)};
+    c.v = {0, 0};
+    c.m = {1, 1};
+    for (std::size_t bins = 1; bins <= 300; ++bins) {
+      const Profile p = profile(c, particles, 0., range, bins);
+      ASSERT_GT(p.density.front(), 0) << range.from << " to " << range.to << " in " << bins;
+      ASSERT_GT(p.density.back(), 0) << range.from << " to " << range.to << " in " << bins;
+    }
+  }
+}
+
+TEST(Profile, TemperatureKeepsItsDigitsInAFastFrame) {
+  // Velocities 1e6 +- 2^-20: variance 2^-40, of which a difference of squares of order 1e12 would keep none.
+  std::vector<double> x, v;
+  for (int i = 0; i < 100; ++i) {
+    x.push_back(i);
+    v.push_back(1e6 + std::ldexp(i % 2 == 0 ? 1 : -1, -20));
+  }
+  const auto particles = list(x, v);
+  const Profile p = profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {0, 100}, 1);
+  // Differences to the mean are of order 2^-20 and rounded at 2^-33 = 1e6 2^-53.
+  EXPECT_NEAR(p.temperature[0], std::ldexp(1, -40), 100 * std::ldexp(1, -40 - 13));
+}
+
+TEST(Profile, CountsEveryParticleOfTheRowsWhetherReachedOrNot) {
+  const auto particles = rshock<double>(400);
+  for (const double t : {0., 0.25, 10., 100., 250.}) {
+    auto streamed = gap_run(particles, Inelastic(0.98, 1e-5));
+    auto positions = position_run(particles, Inelastic(0.98, 1e-5));
+    streamed.advance(t);
+    positions.advance(t);
+    const auto from_streamed = profile(configuration_at(streamed, t), *particles, t, {-400, 400}, 80);
+    const auto from_positions = profile(configuration_at(positions, t), *particles, t, {-400, 400}, 80);
+    EXPECT_DOUBLE_EQ(total(from_streamed.density, 10), 400) << t;
+    EXPECT_DOUBLE_EQ(total(from_streamed.mass_density, 10), 400) << t;
+    EXPECT_EQ(from_streamed.density, from_positions.density) << t;
+    EXPECT_EQ(from_streamed.density_right, from_positions.density_right) << t;
+    // Momentum vanishes: the densities times the mean velocities add up to it.
+    double momentum = 0, movers = 0;
+    for (std::size_t b = 0; b < 80; ++b) {
+      if (from_streamed.density[b] == 0) continue;
+      momentum += from_streamed.mass_density[b] * from_streamed.velocity[b] * 10;
+      movers += (from_streamed.density_right[b] + from_streamed.density_left[b]) * 10;
+    }
+    EXPECT_NEAR(momentum, 0, 1e-9) << t;  // 400 particles, 1e4 collisions, 2^-53 each
+    EXPECT_DOUBLE_EQ(movers, 400) << t;
+  }
+}
+
+TEST(Profile, RangeMayEndInsideARow) {
+  const auto particles = rshock<double>(400);
+  auto run = gap_run(particles, Inelastic(0.98));
+  run.advance(20);
+  // Nothing has reached 50 < x < 150 yet: particles of the right row, one per unit of length.
+  const auto p = profile(configuration_at(run, 20.), *particles, 20., {50, 150}, 10);
+  for (std::size_t b = 0; b < 10; ++b) {
+    EXPECT_EQ(p.density[b], 1);
+    EXPECT_EQ(p.density_right[b], 0);
+    EXPECT_EQ(p.velocity[b], -0.5);
+    EXPECT_EQ(p.temperature[b], 0);
+  }
+}
+
+// Rows of 1e12 particles: places beyond 2^63 units of 2^-28, exact in double.
+TEST(Profile, OfRowsThatNobodyCanWalk) {
+  constexpr ParticleIndex half = 500'000'000'000;
+  const auto still = uniform_displacement(0, 1, 0);
+  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(2 * half, 0.5, 1.0, still));
+  EXPECT_EQ(rows->position(0), -499'999'999'999.5);
+  EXPECT_EQ(rows->position(2 * half - 1), 499'999'999'999.5);
+  const Cold<double> cold(2 * half, 1.0, HotPlace::left, kicked(0, 1.0), still);
+  EXPECT_EQ(cold.position(2 * half - 1), 999'999'999'999.0);
+
+  auto run = gap_run<double>(rows, Inelastic(0.5));
+  const auto now = configuration_at(run, 0.);
+  const Profile far = profile(now, *rows, 0., {4e11, 4e11 + 10}, 2);  // found at once, wherever it is
+  EXPECT_EQ(far.density, (std::vector<double>{1, 1}));
+  EXPECT_EQ(profile(now, *rows, 0., {-4e11 - 10, -4e11}, 2).density, far.density);
+  // Stopped after some calls, whichever row is being walked.
+  for (const BinRange range : {BinRange{-4e11, 0}, BinRange{0, 4e11}}) {
+    int calls = 0;
+    EXPECT_THROW(profile(now, *rows, 0., range, 2, [&] { return ++calls == 5; }), WalkStopped);
+    EXPECT_EQ(calls, 5);
+    ZoneAverage zone(4e11, 4, 16, 1.);
+    const SavedState before = SavedState::of(zone);
+    EXPECT_THROW(zone.add(now, *rows, 0., [&] { return ++calls == 10; }), WalkStopped);
+    EXPECT_EQ(SavedState::of(zone), before);
+  }
+}
+
+TEST(Profile, OfARangeThatIsNotFinite) {
+  const auto particles = list<double>({0, 1}, {0, 0});
+  const auto now = configuration_at(gap_run(particles, Inelastic(0.5)), 0.);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(profile(now, *particles, 0., {-infinity, infinity}, 2), std::invalid_argument);
+  EXPECT_THROW(profile(now, *particles, 0., {-1.7e308, 1.7e308}, 2), std::invalid_argument);
+}
+
+TEST(Sample, IsConsistentWithTheConfiguration) {
+  const auto particles = rshock<double>(400);
+  auto run = gap_run(particles, Inelastic(0.98));
+  const Sample<double> start = sample(run, particles->kinetic_energy(), 0.);
+  EXPECT_EQ(start.particles, 0);
+  EXPECT_FALSE(start.front_left || start.front_right);
+  EXPECT_EQ(start.energy, 400 * 0.125);
+  run.advance(100.5);
+  const Sample<double> s = sample(run, particles->kinetic_energy(), 100.5);
+  const auto c = configuration_at(run, 100.5);
+  EXPECT_EQ(s.counts.collisions, run.counts().collisions);
+  EXPECT_EQ(s.energy, particles->kinetic_energy() - s.energy_lost);
+  // The configuration holds one uncollided particle on either side.
+  EXPECT_EQ(s.particles + 2, static_cast<ParticleIndex>(c.x.size()));
+  const double rounding = std::abs(c.closure_gap.value()) + 8 * 100 * std::numeric_limits<double>::epsilon();
+  EXPECT_NEAR(*s.front_left, c.x[1], rounding);
+  EXPECT_NEAR(*s.front_right, c.x[c.x.size() - 2], rounding);
+}
+
+TEST(GapStatistics, LeastAndMedian) {
+  Configuration<double> c;
+  c.gap = {3, 1, 4, 1.5, 9};
+  EXPECT_EQ(gap_statistics(c).least, 1);
+  EXPECT_EQ(gap_statistics(c).median, 3);
+}
+
+}  // namespace profile_test

@@ -1,0 +1,128 @@
+// Runs that go in segments now and then. Proves: a run has the bits of the plain loop whatever comes between its
+// time slabs: plain advances, observers, single steps, interrupts, exceptions of the caller and of the threads; and it
+// does not go in segments where that would not pay. Part of what every build runs under ThreadSanitizer.
+#include <gtest/gtest.h>
+
+#include "cradle/tests/core/segmented.hpp"
+
+namespace segmented_runs_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+const Inelastic<double> law(0.999, 1e-5);
+const Segmentation quick{.gaps = 100, .ghosts = 32, .collisions = 1, .anywhere = true};
+using GapSegments = Segments<Inelastic<double>, GapChain<double>>;
+
+TEST(Segments, ComeAndGoBetweenAdvances) {
+  auto plain = gap_run(rshock<double>(1400), law), mixed = gap_run(rshock<double>(1400), law);
+  GapSegments segments(threads(2), quick), others({}, {.gaps = 7, .ghosts = 20, .collisions = 2, .anywhere = true});
+  std::uint64_t seen = 0, made = 0;
+  for (double t = 480; t < 560; t += 5) {
+    switch (static_cast<int>(t / 5) % 5) {
+    case 0:
+      mixed.advance(t);
+      break;
+    case 1:
+      mixed.advance(t, segments);
+      break;
+    case 2:
+      made -= mixed.counts().collisions;
+      mixed.advance(t, [&](const Collision<double>&) { ++seen; });
+      made += mixed.counts().collisions;
+      break;
+    case 3:
+      mixed.advance(t, others);
+      break;
+    default:
+      mixed.head_for(t);
+      while (mixed.step()) continue;
+    }
+    plain.advance(t);
+    expect_same_state(plain, mixed, t);
+  }
+  EXPECT_GT(segments.statistics().slabs, 5U);
+  EXPECT_GT(others.statistics().slabs, 3U);
+  EXPECT_GT(seen, 1000U);
+  EXPECT_EQ(seen, made);
+}
+
+TEST(Segments, AskTheCallerAndGoOnAfterAnythingThatIsThrown) {
+  struct Thrown {};
+  int calls = 0, stopped = 0;
+  Policy<double> policy;
+  policy.interrupt = [&] { return ++calls % 3 == 0; };
+  policy.progress = [&](const double&, const Counts&) {
+    if (calls % 5 == 4) throw Thrown();
+  };
+  auto plain = gap_run(rshock<double>(1400), law), polled = gap_run(rshock<double>(1400), law, policy);
+  GapSegments segments({}, quick);
+  for (bool over = false; !over;) try {
+      over = polled.advance(560, segments) == Status::reached;
+      if (!over) ++stopped;
+    } catch (const Thrown&) {
+      ++calls;
+    }
+  plain.advance(560);
+  expect_same_state(plain, polled, 560.);
+  EXPECT_GT(stopped, 20);
+  EXPECT_GT(segments.statistics().slabs, 20U);
+}
+
+// Small zones, collapses to be found and short ways are not for segments, however many threads there are.
+TEST(Segments, DoNotStartWhereTheyWouldNotPay) {
+  GapSegments segments(threads(2));
+  auto few = gap_run(rshock<double>(400), law);
+  few.advance(300, segments);
+  auto stops = gap_run<double>(rshock<double>(4000), law, {CollapsePolicy::stop});
+  stops.advance(1200, segments);
+  EXPECT_GT(stops.collided_particles(), 1000);
+  EXPECT_EQ(segments.statistics().slabs + segments.statistics().given_up, 0U);
+  auto many = gap_run(rshock<double>(4000), law);
+  many.advance(1200, segments);
+  EXPECT_GT(segments.statistics().slabs, 10U);
+  EXPECT_LT(segments.statistics().given_up, segments.statistics().slabs / 10);
+}
+
+// Particles that merge, on two threads.
+TEST(Segments, OfARingOfClusters) {
+  const SegmentsAs as{{.gaps = 60, .ghosts = 4, .collisions = 2, .anywhere = true}, 2};
+  const auto made = expect_same_in_segments<ClusterChain<double>>(gas<double>(700, 700.), Wet<double>(0.02), as,
+                                                                  std::vector{2., 10., 60.});
+  EXPECT_GT(made.slabs, 5U);
+  EXPECT_GT(made.again, 10U);
+}
+
+// A run that was interrupted between two time slabs has no queue; whoever steps on gets one.
+TEST(Segments, SingleStepsAfterAnInterrupt) {
+  int calls = 0;
+  Policy<double> policy;
+  policy.interrupt = [&] { return ++calls == 20; };
+  auto plain = gap_run(rshock<double>(1400), law), stepped = gap_run(rshock<double>(1400), law, policy);
+  GapSegments segments({}, quick);
+  EXPECT_EQ(stepped.advance(560, segments), Status::interrupted);
+  EXPECT_GT(segments.statistics().slabs, 0U);
+  while (stepped.step()) continue;
+  EXPECT_EQ(stepped.status(), Status::reached);
+  plain.advance(560);
+  expect_same_state(plain, stepped, 560.);
+}
+
+TEST(Segments, WhatAThreadThrowsIsThrownOn) {
+  GapSegments segments({2,
+                        [](std::size_t jobs, const Workers::Work& work) {
+                          for_each(ThreadExecutor(2), jobs, [&](std::size_t job, std::size_t worker) {
+                            if (job == 1) throw std::bad_alloc();
+                            work(job, worker);
+                          });
+                        }},
+                       quick);
+  auto plain = gap_run(rshock<double>(1400), law), run = gap_run(rshock<double>(1400), law);
+  EXPECT_THROW(run.advance(560, segments), std::bad_alloc);
+  GapSegments others({}, quick);
+  run.advance(560, others);
+  plain.advance(560);
+  expect_same_state(plain, run, 560.);
+}
+
+}  // namespace segmented_runs_test

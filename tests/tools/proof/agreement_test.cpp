@@ -1,0 +1,158 @@
+// A proof and its run that do not agree: whatever is planted in what the run says of itself, in every precision, ends
+// the program with the quantity by name, and never in a certificate.
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "cradle/tools/proof/certify.hpp"
+
+namespace agreement_test {
+
+using namespace cradle;
+using namespace cradle::tools;
+
+using Plant = std::function<void(RunSample&)>;
+
+class Tampered final : public Certifier {
+ public:
+  Tampered(std::unique_ptr<Certifier> proof, Plant plant) : proof_(std::move(proof)), plant_(std::move(plant)) {}
+  void collision(ParticleIndex left, ParticleIndex right, double time) override {
+    proof_->collision(left, right, time);
+  }
+  void look(const RunSample& look) override {
+    RunSample changed = look;
+    plant_(changed);
+    proof_->look(changed);
+  }
+  Certificate certificate() const override { return proof_->certificate(); }
+
+ private:
+  std::unique_ptr<Certifier> proof_;
+  Plant plant_;
+};
+
+const char* const shock = R"(
+law = {type = "inelastic", restitution = 0.9, cutoff = 0.1}
+initial = {type = "rows", particles = 20, speed = 0.5, spacing = 1, perturbation = 0.1}
+run.until = 12
+output.series = {points = 4}
+output.snapshots = [5, 10]
+)";
+
+Certified certified(const std::string& toml, const Plant& plant) {
+  CertifyOptions how;
+  how.digits = {31};
+  how.progress = Progress::Show::never;
+  how.make = [&](const Scene& scene, unsigned digits) {
+    return std::make_unique<Tampered>(certifier(scene, digits), plant);
+  };
+  return certify(parse_scene(toml, "shock", {}), how);
+}
+
+std::string moved(const std::string& number, double by) {
+  return to_text(from_text<double_double>(number) + double_double(by));
+}
+
+TEST(Agreement, OfAProofAndItsRun) {
+  const Certified run = certified(shock, [](RunSample&) {});
+  EXPECT_TRUE(run.proved());
+  EXPECT_EQ(run.attempts.size(), 1U);
+  EXPECT_GT(run.certificate.collisions, 50U);
+}
+
+TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
+  const std::pair<const char*, Plant> plants[] = {
+      {"front_left",
+       [](RunSample& look) {
+         if (!look.front_left.empty()) look.front_left = moved(look.front_left, 1e-9);
+       }},
+      {"front_right",
+       [](RunSample& look) {
+         if (look.time > 11) look.front_right = moved(look.front_right, -1e-9);
+       }},
+      {"front_left",
+       [](RunSample& look) {
+         if (look.time > 11) look.front_left.clear();
+       }},
+      {"front_right",
+       [](RunSample& look) {
+         if (look.time == 0) look.front_right = "1";
+       }},
+      {"energy", [](RunSample& look) { look.energy = moved(look.energy, 1e-10); }},
+      {"energy",
+       [](RunSample& look) {
+         if (look.time > 3) look.energy = "nan";
+       }},
+      {"collisions", [](RunSample& look) { look.counts.collisions += look.time > 11; }},
+      {"collisions_below_cutoff", [](RunSample& look) { look.counts.below_cutoff += look.time > 11; }},
+      {"merges", [](RunSample& look) { look.counts.merges += 1; }},
+      {"time of the sample",
+       [](RunSample& look) {
+         if (look.time > 3) look.time_text = moved(look.time_text, 1e-12);
+       }},
+      {"x of particle 7 in the snapshot",
+       [](RunSample& look) {
+         for (std::size_t j = 0; j < look.particles.x.size(); ++j)
+           if (look.particles.index[j] == 7) look.particles.x[j] = moved(look.particles.x[j], 1e-9);
+       }},
+      {"v of particle 12 in the snapshot",
+       [](RunSample& look) {
+         for (std::size_t j = 0; j < look.particles.v.size(); ++j)
+           if (look.time > 9 && look.particles.index[j] == 12) look.particles.v[j] = moved(look.particles.v[j], 1e-10);
+       }},
+      {"m of particle 9 in the snapshot",
+       [](RunSample& look) {
+         for (std::size_t j = 0; j < look.particles.m.size(); ++j)
+           if (look.particles.index[j] == 9) look.particles.m[j] = "1.0000000001";
+       }},
+      {"of particle 8 in the snapshot",
+       [](RunSample& look) {
+         for (ParticleIndex& particle : look.particles.index) particle = particle == 8 ? -1 : particle;
+       }},
+      {"in one cluster", [](RunSample& look) {
+         for (ParticleIndex& particle : look.particles.index) particle = particle == 8 ? 7 : particle;
+       }}};
+  for (const auto& [quantity, plant] : plants) {
+    try {
+      certified(shock, plant);
+      ADD_FAILURE() << quantity << " is off, and proved";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.status, Exit::lost) << error.what();
+      const std::string message = error.what();
+      EXPECT_NE(message.find("do not agree"), message.npos) << message;
+      EXPECT_NE(message.find(quantity), message.npos) << quantity << ": " << message;
+    }
+  }
+}
+
+TEST(Agreement, AnErrorOfARunInDoubleAsksForAWiderOne) {
+  const Certified run = certified(shock, [](RunSample& look) {
+    if (look.epsilon > 1e-20L) look.energy = moved(look.energy, 1e-9);
+  });
+  EXPECT_TRUE(run.proved());
+  ASSERT_EQ(run.attempts.size(), 2U);
+  EXPECT_NE(run.attempts.front().doubt.find("the run's energy is not what is proved of it"), std::string::npos)
+      << run.attempts.front().doubt;
+}
+
+TEST(Agreement, ARunThatEndsBeforeItsTimeIsProvedUpToThere) {
+  Certified run;
+  run.scene = parse_scene(shock, "shock", {});
+  run.certificate.collisions = 7;
+  run.certificate.samples.push_back({});
+  run.certificate.samples.back().time_text = "3.25";
+  run.outcome.end = RunEnd::exhausted;
+  EXPECT_FALSE(run.proved());
+  EXPECT_NE(
+      certificate_text(run).find("undecided from t = 3.25 on, after 7 collisions: the run ended there, before t = 12"),
+      std::string::npos)
+      << certificate_text(run);
+  run.outcome.end = RunEnd::collapsed;
+  EXPECT_TRUE(run.proved());
+  EXPECT_NE(certificate_text(run).find("not proved: that this is an inelastic collapse"), std::string::npos);
+}
+
+}  // namespace agreement_test

@@ -1,0 +1,153 @@
+// Proofs against a gas that shares nothing with the engine nor the checker: every pair of neighbours is tried for who
+// meets next, there the law acts. Places are kept as where a particle would have been at 0, where rationals stay short.
+// In rationals, exact; where a scene has roots, in 100 digits.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/precision/bin_float.hpp"
+#include "cradle/tests/core/rational.hpp"
+
+namespace cradle::tests {
+
+using test::Rational;
+
+enum class GasLaw { inelastic, contact_time, merging, sticky, wet };
+
+// 12.5, -3e-20: without rounding in rationals.
+template <class T> T decimal(const std::string& text) {
+  const auto e = text.find_first_of("eE");
+  std::string digits = text.substr(0, e);
+  long power = e == text.npos ? 0 : std::stol(text.substr(e + 1));
+  const bool negative = digits.starts_with('-');
+  if (negative || digits.starts_with('+')) digits.erase(0, 1);
+  if (const auto point = digits.find('.'); point != digits.npos) {
+    power -= static_cast<long>(digits.size() - point - 1);
+    digits.erase(point, 1);
+  }
+  // Boost reads a leading 0 as octal.
+  digits.erase(0, std::min(digits.find_first_not_of('0'), digits.size() - 1));
+  using Integer = boost::multiprecision::cpp_int;
+  const Integer shift = pow(Integer(10), static_cast<unsigned>(power < 0 ? -power : power));
+  const T size = power < 0 ? T(T(Integer(digits)) / T(shift)) : T(Integer(Integer(digits) * shift));
+  return negative ? T(-size) : size;
+}
+
+// Particles that are together are one; cells stand from left to right, on a ring up to the seam.
+template <class T> struct Gas {
+  struct Cell {
+    T origin, v, m;
+    std::vector<std::int64_t> particles;
+    std::optional<T> touched{};  // the time of its last collision
+  };
+  std::vector<Cell> cells;
+  GasLaw law = GasLaw::inelastic;
+  T restitution{1}, cutoff{0}, contact_time{0}, merge_speed{0}, loss{0}, length{0};
+
+  T time{0};
+  std::uint64_t collisions = 0, below_cutoff = 0, merges = 0;
+  bool tied = false;  // three met at one time: what follows is nobody's to say
+
+  // All collisions up to a time, or the first `most` of all.
+  void advance(const T& until, std::uint64_t most) {
+    while (collisions < most && !tied && step(until)) continue;
+    if (collisions < most) time = until;
+  }
+  T energy() const {
+    T twice(0);
+    for (const Cell& cell : cells) twice += cell.m * cell.v * cell.v;
+    return twice / 2;
+  }
+  const Cell* outermost(bool left) const {
+    if (length > 0) return nullptr;
+    const auto touched = [](const Cell& cell) { return cell.touched.has_value(); };
+    if (left) {
+      const auto at = std::find_if(cells.begin(), cells.end(), touched);
+      return at == cells.end() ? nullptr : &*at;
+    }
+    const auto at = std::find_if(cells.rbegin(), cells.rend(), touched);
+    return at == cells.rend() ? nullptr : &*at;
+  }
+  const Cell& cell_of(std::int64_t particle) const {
+    return *std::find_if(cells.begin(), cells.end(), [&](const Cell& cell) {
+      return std::find(cell.particles.begin(), cell.particles.end(), particle) != cell.particles.end();
+    });
+  }
+  T place(const Cell& cell) const { return cell.origin + cell.v * time; }
+  T gap_after(std::size_t k) const { return place(cells[after(k)]) - place(cells[k]) + seam(k); }
+  std::size_t pairs() const { return cells.size() < 2 ? 0 : length > 0 ? cells.size() : cells.size() - 1; }
+
+ private:
+  std::size_t after(std::size_t k) const { return k + 1 < cells.size() ? k + 1 : 0; }
+  T seam(std::size_t k) const { return k + 1 < cells.size() ? T(0) : length; }
+
+  bool step(const T& until) {
+    std::optional<T> first;
+    std::vector<std::size_t> together;
+    for (std::size_t k = 0; k < pairs(); ++k) {
+      const T w = cells[k].v - cells[after(k)].v;
+      if (!(w > 0)) continue;
+      const T due = (cells[after(k)].origin + seam(k) - cells[k].origin) / w;
+      if (!first || due < *first) first = due, together.clear();
+      if (due == *first) together.push_back(k);
+    }
+    if (!first || *first > until) return false;
+    time = *first;
+    for (const std::size_t a : together)
+      for (const std::size_t b : together) tied = tied || (a != b && (after(a) == b || after(b) == a));
+    if (!tied) collide(together.front());
+    return true;
+  }
+  void collide(std::size_t k) {
+    Cell &l = cells[k], &r = cells[after(k)];
+    const T w = l.v - r.v, all = l.m + r.m, reduced = l.m * r.m / all;
+    const auto rested = [&](const Cell& cell) { return cell.touched && time - *cell.touched < contact_time; };
+    const bool memory = law == GasLaw::contact_time && (rested(l) || rested(r));
+    ++collisions;
+    l.touched = r.touched = time;
+    const T x_l = place(l), x_r = place(r);
+    if (law == GasLaw::sticky || (law == GasLaw::merging && w < merge_speed) ||
+        (law == GasLaw::wet && !(w * w > 2 * loss / reduced)))
+      return merge(k, x_l);
+    if (law == GasLaw::wet) return pass(k, after_bridge(w, reduced), x_l, x_r);
+    const bool below = memory || (law != GasLaw::merging && w < cutoff);
+    below_cutoff += below;
+    const T impulse = reduced * w * (1 + (below ? T(1) : restitution));
+    l.v -= impulse / l.m;
+    r.v += impulse / r.m;
+    l.origin = x_l - l.v * time;
+    r.origin = x_r - r.v * time;
+  }
+  void merge(std::size_t k, const T& x) {
+    Cell &l = cells[k], &r = cells[after(k)];
+    ++merges;
+    l.v = (l.m * l.v + r.m * r.v) / (l.m + r.m);
+    l.m += r.m;
+    l.origin = x - l.v * time;
+    l.particles.insert(l.particles.end(), r.particles.begin(), r.particles.end());
+    cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(after(k)));
+  }
+  // The closing speed is now a speed of parting.
+  T after_bridge(const T& w, const T& reduced) const {
+    if constexpr (std::is_same_v<T, Rational>)
+      return w;
+    else
+      return T(sqrt(T(w * w - 2 * loss / reduced)));
+  }
+  void pass(std::size_t k, const T& parting, const T& x_l, const T& x_r) {
+    Cell &l = cells[k], &r = cells[after(k)];
+    const T centre = (l.m * l.v + r.m * r.v) / (l.m + r.m), all = l.m + r.m;
+    l.v = centre + r.m * parting / all;
+    r.v = centre - l.m * parting / all;
+    std::swap(l.v, r.v), std::swap(l.m, r.m), std::swap(l.particles, r.particles), std::swap(l.touched, r.touched);
+    l.origin = x_l - l.v * time;
+    r.origin = x_r - r.v * time;
+  }
+};
+
+}  // namespace cradle::tests

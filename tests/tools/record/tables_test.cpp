@@ -1,0 +1,78 @@
+// What the tables of a scene are is known before it runs: what a run writes is exactly that.
+#include "cradle/tools/record/tables.hpp"
+
+#include <gtest/gtest.h>
+
+#include "cradle/tools/ensemble/layout.hpp"
+#include "cradle/tools/run/run.hpp"
+
+namespace cradle::tools {
+namespace tables_test {
+
+const std::string rows = "[initial]\ntype = 'rows'\nparticles = 60\nperturbation = 0.05\n[run]\nuntil = 40\n"
+                         "[output]\nprofiles = { times = [20], bins = 7, range = [-5, 5] }\nseries.points = 5\n";
+
+const std::pair<const char*, std::string> scenes[] = {
+    {"dry", "[law]\ntype = 'inelastic'\nrestitution = 0.9\ncutoff = 1e-3\n" + rows},
+    {"core", "[law]\ntype = 'inelastic'\nrestitution = 0.9\ncutoff = 1e-3\n" + rows + "core = true\n"},
+    {"wet", "[law]\ntype = 'wet'\nloss = 0.05\n" + rows + "zone = { from = 5, samples = 16, bins = 6, reach = 3 }\n" +
+                "scenario = true\ncore = true\n"},
+    {"sticky", "[law]\ntype = 'sticky'\n" + rows},
+    {"ring", "law.type = 'wet'\nlaw.loss = 0.1\nrun.until = 3\noutput.series.points = 5\n"
+             "initial = { type = 'ring', particles = 20 }"},
+    {"model", "law.type = 'wet'\nlaw.loss = 0.05\nrun.until = 3\noutput.series.points = 5\n"
+              "initial = { type = 'clusters', x = [-1, 1] }"},
+};
+
+void expect_columns(const Group& declared, const Group* written) {
+  ASSERT_NE(written, nullptr) << declared.name;
+  ASSERT_EQ(declared.columns.size(), written->columns.size()) << declared.name;
+  for (std::size_t c = 0; c < declared.columns.size(); ++c) {
+    const Column &a = declared.columns[c], &b = written->columns[c];
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.unit, b.unit);
+    EXPECT_EQ(a.description, b.description);
+    EXPECT_EQ(a.width, b.width);
+    EXPECT_EQ(a.names, b.names);
+    EXPECT_GT(b.rows(), 0U) << declared.name << "/" << b.name;
+    if (a.rows() > 0) {
+      EXPECT_EQ(a.values, b.values) << "bins of " << declared.name;
+    }
+  }
+}
+
+TEST(RunTables, AreWhatARunWrites) {
+  for (const auto& [name, text] : scenes) {
+    SCOPED_TRACE(name);
+    const Scene scene = parse_scene(text, std::string(name) + ".toml");
+    const RunTables tables = run_tables(scene);
+    const RunOutcome run = run_scene(scene, {Progress::Show::never});
+    EXPECT_EQ(run.end, RunEnd::reached);
+    for (const Group& table : tables.series) expect_columns(table, run.result.find(table.name));
+    if (tables.profile) expect_columns(*tables.profile, run.result.find("profiles/0000"));
+    if (tables.zone) expect_columns(*tables.zone, run.result.find("zone"));
+    EXPECT_EQ(tables.profile.has_value(), run.result.find("profiles/0000") != nullptr);
+    EXPECT_EQ(tables.zone.has_value(), run.result.find("zone") != nullptr);
+    std::vector<std::string> summary;
+    for (const auto& [number, value] : run.summary) summary.push_back(number);
+    EXPECT_EQ(tables.summary, summary);
+  }
+}
+
+TEST(RunTables, OfEnsemblesAreKnownWithoutSettingUpAnything) {
+  // No memory holds these particles.
+  const Scene scene =
+      parse_scene("law.type = 'sticky'\nrun.until = 3\ninitial = { type = 'ring', particles = 1e15 }", "huge.toml");
+  const ReplicaLayout layout = replica_layout(scene);
+  EXPECT_EQ(layout.entries, 8U * 1000U);
+  EXPECT_EQ(layout.time.rows(), 1000U);
+}
+
+TEST(RunTables, AreFilledWithAsManyNumbersAsTheyHave) {
+  EXPECT_THROW(filled(masses_table("masses/0000"), std::vector<double>{1}), std::logic_error);
+  const Group table = filled(masses_table("masses/0000"), std::vector<double>{1}, std::vector<std::uint64_t>{2});
+  EXPECT_EQ(table.columns[1].values, Numbers(std::vector<std::uint64_t>{2}));
+}
+
+}  // namespace tables_test
+}  // namespace cradle::tools

@@ -1,0 +1,125 @@
+// Journals after every way of ending: whatever is on the disk, a reader gives the records before the damage, whole and
+// nothing else.
+
+#include "cradle/tools/store/journal.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/result/small_files.hpp"
+#include "cradle/tools/support/errors.hpp"
+
+namespace cradle::tests {
+namespace journal_test {
+
+using tools::JournalOf;
+using tools::JournalReader;
+using tools::JournalWriter;
+
+class Journal : public ProgramTest {
+ protected:
+  std::string path() const { return (folder / "journal").string(); }
+  void write_three() const {
+    JournalWriter writer(path(), JournalOf::replicas, "header");
+    for (const auto* record : {"first", "", "the third one"}) writer.append(record);
+  }
+  std::vector<std::string> records() const {
+    JournalReader reader(path(), JournalOf::replicas);
+    std::vector<std::string> all;
+    for (std::string record; reader.next(record);) all.push_back(record);
+    return all;
+  }
+};
+
+const std::vector<std::string> three{"first", "", "the third one"};
+
+TEST_F(Journal, GivesBackWhatWasAppended) {
+  write_three();
+  EXPECT_EQ(JournalReader(path(), JournalOf::replicas).header(), "header");
+  EXPECT_EQ(records(), three);
+  JournalWriter again(path());
+  again.continue_after(std::filesystem::file_size(path()));
+  again.append("fourth");
+  EXPECT_EQ(records().back(), "fourth");
+}
+
+TEST_F(Journal, CutAnywhereGivesTheWholeRecordsBeforeTheCut) {
+  write_three();
+  const std::string whole = contents(path());
+  std::size_t at_least = 0;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    write("journal", whole.substr(0, size));
+    if (size < 8 + 16 + 6) {  // magic, and the header's frame
+      EXPECT_THROW(JournalReader(path(), JournalOf::replicas), tools::Error) << size;
+      continue;
+    }
+    JournalReader reader(path(), JournalOf::replicas);
+    std::vector<std::string> found;
+    for (std::string record; reader.next(record);) found.push_back(record);
+    ASSERT_LE(found.size(), 2U) << size;
+    EXPECT_TRUE(std::equal(found.begin(), found.end(), three.begin())) << size;
+    EXPECT_GE(found.size(), at_least) << size;
+    at_least = found.size();
+    EXPECT_EQ(reader.whole_bytes() + reader.torn_bytes(), size);
+    // Whoever goes on cuts off what is torn.
+    {
+      JournalWriter writer(path());
+      writer.continue_after(reader.whole_bytes());
+      writer.append("more");
+    }
+    found.emplace_back("more");
+    EXPECT_EQ(records(), found) << size;
+  }
+  EXPECT_EQ(at_least, 2U);
+}
+
+TEST_F(Journal, AnyChangedByteIsSeen) {
+  write_three();
+  const std::string whole = contents(path());
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    write("journal", changed);
+    if (at < 8 + 16 + 6) {
+      EXPECT_THROW(JournalReader(path(), JournalOf::replicas), tools::Error) << at;
+      continue;
+    }
+    const auto found = records();
+    EXPECT_LT(found.size(), 3U) << at;
+    EXPECT_TRUE(std::equal(found.begin(), found.end(), three.begin())) << at;
+  }
+}
+
+TEST_F(Journal, WrittenAnewAppearsOnlyWhole) {
+  write_three();
+  EXPECT_THROW(JournalWriter(path(), JournalOf::replicas, "header",
+                             [](const JournalWriter::Put& put) {
+                               put("half of it");
+                               throw std::runtime_error("disk full");
+                             }),
+               std::runtime_error);
+  EXPECT_EQ(records(), three) << "the old one stays";
+  const JournalWriter anew(path(), JournalOf::replicas, "header", [](const JournalWriter::Put& put) { put("all"); });
+  EXPECT_EQ(records(), std::vector<std::string>{"all"});
+}
+
+TEST_F(Journal, HalfARecordIsTakenBackWhereTheDiskIsFull) {
+  JournalWriter writer(path(), JournalOf::replicas, "header");
+  writer.append("first");
+  {
+    const SmallFiles full;
+    EXPECT_THROW(writer.append(std::string(20000, 'x')), tools::Error);
+  }
+  writer.append("second");
+  EXPECT_EQ(records(), (std::vector<std::string>{"first", "second"}));
+}
+
+TEST_F(Journal, HasOneWriterAtATime) {
+  write_three();
+  const JournalWriter first(path());
+  EXPECT_THROW(JournalWriter{path()}, tools::Error);
+}
+
+}  // namespace journal_test
+}  // namespace cradle::tests

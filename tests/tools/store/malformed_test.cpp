@@ -1,0 +1,189 @@
+// Random damage to what a run is started or gone on with: scenes, journals, checkpoints. Damage that a checksum tells
+// of is told of; behind a checksum that is right, which whoever means harm can write, whatever stands there is refused
+// or gone on with to some end, without a crash and within two seconds. CRADLE_MUTATIONS=10000 makes it more than the
+// usual 200.
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/guarded.hpp"
+#include "cradle/tools/result/result_bytes.hpp"
+#include "cradle/tools/store/run_files.hpp"
+#include "cradle/tools/support/bytes.hpp"
+#include "cradle/tools/support/checksum.hpp"
+
+namespace malformed_test {
+
+using namespace cradle::tests;
+using namespace cradle::tools;
+
+int mutations() {
+  const char* more = std::getenv("CRADLE_MUTATIONS");
+  return more != nullptr ? std::atoi(more) : 200;
+}
+
+class Mutator {
+ public:
+  explicit Mutator(unsigned seed) : random_(seed) {}
+  std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
+
+  // Flips bits, writes numbers that are extreme, cuts, repeats, takes out; only from the given byte on.
+  std::string mutate(std::string bytes, std::size_t from = 0) {
+    for (std::size_t left = 1 + below(3); left > 0 && bytes.size() > from + 8; --left) {
+      const std::size_t at = from + below(bytes.size() - from - 7);
+      switch (below(6)) {
+      case 0:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
+        break;
+      case 1: {
+        constexpr std::uint64_t extreme[] = {0,
+                                             1,
+                                             ~std::uint64_t{0},
+                                             std::uint64_t{1} << 63,
+                                             std::uint64_t{1} << 40,
+                                             0x7FF0000000000000,
+                                             0x7FF8000000000000,
+                                             0xFFEFFFFFFFFFFFFF};
+        std::memcpy(bytes.data() + at, &extreme[below(std::size(extreme))], 8);
+        break;
+      }
+      case 2:
+        bytes.resize(at);
+        break;
+      case 3:
+        bytes.insert(at, bytes.substr(at, 1 + below(40)));
+        break;
+      case 4:
+        bytes.erase(at, 1 + below(40));
+        break;
+      default:
+        bytes[at] = static_cast<char>(below(256));
+      }
+    }
+    return bytes;
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+TEST(Malformed, Scenes) {
+  Mutator mutator(1);
+  int refused = 0;
+  for (int k = 0; k < mutations(); ++k) {
+    const auto scenes = bundled_scenes();
+    const std::string text = mutator.mutate(std::string(scenes[mutator.below(scenes.size())].text));
+    try {
+      const Scene scene = parse_scene(text, "malformed.toml");
+      EXPECT_EQ(parse_scene(effective_toml(scene), "effective.toml"), parse_scene(effective_toml(scene), "again.toml"));
+    } catch (const Error& error) {
+      ++refused;
+      EXPECT_NE(error.status, Exit::done);
+      EXPECT_STRNE(error.what(), "");
+    }
+  }
+  EXPECT_GT(refused, mutations() / 4);
+}
+
+class MalformedFiles : public ProgramTest {
+ protected:
+  MalformedFiles() {
+    for (const char* law : {"law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n",
+                            "law = { type = 'wet', loss = 0.01 }\n", "law.type = 'sticky'\n"})
+      for (const char* initial : {"initial = { type = 'rows', particles = 12, perturbation = 0.05 }\n",
+                                  "initial = { type = 'ring', particles = 8 }\n"})
+        begin(parse_scene(std::string(law) + initial +
+                              "output = { series.points = 9, snapshots = [5] }\nrun.until = 30\n",
+                          "malformed.toml"));
+  }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+
+  // Leaves the files of a run that was stopped.
+  void begin(const Scene& scene) {
+    const std::string name = "run" + std::to_string(runs_++) + ".h5";
+    Interrupt interrupt;
+    RunFiles files(path(name), scene);
+    class Stopping final : public RunStore {
+     public:
+      Stopping(RunFiles& files, Interrupt& interrupt) : files_(files), interrupt_(interrupt) {}
+      void add(Group&& rows) override { files_.add(std::move(rows)); }
+      void count(std::uint64_t collisions) override { files_.count(collisions); }
+      void check_clock() override {
+        if (++checks_ == 5) interrupt_.note(SIGTERM);
+      }
+      bool due() const override { return false; }
+      void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool too) override {
+        files_.keep(status, save, too);
+      }
+      StateReader* loaded_from() override { return nullptr; }
+
+     private:
+      RunFiles& files_;
+      Interrupt& interrupt_;
+      int checks_ = 0;
+    } store(files, interrupt);
+    ASSERT_EQ(run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &store}).end, RunEnd::interrupted);
+  }
+  static void resume(const std::string& file) {
+    RunFiles files(file, std::nullopt);
+    Interrupt interrupt;
+    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, {}, &files});
+    files.finish(std::move(end.result), end.end);
+  }
+
+  std::size_t runs_ = 0;
+};
+
+TEST_F(MalformedFiles, CheckpointsAndJournals) {
+  Mutator mutator(2);
+  std::vector<std::pair<std::string, std::string>> whole;  // journal and checkpoint
+  for (std::size_t k = 0; k < runs_; ++k) {
+    const std::string name = "run" + std::to_string(k) + ".h5";
+    whole.emplace_back(contents(folder / (name + ".part")), contents(folder / (name + ".checkpoint")));
+  }
+  int refused = 0;
+  for (int k = 0; k < mutations(); ++k) {
+    SCOPED_TRACE(k);
+    auto [journal, state] = whole[mutator.below(whole.size())];
+    const bool of_state = mutator.below(2) == 0, sealed = mutator.below(4) > 0;
+    if (of_state && sealed) {  // behind a checksum that is right
+      state = mutator.mutate(state.substr(0, state.size() - 8), 8);
+      state += ByteWriter().put(crc64(state)).bytes();
+    } else if (of_state) {
+      state = mutator.mutate(state);
+    } else if (sealed) {  // a record of the journal, or its header
+      write("whole.part", journal);
+      JournalReader records(path("whole.part"), JournalOf::run);
+      std::vector<std::string> all{records.header()};
+      for (std::string record; records.next(record);) all.push_back(record);
+      std::string& one = all[mutator.below(all.size())];
+      one = mutator.mutate(one);
+      JournalWriter anew(path("a.h5.part"), JournalOf::run, all.front(), [&](const JournalWriter::Put& put) {
+        for (std::size_t j = 1; j < all.size(); ++j) put(all[j]);
+      });
+      journal = contents(folder / "a.h5.part");
+    } else {
+      journal = mutator.mutate(journal);
+    }
+    write("a.h5.part", journal);
+    write("a.h5.checkpoint", state);
+    std::filesystem::remove(folder / "a.h5");
+    try {
+      const auto done = in_another_process([&] { return resume(path("a.h5")), std::string("gone on"); }, 2);
+      EXPECT_TRUE(done.has_value()) << "a crash, or more than two seconds";
+    } catch (const Error& error) {
+      ++refused;
+      EXPECT_FALSE(std::filesystem::exists(folder / "a.h5")) << error.what();
+    }
+    for (const char* file : {"a.h5.part", "a.h5.checkpoint"}) std::filesystem::remove(folder / file);
+  }
+  EXPECT_GT(refused, mutations() / 4);
+}
+
+}  // namespace malformed_test

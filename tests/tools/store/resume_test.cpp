@@ -1,0 +1,258 @@
+// Runs that are stopped anywhere and gone on with end in the bytes of the run that was left alone: law x scalar type x
+// coordinates x initial state x policy x threads x where it is cut.
+#include <csignal>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/precision/scalars.hpp"
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/store/run_files.hpp"
+
+namespace resume_test {
+
+using namespace cradle::tools;
+using cradle::tests::contents;
+
+// Hands on to the files, and stops the run where it is told to.
+class Stopping final : public RunStore {
+ public:
+  struct At {
+    std::uint64_t collisions = ~std::uint64_t{0}, checks = ~std::uint64_t{0};
+  };
+  Stopping(RunFiles& files, Interrupt& interrupt, At at) : files_(files), interrupt_(interrupt), at_(at) {}
+
+  void add(Group&& rows) override { files_.add(std::move(rows)); }
+  void count(std::uint64_t collisions) override {
+    files_.count(collisions);
+    if (collisions >= at_.collisions) interrupt_.note(SIGTERM);
+  }
+  void check_clock() override {
+    files_.check_clock();
+    if (++checks_ >= at_.checks) interrupt_.note(SIGTERM);
+  }
+  bool due() const override { return files_.due(); }
+  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) override {
+    files_.keep(status, save, state_too);
+  }
+  StateReader* loaded_from() override { return files_.loaded_from(); }
+
+ private:
+  RunFiles& files_;
+  Interrupt& interrupt_;
+  At at_;
+  std::uint64_t checks_ = 0;
+};
+
+struct Case {
+  const char* name;
+  const char* scene;
+  std::vector<std::string> precisions = {"double", "long double", "double-double", "cpp_bin_float", "float128", "mpfr"};
+  std::size_t threads = 1, threads_later = 1;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+constexpr const char* outputs =
+    "output = { series.points = 20, snapshots = [40, 60], profiles = { times = [50], bins = 8 }, events = true }\n";
+
+std::string dry(const std::string& initial, const std::string& run, const std::string& law = "") {
+  return "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-4 }\n" + initial + outputs + law +
+         "[run]\nuntil = 100\n" + run;
+}
+
+const std::string rows = "initial = { type = 'rows', particles = 80, perturbation = 0.05 }\n";
+const std::string ring = "initial = { type = 'ring', particles = 30, perturbation = 0.1 }\n";
+const std::string list = "initial = { type = 'list', x = [0, 1, 3, 4, 7, 8.5], v = [1, 0.5, -1, 2, -1, -2], "
+                         "m = [1, 2, 1, 3, 1, 0.5] }\n";
+const std::string general =
+    "initial = { type = 'rows', left = { particles = 40, speed = 1 }, right = { particles = 30, "
+    "speed = -0.5, density = 2 }, centre = { mass = 5, speed = 0.1 }, perturbation = 0.1 }\n";
+const std::string between_walls = "[walls]\nleft = { position = -60, temperature = 0.4 }\nright = { position = 50, "
+                                  "speed = -0.05, restitution = 0.9 }\n";
+const std::string wet = "law = { type = 'wet', loss = 0.01 }\n", sticky = "law.type = 'sticky'\n";
+const std::string watched =
+    "output = { series = { points = 300, spacing = 'log' }, masses = [10, 100], scenario = true, "
+    "zone = { from = 20, samples = 32 }, core = true }\n";
+const std::string to_100 = "[run]\nuntil = 100\n";
+
+const std::string scenes[] = {
+    dry(rows, ""),
+    dry(rows, "coordinates = 'absolute'"),
+    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3"),
+    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3\ncoordinates = 'absolute'"),
+    dry(rows, "collapse = 'merge'\nmerge_speed = 0.01"),
+    dry(ring, ""),
+    dry(ring, "collapse = 'merge'\nmerge_speed = 0.01"),
+    dry(list, ""),
+    dry(list, "collapse = 'contact-time'\ncontact_time = 1e-3"),
+    dry(general, "start = -3.5"),
+    wet + rows + watched + to_100,
+    wet + ring + outputs + to_100,
+    wet + general + outputs + to_100,
+    sticky + rows + outputs + to_100,
+    sticky + rows + "output.series.points = 40\noutput.masses = [30]\n" +
+        to_100,  // from time to time, without collisions
+    sticky + ring + "output.series.points = 40\n" + to_100,
+    "law = { type = 'inelastic', restitution = 0.05 }\ninitial = { type = 'list', x = [0, 1, 3, 10], v = [1, 0, -1, 5] "
+    "}\n"
+    "output.series.points = 30\n[run]\nuntil = 100\ncollapse = 'stop'\n",
+    dry(list, between_walls),
+    dry(rows, "coordinates = 'absolute'\n" + between_walls),
+    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3\n" + between_walls),
+    dry("initial = { type = 'rows', particles = 80, perturbation = 0.05, masses = [1, 4.2, 2] }\n", ""),
+    dry("initial = { type = 'ring', particles = 30, perturbation = 0.1, masses = [1, 4.2] }\n", ""),
+    dry("initial = { type = 'cold', particles = 300, hot = 6, energy = 8, masses = [1, 2], perturbation = 0.2 }\n", ""),
+    dry("initial = { type = 'cold', particles = 300, place = 'left', speed = 2, masses = [4.2, 1] }\n",
+        "coordinates = 'absolute'"),
+    "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-2, cutoff_exponent = 3.5 }\n" + rows + outputs +
+        to_100,
+};
+
+Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }
+
+const std::string large = "output = { series.points = 12, profiles = { times = [5], bins = 8 } }\n[run]\nuntil = 8\n";
+const std::string large_dry = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\ninitial = { type = "
+                              "'ring', particles = 2500, perturbation = 0.1 }\n" +
+                              large;
+const std::string large_walls =
+    "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.05 }\ninitial = { type = 'rows', particles = 2500, "
+    "perturbation = 0.1 }\nwalls = { left = { position = -1252, speed = 0.8 }, right = { position = 1252, temperature "
+    "= 1 } }\n" +
+    large;
+const std::string large_wet = "law = { type = 'wet', loss = 0.01 }\ninitial = { type = 'ring', particles = 2500, "
+                              "perturbation = 0.1 }\n" +
+                              large;
+
+class Resuming : public cradle::tests::ProgramTest {
+ protected:
+  std::string file(const char* name) const { return (folder / name).string(); }
+
+  // Returns how it ended; FILE is there if it did.
+  static RunOutcome run(RunFiles& files, Stopping::At at, std::size_t threads) {
+    Interrupt interrupt;
+    Stopping store(files, interrupt, at);
+    cradle::Workers workers;  // one after the other, as many as asked for
+    workers.count = threads;
+    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, workers, &store});
+    if (end.end != RunEnd::interrupted) files.finish(std::move(end.result), end.end);
+    return end;
+  }
+
+  RunOutcome begin(const char* name, const Scene& scene, Stopping::At at, std::size_t threads) const {
+    RunFiles files(file(name), scene);
+    return run(files, at, threads);
+  }
+  RunOutcome resume(const char* name, const std::optional<std::string>& until, Stopping::At at,
+                    std::size_t threads) const {
+    RunFiles files(file(name), until);
+    return run(files, at, threads);
+  }
+};
+
+class Resume : public Resuming, public testing::WithParamInterface<Case> {};
+
+TEST_P(Resume, EndsInTheSameBytesWhereverItIsCut) {
+  const Case& of = GetParam();
+  for (const std::string& precision : of.precisions) {
+    SCOPED_TRACE(precision);
+    std::vector<std::string> set{"run.precision=" + precision};
+    if (precision == "mpfr") set.push_back("run.digits=60");
+    const Scene scene = parse_scene(of.scene, "scene.toml", set);
+    try {
+      check_built(scene);
+    } catch (const Error&) {
+      continue;
+    }
+    const RunOutcome whole = begin("alone.h5", scene, {}, of.threads_later);
+    const std::string wanted = contents(file("alone.h5"));
+    ASSERT_GT(whole.collisions, 4U);
+    for (const Stopping::At at : {Stopping::At{.collisions = 1},
+                                  {.collisions = whole.collisions / 3},
+                                  {.collisions = 4 * whole.collisions / 5},
+                                  {.checks = 7}}) {
+      SCOPED_TRACE(testing::Message() << "collisions " << at.collisions << ", looks " << at.checks);
+      const RunOutcome cut = begin("cut.h5", scene, at, of.threads);
+      if (cut.end == RunEnd::interrupted) {
+        EXPECT_FALSE(std::filesystem::exists(file("cut.h5")));
+        const Stopping::At half{.collisions = cut.collisions + (whole.collisions - cut.collisions) / 2};
+        if (resume("cut.h5", std::nullopt, half, of.threads_later).end == RunEnd::interrupted) {
+          EXPECT_EQ(resume("cut.h5", std::nullopt, {}, of.threads_later).end, whole.end);
+        }
+      }
+      EXPECT_TRUE(contents(file("cut.h5")) == wanted) << "other bytes";
+      EXPECT_FALSE(std::filesystem::exists(file("cut.h5.part")));
+      std::filesystem::remove(file("cut.h5"));
+    }
+  }
+}
+
+// 25 scenes, six types, four cuts each with another one behind it.
+INSTANTIATE_TEST_SUITE_P(
+    Runs, Resume,
+    testing::Values(case_of("DryRows", 0), case_of("DryRowsPositions", 1), case_of("ContactTime", 2),
+                    case_of("ContactTimePositions", 3), case_of("Merging", 4), case_of("DryRing", 5),
+                    case_of("MergingRing", 6), case_of("DryList", 7), case_of("ContactTimeList", 8),
+                    case_of("GeneralRows", 9), case_of("WetRows", 10), case_of("WetRing", 11),
+                    case_of("WetGeneralRows", 12), case_of("StickyCollisions", 13), case_of("Sticky", 14),
+                    case_of("StickyRing", 15), case_of("Collapse", 16), case_of("Walls", 17),
+                    case_of("WallsPositions", 18), case_of("WallsContactTime", 19), case_of("PatternRows", 20),
+                    case_of("PatternRing", 21), case_of("Cold", 22), case_of("ColdPositions", 23),
+                    case_of("SpeedDependent", 24),
+                    Case{"LargeWalls", large_walls.c_str(), {"double", "double-double"}, 2, 3},
+                    Case{"LargeDry", large_dry.c_str(), {"double", "double-double"}, 1, 1},
+                    Case{"LargeDryFromTwoThreadsToOne", large_dry.c_str(), {"double", "long double", "mpfr"}, 2, 1},
+                    Case{"LargeDryFromOneThreadToThree", large_dry.c_str(), {"double", "float128"}, 1, 3},
+                    Case{"LargeWetFromThreeThreadsToTwo", large_wet.c_str(), {"double", "double-double"}, 3, 2}),
+    [](const auto& of) { return std::string(of.param.name); });
+
+// ---- extended
+
+TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
+  const std::string inelastic = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n";
+  const char* every[] = {"every = 0.7", "points = 21", "points = 60, spacing = 'log'", "times = [1, 2, 9]"};
+  for (const char* series : every) {
+    for (const std::string& law : {wet, sticky, inelastic}) {
+      for (const std::string& initial : {rows, general}) {
+        SCOPED_TRACE(law + initial + series);
+        const char* precision = series == every[1] ? "double-double" : "double";  // there with decimals beside
+        const Scene scene =
+            parse_scene(law + initial + "output = { series = { " + series + " }, snapshots = [5], core = true, " +
+                            "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
+                        "scene.toml", {std::string("run.precision=") + precision});
+        ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);
+        // Which is gone on with as any other.
+        if (resume("later.h5", "13.05", {.checks = 2}, 1).end == RunEnd::interrupted) {
+          ASSERT_EQ(resume("later.h5", std::nullopt, {}, 1).end, RunEnd::reached);
+        }
+        ASSERT_EQ(resume("later.h5", "60", {}, 1).end, RunEnd::reached);
+
+        const Result later = read_result(file("later.h5"));
+        const Scene as_written = scene_in(later.attributes, file("later.h5"));
+        EXPECT_EQ(as_written.run.until, Decimal("60"));
+        begin("alone.h5", as_written, {}, 1);
+        EXPECT_TRUE(contents(file("alone.h5")) == contents(file("later.h5"))) << "other bytes";
+        std::filesystem::remove(file("later.h5"));
+      }
+    }
+  }
+}
+
+// A run whose result could not be written is finished before it is extended: its last sample belongs to its end.
+TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
+  const Scene scene = parse_scene(dry(rows, ""), "scene.toml");
+  {
+    RunFiles files(file("a.h5"), scene);
+    Interrupt interrupt;
+    run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &files});  // and then the machine stops
+  }
+  EXPECT_THROW(RunFiles(file("a.h5"), "200"), Error);
+  EXPECT_EQ(resume("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);
+  EXPECT_EQ(resume("a.h5", "120", {}, 1).end, RunEnd::reached);
+}
+
+}  // namespace resume_test

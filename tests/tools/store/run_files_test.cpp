@@ -1,0 +1,222 @@
+// What lies beside a result while its run goes on, as users meet it: looked into, damaged, of another version, in the
+// way of another run.
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/store/run_files.hpp"
+#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/version.hpp"
+
+namespace run_files_test {
+
+using namespace cradle::tests;
+using namespace cradle::tools;
+
+const std::string run = "cradle run fig2 --quiet --set initial.particles=1000 --set run.until=1300 --set "
+                        "output.checkpoint.every_seconds=0.05 ";
+
+class Files : public ProgramTest {
+ protected:
+  std::string path(const char* name) const { return (folder / name).string(); }
+  bool exists(const char* name) const { return std::filesystem::exists(folder / name); }
+
+  // Leaves a run that was killed, with its state, and what it would have come to: whole.h5. One that was over before is
+  // made again, twice as long.
+  void kill_a_run() const {
+    for (double until = 1300;; until *= 2) {
+      const std::string long_run = run + "--set run.until=" + std::to_string(until) + " -o ";
+      ASSERT_EQ(shell("rm -f a.h5*; " + long_run +
+                      "a.h5 & pid=$!; until [ -e a.h5.checkpoint ]; do :; done; "
+                      "kill -9 $pid; wait $pid; [ -e a.h5.checkpoint ]")
+                    .status,
+                0);
+      if (exists("a.h5") || !exists("a.h5.part")) continue;
+      ASSERT_EQ(shell(long_run + "whole.h5").status, 0);
+      return;
+    }
+  }
+};
+
+TEST_F(Files, ARunOnItsWayCanBeLookedInto) {
+  const Printed inspected =
+      shell(endless_run("a.h5") + until_collisions("a.h5") +
+            "until cradle info a.h5.part >info && grep -q '^time.* of 1e+15' info; do sleep 0.1; done; cat info; "
+            "echo ---; cradle info a.h5.checkpoint; kill -9 $pid");
+  ASSERT_EQ(inspected.status, 0) << inspected.err;
+  for (const char* said : {"journal of a run", "\ntime  ", " of 1e+15", "\ncollisions  ", "over the last minute",
+                           "left at this pace", "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
+    EXPECT_NE(inspected.out.find(said), std::string::npos) << said << "\n" << inspected.out;
+  EXPECT_EQ(inspected.out.find("not whole"), std::string::npos) << "a journal that is being written has no torn end";
+}
+
+TEST_F(Files, FollowingARunEndsWithIt) {
+  // A run that ends takes its journal away. This one never does, so that following it begins in time on any machine.
+  const Printed followed =
+      shell(endless_run("a.h5") + until_collisions("a.h5") +
+            "cradle info --follow a.h5.part >told & "
+            "follower=$!; while ! grep -q 'journal of a run' told; do sleep 0.02; done; kill -9 $pid; "
+            "rm a.h5.part; wait $follower; status=$?; cat told; (exit $status)");
+  EXPECT_EQ(followed.status, 0) << followed.err;
+  EXPECT_NE(followed.out.find("a.h5.part is gone: the run is over"), std::string::npos) << followed.out;
+}
+
+TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
+  kill_a_run();
+  const Printed again = shell("cradle resume a.h5.part");  // any of the names
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(contents(folder / "a.h5") == contents(folder / "whole.h5"));
+  EXPECT_FALSE(exists("a.h5.part"));
+  const Printed done = shell("cradle resume a.h5");
+  EXPECT_EQ(done.status, 0);
+  EXPECT_NE(done.out.find("nothing to do"), std::string::npos) << done.out;
+  const Printed none = shell("cradle resume b.h5");
+  EXPECT_EQ(none.status, 4);
+  EXPECT_NE(none.err.find("nothing to go on from"), std::string::npos) << none.err;
+  for (const auto& [until, said] : {std::pair("100", "before the end"), std::pair("soon", "not a number")}) {
+    const Printed wrong = shell(std::string("cradle resume a.h5 --until ") + until);
+    EXPECT_EQ(wrong.status, 2) << until;
+    EXPECT_NE(wrong.err.find(said), std::string::npos) << wrong.err;
+  }
+}
+
+TEST_F(Files, WithoutItsCheckpointARunStartsAnewAndWithADamagedOneItSaysSo) {
+  kill_a_run();
+  std::string state = contents(folder / "a.h5.checkpoint");
+  state[state.size() / 2] = static_cast<char>(state[state.size() / 2] ^ 4);
+  write("a.h5.checkpoint", state);
+  const Printed damaged = shell("cradle resume a.h5");
+  EXPECT_EQ(damaged.status, 4);
+  EXPECT_NE(damaged.err.find("a.h5.checkpoint: not a checkpoint, or damaged (found its checksum is wrong): remove it: "
+                             "the run then starts anew"),
+            std::string::npos)
+      << damaged.err;
+  std::filesystem::remove(folder / "a.h5.checkpoint");
+  EXPECT_EQ(shell("cradle resume a.h5").status, 0);
+  EXPECT_TRUE(contents(folder / "a.h5") == contents(folder / "whole.h5"));
+}
+
+RunHeader header(const std::string& version) {
+  const Scene scene = parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 10\n", "s.toml");
+  return {version, effective_toml(scene), "s", 60, 7};
+}
+
+TEST_F(Files, OtherVersionsAreRefusedByName) {
+  { JournalWriter journal(path("a.h5.part"), JournalOf::run, header("0.0.9").bytes()); }
+  const Printed old = shell("cradle resume a.h5");
+  EXPECT_EQ(old.status, 4);
+  EXPECT_NE(old.err.find("a run of another version (found 0.0.9, here " + std::string(version) + ")"),
+            std::string::npos)
+      << old.err;
+  write("b.h5.part", "CRADLEJ1 of long ago, replicas");
+  EXPECT_EQ(shell("cradle resume b.h5").status, 4);
+}
+
+TEST_F(Files, ALongRunThatIsNotFinishedIsNotThrownAway) {
+  {
+    JournalWriter journal(path("a.h5.part"), JournalOf::run, header(std::string(version)).bytes());
+    RunStatus status;
+    status.seconds = 3600;
+    status.time = 5;
+    journal.append(record_of(status));
+  }
+  const std::string before = contents(folder / "a.h5.part");
+  const Printed anew = shell(run + "-o a.h5");
+  EXPECT_EQ(anew.status, 2);
+  EXPECT_NE(
+      anew.err.find("a run that is not finished (found t = 5, 3600 s of computing): go on with `cradle resume a.h5`"),
+      std::string::npos)
+      << anew.err;
+  EXPECT_TRUE(contents(folder / "a.h5.part") == before);
+  EXPECT_EQ(shell("cradle resume a.h5").status, 0);
+}
+
+// A number of the state that has changed, as memory without error correction does it: nothing of the file is damaged,
+// but the run that goes on from it cannot be.
+TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {
+  ASSERT_EQ(shell("cradle run cooling --quiet --set law.type=inelastic --set law.restitution=0.99 --set "
+                  "law.cutoff=0.01 --set initial.particles=100 --set run.until=50 -o a.h5")
+                .status,
+            0);
+  std::string state = contents(folder / "a.h5.checkpoint");
+  // The middle of the file is in the list of gaps: of four numbers each, the closing speed is the last.
+  StateReader reader(path("a.h5.checkpoint"));
+  read_checkpoint(reader, path("a.h5.checkpoint"));
+  reader.text(), reader.text();
+  std::uint64_t slots = 0;
+  reader.get(&slots, sizeof slots);
+  const std::size_t cells = state.size() - sizeof(std::uint64_t) - reader.left();
+  const std::size_t at = cells + 32 * (slots / 2) + 24;
+  double closing = 0;
+  std::memcpy(&closing, state.data() + at, sizeof closing);
+  closing += 1e-3;
+  std::memcpy(state.data() + at, &closing, sizeof closing);
+  const std::uint64_t check = crc64(std::string_view(state).substr(0, state.size() - sizeof check));
+  std::memcpy(state.data() + state.size() - sizeof check, &check, sizeof check);
+  write("a.h5.checkpoint", state);
+
+  const Printed stopped = shell("cradle resume a.h5 --until 1000");
+  EXPECT_EQ(stopped.status, 5) << stopped.out;
+  EXPECT_NE(stopped.err.find("stopped by the guard of"), std::string::npos) << stopped.err;
+  EXPECT_TRUE(contents(folder / "a.h5.checkpoint") == state) << "the one from before stays";
+  EXPECT_TRUE(exists("a.h5.part"));
+}
+
+// More numbers than are held in memory go to the file piece by piece.
+TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
+  Result whole;
+  whole.attributes = {{"format_version", std::uint64_t{2}}, {"scene", std::string("none")}};
+  std::vector<Group> pieces;
+  for (std::uint64_t k = 0; k < 50; ++k) {
+    std::vector<double> time, place;
+    std::vector<std::uint64_t> collisions;
+    std::vector<std::string> digits;  // longest in the middle
+    for (std::uint64_t j = 0; j <= k; ++j) {
+      time.push_back(static_cast<double>(100 * k + j));
+      collisions.push_back(j);
+      digits.emplace_back(k == 20 ? 40 - j : j % 7, '3');
+      place.insert(place.end(), {1. / static_cast<double>(j + 1), static_cast<double>(k)});
+    }
+    pieces.push_back({"series", {}, {{"time", "t", "a time", time}, {"collisions", "1", "so many", collisions}}});
+    pieces.push_back({"series/heaviest", {}, {{"x", "l", "two", place, 2}}});
+    pieces.push_back({"exact/series", {}, {{"time", "t", "a time", digits}}});
+  }
+  pieces.push_back({"snapshots/0000", {{"time", 3.}}, {{"x", "l", "none", std::vector<double>()}}});
+  GrowingTables all, ends(Reading::ends);
+  for (const Group& piece : pieces) all.add(Group(piece)), ends.add(Group(piece));
+  const Result outline{whole.attributes, std::move(ends).in_order()};
+  whole.groups = std::move(all).in_order();
+  EXPECT_EQ(std::get<std::vector<double>>(outline.find("series")->columns[0].values), (std::vector<double>{0, 4949}));
+  write_in_pieces(
+      outline,
+      [&](const auto& put) {
+        for (const Group& piece : pieces) put(piece);
+      },
+      path("pieces.h5"));
+  std::stable_sort(pieces.begin(), pieces.end(), [](const Group& a, const Group& b) { return a.name > b.name; });
+  write_in_pieces(
+      outline,
+      [&](const auto& put) {
+        for (const Group& piece : pieces) put(piece);
+      },
+      path("otherwise.h5"));
+  EXPECT_TRUE(contents(folder / "pieces.h5") == contents(folder / "otherwise.h5")) << "bytes follow the clock";
+  write_result(whole, path("whole.h5"));
+  const Result one = read_result(path("pieces.h5")), other = read_result(path("whole.h5"));
+  ASSERT_EQ(one.groups.size(), 4U);
+  for (std::size_t k = 0; k < one.groups.size(); ++k) {
+    EXPECT_EQ(one.groups[k].name, other.groups[k].name);
+    ASSERT_EQ(one.groups[k].columns.size(), other.groups[k].columns.size());
+    for (std::size_t j = 0; j < one.groups[k].columns.size(); ++j) {
+      EXPECT_EQ(one.groups[k].columns[j].values, other.groups[k].columns[j].values);
+      EXPECT_EQ(one.groups[k].columns[j].width, other.groups[k].columns[j].width);
+    }
+  }
+}
+
+}  // namespace run_files_test

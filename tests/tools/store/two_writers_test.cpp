@@ -1,0 +1,70 @@
+// Two programs that write to one name: the second is refused before it has done anything, whenever it comes.
+
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
+#include "cradle/tools/ensemble/ensemble.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
+
+namespace cradle::tests {
+namespace two_writers_test {
+
+// The second comes while the first one runs its first replica.
+TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
+  run("ensemble shock.toml --replicas 8 -o whole.h5");
+  Printed second{-1, "", ""};
+  tools::EnsembleOptions options;
+  options.replicas = {0, 4};
+  options.threads = 1;
+  options.progress = tools::ProgressLine::Show::never;
+  const auto runner = options.runner;
+  options.runner = [&](const Scene& replica, const tools::RunOptions& how) {
+    if (second.status == -1) {
+      EXPECT_FALSE(exists("a.h5"));
+      second = shell("cradle ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+    }
+    return runner(replica, how);
+  };
+  EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("a.h5")).status, Exit::done);
+  EXPECT_EQ(second.status, 4);
+  EXPECT_EQ(second.err.rfind("cradle: a.h5: another program is writing this file (found process ", 0), 0U)
+      << second.err;
+  // It comes again when the first one is done: nothing is lost.
+  run("ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+  EXPECT_EQ(result("a.h5").find("replicas")->columns.front().rows(), 8U);
+}
+
+TEST_F(Ensembles, OneRunAtATimeWritesToAName) {
+  write("a.h5", "old");
+  write("a.h5.new", "another user's");
+  {
+    const tools::FileClaim first(path("a.h5"));
+    for (const auto* command : {"run shock.toml -o a.h5", "trust shock.toml --digits 16,31 -o a.h5",
+                                "merge a.h5 a.h5 -o a.h5", "sweep shock.toml --vary law.cutoff=0,1 -o a.h5"}) {
+      const Printed second = shell(std::string("cradle ") + command);
+      EXPECT_EQ(second.status, 4) << command;
+      EXPECT_NE(second.err.find("a.h5: another program is writing this file"), std::string::npos) << second.err;
+    }
+    EXPECT_TRUE(contents(folder / "a.h5") == "old");
+  }
+  run("run shock.toml --quiet -o a.h5");
+  EXPECT_NE(result("a.h5").find("series"), nullptr);
+  EXPECT_EQ(contents(folder / "a.h5.new"), "another user's");
+}
+
+TEST_F(Ensembles, FifosAreRefusedByNameAndLinksFollowed) {
+  for (const auto* command : {"run shock.toml -o fifo", "ensemble shock.toml --replicas 2 -o fifo"}) {
+    const Printed refused = shell(std::string("test -p fifo || mkfifo fifo; cradle ") + command);
+    EXPECT_EQ(refused.status, 4) << command;
+    EXPECT_NE(refused.err.find(": cannot be written (found a FIFO"), std::string::npos) << refused.err;
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "fifo"));
+  }
+  for (const auto* command : {"info fifo", "export fifo --to csv", "merge fifo fifo -o a.h5"})
+    EXPECT_EQ(shell(std::string("timeout 300 cradle ") + command).status, 4) << command;
+  write("a.h5", "old");
+  std::filesystem::create_symlink("a.h5", folder / "link.h5");
+  run("run shock.toml --quiet -o link.h5");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.h5"));
+  EXPECT_NE(result("a.h5").find("series"), nullptr);
+}
+
+}  // namespace two_writers_test
+}  // namespace cradle::tests

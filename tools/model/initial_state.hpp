@@ -1,0 +1,112 @@
+// From a scene to the particles of the engine, every number read in the working precision.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "cradle/core/initial/cold.hpp"
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/precision/text.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+template <Real T> T number(const Decimal& decimal) { return from_text<T>(decimal.text); }
+
+template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
+  std::vector<T> values;
+  values.reserve(column.size());
+  for (std::size_t i = 0; i < column.size(); ++i) values.push_back(from_text<T>(column[i]));
+  return values;
+}
+
+template <Real T> MassPattern<T> mass_pattern(const Initial& initial) {
+  std::vector<T> masses;
+  bool identical = true;
+  for (const Decimal& mass : initial.masses) {
+    masses.push_back(number<T>(mass));
+    identical = identical && mass == initial.masses.front();
+  }
+  return MassPattern<T>(std::move(masses), identical);
+}
+
+template <Real T>
+std::shared_ptr<const cradle::Particles<T>> cold_particles(const Initial& initial, Displacement displacement) {
+  const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
+  const auto place = initial.place == scene::HotPlace::left ? cradle::HotPlace::left : cradle::HotPlace::middle;
+  const ParticleIndex first = first_hot(place, all, hot);
+  MassPattern<T> masses = mass_pattern<T>(initial);
+  HotParticles<T> moving = hot == 1
+                               ? kicked(first, number<T>(initial.speed))
+                               : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
+  return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), place, std::move(moving), std::move(displacement),
+                                   std::move(masses));
+}
+
+namespace detail {
+
+template <Real T> std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Initial& initial) {
+  if (initial.type == InitialType::list) {
+    const auto momentum = sum_of_products(initial.v, initial.m);
+    return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m), T(0),
+                                     momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt);
+  }
+  // Below 1/2, whatever the nearest double is.
+  const double perturbation = std::min(initial.perturbation.value, std::nextafter(0.5, 0.));
+  const Displacement displacement = uniform_displacement(perturbation, initial.seed, initial.replica);
+  if (initial.type == InitialType::cold) return cold_particles<T>(initial, displacement);
+  if (initial.type == InitialType::ring) {
+    using std::sqrt;
+    const VelocityDraw draw = initial.velocities == Velocities::gaussian
+                                  ? gaussian_velocity(initial.seed, initial.replica)
+                                  : uniform_velocity(initial.seed, initial.replica);
+    return std::make_shared<Ring<T>>(static_cast<ParticleIndex>(initial.particles), number<T>(initial.length),
+                                     T(sqrt(number<T>(initial.variance))), draw, displacement,
+                                     mass_pattern<T>(initial));
+  }
+  if (!initial.general_rows())
+    return std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<ParticleIndex>(initial.particles),
+                                                       number<T>(initial.speed), number<T>(initial.spacing),
+                                                       displacement, mass_pattern<T>(initial)));
+  const auto row = [](const scene::Row& r) {
+    return cradle::Row<T>{static_cast<ParticleIndex>(r.particles), number<T>(r.speed), T(1) / number<T>(r.density)};
+  };
+  std::optional<CentralParticle<T>> centre;
+  if (initial.centre.mass > Decimal("0"))
+    centre = CentralParticle<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
+  return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement,
+                                   mass_pattern<T>(initial));
+}
+
+template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initial& initial) {
+  if (!wall.position) return {};
+  return Wall<T>{number<T>(*wall.position),
+                 number<T>(wall.speed),
+                 wall.temperature ? T(1) : number<T>(wall.restitution),
+                 wall.temperature ? wall.temperature->value : 0,
+                 initial.seed,
+                 initial.replica};
+}
+
+}  // namespace detail
+
+/// Throws Error where the scene's particles cannot be had in this precision, or its walls not beside them.
+template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
+  try {
+    auto particles = detail::particles_without_walls<T>(scene.initial);
+    require_sums(*particles);
+    if (!scene.walls.any()) return particles;
+    return std::make_shared<Walled<T>>(std::move(particles), detail::wall_of<T>(scene.walls.left, scene.initial),
+                                       detail::wall_of<T>(scene.walls.right, scene.initial));
+  } catch (const std::invalid_argument& error) {
+    throw Error({scene.name, 0, scene.walls.any() ? "initial, walls" : "initial"}, "the particles cannot be set up",
+                error.what(), "change the scene");
+  }
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,104 @@
+// What a proof encloses and its run has too must be the same number, but for what the run has rounded: how far that can
+// go, and the first quantity that goes further, where the run or the program is wrong.
+//
+// That the run has made the collisions of the exact system, and these alone, is proved before anything is compared. So
+// its world lines go through the maps of the exact ones (checker.hpp), and its error is what it has rounded at each
+// collision, carried on by the maps that follow. One collision rounds three closing speeds by epsilon u at most, u the
+// largest speed that there can be, and its time by epsilon t; an error of a closing speed shifts all that is on one
+// side of the gap. With the room that the guards of a run have (observe/guards.hpp) that is, for every particle,
+//
+//   Delta u  of velocities,   Delta (extent + u t)  of places,   Delta = 8 epsilon (C + N + 64)
+//
+// after C collisions of N particles, if the maps make no error larger than it was:
+//
+//   - velocities after a collision are means of those before (identical particles that bounce, all that merge or pass):
+//     then no error grows, nor does a speed, and u is that of the start;
+//   - particles of different masses bounce: then sum m_k delta_k^2 does not grow. What shifts all by delta is M delta^2
+//     there, hence |delta_k| <= delta sqrt(M/m_k), and u = sqrt(2 E_0/m_min).
+//
+// Energies: sqrt(2 E_0 M) Delta u + M (Delta u)^2/2 from the velocities and Delta E_0 from the sums. The time of a
+// collision with closing speed w: what its particles' places are off at that time, over w. Wet particles are not
+// linear: what they make of an error shows in the radii of balls, which grow as it does from roundings of at least the
+// type of their midpoints; so many times wider than that as the run's type is coarser, for each particle held, is
+// allowed on top.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cradle/core/certify/checker.hpp"
+#include "cradle/precision/ball_text.hpp"
+
+namespace cradle::tools {
+
+struct Disagreement {
+  std::string quantity, of_run, of_proof;
+  long double bound = 0;
+};
+
+/// Up to which a run's numbers may be off.
+struct RunErrors {
+  long double place = 0, speed = 0, energy = 0, mass = 0;
+  long double of_radius = 0;  // and so many radii of the proof
+};
+
+/// Of a run in a type of this epsilon, `time` the largest that it has had to do with.
+inline RunErrors run_errors(const Sizes& of, std::uint64_t collisions, bool means, long double epsilon,
+                            long double time, long double circumference) {
+  const long double mass = of.mass, twice_energy = 2 * static_cast<long double>(of.start_energy),
+                    delta = 8 * epsilon * (static_cast<long double>(collisions + of.particles) + 64);
+  const long double fastest = means ? of.start_speed : std::sqrt(twice_energy / of.least_mass);
+  const long double grown = means ? 1 : std::sqrt(mass / of.least_mass), speed = delta * fastest;
+  // Places were further out by as much as particles have flown.
+  const long double extent = of.place + circumference + 2 * fastest * time;
+  return {grown * delta * (extent + fastest * time), grown * speed,
+          delta * twice_energy / 2 + speed * std::sqrt(twice_energy * mass) + speed * speed * mass / 2, delta * mass,
+          0};
+}
+
+/// Keeps the first disagreement of all that it is given.
+template <Enclosing N> class Agreement {
+ public:
+  explicit Agreement(const RunErrors& errors) : errors_(errors) {}
+
+  const RunErrors& errors() const { return errors_; }
+  const std::optional<Disagreement>& broken() const { return broken_; }
+
+  void count(const std::string& quantity, std::uint64_t of_run, std::uint64_t of_proof) {
+    if (of_run != of_proof) report(quantity, fmt::format("{}", of_run), fmt::format("{}", of_proof), 0);
+  }
+  /// `of_run`: a decimal of the run's type, with all its digits; empty: it has none.
+  void number(const std::string& quantity, const std::string& of_run, const std::optional<N>& of_proof,
+              long double bound) {
+    if (of_run.empty() || !of_proof) {
+      if (of_run.empty() == of_proof.has_value())
+        report(quantity, of_run.empty() ? "none" : of_run, of_proof ? to_text(of_proof->middle()) : "none", bound);
+      return;
+    }
+    if (!is_finite(*of_proof)) return;
+    const auto radius = static_cast<long double>(of_proof->radius());
+    const long double most = bound + errors_.of_radius * radius;
+    if (is_number(of_run) && !(static_cast<long double>(off(of_run, *of_proof).least_size()) > most)) return;
+    report(quantity, of_run, to_text(of_proof->middle()), most + radius);
+  }
+  void place(const std::string& quantity, const std::string& of_run, const std::optional<N>& of_proof) {
+    number(quantity, of_run, of_proof, errors_.place);
+  }
+
+ private:
+  static bool is_number(const std::string& text) { return text.find('n') == text.npos; }  // neither nan nor inf
+  static N off(const std::string& of_run, const N& of_proof) { return from_text<N>(of_run) - of_proof; }
+  void report(const std::string& quantity, const std::string& of_run, const std::string& of_proof, long double bound) {
+    if (!broken_) broken_ = Disagreement{quantity, of_run, of_proof, bound};
+  }
+
+  RunErrors errors_;
+  std::optional<Disagreement> broken_;
+};
+
+}  // namespace cradle::tools

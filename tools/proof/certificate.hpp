@@ -1,0 +1,72 @@
+// What a proof of a run says: that every collision is that of the exact system, and within which bounds its numbers
+// lie; or where it ends.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cradle/core/certify/checker.hpp"
+#include "cradle/precision/ball_text.hpp"
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/run_observer.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+/// A number between two: decimals with all digits that are known, and doubles, both rounded outwards.
+struct Enclosed {
+  Enclosure<std::string> decimals{"-inf", "inf"};
+  Enclosure<double> doubles{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  long double radius = std::numeric_limits<long double>::infinity();
+};
+
+/// What is certain at a time of the run.
+struct CertainSample {
+  double time = 0;        // as the run has it
+  std::string time_text;  // the decimal that it stands for, and all else is of
+  bool of_series = false;
+  std::uint64_t collisions = 0;
+  Enclosed energy;
+  std::optional<Enclosed> front_left, front_right;
+  double widest = 0, least_gap = 0, widest_of_gap = 0;  // powers of ten, see CertainState
+};
+
+/// Where a proof ends (Doubt), as text.
+struct ReportedDoubt {
+  Check check = Check::gap;
+  bool refuted = false;
+  ParticleIndex left = -1, right = -1;
+  double time = 0;               // of the run
+  std::uint64_t collisions = 0;  // proved before it
+  std::string first, second;     // middles of the two quantities, and
+  long double width = 0;         // the sum of their radii
+  std::string quantity = {};     // agreement: of the run and of the proof
+};
+/// "particles 3 and 4 at t = 5.25: their collision is not certainly later than ...".
+std::string doubt_text(const ReportedDoubt& doubt);
+
+struct Certificate {
+  std::string digits_text;  // "double-double", "mpfr, 100 digits"
+  unsigned digits = 0;
+  std::optional<ReportedDoubt> doubt;  // none: proved to the last sample
+  std::uint64_t collisions = 0, in_doubles = 0;
+  std::vector<CertainSample> samples;
+  std::vector<Group> snapshots;  // certificate/snapshots/NNNN and exact/snapshots/NNNN
+};
+
+/// Thrown where a proof ends before its run: there is no use in going on.
+struct ProofEnds {};
+
+/// Checks a run while it goes on.
+class Certifier : public RunObserver {
+ public:
+  virtual Certificate certificate() const = 0;
+};
+
+/// In balls of so many digits: 31, or what MPFR is set to. Throws Error for what this build has not.
+std::unique_ptr<Certifier> certifier(const Scene& scene, unsigned digits);
+
+}  // namespace cradle::tools

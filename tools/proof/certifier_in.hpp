@@ -1,0 +1,229 @@
+// The checker of core/certify beside a run, in one kind of balls. Compiled once per kind (tools/CMakeLists.txt).
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+
+#include "cradle/core/certify/checker.hpp"
+#include "cradle/precision/ball_text.hpp"
+#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/proof/agreement.hpp"
+#include "cradle/tools/proof/certificate.hpp"
+
+namespace cradle::tools {
+
+template <Enclosing N> CertainLaw<N> certain_law(const Scene& scene) {
+  using Kind = typename CertainLaw<N>::Kind;
+  CertainLaw<N> law;
+  if (scene.law.type == LawType::sticky) {
+    law.kind = Kind::sticky;
+    return law;
+  }
+  if (scene.law.type == LawType::wet) {
+    law.kind = Kind::wet;
+    law.loss = number<N>(scene.law.loss);
+    return law;
+  }
+  law.restitution = number<N>(scene.law.restitution);
+  law.elastic = scene.law.restitution == Decimal("1");
+  if (scene.run.collapse == tools::scene::CollapsePolicy::merge) {
+    law.kind = Kind::merging;
+    law.merge_speed = number<N>(scene.run.merge_speed);
+    return law;
+  }
+  // To elastic particles a cut-off does nothing.
+  if (!law.elastic && scene.law.cutoff > Decimal("0")) law.cutoff = number<N>(scene.law.cutoff);
+  if (!law.elastic && scene.run.collapse == tools::scene::CollapsePolicy::contact_time)
+    law.contact_time = number<N>(scene.run.contact_time);
+  return law;
+}
+
+template <class M> class CertifierIn final : public Certifier {
+  using N = Ball<M>;
+  using Kind = typename CertainLaw<N>::Kind;
+
+ public:
+  CertifierIn(const Scene& scene, unsigned digits)
+      : start_(number<N>(scene.run.start)), law_(certain_law<N>(scene)), particles_(initial_particles<N>(scene)),
+        means_(law_.kind != Kind::merging && (law_.kind != Kind::inelastic || particles_->identical_masses())),
+        checker_(particles_, law_) {
+    certificate_.digits = digits;
+    certificate_.digits_text = digits == 31 ? "double-double" : fmt::format("mpfr, {} digits", digits);
+    if (const auto doubt = checker_.begin()) certificate_.doubt = reported(*doubt, scene.run.start.value);
+  }
+
+  void collision(ParticleIndex left, ParticleIndex right, double time) override {
+    if (certificate_.doubt) throw ProofEnds();
+    const auto doubt = checker_.collision(left, right);
+    if (!doubt) return;
+    certificate_.doubt = reported(*doubt, time);
+    throw ProofEnds();
+  }
+
+  void sample(const RunSample& sample) override {
+    if (certificate_.doubt) throw ProofEnds();
+    for (const AskedTime& asked : sample.asked) inspect(asked, sample);
+  }
+
+  Certificate certificate() const override {
+    Certificate all = certificate_;
+    all.collisions = checker_.proved().collisions;
+    all.in_doubles = checker_.proved().in_doubles;
+    return all;
+  }
+
+ private:
+  static Enclosed enclosed(const N& x) { return {in_decimals(x), in_doubles(x), static_cast<long double>(x.radius())}; }
+  static std::string middle(const N& x) { return to_text(x.middle()); }
+  ReportedDoubt reported(const Doubt<N>& doubt, double time) const {
+    return {doubt.check,
+            doubt.refuted,
+            doubt.left,
+            doubt.right,
+            time,
+            checker_.proved().collisions,
+            middle(doubt.first),
+            middle(doubt.second),
+            static_cast<long double>(doubt.first.radius() + doubt.second.radius())};
+  }
+
+  void inspect(const AskedTime& asked, const RunSample& sample) {
+    const N time = number<N>(asked.time) - start_;
+    const CertainState<N> state = sample.at_collision ? checker_.state_now() : checker_.state_at(time);
+    snapshots_ += asked.of_snapshots;
+    if (state.doubt) {
+      // A collision just at the time of a sample leaves that open, not what comes after.
+      if (!asked.last) return;
+      certificate_.doubt = reported(*state.doubt, sample.time);
+    } else {
+      compare(sample, asked, time, state);
+    }
+    if (certificate_.doubt) throw ProofEnds();
+    add_sample(sample, asked, state);
+    if (asked.of_snapshots) add_snapshot(time, sample.time);
+  }
+
+  // All that the run has of what is proved of it. A collision on the wrong side of a threshold need not change their
+  // sequence; and what the program gets wrong here or there would be called proved.
+  void compare(const RunSample& sample, const AskedTime& asked, const N& time, const CertainState<N>& state) {
+    const auto& proved = checker_.proved();
+    const long double since = std::abs(to_double(time)) + 2 * std::abs(to_double(start_));
+    RunErrors errors = run_errors(state.sizes, proved.collisions, means_, sample.epsilon, since,
+                                  to_double(particles_->circumference()));
+    if (law_.kind == Kind::wet)
+      errors.of_radius = sample.epsilon / of_balls() * (static_cast<long double>(state.sizes.particles) + 64);
+    Agreement<N> run(errors);
+    run.count("collisions", sample.counts.collisions, proved.collisions);
+    run.count("merges", sample.counts.merges, proved.merges);
+    // To elastic particles a cut-off does nothing, and none of them is counted here.
+    if (!law_.elastic) run.count("collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
+    if (sample.at_collision)
+      run.number("time of the last collision", sample.time_text, start_ + state.time, time_error(errors, since, state));
+    else
+      run.number("time of the sample", sample.time_text, number<N>(asked.time), 8 * sample.epsilon * since);
+    run.number("energy", sample.energy, state.energy, errors.energy);
+    run.place("front_left", sample.front_left, state.front_left);
+    run.place("front_right", sample.front_right, state.front_right);
+    if (asked.of_snapshots) compare_particles(sample.particles, time, run);
+    if (const auto& broken = run.broken())
+      certificate_.doubt = ReportedDoubt{Check::agreement,
+                                         true,
+                                         -1,
+                                         -1,
+                                         sample.time,
+                                         proved.collisions,
+                                         broken->of_run,
+                                         broken->of_proof,
+                                         broken->bound,
+                                         broken->quantity};
+  }
+  static long double time_error(const RunErrors& errors, long double since, const CertainState<N>& state) {
+    const auto closing = static_cast<long double>(state.closing.least_size());
+    return closing > 0 ? 2 * (errors.place + since * errors.speed) / closing + errors.place
+                       : std::numeric_limits<long double>::infinity();
+  }
+  static long double of_balls() { return from_text<long double>(to_text(M(std::numeric_limits<M>::epsilon()))); }
+
+  void compare_particles(const LookedParticles& particles, const N& time, Agreement<N>& run) const {
+    std::unordered_map<ParticleIndex, std::size_t> at;  // by cluster
+    for (std::size_t j = 0; j < particles.index.size(); ++j)
+      if (const auto cluster = checker_.cluster(particles.index[j]))
+        run.count("particles of the snapshot in one cluster", at.emplace(*cluster, j).second ? 1 : 2, 1);
+    checker_.for_each(time, [&](ParticleIndex particle, const N& m, const N& x, const N& v) {
+      const auto found = at.find(particle);
+      const bool there = found != at.end();
+      if (!there && (particle < particles.from || particle > particles.to)) return;
+      const auto number = [&](const char* what, const std::vector<std::string>& all, const N& of_proof,
+                              long double bound) {
+        run.number(fmt::format("{} of particle {} in the snapshot", what, particle), there ? all[found->second] : "",
+                   of_proof, bound);
+      };
+      number("m", particles.m, m, run.errors().mass);
+      number("x", particles.x, there ? nearest_image(x, particles.x[found->second]) : x, run.errors().place);
+      number("v", particles.v, v, run.errors().speed);
+    });
+  }
+  // On a ring: the run folds places to one circumference.
+  N nearest_image(const N& x, const std::string& of_run) const {
+    if (!particles_->on_ring() || of_run.find('n') != of_run.npos) return x;
+    const N length = particles_->circumference();
+    return x + N(std::round(to_double(N((from_text<N>(of_run) - x) / length)))) * length;
+  }
+
+  void add_sample(const RunSample& sample, const AskedTime& asked, const CertainState<N>& state) {
+    CertainSample proved_sample{
+        sample.time, asked.time.text, asked.of_series, checker_.proved().collisions, enclosed(state.energy), {},
+        {},          state.widest,    state.least_gap, state.widest_of_gap};
+    if (state.front_left) proved_sample.front_left = enclosed(*state.front_left);
+    if (state.front_right) proved_sample.front_right = enclosed(*state.front_right);
+    certificate_.samples.push_back(std::move(proved_sample));
+  }
+
+  void add_snapshot(const N& time, double of_run) {
+    const std::size_t number = snapshots_ - 1;  // that of the run's
+    Group doubles{fmt::format("certificate/snapshots/{:04}", number), {{"time", of_run}}, {}},
+        exact{fmt::format("exact/snapshots/{:04}", number), {{"time", of_run}}, {}};
+    std::vector<std::uint64_t> index;
+    std::vector<double> ends[4];
+    std::vector<std::string> decimals[4];
+    checker_.for_each(time, [&](ParticleIndex particle, const N&, const N& x, const N& v) {
+      index.push_back(static_cast<std::uint64_t>(particle));
+      const Enclosed place = enclosed(x), velocity = enclosed(v);
+      for (const auto& [at, of] : {std::pair{0, &place}, {2, &velocity}}) {
+        ends[at].push_back(of->doubles.low), ends[at + 1].push_back(of->doubles.high);
+        decimals[at].push_back(of->decimals.low), decimals[at + 1].push_back(of->decimals.high);
+      }
+    });
+    constexpr const char* names[] = {"x_low", "x_high", "v_low", "v_high"};
+    constexpr const char* units[] = {"l", "l", "l/t", "l/t"};
+    for (Group* group : {&doubles, &exact}) {
+      group->columns.push_back({"index", "1", "of a particle of the cluster, at the start", index});
+      group->columns.back().names = true;
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      doubles.columns.push_back({names[k], units[k], "bound, rounded outwards", ends[k]});
+      exact.columns.push_back({names[k], units[k], "bound, all digits that are known", decimals[k]});
+    }
+    certificate_.snapshots.push_back(std::move(doubles));
+    certificate_.snapshots.push_back(std::move(exact));
+  }
+
+  N start_;
+  CertainLaw<N> law_;
+  std::shared_ptr<const cradle::Particles<N>> particles_;
+  bool means_;  // velocities after a collision are means of those before
+  Checker<N> checker_;
+  Certificate certificate_;
+  std::size_t snapshots_ = 0;  // that the run has taken
+};
+
+template <class M> std::unique_ptr<Certifier> certifier_in(const Scene& scene, unsigned digits) {
+  return std::make_unique<CertifierIn<M>>(scene, digits);
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,65 @@
+// A run and the proof that it is right: the run proposes collisions in its own precision, the checker of core/certify
+// proves them in balls of rising digits.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cradle/core/parallel/workers.hpp"
+#include "cradle/tools/proof/certificate.hpp"
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/run.hpp"
+
+namespace cradle::tools {
+
+/// One try: how far it came.
+struct Attempt {
+  std::string precision;  // of the run
+  std::string digits;     // of the balls
+  double time = 0;        // proved until
+  std::uint64_t collisions = 0;
+  double seconds = 0;
+  std::string doubt;  // empty: none
+};
+
+/// 31 (double-double) and, where this build has MPFR, 50, 100, 200, 400, 800.
+std::vector<unsigned> rising_digits();
+
+/// Makes what checks a run, in balls of so many digits.
+using MakeCertifier = std::function<std::unique_ptr<Certifier>(const Scene&, unsigned digits)>;
+
+struct CertifyOptions {
+  std::vector<unsigned> digits = rising_digits();  // of the balls, rising
+  Progress::Show progress = Progress::Show::on_terminal;
+  Interrupt* interrupt = nullptr;
+  MakeCertifier make = certifier;
+};
+
+struct Certified {
+  Scene scene;         // in the precision of the last try
+  RunOutcome outcome;  // without a result where the proof ended before the run
+  Certificate certificate;
+  std::vector<Attempt> attempts;
+
+  bool proved() const { return undecided().empty(); }
+  /// Where it is undecided, in words; empty: nowhere, up to the end of the run.
+  std::string undecided() const;
+  /// What the run says of its end that no proof covers; empty: nothing.
+  std::string not_proved() const;
+};
+
+/// Throws Error for a scene that has no collisions to prove.
+void check_certifiable(const Scene& scene);
+
+/// Throws Error for a scene that cannot be run, where it is interrupted, and where the run in no precision has the
+/// numbers that are proved of it (Exit::lost), which no scene can bring about.
+Certified certify(const Scene& scene, const CertifyOptions& options);
+
+/// A report that can be quoted.
+std::string certificate_text(const Certified& run);
+/// The run's result with the certificate in it; where the proof ended, what is proved up to there.
+Result certified_result(Certified run);
+
+}  // namespace cradle::tools

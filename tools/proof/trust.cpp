@@ -1,0 +1,273 @@
+#include "cradle/tools/proof/trust.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "cradle/core/observe/trace.hpp"
+#include "cradle/core/real.hpp"
+#include "cradle/precision/bin_float.hpp"
+#include "cradle/precision/double_double.hpp"
+#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/proof/certify.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+// To which numbers are compared, by type: those it holds, and no more than are compared at all.
+double digits_held(const Run& run) {
+  constexpr double most = 100, per_bit = 0.30102999566398120;
+  if (run.precision == Precision::double_) return std::numeric_limits<double>::digits * per_bit;
+  if (run.precision == Precision::double_double) return std::numeric_limits<double_double>::digits * per_bit;
+  return std::min(static_cast<double>(run.digits), most);
+}
+
+// One sample of a run that is compared with others: what they must agree in.
+struct TraceSample {
+  double time = 0;
+  std::uint64_t digest = 0;  // of the collisions so far, see core/observe/trace.hpp
+  std::uint64_t collisions = 0, merges = 0;
+  std::string energy, front;
+};
+
+class TraceObserver final : public RunObserver {
+ public:
+  void collision(ParticleIndex left, ParticleIndex right, double) override { trace_.collision(left, right); }
+  void sample(const RunSample& sample) override {
+    if (sample.of_series || sample.at_collision)
+      samples.push_back({sample.time, trace_.digest(), sample.counts.collisions, sample.counts.merges, sample.energy,
+                         sample.front_right});
+  }
+  std::vector<TraceSample> samples;
+
+ private:
+  Trace trace_;
+};
+
+struct Traced {
+  Scene scene;
+  RunOutcome outcome;
+  std::vector<TraceSample> trace;
+  double seconds;
+};
+
+Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
+  scene.run.precision = digits == 16 ? Precision::double_ : digits == 31 ? Precision::double_double : Precision::mpfr;
+  scene.run.digits = scene.run.precision == Precision::mpfr ? digits : 0;
+  scene.run.coordinates = coordinates;
+  scene.output.events = false;
+  scene.output.snapshots.clear();
+  scene.output.profiles.times.clear();
+  return scene;
+}
+
+unsigned digits_of(const Run& run) { return run.precision == Precision::mpfr ? static_cast<unsigned>(run.digits) : 31; }
+
+Traced traced(const Scene& scene, const TrustOptions& options) {
+  const auto started = std::chrono::steady_clock::now();
+  TraceObserver observer;
+  RunOutcome outcome = run_scene(scene, {options.progress, &observer, options.interrupt});
+  if (outcome.end == RunEnd::interrupted)
+    throw Error({}, "interrupted", "", "run it again; nothing is kept of comparisons that did not finish",
+                status_of_signal(options.interrupt->signal()));
+  return {scene, std::move(outcome), std::move(observer.samples),
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
+}
+
+// The number that a run had. Its text is the shortest that only this number of its type is written as: of a double,
+// whose 6249.505 is 6249.5050000000001..., not the number itself.
+bin_float value(const std::string& text, const Run& run) {
+  return run.precision == Precision::double_ ? bin_float(from_text<double>(text)) : from_text<bin_float>(text);
+}
+
+// Decimal digits that numbers of two runs share: -log10 of their difference against their size or, where that is
+// given, `scale`; no more than either type has.
+double shared_digits(const std::string& a, const Run& of_a, const std::string& b, const Run& of_b,
+                     const std::string& scale = "0") {
+  const double most = std::min(digits_held(of_a), digits_held(of_b));
+  if (a.empty() || b.empty()) return a.empty() && b.empty() ? most : 0;
+  const bin_float x = value(a, of_a), y = value(b, of_b);
+  const bin_float size = std::max({magnitude(x), magnitude(y), magnitude(value(scale, of_b))});
+  const bin_float apart = magnitude(bin_float(x - y));
+  if (apart == 0) return most;
+  const auto digits = -static_cast<double>(log10(bin_float(apart / size)));
+  return digits > 0 ? std::min(digits, most) : 0.0;
+}
+
+// Number of leading samples that agree for good: a collision just at a sample's time may fall on either side of it.
+template <class Same> std::size_t agreeing(std::size_t samples, Same same) {
+  std::size_t end = samples;
+  while (end > 0 && !same(end - 1)) --end;
+  return end;
+}
+
+Trusted compare(const Traced& run, const Traced& reference) {
+  const auto &a = run.trace, &b = reference.trace;
+  Trusted trusted;
+  trusted.precision = precision_name(run.scene.run);
+  trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
+  trusted.seconds = run.seconds;
+  trusted.outcome = end_row(run.outcome.end).text;
+  const std::size_t samples = std::min(a.size(), b.size());
+  const std::size_t same = agreeing(samples, [&](std::size_t k) { return a[k].digest == b[k].digest; });
+  const std::size_t counted = agreeing(
+      samples, [&](std::size_t k) { return a[k].collisions == b[k].collisions && a[k].merges == b[k].merges; });
+  if (same > 0) trusted.time = a[same - 1].time, trusted.collisions = a[same - 1].collisions;
+  if (counted > 0) trusted.counts_time = a[counted - 1].time;
+  trusted.to_end = same == a.size() && a.size() == b.size();
+  const auto shared = [&](const std::string& x, const std::string& y, const std::string& scale) {
+    return shared_digits(x, run.scene.run, y, reference.scene.run, scale);
+  };
+  for (std::size_t k = 0; k < samples; ++k) {
+    trusted.times.push_back(a[k].time);
+    trusted.energy_digits.push_back(shared(a[k].energy, b[k].energy, b[0].energy));
+    trusted.front_digits.push_back(shared(a[k].front, b[k].front, "0"));
+  }
+  if (!run.outcome.collapse_time.empty() && !reference.outcome.collapse_time.empty())
+    trusted.collapse_digits = shared(run.outcome.collapse_time, reference.outcome.collapse_time, "0");
+  return trusted;
+}
+
+bool agree(const Traced& a, const Traced& b) {
+  const Trusted t = compare(a, b);
+  return t.to_end && *std::min_element(t.energy_digits.begin(), t.energy_digits.end()) >= 15;
+}
+
+// The sequence of collisions that is proved, as far as it is.
+struct ProvedTrace {
+  std::vector<TraceSample> samples;
+  bool to_end = false;
+};
+
+class TracedCertifier final : public Certifier {
+ public:
+  TracedCertifier(std::unique_ptr<Certifier> proof, std::vector<TraceSample>& samples)
+      : proof_(std::move(proof)), samples_(samples) {
+    samples_.clear();
+  }
+  void collision(ParticleIndex left, ParticleIndex right, double time) override {
+    proof_->collision(left, right, time);
+    trace_.collision(left, right, time);
+  }
+  void sample(const RunSample& sample) override {
+    proof_->sample(sample);
+    trace_.sample(sample);
+    if (samples_.size() < trace_.samples.size()) samples_.push_back(trace_.samples.back());
+  }
+  Certificate certificate() const override { return proof_->certificate(); }
+
+ private:
+  std::unique_ptr<Certifier> proof_;
+  TraceObserver trace_;
+  std::vector<TraceSample>& samples_;
+};
+
+// In long runs with no more digits than the reference has: more would take longer than all the others together.
+ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const TrustOptions& options) {
+  constexpr std::uint64_t few = 1'000'000;
+  const unsigned most = reference.outcome.collisions < few ? 1000 : digits_of(reference.scene.run);
+  ProvedTrace proof;
+  CertifyOptions how{rising_digits(), options.progress, options.interrupt, {}};
+  std::erase_if(how.digits, [&](unsigned digits) { return digits > std::max(most, 31U); });
+  how.make = [&](const Scene& of, unsigned digits) {
+    return std::make_unique<TracedCertifier>(certifier(of, digits), proof.samples);
+  };
+  proof.to_end = certify(at_digits(scene, 16, Coordinates::gaps), how).proved();
+  return proof;
+}
+
+void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& proof) {
+  const std::size_t samples = std::min(run.trace.size(), proof.samples.size());
+  std::size_t same = 0;
+  while (same < samples && run.trace[same].digest == proof.samples[same].digest) ++same;
+  if (same > 0) trusted.proved_time = run.trace[same - 1].time;
+  trusted.proved_to_end = proof.to_end && same == run.trace.size() && same == proof.samples.size();
+}
+
+}  // namespace
+
+std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
+  std::vector<Traced> runs;
+  const auto add = [&](unsigned digits) {
+    if (options.both && !particles_merge(scene))
+      runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options));
+    runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options));
+  };
+  if (!options.digits.empty()) {
+    for (const unsigned digits : options.digits) add(digits);
+  } else {
+    for (const unsigned digits : {16U, 31U, 50U, 100U, 200U, 400U}) {
+      add(digits);
+      const std::size_t step = options.both ? 2 : 1;
+      if (runs.size() > 2 * step && agree(runs[runs.size() - 1 - step], runs.back())) break;
+    }
+  }
+  const ProvedTrace proof = proved_trace(scene, runs.back(), options);
+  std::vector<Trusted> table;
+  for (const auto& run : runs) {
+    table.push_back(compare(run, runs.back()));
+    compare_with_proof(table.back(), run, proof);
+  }
+  return table;
+}
+
+std::string trust_table(const std::vector<Trusted>& runs) {
+  std::string text = fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13}{:>10}{:>10}{:>9}{:>9}{:>16}\n", "precision", "in",
+                                 "collisions right until t", "collision", "counts until", "energy", "front", "t_c",
+                                 "seconds", "proved");
+  for (const auto& run : runs) {
+    const bool reference = &run == &runs.back();
+    const auto digits = [&](double d) { return reference || d < 0 ? std::string("-") : fmt::format("{:.1f}", d); };
+    const auto last = [&](const std::vector<double>& d) { return digits(d.empty() ? -1 : d.back()); };
+    const auto proved = run.proved_to_end     ? std::string("to the end")
+                        : run.proved_time > 0 ? fmt::format("until {:.8g}", run.proved_time)
+                                              : "-";
+    const auto upto = reference    ? std::string("(reference)")
+                      : run.to_end ? fmt::format("{:.8g} (end)", run.time)
+                                   : fmt::format("{:.8g}", run.time);
+    text += fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13.8g}{:>10}{:>10}{:>9}{:>9.2f}{:>16}\n", run.precision,
+                        run.coordinates, upto, run.collisions, run.counts_time, last(run.energy_digits),
+                        last(run.front_digits), digits(run.collapse_digits), run.seconds, proved);
+  }
+  text +=
+      "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as the "
+      "reference.\n"
+      "energy (against that at the start), front: digits shared with the reference at the last sample, of those that "
+      "the type has; t_c: of the collapse time.\nproved: until when these collisions are proved to be those of the "
+      "exact "
+      "system (cradle "
+      "certify).\n";
+  return text;
+}
+
+Result trust_result(const Scene& scene, const std::vector<Trusted>& runs) {
+  Result result;
+  result.attributes = provenance(scene, runs.back().precision, "comparison of precisions");
+  for (const auto& run : runs) {
+    Group group{fmt::format("trust/{:04}", result.groups.size()), {}, {}};
+    group.attributes = {{"precision", run.precision},
+                        {"coordinates", run.coordinates},
+                        {"outcome", run.outcome},
+                        {"collisions_right_until", run.time},
+                        {"collisions_right", run.collisions},
+                        {"counts_right_until", run.counts_time},
+                        {"right_to_end", std::uint64_t{run.to_end}},
+                        {"proved_until", run.proved_time},
+                        {"proved_to_end", std::uint64_t{run.proved_to_end}}};
+    group.columns = {
+        {"time", "t", "of the sample", run.times},
+        {"energy_digits", "1",
+         "decimal digits shared with the reference, the last run here, of those that the type has, against the "
+         "energy at the start",
+         run.energy_digits},
+        {"front_digits", "1", "the same of the right front", run.front_digits}};
+    result.groups.push_back(std::move(group));
+  }
+  return result;
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,65 @@
+"""Paths of a few particles, and how their gaps or the intervals between their collisions shrink."""
+import numpy as np
+
+from .style import BLUE, ORANGE, RED, panel_letter, shades, subplots
+
+FEW_PARTICLES = 20       # up to here every particle has a path of its own
+
+
+def few(result):
+    return 0 < max((len(s["x"]) for s in result.snapshots), default=0) <= FEW_PARTICLES and not result.profiles
+
+
+def pictures(result, theory, units):
+    if few(result) and not theory.curve("front_position")[0].size:
+        return [("particles", lambda axes=None: draw_particles(result, units, axes))]
+    return []
+
+
+def draw_particles(result, units, axes=None):
+    """Paths, energy and collisions, and how intervals (from events) or gaps shrink."""
+    shrinking = {"interval", "closing_speed"} <= result.events.keys()
+    gaps = not shrinking and len(result.snapshots) > 1
+    rows = 2 + (shrinking or gaps)
+    figure, axes = subplots(axes, rows, 1, figsize=(5.6, 2.4 * rows + 0.3), layout="constrained")
+    paths = {}
+    for snapshot in result.snapshots:
+        for particle, x in zip(snapshot["index"], snapshot["x"]):
+            paths.setdefault(int(particle), []).append((snapshot["time"], x))
+    for (particle, path), colour in zip(sorted(paths.items()), shades(len(paths))):
+        axes[0].plot(*(np.array(path) / (units.t, units.x)).T, "o-", ms=3, color=colour, label=f"particle {particle}")
+    series = result.series
+    for name, line in (("front_left", ":"), ("front_right", "--")):
+        if name in series:
+            axes[0].plot(series["time"] / units.t, series[name] / units.x, line, color="k", lw=0.8, zorder=0,
+                         label="outermost" if line == ":" else None)
+    axes[0].set(xlabel=units.time_label(), ylabel=units.position_label())
+    if axes[0].get_lines() and len(paths) <= 8:
+        axes[0].legend(loc="best", ncol=2)
+    if series:
+        time = series["time"] / units.t
+        axes[1].plot(time, series["energy"] / units.energy, color=BLUE, drawstyle="steps-post")
+        axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label())
+        axes[1].set_ylim(bottom=0)
+        if "collisions" in series:
+            other = axes[1].twinx()
+            other.plot(time, series["collisions"], color=RED, ls="--", drawstyle="steps-post")
+            other.set_ylabel("collisions (dashed)", color=RED)
+    if shrinking:
+        count = np.arange(1, len(result.events["interval"]) + 1)
+        for name, mark, colour in (("interval", "o", BLUE), ("closing_speed", "^", ORANGE)):
+            value = result.events[name]
+            axes[2].semilogy(count, np.where(value > 0, value, np.nan), mark, ms=3, color=colour,
+                             label=name.replace("_", " "))
+        axes[2].set(xlabel="collision", ylabel="interval, closing speed")
+        axes[2].legend(loc="best")
+    elif gaps:
+        for pair in range(min(len(s["gap"]) for s in result.snapshots)):
+            points = [(s["time"], s["gap"][pair]) for s in result.snapshots if s["gap"][pair] > 0]
+            points = np.array(points).reshape(-1, 2)
+            axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-", ms=3, label=f"gap {pair}")
+        axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
+        axes[2].legend(loc="best")
+    for letter, ax in zip("abc", axes):
+        panel_letter(ax, letter)
+    return figure

@@ -1,0 +1,128 @@
+// When a run is looked at: the times of series, snapshots and whatever else a scene wants in the working precision, and
+// their union.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/run/run.hpp"
+
+namespace cradle::tools {
+
+template <Real T> struct Schedule {
+  std::vector<T> series, snapshots, profiles, masses, zone;  // each increasing
+  std::vector<T> stops;                                      // their union
+};
+
+template <Real T> bool holds(const std::vector<T>& times, const T& time) {
+  return std::binary_search(times.begin(), times.end(), time);
+}
+
+/// Logarithmic spacing starts at this share of the run: six points per decade would need 36 for it.
+inline constexpr double first_log_share = 1e-6;
+
+template <Real T> std::vector<T> series_times(const Series& series, const T& start, const T& until) {
+  std::vector<T> times;
+  if (!series.times.empty()) {
+    for (const auto& time : series.times) times.push_back(number<T>(time));
+  } else if (series.every) {
+    const T step = number<T>(*series.every);
+    for (std::int64_t k = 0;; ++k) {
+      const T time = start + T(k) * step;
+      if (time > until) break;
+      times.push_back(time);
+    }
+  } else {
+    const auto points = static_cast<std::int64_t>(*series.points);
+    const T end = series.over ? number<T>(*series.over) : until, span = end - start;
+    const auto at = [&](std::int64_t k) {
+      if (k + 1 == points) return end;
+      if (series.spacing == Spacing::linear) return T(start + span * T(k) / T(points - 1));
+      if (k == 0) return start;
+      // Any numbers will do as times: shares of the span in double, the same in every precision.
+      const double part = static_cast<double>(k - 1) / static_cast<double>(std::max<std::int64_t>(points - 2, 1));
+      return T(start + span * from_text<T>(fmt::format("{}", std::pow(first_log_share, 1 - part))));
+    };
+    for (std::int64_t k = 0; k < points || at(k) < until; ++k) times.push_back(at(k));
+    if (times.back() < until) times.push_back(until);
+  }
+  // Times that the type cannot tell apart are one.
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+template <Real T> Schedule<T> schedule(const Scene& scene) {
+  const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
+  Schedule<T> plan{series_times(scene.output.series, start, until), {}, {}, {}, {}, {}};
+  for (const auto& time : scene.output.snapshots) plan.snapshots.push_back(number<T>(time));
+  for (const auto& time : scene.output.profiles.times) plan.profiles.push_back(number<T>(time));
+  for (const auto& time : scene.output.masses) plan.masses.push_back(number<T>(time));
+  const Zone& zone = scene.output.zone;
+  if (zone.from) {
+    const T from = number<T>(*zone.from);
+    const auto samples = static_cast<std::int64_t>(zone.samples);
+    for (std::int64_t k = 0; k < samples; ++k) plan.zone.push_back(from + (until - from) * T(k) / T(samples));
+  }
+  for (const auto* times : {&plan.series, &plan.snapshots, &plan.profiles, &plan.masses, &plan.zone})
+    plan.stops.insert(plan.stops.end(), times->begin(), times->end());
+  plan.stops.push_back(until);
+  std::sort(plan.stops.begin(), plan.stops.end());
+  plan.stops.erase(std::unique(plan.stops.begin(), plan.stops.end()), plan.stops.end());
+  return plan;
+}
+
+/// The decimal that a sample of the series is of; nothing where no decimal of the scene says so.
+template <Real T>
+std::optional<Decimal> series_decimal(const Scene& scene, const std::vector<T>& times, const T& time) {
+  const Series& series = scene.output.series;
+  // Times that the type cannot tell apart are left out: the decimal may stand further back in its list.
+  auto k = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time) - times.begin());
+  const T start = number<T>(scene.run.start);
+  if (!series.times.empty()) {
+    while (number<T>(series.times[k]) < time) ++k;
+    return series.times[k];
+  }
+  if (series.every) {
+    const T step = number<T>(*series.every);
+    while (T(start + T(static_cast<std::int64_t>(k)) * step) < time) ++k;
+    return stepped(scene.run.start, k, *series.every);
+  }
+  if (k == 0) return scene.run.start;
+  for (const Decimal& end : {series.over.value_or(scene.run.until), scene.run.until})
+    if (number<T>(end) == time) return end;
+  return {};
+}
+
+/// The times that a run in this type stands for where it is at one of its stops.
+template <Real T> std::vector<AskedTime> asked_times(const Scene& scene, const Schedule<T>& plan, const T& time) {
+  std::vector<AskedTime> all;
+  const Decimal own(to_text(time));
+  const auto at = [&](const Decimal& decimal) -> AskedTime& {
+    for (AskedTime& asked : all)
+      if (asked.time == decimal) return asked;
+    return all.emplace_back(decimal);
+  };
+  if (holds(plan.series, time)) at(series_decimal(scene, plan.series, time).value_or(own)).of_series = true;
+  if (holds(plan.snapshots, time)) {
+    const auto first = std::lower_bound(plan.snapshots.begin(), plan.snapshots.end(), time);
+    at(scene.output.snapshots[static_cast<std::size_t>(first - plan.snapshots.begin())]).of_snapshots = true;
+  }
+  if (time == plan.stops.back()) at(scene.run.until).last = true;
+  if (all.empty()) at(own);
+  return all;
+}
+
+template <class T> PlannedTimes planned_in(const Scene& scene) {
+  const Schedule<T> plan = schedule<T>(scene);
+  PlannedTimes times{{}, {}, to_double(plan.stops.back())};
+  for (const T& time : plan.series) times.series.push_back(to_double(time));
+  for (const T& time : plan.profiles) times.profiles.push_back(to_double(time));
+  return times;
+}
+
+}  // namespace cradle::tools

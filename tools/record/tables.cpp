@@ -1,0 +1,201 @@
+#include "cradle/tools/record/tables.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "cradle/core/theory/wet_zone.hpp"
+#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/record/columns.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+Group series_table(const Scene& scene) {
+  Group table{"series", {}, {}};
+  for (const auto& column : series_columns<double>())
+    if (column.when(scene)) table.columns.push_back({column.name, column.unit, column.text, {}});
+  return table;
+}
+
+Group heaviest_table() {
+  return {"series/heaviest",
+          {},
+          {{"mass", "m", "of the two heaviest clusters, the left and the right one", {}, 2},
+           {"x", "l", "their positions", {}, 2},
+           {"v", "l/t", "their velocities", {}, 2},
+           {"index", "1", "number at the start of the particle they go by, the same after passing", {}, 2, true}}};
+}
+
+std::vector<Group> cluster_series_tables() {
+  return {{"series",
+           {},
+           {{"time", "t", "a sample is the state after all meetings at times <= t", {}},
+            {"energy", "m l^2/t^2", "kinetic energy of the two clusters", {}},
+            {"energy_lost", "m l^2/t^2", "energy lost where they met", {}},
+            {"collisions", "1", "how often they have met", {}},
+            {"merges", "1", "how often they have stuck", {}}}},
+          {"series/heaviest",
+           {},
+           {{"mass", "m", "of the two clusters, the left and the right one", {}, 2},
+            {"x", "l", "their positions", {}, 2},
+            {"v", "l/t", "their velocities", {}, 2},
+            {"index", "1", "0 or 1, which of the two at the start", {}, 2, true}}}};
+}
+
+Group snapshot_table(const std::string& name) {
+  return {name,
+          {},
+          {{"x", "l", "position", {}},
+           {"v", "l/t", "velocity", {}},
+           {"m", "m", "mass", {}},
+           {"index", "1", "number of the particle at the start, from the left", {}},
+           {"gap", "l", "distance to the next particle: resolves what x cannot", {}},
+           {"closing_speed", "l/t", "velocity minus that of the next particle", {}}}};
+}
+
+Group profile_table(const std::string& name) {
+  return {name,
+          {},
+          {{"x", "l", "centre of the bin", {}},
+           {"velocity", "l/t", "mass-weighted mean velocity", {}},
+           {"density", "1/l", "particles per length", {}},
+           {"mass_density", "m/l", "mass per length", {}},
+           {"temperature", "l^2/t^2", "mass-weighted variance of velocity", {}},
+           {"density_right", "1/l", "right-moving particles per length", {}},
+           {"velocity_right", "l/t", "mean velocity of right-movers", {}},
+           {"density_left", "1/l", "left-moving particles per length", {}},
+           {"velocity_left", "l/t", "mean velocity of left-movers", {}}}};
+}
+
+Group masses_table(const std::string& name) {
+  return {name,
+          {},
+          {{"mass", "m", "least mass of the bin, which ends where the next one begins: 2^(1/4) times as high", {}},
+           {"clusters", "1", "clusters of such a mass", {}}}};
+}
+
+Group zone_table() {
+  return {"zone",
+          {},
+          {{"x", "l", "centre of the bin", {}},
+           {"mass_density", "m/l", "mass per length", {}},
+           {"density_right", "1/l", "right-moving single particles per length", {}},
+           {"velocity_right", "l/t", "their mean velocity", {}},
+           {"density_left", "1/l", "left-moving single particles per length", {}},
+           {"velocity_left", "l/t", "their mean velocity", {}}}};
+}
+
+Group events_table() {
+  return {"events",
+          {},
+          {{"left", "1", "number of the left particle at the start", {}},
+           {"right", "1", "number of the right particle at the start", {}},
+           {"time", "t", "time of the collision, rounded", {}},
+           {"time_low", "t", "what time misses: the collision is at time + time_low", {}},
+           {"interval", "t", "time since the collision before", {}},
+           {"closing_speed", "l/t", "closing speed before the collision", {}}}};
+}
+
+Group initial_table() {
+  return {
+      "initial",
+      {},
+      {{"index", "1", "number of the particle, from the left", {}},
+       {"x", "l", "position at the start", {}},
+       {"v", "l/t", "velocity at the start", {}},
+       {"m", "m", "mass", {}},
+       {"gap", "l", "distance to the next particle: resolves what x cannot; nan behind the last one of a line", {}}}};
+}
+
+bool has_clouds(const Scene& scene) { return law_row(scene).merges && scene.initial.type != InitialType::ring; }
+
+ZoneAverage zone_average(const Scene& scene) {
+  const Zone& zone = scene.output.zone;
+  double reach = 0;
+  if (zone.reach)
+    reach = zone.reach->value;
+  else
+    try {
+      const theory::WetShock<double> shock{
+          .loss = scene.law.loss.value, .speed = scene.initial.speed.value, .spacing = scene.initial.spacing.value};
+      reach = 3 * theory::WetZone<double>(shock).half_width();
+    } catch (const std::domain_error& error) {
+      throw Error({scene.name, 0, "output.zone.reach"}, "not given, and (13) has no answer", error.what(), "give it");
+    }
+  return {reach, zone.bins, zone.samples, 1.0};
+}
+
+namespace {
+
+std::vector<double> centres(const ZoneAverage& zone, std::size_t bins) {
+  std::vector<double> x;
+  for (std::size_t bin = 0; bin < bins; ++bin) x.push_back(zone.centre(bin));
+  return x;
+}
+
+}  // namespace
+
+Group zone_result(const ZoneAverage& zone, const ZoneWidth& width, const Scene& scene) {
+  const Zone& wanted = scene.output.zone;
+  Group table = filled(zone_table(), centres(zone, wanted.bins), zone.mass_density(), zone.density_right(),
+                       zone.velocity_right(), zone.density_left(), zone.velocity_left());
+  table.attributes = {{"from", wanted.from->value},
+                      {"until", scene.run.until.value},
+                      {"samples", std::uint64_t{zone.samples()}},
+                      {"width", width.width},
+                      {"width_error", width.error}};
+  return table;
+}
+
+std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& s) {
+  const bool met = s.passes + s.sticks > 0;
+  return {{"pair_established", s.established},
+          {"first_meeting", s.first_meeting},
+          {"first_passed", met ? double(s.first_passed) : none},
+          {"passes", static_cast<double>(s.passes)},
+          {"sticks", static_cast<double>(s.sticks)},
+          {"role_changes", static_cast<double>(s.role_changes)},
+          {"regime", static_cast<double>(s.regime)},
+          {"separation_exponent", s.separation_exponent},
+          {"speed_exponent", s.speed_exponent}};
+}
+
+RunTables run_tables(const Scene& scene) {
+  RunTables tables;
+  if (scene.initial.type == InitialType::clusters) {
+    tables.series = cluster_series_tables();
+    return tables;
+  }
+  tables.series.push_back(series_table(scene));
+  if (has_clouds(scene)) tables.series.push_back(heaviest_table());
+  if (const Profiles& wanted = scene.output.profiles; !wanted.times.empty()) {
+    tables.profile = profile_table("profiles");
+    if (!wanted.range.empty())
+      tables.profile->columns.front().values = bin_centres({wanted.range[0].value, wanted.range[1].value}, wanted.bins);
+  }
+  if (scene.output.zone.from) {
+    tables.zone = zone_table();
+    tables.zone->columns.front().values = centres(zone_average(scene), scene.output.zone.bins);
+    tables.summary.emplace_back("zone_width");
+  }
+  if (scene.output.scenario)
+    for (auto& [name, value] : scenario_numbers({})) tables.summary.push_back(name);
+  return tables;
+}
+
+Group filled(Group table, std::vector<Numbers> columns) {
+  if (columns.size() != table.columns.size())
+    throw std::logic_error(
+        fmt::format("a table /{} of {} columns, and numbers for {}", table.name, table.columns.size(), columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) table.columns[k].values = std::move(columns[k]);
+  return table;
+}
+
+}  // namespace cradle::tools

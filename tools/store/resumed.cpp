@@ -1,0 +1,232 @@
+// What a run that was stopped goes on from: its journal and its checkpoint, or its result and the checkpoint of its
+// end.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/store/run_files.hpp"
+#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/version.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+bool exists(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::exists(path, none);
+}
+
+// Where the journal ends that has so many records; nothing where it has fewer of them whole.
+std::optional<std::uint64_t> end_of_records(const std::string& path, std::uint64_t records, std::uint64_t& check,
+                                            const JournalWriter::Put& put = {}) {
+  JournalReader reader(path, JournalOf::run);
+  check = crc64(reader.header());
+  std::string record;
+  for (std::uint64_t k = 0; k < records; ++k) {
+    if (!reader.next(record)) return {};
+    check = crc64(record);
+    if (put) put(record);
+  }
+  return reader.whole_bytes();
+}
+
+// The same run up to a later time, its samples spaced as before.
+Scene extended(Scene scene, const std::string& until, const std::string& file) {
+  const Decimal later(until);
+  if (later < scene.run.until)
+    throw Error({"--until", 0, ""}, "before the end of the run that is there", until,
+                fmt::format("give a time after {}", scene.run.until.text));
+  if (scene.output.zone.from)
+    throw Error({file, 0, "output.zone.from"}, "an average up to run.until cannot be gone on with",
+                scene.run.until.text, "run the scene anew with a later run.until");
+  Series& series = scene.output.series;
+  if (series.points && !series.over && scene.run.start < scene.run.until) series.over = scene.run.until;
+  scene.run.until = later;
+  return parse_scene(effective_toml(scene), file);  // as a scene with that end would be read
+}
+
+// Where nobody asks for collisions the sticky gas goes from time to time, and rounds by these: with other times it is
+// begun again, which takes it no time.
+bool begins_again(const Scene& scene) { return without_collisions(scene); }
+
+// What a result file holds of the run itself: rows, not what is said of the whole.
+std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
+  std::erase_if(groups, [](const Group& g) {
+    const std::string_view name = rounded_name(g.name);
+    return name == "zone" || name == "scenario" || name == "collapse" || name == "initial";
+  });
+  // Attributes come back from the file in another order than that in which they are written.
+  const auto rank = [](const Attribute& attribute) {
+    constexpr std::array<std::string_view, 3> first{"time", "gap_min", "gap_median"};
+    return std::find(first.begin(), first.end(), attribute.first) - first.begin();
+  };
+  for (Group& table : groups)
+    std::stable_sort(table.attributes.begin(), table.attributes.end(),
+                     [&](const Attribute& a, const Attribute& b) { return rank(a) < rank(b); });
+  // A sample at the end that the spacing does not ask for is one of that end only.
+  const std::vector<double> planned = planned_times(scene).series;
+  const auto one_too_many = [&](const Group& table) {
+    if (table.name != "series" || table.columns.empty()) return false;
+    const auto* taken = std::get_if<std::vector<double>>(&table.columns.front().values);
+    return taken != nullptr && !taken->empty() && !std::binary_search(planned.begin(), planned.end(), taken->back());
+  };
+  if (std::any_of(groups.begin(), groups.end(), one_too_many))
+    for (Group& table : groups)
+      for (Column& column : table.columns)
+        if (rounded_name(table.name).starts_with("series"))
+          std::visit([&](auto& v) { v.resize(v.size() - std::min(v.size(), column.width)); }, column.values);
+  return groups;
+}
+
+}  // namespace
+
+CheckpointHeader read_checkpoint(StateReader& reader, const std::string& path) {
+  if (const std::uint64_t format = reader.integer(); format != CheckpointHeader::format)
+    throw Error({path, 0, ""}, "a checkpoint of another format",
+                fmt::format("{}, here {}", format, CheckpointHeader::format),
+                "go on with the version of cradle that wrote it, or remove it: the run then starts anew", Exit::io);
+  CheckpointHeader header;
+  header.run = RunHeader::of(reader.text());
+  header.records = reader.integer();
+  header.check = reader.integer();
+  reader.get(&header.seconds, sizeof header.seconds);
+  reader.get(&header.time, sizeof header.time);
+  header.collisions = reader.integer();
+  return header;
+}
+
+RunFiles::RunFiles(std::string file, const std::optional<std::string>& until) : file_(std::move(file)) {
+  if (exists(journal_of(file_)))
+    resume(until);
+  else
+    resume_from_result(until);
+  started_ = reported_ = saved_ = Clock::now();
+}
+
+// ---- going on
+
+void RunFiles::resume(const std::optional<std::string>& until) {
+  const std::string path = journal_of(file_), state = checkpoint_of(file_);
+  header_ = RunHeader::of(JournalReader(path, JournalOf::run).header());
+  if (header_.version != version)
+    throw Error({path, 0, ""}, "a run of another version", fmt::format("{}, here {}", header_.version, version),
+                "go on with that one, or remove the file: the run then starts anew", Exit::io);
+  scene_ = scene_of(header_, path);
+  CheckpointHeader found;
+  if (exists(state)) {
+    state_ = std::make_unique<StateReader>(state);
+    found = read_checkpoint(*state_, state);
+    if (found.run.number != header_.number) state_.reset();  // of a run before
+  }
+  const std::uint64_t before = header_.first_stands_for - 1;
+  records_ = state_ ? found.records : 0;
+  if (state_ && records_ < header_.first_stands_for && header_.first_stands_for > 1)
+    throw Error({state, 0, ""}, "older than the journal", "", "take both from a copy, or remove them", Exit::io);
+  if (!state_ && header_.first_stands_for > 1)
+    throw Error({state, 0, ""}, "missing", "", "take it from a copy, or remove the journal", Exit::io);
+  const bool later = until && Decimal(*until) != scene_.run.until;
+  if (later && state_ && !(found.time < planned_times(scene_).until))
+    throw Error({file_, 0, ""}, "not written yet", "the run has reached its end",
+                fmt::format("finish it first: `cradle resume {}`", file_));
+  if (later && begins_again(scene_)) {
+    state_.reset();
+    records_ = 0;
+    header_.first_stands_for = 1;
+    ++header_.number;  // the checkpoint does not belong to it
+  }
+  if (later) {
+    scene_ = extended(scene_, *until, path);
+    scene_.name = header_.name;
+    header_.scene = effective_toml(scene_);
+  }
+  const std::uint64_t there = records_ - std::min(records_, before);
+  const auto torn = [&] {
+    return Error({path, 0, ""}, "damaged before its checkpoint", fmt::format("fewer than {} records", there),
+                 "take it from a copy, or remove it: the run then starts anew", Exit::io);
+  };
+  const auto check = [&] {
+    if (state_ && records_ > header_.first_stands_for && check_ != found.check) throw torn();
+  };
+  if (later) {
+    JournalWriter anew(path, JournalOf::run, header_.bytes(), [&](const JournalWriter::Put& put) {
+      if (!end_of_records(path, there, check_, put)) throw torn();
+      check();
+    });
+    journal_ = std::move(anew);
+  } else {
+    const auto end = end_of_records(path, there, check_);
+    if (!end) throw torn();
+    check();
+    journal_.emplace(path);
+    journal_->continue_after(*end);
+  }
+  if (state_) from(found);
+}
+
+void RunFiles::resume_from_result(const std::optional<std::string>& until) {
+  if (!exists(file_))
+    throw Error({file_, 0, ""}, "nothing to go on from", "neither a result nor a journal", "run the scene", Exit::io);
+  Result result = read_result(file_, Reading::ends);
+  scene_ = scene_in(result.attributes, file_);
+  const bool ensemble = std::any_of(result.attributes.begin(), result.attributes.end(),
+                                    [](const Attribute& attribute) { return attribute.first == "kind"; });
+  if (ensemble && until)
+    throw Error({"--until", 0, ""}, "an ensemble has no later end", *until, "give it a file of its own");
+  const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
+  const std::string state = checkpoint_of(file_);
+  if (!until || Decimal(*until) == scene_.run.until || outcome != end_row(RunEnd::reached).text) {
+    over_ =
+        fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
+    over_status_ = status_of_text(outcome);
+    return;
+  }
+  if (!exists(state)) throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);
+  state_ = std::make_unique<StateReader>(state);
+  const CheckpointHeader found = read_checkpoint(*state_, state);
+  if (found.run.version != version || found.run.scene != effective_toml(scene_) ||
+      found.time != planned_times(scene_).until)
+    throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
+                "run the scene with a later run.until", Exit::io);
+  if (begins_again(scene_)) {
+    state_.reset();
+  } else {
+    std::uint64_t numbers = 0;
+    for (const Group& table : result.groups)
+      for (const Column& column : table.columns) numbers += column.rows() * column.width;
+    if (numbers > most_in_memory)
+      throw Error({file_, 0, ""}, "too large to be gone on with", fmt::format("{} numbers", numbers),
+                  "run the scene with a later run.until", Exit::io);
+    result = read_result(file_);
+  }
+  const std::string name = scene_.name;
+  scene_ = extended(scene_, *until, file_);
+  scene_.name = name;
+  header_ = {std::string(version),
+             effective_toml(scene_),
+             name,
+             found.run.every_seconds,
+             found.run.number + (state_ ? 0 : 1),  // its own, which the checkpoint does not belong to
+             state_ ? std::max<std::uint64_t>(found.records, 2) : 1};
+  if (!state_) {
+    journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(), nullptr, Sync::no);
+    return;
+  }
+  records_ = header_.first_stands_for;
+  journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(),
+                   [&](const JournalWriter::Put& put) { put(record_of(recorded(std::move(result.groups), scene_))); });
+  from(found);
+}
+
+void RunFiles::from(const CheckpointHeader& found) {
+  from_ = fmt::format("t = {:.10g}, {} collisions", found.time, found.collisions);
+  seconds_before_ = found.seconds;
+  collisions_before_ = found.collisions;
+}
+
+}  // namespace cradle::tools

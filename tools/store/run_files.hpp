@@ -1,0 +1,103 @@
+// The files of a run on its way to FILE, from which it goes on after any end:
+//
+//   FILE.part        journal: what it has recorded so far, and how far it is (run_journal.hpp)
+//   FILE.checkpoint  all that is to come depends on, at one moment, and how many records the journal had then
+//
+// Going on, the journal is cut to those records: what followed is made again, with the same bits. Without a checkpoint
+// the run starts anew. When FILE is there, the journal goes and the last checkpoint stays: a later `--until` goes on
+// from it, with a journal whose first record is what FILE holds.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cradle/tools/run/run.hpp"
+#include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/store/run_store.hpp"
+
+namespace cradle::tools {
+
+/// Numbers of a result, beyond which it is not held in memory as a whole.
+inline constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;
+
+/// How far a checkpoint is, without the state itself.
+struct CheckpointHeader {
+  static constexpr std::uint64_t format = 1;
+
+  RunHeader run;
+  std::uint64_t records = 0, check = 0;  // of the journal then: how many, and the checksum of the last one
+  double seconds = 0, time = 0;          // of computing; simulated
+  std::uint64_t collisions = 0;
+};
+
+/// Leaves the reader where the state begins. Throws Error (Exit::io).
+CheckpointHeader read_checkpoint(StateReader& reader, const std::string& path);
+
+class RunFiles final : public RunStore {
+ public:
+  static std::string journal_of(const std::string& file) { return file + ".part"; }
+  static std::string checkpoint_of(const std::string& file) { return file + ".checkpoint"; }
+
+  /// A run that begins. FILE is claimed by whoever calls this. Throws Error (Exit::bad_input) where a long run that is
+  /// not finished would be lost, else (Exit::io).
+  RunFiles(std::string file, const Scene& scene);
+  /// A run that goes on, up to `until` where that is given. Throws Error where there is none, or it is over.
+  RunFiles(std::string file, const std::optional<std::string>& until);
+
+  const Scene& scene() const { return scene_; }
+  /// Where there is nothing to go on with, says why; else empty. With which status that run ended.
+  const std::string& over() const { return over_; }
+  Exit over_status() const { return over_status_; }
+  /// "t = 1200, 3.4e7 collisions" that it goes on from; "the start".
+  const std::string& resumed_from() const { return from_; }
+  std::uint64_t collisions_before() const { return collisions_before_; }
+  /// Whether all that was computed up to the end of the run is in its files.
+  bool up_to_date() const { return up_to_date_; }
+
+  void add(Group&& rows) override;
+  void count(std::uint64_t collisions) override;
+  void check_clock() override;
+  bool due() const override { return due_; }
+  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) override;
+  StateReader* loaded_from() override { return state_.get(); }
+
+  /// All that was recorded, with what the run tells at its end, becomes FILE; then the journal goes.
+  void finish(Result&& end, RunEnd how);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void resume(const std::optional<std::string>& until);
+  void resume_from_result(const std::optional<std::string>& until);
+  void from(const CheckpointHeader& found);
+  void append(std::string_view record);
+  double seconds() const;
+  void write_checkpoint(const RunStatus& status, const std::function<void(StateWriter&)>& save);
+  void complain(const Error& error);
+
+  std::string file_;
+  Scene scene_;
+  RunHeader header_;
+  std::optional<JournalWriter> journal_;
+  std::uint64_t records_ = 0, check_ = 0;
+  std::deque<std::string> unwritten_;  // records for which there was no room
+  std::unique_ptr<StateReader> state_;
+  std::string over_, from_ = "the start";
+  Exit over_status_ = Exit::done;
+  std::uint64_t collisions_before_ = 0;  // made in earlier calls
+
+  bool due_ = false, saved_here_ = false, complained_ = false;
+  bool up_to_date_ = false;       // the checkpoint, as of the last `keep` that was to write one
+  std::uint64_t next_check_ = 0;  // collisions, when the clock is looked at again
+  double seconds_before_ = 0;     // of computing, in earlier calls
+  Clock::time_point started_ = Clock::now(), reported_ = started_, saved_ = started_;
+};
+
+}  // namespace cradle::tools

@@ -1,0 +1,118 @@
+#include "cradle/tools/store/state_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+
+#include "cradle/tools/support/checksum.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr std::string_view begin = "CRADLEC1";
+
+}  // namespace
+
+// ---- writing
+
+StateWriter::StateWriter(const std::string& path) : file_(path) {
+  buffer_.reserve(buffer_size);
+  put(begin.data(), begin.size());
+}
+
+void StateWriter::flush() {
+  check_ = crc64(buffer_, check_);
+  file_.write({buffer_});
+  buffer_.clear();
+}
+
+void StateWriter::finish() {
+  flush();
+  const std::uint64_t check = check_;
+  file_.write({std::string_view(reinterpret_cast<const char*>(&check), sizeof check)});
+  file_.put_in_place();
+}
+
+// ---- reading
+
+bool StateReader::is_state(const std::string& path) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string found(begin.size(), '\0');
+  return file.read(found.data(), static_cast<std::streamsize>(found.size())) && found == begin;
+}
+
+Error StateReader::damaged(const std::string& what) const {
+  return {{path_, 0, ""}, "not a checkpoint, or damaged", what, "remove it: the run then starts anew", Exit::io};
+}
+
+StateReader::StateReader(const std::string& path)
+    : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  struct stat found {};
+  if (file_ < 0 || ::fstat(file_, &found) != 0)
+    throw Error({path, 0, ""}, "could not be read", std::strerror(errno), "check its name and rights", Exit::io);
+  if (!S_ISREG(found.st_mode)) throw damaged("no file");
+  constexpr std::uint64_t frame = begin.size() + sizeof(std::uint64_t);
+  const auto size = static_cast<std::uint64_t>(found.st_size);
+  if (size < frame) throw damaged("too short");
+  std::uint64_t check = 0;
+  for (after_buffer_ = size - sizeof check; after_buffer_ > 0;) {
+    fill();
+    check = crc64(buffer_, check);
+  }
+  std::uint64_t wanted = 0;
+  if (::pread(file_, &wanted, sizeof wanted, static_cast<off_t>(size - sizeof wanted)) != sizeof wanted ||
+      wanted != check)
+    throw damaged("its checksum is wrong");
+  if (::lseek(file_, 0, SEEK_SET) != 0) throw damaged("it cannot be read twice");
+  after_buffer_ = size - sizeof check;
+  fill();
+  if (std::string_view(buffer_).substr(0, begin.size()) != begin) throw damaged("of another kind or version");
+  at_ = begin.size();
+}
+
+void StateReader::fill() {
+  constexpr std::uint64_t at_once = std::uint64_t{1} << 18;
+  buffer_.resize(std::min(after_buffer_, at_once));
+  for (std::size_t got = 0; got < buffer_.size();) {
+    const ssize_t more = ::read(file_, buffer_.data() + got, buffer_.size() - got);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) throw damaged("it has become shorter");
+    got += static_cast<std::size_t>(more);
+  }
+  after_buffer_ -= buffer_.size();
+  at_ = 0;
+}
+
+void StateReader::get_slowly(char* data, std::size_t size) {
+  if (size > left()) throw damaged("it ends too early");
+  while (size > 0) {
+    if (at_ == buffer_.size()) fill();
+    const std::size_t now = std::min(size, buffer_.size() - at_);
+    std::memcpy(data, buffer_.data() + at_, now);
+    at_ += now;
+    data += now;
+    size -= now;
+  }
+}
+
+std::string StateReader::text() {
+  const std::uint64_t size = integer();
+  if (size > left()) throw damaged("it ends too early");
+  std::string text(size, '\0');
+  get(text.data(), text.size());
+  return text;
+}
+
+void StateReader::end() const {
+  if (left() > 0) throw damaged("it holds more than a state");
+}
+
+}  // namespace cradle::tools

@@ -10,6 +10,7 @@
 #include "cradle/tools/result/hdf5_values.hpp"
 #include "cradle/tools/result/result_bytes.hpp"
 #include "cradle/tools/result/seal.hpp"
+#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 
@@ -96,7 +97,8 @@ Result read_hdf5(const Source& source, Seal seal) {
     throw source.wrong("", "damaged", fmt::format("{} bytes behind its end", source.bytes - end));
   Result result;
   result.attributes = hdf5::attributes(source, file, "");
-  attribute<std::uint64_t>(result.attributes, "format_version", source.path);
+  const auto version = attribute<std::uint64_t>(result.attributes, "format_version", source.path);
+  if (version != format_version) throw of_version(source.path, version);
   const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose, source.unreadable(""));
   Group none;  // columns outside of all groups: this program writes none
   Walk(source, result).members_of(root, "", none, 0);

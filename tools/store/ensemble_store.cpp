@@ -115,7 +115,7 @@ std::string EnsembleStore::outcome() const {
 
 Result EnsembleStore::result() const {
   Result result;
-  result.attributes = {{"format_version", std::uint64_t{2}},
+  result.attributes = {{"format_version", format_version},
                        {"cradle_version", std::string(version)},
                        {"kind", study_.kind},
                        {"scene", effective_toml(study_.scene)},

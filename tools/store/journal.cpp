@@ -12,12 +12,14 @@
 
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/errors.hpp"
+#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> begins{"CRADLEJ2", "CRADLER1"};  // by JournalOf
+constexpr std::array<std::string_view, 2> begins{"CRADLEJ3", "CRADLER2"};  // by JournalOf
+constexpr std::array<std::string_view, 3> begins_of_version_1{"CRADLEJ1", "CRADLEJ2", "CRADLER1"};
 constexpr std::size_t begin_size = 8;
 
 std::string_view begin_of(JournalOf kind) { return begins[static_cast<std::size_t>(kind)]; }
@@ -50,6 +52,8 @@ std::optional<JournalOf> JournalReader::kind(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string begin(begin_size, '\0');
   if (!file.read(begin.data(), begin_size)) return {};
+  if (std::find(begins_of_version_1.begin(), begins_of_version_1.end(), begin) != begins_of_version_1.end())
+    throw of_version(path, 1);
   const auto found = std::find(begins.begin(), begins.end(), begin);
   if (found == begins.end()) return {};
   return static_cast<JournalOf>(found - begins.begin());

@@ -29,7 +29,7 @@ class JournalReader {
   std::uint64_t whole_bytes() const { return whole_; }         // up to where records were read
   std::uint64_t torn_bytes() const { return size_ - whole_; }  // what is left when next() has said false
 
-  /// What a file is a journal of, by how it begins; nothing for other files.
+  /// What a file is a journal of, by how it begins; nothing for other files. Throws Error for one of version 1.
   static std::optional<JournalOf> kind(const std::string& path);
 
  private:

@@ -10,12 +10,13 @@
 #include <fstream>
 
 #include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 
 namespace {
 
-constexpr std::string_view begin = "CRADLEC1";
+constexpr std::string_view begin = "CRADLEC2", begin_of_version_1 = "CRADLEC1";
 
 }  // namespace
 
@@ -46,7 +47,9 @@ bool StateReader::is_state(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, none)) return false;
   std::ifstream file(path, std::ios::binary);
   std::string found(begin.size(), '\0');
-  return file.read(found.data(), static_cast<std::streamsize>(found.size())) && found == begin;
+  if (!file.read(found.data(), static_cast<std::streamsize>(found.size()))) return false;
+  if (found == begin_of_version_1) throw of_version(path, 1);
+  return found == begin;
 }
 
 Error StateReader::damaged(const std::string& what) const {
@@ -74,6 +77,7 @@ StateReader::StateReader(const std::string& path)
   if (::lseek(file_, 0, SEEK_SET) != 0) throw damaged("it cannot be read twice");
   after_buffer_ = size - sizeof check;
   fill();
+  if (std::string_view(buffer_).substr(0, begin.size()) == begin_of_version_1) throw of_version(path, 1);
   if (std::string_view(buffer_).substr(0, begin.size()) != begin) throw damaged("of another kind or version");
   at_ = begin.size();
 }

@@ -28,4 +28,12 @@ std::string build_description() {
                      CRADLE_BUILD_OPTIONS, types, mpi);
 }
 
+Error of_version(const std::string& path, std::uint64_t found) {
+  return {{path, 0, ""},
+          fmt::format("a file of {} version of cradle", found < format_version ? "an earlier" : "a later"),
+          fmt::format("format {}, here {}", found, format_version),
+          "read it with the version that wrote it, or remove it and run its scene again",
+          Exit::io};
+}
+
 }  // namespace cradle::tools

@@ -1,11 +1,19 @@
 // What this program is: the version that results carry, and what --version says.
 #pragma once
 
+#include <cstdint>
 #include <string>
+
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
 inline constexpr const char* version = "0.1.0";
+
+/// Of results, journals and checkpoints: names of groups, columns and attributes. Format 1 said body and contact.
+inline constexpr std::uint64_t format_version = 2;
+/// The error for a file of another format.
+Error of_version(const std::string& path, std::uint64_t found);
 
 /// Version, compiler, options and the scalar types built in.
 std::string build_description();

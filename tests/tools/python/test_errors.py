@@ -42,6 +42,9 @@ class Files(unittest.TestCase):
         with h5py.File("later.h5", "w") as file:
             file.attrs["format_version"], file.attrs["scene"] = 7, ""
         self.refused("later.h5", "later version")
+        with h5py.File("earlier.h5", "w") as file:
+            file.attrs["format_version"], file.attrs["scene"] = 1, ""
+        self.refused("earlier.h5", "earlier version")
 
     def test_every_damage_is_seen(self):
         with open(small.shock(), "rb") as file:
@@ -119,8 +122,8 @@ class OnTheWay(unittest.TestCase):
             self.assertIn("on its way", file.read())
 
     def test_journals_of_replicas_and_checkpoints_are_named(self):
-        for name, magic, wrong in (("a.h5.part", b"CRADLEJ2", "resume a.h5"),
-                                   ("a.h5.checkpoint", b"CRADLEC1", "checkpoint")):
+        for name, magic, wrong in (("a.h5.part", b"CRADLEJ3", "resume a.h5"),
+                                   ("a.h5.checkpoint", b"CRADLEC2", "checkpoint")):
             with open(name, "wb") as file:
                 file.write(magic + bytes(100))
             with self.assertRaisesRegex(cradle.Error, wrong):
@@ -128,7 +131,7 @@ class OnTheWay(unittest.TestCase):
 
     def test_half_written_journals(self):
         with open("half.h5.part", "wb") as file:
-            file.write(b"CRADLER1" + bytes(5))
+            file.write(b"CRADLER2" + bytes(5))
         with self.assertRaises(cradle.Error) as raised:
             cradle.open("half.h5.part")
         self.assertEqual(raised.exception.status, 4)

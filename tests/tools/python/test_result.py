@@ -161,7 +161,7 @@ class Laziness(unittest.TestCase):
         # A gigabyte, sparse on the disk.
         path = "large.h5"
         with h5py.File(path, "w") as file:
-            file.attrs["format_version"], file.attrs["scene"] = 1, ""
+            file.attrs["format_version"], file.attrs["scene"] = 2, ""
             file.create_dataset("series/energy", shape=(1 << 27,), dtype="f8")
             file["series/energy"][-1] = 2.0
         self.assertGreater(os.path.getsize(path), 1 << 30)

@@ -128,6 +128,35 @@ TEST_F(DamagedFiles, AreRefusedByName) {
   }
 }
 
+// Format 1 had other names for particles and collisions: results, journals of runs and of ensembles, checkpoints.
+TEST_F(DamagedFiles, OfAnEarlierFormatAreRefusedInOneWay) {
+  tools::Result result = small_result();
+  result.attributes[0].second = std::uint64_t{1};
+  write("a.h5", tools::file_image(result));
+  write("run.h5.part", std::string("CRADLER1") + std::string(40, 'x'));
+  write("ensemble.h5.part", std::string("CRADLEJ2") + std::string(40, 'x'));
+  write("run.h5.checkpoint", std::string("CRADLEC1") + std::string(40, 'x'));
+  for (const auto& [command, file] : std::vector<std::pair<std::string, std::string>>{
+           {"info a.h5", "a.h5"},
+           {"export a.h5 --to csv", "a.h5"},
+           {"plot a.h5", "a.h5"},
+           {"merge a.h5 -o b.h5", "a.h5"},
+           {"diff a.h5 a.h5", "a.h5"},
+           {"info run.h5.part", "run.h5.part"},
+           {"resume run.h5", "run.h5.part"},
+           {"info ensemble.h5.part", "ensemble.h5.part"},
+           {"resume ensemble.h5", "ensemble.h5.part"},
+           {"ensemble fig2 --replicas 2 -o ensemble.h5", "ensemble.h5.part"},
+           {"info run.h5.checkpoint", "run.h5.checkpoint"}}) {
+    const Printed refused = shell("cradle " + command);
+    EXPECT_EQ(refused.status, 4) << command << ": " << refused.err;
+    EXPECT_EQ(refused.err, "cradle: " + file +
+                               ": a file of an earlier version of cradle (found format 1, here 2): "
+                               "read it with the version that wrote it, or remove it and run its scene again\n")
+        << command;
+  }
+}
+
 TEST_F(DamagedFiles, EmptySeriesAreListed) {
   tools::Result result = small_result();
   for (auto& column : result.groups[0].columns) column.values = std::vector<double>{};

@@ -10,13 +10,14 @@
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/seal.hpp"
 #include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tests {
 
 inline tools::Result small_result() {
   tools::Result result;
   result.attributes = {
-      {"format_version", std::uint64_t{2}},
+      {"format_version", tools::format_version},
       {"cradle_version", std::string("1")},
       {"scene", std::string("[law]\ntype = \"sticky\"\n[initial]\ntype = \"rows\"\nparticles = 4\n[run]\nuntil = 3\n")},
       {"outcome", std::string("reached the end")}};

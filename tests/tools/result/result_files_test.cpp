@@ -89,7 +89,7 @@ TEST_F(ResultFiles, CsvIsCompleteAndCanBeRunAgain) {
             "# messages = one\n#   two\ntime,\"energy, \"\"kinetic\"\"\",collisions\n0,2,0\n0.1,1e-310,7\n3,-0,"
             "18446744073709551615\n");
   EXPECT_EQ(contents(folder / "csv/series/heaviest.csv"), "x[0],x[1]\n1,2\n3,4\n5,6\n");
-  EXPECT_EQ(contents(folder / "csv/scene.toml").rfind("# format_version = 1\n# cradle_version = 1\n", 0), 0U);
+  EXPECT_EQ(contents(folder / "csv/scene.toml").rfind("# format_version = 2\n# cradle_version = 1\n", 0), 0U);
 }
 
 }  // namespace result_files_test

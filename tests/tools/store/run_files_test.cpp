@@ -114,7 +114,11 @@ TEST_F(Files, OtherVersionsAreRefusedByName) {
             std::string::npos)
       << old.err;
   write("b.h5.part", "CRADLEJ1 of long ago, replicas");
-  EXPECT_EQ(shell("cradle resume b.h5").status, 4);
+  const Printed earlier = shell("cradle resume b.h5");
+  EXPECT_EQ(earlier.status, 4);
+  EXPECT_EQ(
+      earlier.err.rfind("cradle: b.h5.part: a file of an earlier version of cradle (found format 1, here 2): ", 0), 0U)
+      << earlier.err;
 }
 
 TEST_F(Files, ALongRunThatIsNotFinishedIsNotThrownAway) {
@@ -170,7 +174,7 @@ TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {
 // More numbers than are held in memory go to the file piece by piece.
 TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   Result whole;
-  whole.attributes = {{"format_version", std::uint64_t{2}}, {"scene", std::string("none")}};
+  whole.attributes = {{"format_version", tools::format_version}, {"scene", std::string("none")}};
   std::vector<Group> pieces;
   for (std::uint64_t k = 0; k < 50; ++k) {
     std::vector<double> time, place;

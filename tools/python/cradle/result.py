@@ -15,9 +15,10 @@ from .scene import parse_toml
 from .seal import check_seal, damaged, hdf5_length, read_seal
 from .tables import Column, Table, Tables, reading
 
-FORMAT = 1
+FORMAT = 2
 CHECKED = 64 << 20  # bytes of a file whose checksum is looked at without being asked: a tenth of a second
-JOURNALS = {b"CRADLER1": "run", b"CRADLEJ2": "replicas", b"CRADLEC1": "checkpoint"}
+JOURNALS = {b"CRADLER2": "run", b"CRADLEJ3": "replicas", b"CRADLEC2": "checkpoint"}
+EARLIER = (b"CRADLER1", b"CRADLEJ1", b"CRADLEJ2", b"CRADLEC1")  # of format 1
 
 
 def open(path: str | os.PathLike, check: bool | None = None) -> Result:
@@ -56,10 +57,18 @@ def inspect(path: str) -> str:
         raise unreadable(path, error) from None
     if head in JOURNALS:
         return JOURNALS[head]
+    if head in EARLIER:
+        raise other_format(path, 1)
     if head == b"\x89HDF\r\n\x1a\n":
         return "result"
     raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
                 "give a file written by `cradle run`", BAD_FILE)
+
+
+def other_format(path: str, version: int) -> Error:
+    return Error(f"{path}: a file of {'an earlier' if version < FORMAT else 'a later'} version of cradle (found format "
+                 f"{version}, here {FORMAT}): read it with the version that wrote it, or remove it and run its scene "
+                 "again", BAD_FILE)
 
 
 def unreadable(path: str, error: OSError) -> Error:
@@ -82,10 +91,9 @@ def open_file(path: str) -> h5py.File:
         file.close()
         raise Error(f"{path}: an HDF5 file, but no result (no scene in it): give a file written by `cradle run`",
                     BAD_FILE)
-    if int(version) > FORMAT:
+    if int(version) != FORMAT:
         file.close()
-        raise Error(f"{path}: a result of a later version (format {int(version)}): this package knows formats up to "
-                    f"{FORMAT}, take that version's", BAD_FILE)
+        raise other_format(path, int(version))
     return file
 
 

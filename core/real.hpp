@@ -1,5 +1,5 @@
 #pragma once
-// What the engine asks of a number: the four operations, an order, exact construction from integers and an explicit
+// What the engine requires of a number: the four operations, an order, exact construction from integers and an explicit
 // conversion to double (for queue keys and float64 output, never for the dynamics). Literals are written T(2);
 // mathematical functions, needed by the wet law and by theory only, are found by argument-dependent lookup.
 //

@@ -15,7 +15,7 @@
 // take smaller ones is left open.
 //
 // Comparisons are certain: a < b says that all of a is less than all of b, and so neither a < b nor a >= b need hold.
-// order() says which it is. It is told in plain doubles with an error bound wherever these will do.
+// order() says which it is. It compares in plain doubles with an error bound wherever these suffice.
 //
 // What is computed twice from the same ball is not known to be the same number: x - x is a ball around 0. Combinations
 // whose radii must not grow are operations of their own (combined).
@@ -37,7 +37,7 @@
 
 namespace cradle {
 
-// What balls ask of their midpoints: sizes, to 2^-50 of themselves, and upper bounds of relative errors, as radii.
+// What balls require of their midpoints: sizes, to 2^-50 of themselves, and upper bounds of relative errors, as radii.
 template <class M> struct Midpoint;
 
 template <> struct Midpoint<double_double> {
@@ -138,7 +138,7 @@ template <class M> class Ball {
   Radius size() const { return up(Of::size(middle_) + radius_); }
   Radius least_size() const { return (Of::size(middle_) * down - 2 * Of::lost() - radius_) * down; }
 
-  // In plain doubles if these tell it; open if they do not.
+  // In plain doubles if these decide it; open if they do not.
   friend Order order_in_doubles(const Ball& x, const Ball& y) {
     const double a = Of::near(x.middle_), b = Of::near(y.middle_), apart = b - a;
     const double error = (upper_double(x.radius_) + upper_double(y.radius_)) * (1 + 0x1p-50) +
@@ -198,8 +198,8 @@ template <class M> class Ball {
 
  private:
   static constexpr Radius down = static_cast<Radius>(1 - 0x1p-48);
-  // A radius that has been rounded up to 15 times on its way, with sizes good to 2^-50, enlarged by more than these can
-  // have taken off.
+  // A radius that has been rounded up to 15 times, with sizes good to 2^-50, enlarged by more than these can have taken
+  // off.
   static Radius up(Radius r) { return r * static_cast<Radius>(1 + 0x1p-48); }
   static double upper_double(Radius r) {
     if constexpr (std::is_same_v<Radius, double>)
@@ -220,7 +220,7 @@ template <class M> class Ball {
   Radius radius_ = 0;
 };
 
-// Without the error terms, which are balls as wide as the sum: a ball tells its own error.
+// Without the error terms, which are balls as wide as the sum: a ball carries its own error.
 template <class M> struct CompensatedSum<Ball<M>> {
   Ball<M> sum;
 

@@ -76,7 +76,7 @@ template <class M> Enclosure<double> in_doubles(const Ball<M>& x) {
   Enclosure<double> ends{to_double(x.middle()), to_double(x.middle())};
   const auto radius = static_cast<double>(x.radius());
   ends.low -= radius, ends.high += radius;
-  // About 0 the next double may be nearer than the order of balls can tell: steps double, so that few will do.
+  // About 0 the next double may be nearer than balls resolve: steps double, so that few suffice.
   constexpr double least = std::numeric_limits<double>::denorm_min();
   for (double by = least; ends.low > -none && !(Ball<M>(ends.low) < x); by += by)
     ends.low = std::nextafter(ends.low - by, -none);

@@ -138,7 +138,7 @@ template <> struct cradle::Text<cradle::double_double> {
   static double_double from(std::string_view literal) { return rounded(Exact(checked_literal(literal))); }
 
   static std::string to(const double_double& x) {
-    // High and low may be far apart: take digits until they are all told.
+    // High and low may be far apart: take digits until all are written.
     for (int digits = 32;; digits += 8) {
       std::string text = near(x) ? written<Near>(x, digits) : written<Exact>(x, digits);
       if (digits > 700 || reads(text, x)) return text;

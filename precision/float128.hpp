@@ -112,7 +112,7 @@ template <> struct cradle::Text<cradle::float128> {
   }
   static std::string to(const float128& x) {
     char buffer[64];
-    for (int digits = 33; digits < 37; ++digits) {  // 36 tell any two numbers apart
+    for (int digits = 33; digits < 37; ++digits) {  // 36 distinguish any two numbers
       quadmath_snprintf(buffer, sizeof buffer, "%.*Qg", digits, x.value());
       if (from(buffer) == x) break;
     }

@@ -18,7 +18,7 @@ template <class T> std::from_chars_result read_by_stream(const char* from, const
   const bool good = static_cast<bool>(stream >> read);
   if (!good && read == T(0)) return {from, std::errc::invalid_argument};
   const bool all = stream.eof();
-  stream.clear();  // a stream that has failed tells no position
+  stream.clear();  // a stream that has failed has no position
   const char* const end = all ? to : from + static_cast<std::ptrdiff_t>(stream.tellg());
   if (!good) return {end, std::errc::result_out_of_range};
   value = read;

@@ -62,7 +62,7 @@ template <class T> struct StandardText {
     const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
     const auto error = read_number(digits.data(), digits.data() + digits.size(), value).ec;
     if (error == std::errc::result_out_of_range) {
-      // Too large, too small, or (long double, libstdc++) merely subnormal: streams tell which.
+      // Too large, too small, or (long double, libstdc++) merely subnormal: streams say which.
       std::istringstream stream(text);
       stream.imbue(std::locale::classic());
       if (!(stream >> value)) value = std::copysign(std::numeric_limits<T>::infinity(), value);

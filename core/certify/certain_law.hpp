@@ -56,8 +56,8 @@ template <Enclosing N> struct CertainOutcome {
   }
 };
 
-// What a law does to two particles of these masses, which are not read where all have the same (`identical`). `tell` is
-// order(). Returns the two numbers whose order the law needs and that is open; nothing where all is certain.
+// What a law does to two particles of these masses, which are not read where all have the same (`identical`). `compare`
+// is order(). Returns the two numbers whose order the law needs and that is open; nothing where all is certain.
 template <Enclosing N> class CertainLaws {
  public:
   using Kind = typename CertainLaw<N>::Kind;

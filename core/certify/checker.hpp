@@ -33,7 +33,8 @@
 // speed w' > 0. So no gap is ever negative, and each is 0 at its collisions alone: no collision is missing, none
 // invented, each obeyed the law (2, 4). Three particles never meet at one time (3), so the motion is unique. Collisions
 // that share no particle may come in any order. Particles that pass exchange their cells of the line: J <= mu w, so the
-// left cell goes on at v_r + J/m_r <= v_l and the right one at v_l - J/m_l >= v_r, slower and faster as after a bounce.
+// left cell continues at v_r + J/m_r <= v_l and the right one at v_l - J/m_l >= v_r, slower and faster as after a
+// bounce.
 //
 // With a restitution of 0, w' = 0: particles stay together until one of them is hit, and the next collision fails 2.
 // Particles that merge have no gap any more. Particles that pass change places, and their gap is one of cells in the
@@ -131,7 +132,7 @@ template <Enclosing N> class Checker {
   }
 
   // Collisions proved, those of them that were below a threshold, those that merged, and those of which times and sides
-  // were told by plain doubles.
+  // were decided in plain doubles.
   struct Proved {
     std::uint64_t collisions = 0, below_cutoff = 0, merges = 0, in_doubles = 0;
   };
@@ -277,7 +278,7 @@ template <Enclosing N> class Checker {
                 &of_r = outcome.right ? *outcome.right : laws_.bouncing;
     const auto places = N::combined(at.left, at.right, apart, of_l, of_r);
     const auto velocities = N::combined(l.velocity, r.velocity, closing, of_l, of_r);
-    if (outcome.right_heavier) {  // told from the heavier one, what is not known of the share acts on a small one
+    if (outcome.right_heavier) {  // from the heavier one: the uncertainty of the share then acts on a small difference
       l.place = places.right, l.velocity = velocities.right;
       return;
     }

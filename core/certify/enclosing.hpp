@@ -1,7 +1,7 @@
 #pragma once
-// Numbers that are known to lie somewhere (precision/ball.hpp has them), as the checker asks of them: the operations of
-// a Real, whose results enclose all that the operands may be, comparisons that are certain, and combinations that do
-// not widen what they combine.
+// Numbers with enclosures (precision/ball.hpp has them), as the checker needs them: the operations of a Real, whose
+// results enclose all that the operands may be, comparisons that are certain, and combinations that do not widen what
+// they combine.
 
 #include <concepts>
 
@@ -13,7 +13,7 @@ enum class Order { less, greater, open };
 
 template <class N>
 concept Enclosing = Real<N> && requires(const N x, const N y, const typename N::Share c) {
-  // In plain doubles if these tell it; else in the numbers themselves, open where they overlap.
+  // In plain doubles if these decide it; else in the numbers themselves, open where they overlap.
   { order_in_doubles(x, y) } -> std::same_as<Order>;
   { order_in_balls(x, y) } -> std::same_as<Order>;
   typename N::Share;

@@ -1,5 +1,5 @@
 #pragma once
-// Particles whose flight is known, from which positions and velocities of the others are told: one that has not
+// Particles whose flight is known, and from which positions and velocities of the others are computed: one that has not
 // collided, or the one at an end of a line, which is followed from collision to collision.
 
 #include <tuple>

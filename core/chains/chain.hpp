@@ -1,7 +1,7 @@
 #pragma once
-// What the event loop asks of a chain: the particles of a run in order, in coordinates of the chain's choice. A chain
-// knows the next collision of each gap, makes one collision at a time and says what came of it; which collision is next
-// is the loop's to decide.
+// What the event loop requires of a chain. A chain holds the particles of a run in order, in coordinates of its choice.
+// A chain knows the next collision of each gap, makes one collision at a time and reports its result; the loop decides
+// which collision is next.
 //
 // Slots number the gaps from left to right; those held are first() to last(), and two empty ones stand at either end.
 // Local times are the chain's own name for times of the scene: offsets from an origin that moves, or the times as they
@@ -51,7 +51,7 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.queue_due(s) } -> std::same_as<double>;
 
   // Collisions that leave a gap below the floor beside them say so. The smaller gap beside the last collision; by how
-  // much times of collisions at a place must differ to be told apart; what could not be resolved.
+  // much two collision times at a place must differ to be distinguished; what could not be resolved.
   changing.set_floor(time);
   { chain.nearest_gap(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
@@ -87,7 +87,7 @@ template <Chain C> typename C::Scalar smallest_gap(const C& chain) {
   return least;
 }
 
-// A chain that asks for slots (Notice::needs_slots) when particles come into it. Afterwards slots are others.
+// A chain that requests slots (Notice::needs_slots) when it takes in particles. Slots are renumbered then.
 template <class C>
 concept StreamingChain = Chain<C> && requires(C chain) {
   chain.make_room();

@@ -9,9 +9,9 @@
 // Cells and what a collision does to them: cluster_line.hpp. Rows are streamed (held_range.hpp).
 //
 // Positions come from a particle at an end that has not collided, else from the centre of mass, which moves uniformly.
-// On a ring the cells are linked in a circle. Positions there are told once round from the first cell on, and a
-// particle that goes from the first cell to the last one, across the seam, is told one circumference L further right:
-// the mass that has done so is kept account of, since the centre of mass as told jumps by L times its share.
+// On a ring the cells are linked in a circle. Positions there are counted once round from the first cell, and a
+// particle that moves from the first cell to the last one, across the seam, appears one circumference L further right.
+// The mass that has crossed is recorded, since the centre of mass of these positions jumps by L times its share.
 
 #include <algorithm>
 #include <memory>
@@ -214,8 +214,7 @@ template <Real T> class ClusterChain {
     return undisturbed(*particles_, particle(s), clock().elapsed(time)).x;
   }
 
-  // As at the start. A gap that is none yet, right of the last particle held, is not asked for: that would be random
-  // numbers in vain.
+  // As at the start. The gap right of the last particle held is not computed: that would draw random numbers in vain.
   Cell<T> load(ParticleIndex b, const T& time, bool with_gap) const {
     return {
         {with_gap ? particles_->gap(b) : T(1), time}, particles_->velocity(b) - frame_, particles_->mass(b), 0, 0, b};
@@ -281,7 +280,7 @@ template <Real T> class ClusterChain {
     if (event == Event::pass) carried_.add(T(-line_.gaps[s].mass));
   }
 
-  // The particle at `gone` is to go on as part of the one at s.
+  // The particle at `gone` becomes part of the one at s.
   Notice merge(Slot s, Slot gone) {
     range_.merge(s, gone, right(gone));
     --active_;
@@ -296,7 +295,7 @@ template <Real T> class ClusterChain {
   ParticleIndex active_ = 0;  // particles from one front to the other, both included
   Slot beyond_ = 0;  // the cell that has the gap right of the last collision: of both particles where they have merged
   T frame_;          // velocity of the centre of mass
-  std::optional<T> centre_;    // of mass at the start, on a line where positions can be told from nothing else
+  std::optional<T> centre_;    // of mass at the start, on a line where nothing else gives positions
   CompensatedSum<T> carried_;  // mass across the seam of a ring, see cross_seam
 };
 

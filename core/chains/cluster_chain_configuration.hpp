@@ -1,9 +1,9 @@
 #pragma once
-// What a chain in gaps and particle velocities looks like in positions: the particles that have collided and the next
-// one on each side; all that are held before the first collision; on a ring all, from the first one right of x = 0.
-// They are told from a particle that has not collided, the one at the left end if there is one, else from the centre of
-// mass. Where there is one at either end, or on a ring, gaps can be checked against what their sum must be; closing
-// speeds are differences of velocities and add up in any case.
+// The configuration of a chain in gaps and particle velocities, in positions: the particles that have collided and the
+// next one on each side; all that are held before the first collision; on a ring all, from the first one right of x =
+// 0. They are computed from a particle that has not collided, the one at the left end if there is one, else from the
+// centre of mass. Where there is one at either end, or on a ring, gaps can be checked against what their sum must be;
+// closing speeds are differences of velocities and add up in any case.
 
 #include "cradle/core/chains/cluster_chain.hpp"
 

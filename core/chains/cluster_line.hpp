@@ -4,8 +4,9 @@
 // part.
 //
 // A cell holds a particle and the gap between it and the next one (timed_gaps.hpp). Cells are linked from left to
-// right. When two particles merge they go on in the left one's cell, and the right one's is vacated: links pass over it
-// until the chain is laid out anew. Particles that pass exchange cells, so that cells stay in the order of the line.
+// right. When two particles merge, the result stays in the left one's cell, and the right one's is vacated: links pass
+// over it until the chain is laid out anew. Particles that pass exchange cells, so that cells stay in the order of the
+// line.
 
 #include <tuple>
 #include <utility>
@@ -103,7 +104,7 @@ template <Real T> class ClusterLine {
   }
 
  private:
-  // The particles at s and right of it go on as one, in the cell s.
+  // Merges the particles at s and right of it, in the cell s.
   void absorb_right(Slot s, const T& velocity) {
     Cell<T>& l = gaps[s];
     const Slot n = l.right;

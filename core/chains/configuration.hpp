@@ -26,7 +26,7 @@ template <Real T> struct Configuration {
   // particles, whose flight is known on its own; on a ring, of the circumference (of 0): the accumulated rounding of
   // the run. None where nothing measures it: where gaps are differences of positions, closing speeds of velocities, or
   // where the flight of one of the two is not known. Chains that have closing speeds spread both errors over the
-  // positions and velocities given here; the others tell positions from the left.
+  // positions and velocities given here; the others compute positions from the left.
   std::optional<T> closure_gap, closure_speed;
   // Whether velocities are sums of closing speeds, each rounded in its own units, so that one has the errors of all.
   bool speeds_are_sums = false;

@@ -88,7 +88,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
-  // times they are told in.
+  // names of times change.
   T move_origin(const T& local) {
     if constexpr (Line::watched) line_.certainty.begin_anew(line_.gaps, first(), last());
     line_.gaps.move_origin(local, [this](auto&& each) {
@@ -117,7 +117,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   const Account<T>& account() const { return line_.gaps.account(); }
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
   T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
-  // What times of collisions are told apart by, as times since the start.
+  // The smallest difference between two collision times that is resolved, as a time since the start.
   T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
 
   // The particle on the left of a gap where rounding may decide whether it closes up to a local time not before the

@@ -1,8 +1,8 @@
 #pragma once
-// What a chain in gaps and closing speeds looks like in positions and velocities. On a line both are summed up from the
-// left anchor and must lead to the right one: what is missing, the closure error, is spread over the particles between.
-// On a ring positions are told from the centre of mass, velocities from the total momentum; there it is the
-// circumference that the gaps miss.
+// The configuration of a chain in gaps and closing speeds, in positions and velocities. On a line both are summed up
+// from the left anchor and must lead to the right one; the difference, the closure error, is spread over the particles
+// between. On a ring positions follow from the centre of mass and velocities from the total momentum; there the closure
+// error is the difference between the circumference and the sum of the gaps.
 
 #include "cradle/core/chains/gap_chain.hpp"
 

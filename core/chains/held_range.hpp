@@ -91,7 +91,7 @@ class HeldRange {
     ++last_;
     return count - unheld_right_--;
   }
-  // The particle at `gone` goes on as part of the one at `s` on its left; `next` is on its right.
+  // The particle at `gone` becomes part of the one at `s` on its left; `next` is on its right.
   void merge(Slot s, Slot gone, Slot next) {
     if (last_ == gone) last_ = s;
     if (first_ == gone) first_ = next;

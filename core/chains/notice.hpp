@@ -1,6 +1,5 @@
 #pragma once
-// Why a collision wants a closer look: what a chain asks of the event loop with a collision, off the hot path. A set,
-// named for what is to be done.
+// What a chain requests of the event loop with a collision, off the hot path: a set, named for what is to be done.
 
 namespace cradle {
 

@@ -42,7 +42,7 @@ template <Real T> class PositionChain {
     for (Slot s = first(); s <= last(); ++s) predict(s, start);
   }
 
-  // ---- times: absolute; only the queue's keys are told from an origin that moves
+  // ---- times: absolute; only the queue's keys count from an origin that moves
   T local_time(const T& time) const { return time; }
   double queue_time(const T& time) const { return to_double(T(time - origin_)); }
   const T& start() const { return start_; }
@@ -100,7 +100,8 @@ template <Real T> class PositionChain {
   const Account<T>& account() const { return account_; }
   void lose(Slot, const T& energy) { lost_.add(energy); }
   T energy_lost() const { return lost_.value(); }
-  // What times of collisions are told apart by: a position is rounded, and a slow pair takes long for that way.
+  // The smallest difference between two collision times that is resolved: a position is rounded, and a slow pair takes
+  // long over such a distance.
   T time_resolution(Slot s, const T& time) const {
     const T slowest = magnitude(closing_[s]);
     const T way = T(std::numeric_limits<T>::epsilon()) * (magnitude(at(s).x) + magnitude(time * at(s).v));

@@ -7,9 +7,9 @@
 //   brought to t    g -= w (t - local time), local time = t
 //   in collision      g = 0 exactly
 //
-// Collisions may come late: of two that the queue cannot tell apart, or that commute, one beside a gap may be made that
-// is earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong. The
-// gap becomes what it would be had the collision come in time: the gain in closing speed has acted since then, g +=
+// Collisions may come late: of two that the queue cannot distinguish, or that commute, one beside a gap may be made
+// that is earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong.
+// The gap becomes what it would be had the collision come in time: the gain in closing speed has acted since then, g +=
 // gain (t - local time) with t before the local time; and a collision at the gap itself leaves it open by what it opens
 // in between. Where the order was truly lost the gap falls below zero, and is accounted for.
 //
@@ -48,7 +48,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   std::size_t slots() const { return cells_.size(); }
   Cell& operator[](Slot s) { return cells_[s]; }
   const Cell& operator[](Slot s) const { return cells_[s]; }
-  // Goes on with so many slots, of which those from `first` on hold what was at `kept`, in that order.
+  // Changes to so many slots. Those from `first` on hold what was at `kept`, in that order.
   void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept) {
     std::vector<Cell> cells(slots);
     std::vector<T> lag(slots, T(0));
@@ -77,7 +77,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     if constexpr (!Ledger<T>::in_any_order) cells_[to].lost += std::exchange(cells_[from].lost, T(0));
   }
 
-  // ---- copies of a part (segments.hpp). Goes on with so many slots and all that belongs to no slot like `other`.
+  // ---- copies of a part (segments.hpp). Changes to so many slots, and copies from `other` all that belongs to no
+  // slot.
   void resemble(const TimedGaps& other, std::size_t slots) {
     resize(slots);
     clock_ = other.clock_;
@@ -141,7 +142,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     else
       return is_positive(closing) ? queue_time(collision_time(s, closing)) : EventQueue::never;
   }
-  // What times of collisions are told apart by, as times since the start.
+  // The smallest difference between two collision times that is resolved, as a time since the start.
   T time_resolution(const T& time) const {
     return T(std::numeric_limits<T>::epsilon()) * magnitude(clock_.elapsed(time));
   }
@@ -225,7 +226,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     if constexpr (beyond_double) choose_shift(each_held);
   }
 
-  // ---- what to look at more closely: gaps that a collision beside them leaves below the floor
+  // ---- what must be inspected: gaps that a collision beside them leaves below the floor
   void set_floor(const T& floor) { floor_ = floor; }
   bool below_floor(Slot s) const { return cells_[s].gap < floor_; }
   // Of a gap below the floor that a collision beside it has just closed faster by `gain`: `since` is what kick said,

@@ -3,8 +3,8 @@
 //
 // A key is a 64-bit integer: the bits of the non-negative double "time of the next collision, from the origin",
 // whose low bits are replaced by the gap's slot. Integer order is then time order to a relative resolution of 2^(bits -
-// 52), and the root names the next gap without a descent. What the keys cannot tell apart is the caller's to decide,
-// exactly: `close` says when, `for_each_before` lists the candidates. Keys made from a rounded time (wide scalar
+// 52), and the root names the next gap without a descent. Where keys are equal or too close, the caller decides
+// exactly: `contested` says when, `for_each_before` lists the candidates. Keys made from a rounded time (wide scalar
 // types) may be off by two units: `slack` widens both by that.
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class EventQueue {
   }
   Key possibly_before(double t) const { return no_later_than(key(t, 0)); }
 
-  // Whether any other key is too close to the root's to tell which comes first: the least of the others stands beside
+  // Whether any other key is too close to the root's to decide which comes first: the least of the others stands beside
   // the path from the root to its leaf.
   bool contested() const {
     const Key root = tree_[1];
@@ -105,14 +105,14 @@ class EventQueue {
 
   // Empties all slots.
   void clear() { std::fill(tree_.begin(), tree_.end(), key(never, 0)); }
-  // Sets one time without telling the tree; `rebuild` once all from the first to the last slot set are.
+  // Sets one time without updating the tree; call `rebuild` once all from the first to the last slot are set.
   void set(Slot s, double due) { tree_[leaves_ + s] = key(due, s); }
   void rebuild(Slot first, Slot last) {
     for (std::size_t from = (leaves_ + first) / 2, to = (leaves_ + last) / 2; from > 0; from /= 2, to /= 2)
       for (std::size_t node = from; node <= to; ++node) refresh(node);
   }
 
-  // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; looks at
+  // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; visits
   // nothing else of the tree. Returns whether all were visited.
   template <class Visit> bool for_each_before(Key bound, Visit visit) const { return visit_before(bound, visit, 1); }
   // The largest key that may belong to the same time as `key`.
@@ -127,7 +127,7 @@ class EventQueue {
     tree[a] = least_a;
     tree[b] = least_b;
     tree[c] = least_c;
-    while (a > 1) {  // also where they have met: asking costs more than walking thrice
+    while (a > 1) {  // also where they have met: a test costs more than three steps
       least_a = std::min(least_a, tree[a ^ 1]);
       least_b = std::min(least_b, tree[b ^ 1]);
       least_c = std::min(least_c, tree[c ^ 1]);

@@ -1,16 +1,15 @@
 #pragma once
-// How often the event loop looks after what is not a collision, and when the origin of time moves. Both follow from the
-// history of collisions alone, never from who asks or how often.
+// How often the event loop reviews what is not a collision, and when the origin of time moves. Both follow from the
+// history of collisions alone, never from who calls or how often.
 //
-// A small zone is looked after by numbers of collisions. A move of the origin costs as much as a few collisions per
-// gap: it comes with every second collision in a few-particle collapse and after some 32 collisions per particle
-// otherwise.
+// A small zone is reviewed by numbers of collisions. A move of the origin costs as much as a few collisions per gap: it
+// comes with every second collision in a few-particle collapse and after some 32 collisions per particle otherwise.
 //
 // A large zone goes through time in epochs: when the origin moves next is a time, known since it moved last, so that
 // collisions far apart need no common order for it (segments.hpp). An epoch lasts as long as some 8 collisions per
 // active particle should take, or 32 where particles merge, by the rate of the epoch before. It ends early, with the
-// collision after which that is asked for: where the flight before it was too short for the time since the origin, or
-// where there are four times as many collisions per particle as it should have.
+// collision after which the chain requests that: where the flight before it was too short for the time since the
+// origin, or where there are four times as many collisions per particle as it should have.
 
 #include <algorithm>
 #include <cstdint>
@@ -36,11 +35,11 @@ template <Real T> struct Pacing {
   T epoch{0};                         // how long this one is to last, from time_before
   T epoch_end{0};                     // local
   std::uint64_t expected = 0;         // collisions in it
-  std::uint64_t next_poll = 0;        // collisions made when the caller is asked again
+  std::uint64_t next_poll = 0;        // collisions made when the caller is polled again
   std::uint64_t most_collisions = 0;  // made in all when it ends at the latest
 
-  // After a collision at the given local time, with so many particles active. The chain may ask for a move; at a
-  // regular review there is one if particles can collapse. If they merge instead, the origin moves only after many
+  // After a collision at the given local time, with so many particles active. The chain may request a move; at a
+  // regular review the origin moves if particles can collapse. If they merge instead, the origin moves only after many
   // collisions, or where these come at more than twice the rate, since the review before, that they have had since the
   // last move.
   bool origin_moves(Notice notice, std::uint64_t collisions, const T& time, std::uint64_t active) const {
@@ -54,7 +53,7 @@ template <Real T> struct Pacing {
            T(static_cast<std::int64_t>(collisions - collisions_before)) * time;
   }
 
-  // After a review at the local time `then`, which is called `now` since. Reviews that a chain asked for
+  // After a review at the local time `then`, which is called `now` since. Reviews that a chain requested
   // (Notice::needs_slots) change nothing: they depend on what is streamed.
   void reviewed(std::uint64_t collisions, const T& then, const T& now, std::uint64_t active, bool moved) {
     const bool regular = collisions >= next_review;

@@ -1,9 +1,9 @@
 #pragma once
-// The event loop: take the next collision, let the chain apply the law, tell the queue about the three gaps concerned,
+// The event loop: take the next collision, let the chain apply the law, update the three gaps concerned in the queue,
 // enter the loss in the ledger. Scalar, law and chain are types; everything else happens in `review`, off the hot path.
 //
-// The order of collisions is (exact time, position in the line), whatever the queue's keys can tell: where they cannot,
-// exact times are compared among all collisions that might be first (ties.hpp).
+// The order of collisions is (exact time, position in the line). Where the queue's keys cannot decide it, exact times
+// are compared among all collisions that might be first (ties.hpp).
 //
 // Nothing depends on how often or until when `advance` is called: same initial state, same collisions, same bits.
 
@@ -60,8 +60,8 @@ class Simulation {
     head_for(until);
     return policy_.collapse == CollapsePolicy::stop ? make_collisions() : make_slabs(segments);
   }
-  // The same, observer(const Collision<T>&) being told of every collision. It may throw: the collision is then still to
-  // be made.
+  // The same, with observer(const Collision<T>&) called for every collision. It may throw: the collision is then still
+  // to be made.
   template <class Observer> Status advance(const T& until, Observer&& observer) {
     head_for(until);
     const struct Forget {
@@ -124,7 +124,8 @@ class Simulation {
   T last_collision_time() const { return chain_.stamp(last_collision_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report; }
 
-  // All that is to come depends on (state.hpp), between calls of `advance`, beside what the run was made from.
+  // Checkpoint state (state.hpp), between calls of `advance`: everything that later collisions depend on, except law,
+  // particles and policy.
   static auto state(auto& self) {
     return std::tie(self.chain_, self.last_collision_, self.counts_, self.pacing_, self.standstill_, self.watch_);
   }
@@ -179,14 +180,15 @@ class Simulation {
     }
   }
 
-  // Where to go, as chain and queue call it now. Observed collisions are all looked at closely, others pay nothing.
+  // The target time, as chain and queue call it now. Observed collisions all take the slow branch of `step`, others
+  // cost nothing.
   void aim() {
     target_.horizon = chain_.local_time(target_.until);
     target_.stop = pacing_.in_epochs && pacing_.epoch_end < target_.horizon ? pacing_.epoch_end : target_.horizon;
     target_.certainly_before = observer_ ? 0 : queue_.certainly_before(chain_.queue_time(target_.stop));
   }
 
-  // The next collision where keys do not tell whether it comes in time; false if it does not.
+  // The next collision where keys do not decide whether it comes before the target; false if it does not.
   bool first_within_target(Slot& first) {
     if (!queue_holds_) {
       fill_queue();
@@ -217,15 +219,15 @@ class Simulation {
     observer_({chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_,
                chain_.closing(s)});
   }
-  // Once for every collision, however often it is asked for before it is made.
+  // Once for every collision, however often it is the next one before it is made.
   void count_close_call() {
     if (counts_.collisions < close_calls_until_) return;
     ++counts_.close_calls;
     close_calls_until_ = counts_.collisions + 1;
   }
 
-  // Looks after all that is not a collision, after the one at slot s. What it does depends on the history of collisions
-  // only. What the caller has asked to be called comes last, since it may throw.
+  // Does all that is not a collision, after the one at slot s. What it does depends on the history of collisions only.
+  // The caller's functions come last, since they may throw.
   Status review(Slot s, Notice notice) {
     if (notice == Notice::origin_should_move && pacing_.in_epochs && counts_.collisions < pacing_.next_review)
       return Status::reached;  // it does not, there
@@ -291,7 +293,7 @@ class Simulation {
   bool queue_holds_ = true;
   T last_collision_;  // local time; the start if there was none
   Counts counts_;
-  std::uint64_t close_calls_until_ = 0;  // collisions up to this number have been looked at for close calls
+  std::uint64_t close_calls_until_ = 0;  // collisions up to this number have been counted as close calls or not
   Pacing<T> pacing_;
   Standstill<T> standstill_;
   CollapseWatch<T> watch_;

@@ -179,8 +179,8 @@ class SavedState {
   std::size_t read_ = 0;
 };
 
-// The shape of a class's state, as text: which fields of which kind. States of one shape can be told apart by nothing
-// else.
+// The shape of a class's state, as text: which fields of which kind. States of one shape cannot be distinguished
+// otherwise.
 template <class X> std::string state_shape() {
   if constexpr (detail::is_whole<X>) {
     return "i";

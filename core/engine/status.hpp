@@ -1,6 +1,6 @@
 #pragma once
-// What a run is asked for, and what it tells of itself: how it ended, how many collisions it made, what an observer
-// sees of one, what the caller wants done on the way.
+// What a run requires and reports: how it ended, how many collisions it made, a collision as observers receive it, and
+// what the caller wants called during the run.
 
 #include <cstdint>
 #include <functional>
@@ -24,7 +24,7 @@ struct Counts {
   std::uint64_t collisions = 0;  // all of them: those below the cut-off and merges included
   std::uint64_t below_cutoff = 0;
   std::uint64_t merges = 0;
-  std::uint64_t close_calls = 0;  // collisions in the plain loop that the queue's keys could not tell from another one
+  std::uint64_t close_calls = 0;  // collisions in the plain loop whose key was too close to another one's
   std::uint64_t origin_moves = 0;
 
   Counts& operator+=(const Counts& other) {
@@ -37,7 +37,7 @@ struct Counts {
   }
 };
 
-// A collision as an observer sees it, before the law acts.
+// A collision as observers receive it, before the law acts.
 template <Real T> struct Collision {
   ParticleIndex left, right;  // by their numbers at the start
   Pair<T> time;
@@ -49,7 +49,7 @@ template <Real T> struct Policy {
   CollapsePolicy collapse = CollapsePolicy::cutoff;
   T stop_gap{0};  // policy stop: continue until a gap is below this; 0: until the collapse time is settled
   // Called after a collision now and then. What they throw leaves `advance`; the run is as it would be without, and can
-  // go on.
+  // continue.
   std::function<bool()> interrupt = {};  // true ends the run there
   std::function<void(const T& time, const Counts&)> progress = {};
 
@@ -69,7 +69,7 @@ template <Real T> struct Policy {
   }
 };
 
-// Throws std::invalid_argument for a time that a run cannot go on to.
+// Throws std::invalid_argument for a time that a run cannot advance to.
 template <Real T> void require_ahead(const T& until, const T& last_collision) {
   if (!is_finite(until))
     throw std::invalid_argument("the time to advance to is not finite (found " + in_message(until) +

@@ -1,12 +1,12 @@
 #pragma once
-// Collisions that the queue's keys cannot tell apart: which of them is first by (exact time, position in the line)?
+// Collisions that the queue's keys cannot distinguish: which of them is first by (exact time, position in the line)?
 //
 // All whose keys may belong to the same time as the root's are candidates, wherever on the line they are. To compare
 // neighbours only is right pair by pair and wrong in its consequences: far collisions overtake each other, by as much
 // as keys are wide, and what they set off meets in between in the wrong order.
 //
 // A few candidates are compared anew for every collision. On a lattice thousands are simultaneous: these are kept in a
-// heap from one collision to the next, and only the three gaps that a collision changes are looked at again. An entry
+// heap from one collision to the next, and only the three gaps that a collision changes are checked again. An entry
 // whose gap is due at another time by now is dropped when it comes to the top.
 
 #include <algorithm>
@@ -74,7 +74,7 @@ template <class C> class Ties {
     gathered_ = heap_.size();
   }
 
-  // Whether the heap holds every collision up to the bound, after the one collision made since it was last asked.
+  // Whether the heap holds every collision up to the bound, after the one collision made since the last call.
   bool brought_up_to_date(const EventQueue& queue, const C& chain, std::uint64_t collisions, EventQueue::Key bound) {
     if (heap_.empty() || bound > bound_ || heap_.size() > 2 * gathered_) return false;
     if (collisions == collisions_) return true;
@@ -98,7 +98,7 @@ template <class C> class Ties {
   std::vector<Candidate> heap_;   // the first on top; empty: nothing is kept
   std::size_t gathered_ = 0;      // candidates there were when it was made
   EventQueue::Key bound_ = 0;     // collisions with keys up to this are in it
-  std::uint64_t collisions_ = 0;  // made when it was last asked
+  std::uint64_t collisions_ = 0;  // made at the last call
   Slot changing_[3] = {0, 0, 0};  // the gaps that the collision it then named touches
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 // An ensemble: replicas of a run, each with initial data of its own, and statistics of the numbers that they give.
-// Replicas are independent tasks, taken in order of their index. One that throws is entered as failed, and the others
-// go on. The statistics have the same bits on any number of threads, see ensemble/tree.hpp.
+// Replicas are independent tasks, taken in order of their index. One that throws is recorded as failed, and the others
+// continue. The statistics have the same bits on any number of threads, see ensemble/tree.hpp.
 //
 //   Ensemble energies;
 //   run_replicas(TbbExecutor(), {0, 1000}, energies, [](ReplicaIndex k) { return energy_of_replica(k); });
@@ -32,7 +32,7 @@ struct ReplicaAbandoned : std::exception {
 
 /// Works off jobs: next() gives one (a std::optional, empty at the end), replica(job) does it, and done(job, result)
 /// takes what it returns, or failed(job, message) what it throws. All of them are called from several threads at once.
-/// cancelled() is asked before every job; if true, the ensemble ends when the replicas that are running have returned.
+/// cancelled() is called before every job; if true, the ensemble ends when the replicas that are running have returned.
 /// An exception from next, done or failed ends it too, and is thrown again here (the first if there are several).
 template <Executor E, class Next, class Replica, class Done, class Failed>
 void run_jobs(const E& executor, Next next, Replica replica, Done done, Failed failed,

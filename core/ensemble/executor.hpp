@@ -1,5 +1,5 @@
 #pragma once
-// Who does the work: an executor calls a step again and again, on several threads at once, until it is told that there
+// Who does the work: an executor calls a step again and again, on several threads at once, until it reports that there
 // is none left. The one on oneTBB (tbb_executor.hpp) is what programs use. This one, on plain threads, does the same,
 // and is there for ThreadSanitizer, which sees races inside Debian's oneTBB that are none.
 

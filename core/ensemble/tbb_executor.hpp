@@ -12,7 +12,7 @@ namespace cradle {
 
 class TbbExecutor {
  public:
-  // More threads than processors only where asked for; oneTBB would not start them.
+  // More threads than processors only where requested; oneTBB would not start them.
   explicit TbbExecutor(unsigned threads = 0)
       : threads_(thread_count(threads)), allowed_(oneapi::tbb::global_control::max_allowed_parallelism, threads_),
         arena_(static_cast<int>(threads_)) {}

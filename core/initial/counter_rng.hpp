@@ -1,7 +1,7 @@
 #pragma once
 // Keyed random numbers without state: Philox4x32-10 (Salmon et al., SC'11, doi 10.1145/2063384.2063405). The key is the
 // seed, the counter is (replica, index), so the number belonging to a particle is the same whenever, wherever and in
-// whatever order it is asked for: a streamed row, a full one and any replica alone start identically.
+// whatever order it is drawn: a streamed row, a full one and any replica alone start identically.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 // Masses that repeat along the particles, counted from particle 0 on: particle b has the mass of entry b mod k. No
-// entries: all masses are 1, and nothing is asked of the pattern that would cost more than a one.
+// entries: all masses are 1, and the pattern costs no more than a constant.
 
 #include <algorithm>
 #include <cstdint>

@@ -19,9 +19,9 @@ struct GapRange {
 };
 
 // A line ends at both sides, and may have walls there (wall.hpp), which count as particles -1 and N: position and
-// velocity tell of them too, and so do gap and closing speed of the gaps to them. On a ring of circumference L the last
-// particle's neighbour on the right is the first one, at its position + L: as many gaps as particles, that of the last
-// one included.
+// velocity are defined for them too, as are gap and closing speed of the gaps to them. On a ring of circumference L the
+// last particle's neighbour on the right is the first one, at its position + L: as many gaps as particles, that of the
+// last one included.
 
 template <Real T> class Particles {
  public:
@@ -82,7 +82,7 @@ template <Real T> class Particles {
     for (ParticleIndex particle = 0; particle < count(); ++particle) moment.add(mass(particle) * position(particle));
     return moment.value() / total_mass();
   }
-  // What can be lost of it, the energy in the frame of the centre of mass, as well as the type tells the two apart.
+  // What can be lost of it: the energy in the frame of the centre of mass, as far as the type resolves the difference.
   virtual T energy_to_lose() const {
     const T energy = kinetic_energy(), least = energy * T(std::numeric_limits<T>::epsilon()) * T(1024);
     const T p = momentum(), square = p * p, twice = T(2) * total_mass();

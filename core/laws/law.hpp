@@ -63,7 +63,7 @@ template <Real T> struct EqualMasses {
   Shares<T> shares(const T& half_of_change) const { return {half_of_change, half_of_change}; }
 };
 
-// A collision law in the scalar T, with `bounces_only` telling chains whether particles keep their order and number.
+// A collision law in the scalar T, where `bounces_only` says whether particles keep their order and number.
 template <class L, class T>
 concept Law = Real<T> && requires(const L law, const T& w, const TwoMasses<T>& two, const EqualMasses<T>& equal) {
   { L::bounces_only } -> std::convertible_to<bool>;
@@ -201,7 +201,7 @@ template <Real T> class InelasticMerging {
     return w < merge_speed_ ? merged(w, masses) : law_(w, masses);
   }
 
-  // They go on as one: all relative kinetic energy mu w^2/2 is lost.
+  // They merge: all relative kinetic energy mu w^2/2 is lost.
   template <class Masses> static Outcome<T> merged(const T& w, const Masses& masses) {
     const T total_mass = masses.left + masses.right;
     const T to_right = w * (masses.left / total_mass);
@@ -225,7 +225,7 @@ template <Real T> struct Sticky {
 // Wet law (paper, section II): a collision costs E_loss, the particles pass through each other; if their relative
 // kinetic energy mu w^2/2 does not exceed it, they merge. With w_c = sqrt(2 E_loss/mu): w' = sqrt((w - w_c)(w + w_c)),
 // since w^2 - w_c^2 loses half the digits at the threshold, and J = 2 E_loss/(w + w'), never mu (w - w'). Where w is
-// not near w_c, which of the two happens is told without the root, so that the processor guesses right or learns soon.
+// not near w_c, which of the two happens is decided without the root, so that the processor predicts the branch.
 template <Real T> class Wet {
  public:
   static constexpr bool bounces_only = false;

@@ -9,8 +9,8 @@
 //           5 % are above;
 //   gap     is the median of the gaps within the core; NaN where it is one particle.
 //
-// Which interval is the shortest is told by positions, and not known where these do not resolve it; its width is a sum
-// of gaps. Units of the scene; float64. All NaN where there are fewer than two particles.
+// Positions decide which interval is the shortest, which is unknown where they do not resolve it; its width is a sum of
+// gaps. Units of the scene; float64. All NaN where there are fewer than two particles.
 
 #include <algorithm>
 #include <limits>

@@ -1,12 +1,12 @@
 #pragma once
 // What holds in every run, whatever its physics: where it does not, the machine or the program is at fault, and what
-// follows means nothing. Looked at on a configuration, that is, now and then:
+// follows means nothing. Checked on a configuration, that is, now and then:
 //
-//   order      no two particles have changed places (unless the run's account tells of it)
-//   past       the last collision is not later than the time looked at, nor earlier than the one before it
-//   energy     the sum over all particles is what the ledger of losses leaves, and no particle has more than there was
-//   momentum   is what it was at the start, between walls excepted
-//   closure    gaps and closing speeds add up to what the particles at the ends of the line tell, or to the ring
+//   order no two particles have changed places (unless the run's account records it) past the last collision is not
+//   later than the time of the check, nor earlier than the one before it energy the sum over all particles is what the
+//   ledger of losses leaves, and no particle has more than there was momentum is what it was at the start, between
+//   walls excepted closure gaps and closing speeds add up to what the particles at the ends of the line give, or to the
+//   ring
 //
 // Bounds follow from the type, the collisions made and what there was at the start, not from how fast particles happen
 // to be when they are looked at: a light particle may have been faster by the square root of any ratio of masses. With
@@ -54,7 +54,7 @@ template <Real T> struct GuardReport {
   ParticleIndex particle = -1;  // order: the particle on the left
 };
 
-// What a look tells, beside whether all is well.
+// What a check finds.
 template <Real T> struct GuardCheck {
   std::optional<GuardReport<T>> broken;
   T gap_min{0};

@@ -1,17 +1,17 @@
 #pragma once
 // Which of the paper's two scenarios a wet shock takes (section VI, Fig. 9). Its two heaviest clusters either pass
-// through each other when they meet, and go on oscillating, or stick, and then another cluster becomes the second one.
-// The watch is told of every collision, and looks at the clusters now and then.
+// through each other when they meet, and continue to oscillate, or stick, and then another cluster becomes the second
+// one. The watch receives every collision, and samples the clusters now and then.
 //
-//   pair          the two heaviest clusters, from the first look at which they hold more than half of the mass that has
+//   pair the two heaviest clusters, from the first sample in which they hold more than half of the mass that has
 //                 collided, and ten particles each or more
-//   meeting       a collision of the two clusters that were the pair at the last look: a pass or a stick
-//   role change   a look at which the pair is not made of the same two clusters as at the look before
-//   regime        apart: these two have not met yet; through: their last meeting was a pass; stuck: it was a stick
-//   exponents     powers of time by which the largest separation and the largest speed of the pair grow: one point for
+//   meeting a collision of the two clusters that were the pair at the last sample: a pass or a stick role change a
+//   sample in which the pair is not made of the same two clusters as in the sample before regime apart: these two have
+//   not met yet; through: their last meeting was a pass; stuck: it was a stick exponents powers of time by which the
+//   largest separation and the largest speed of the pair grow: one point for
 //                 each third of a decade since there is a pair, at least four, least squares in the logarithms
 //                 (theory: (17), 1/3 and -1/3)
-// Looks should be spread evenly in the logarithm of time, a hundred per decade or more.
+// Samples should be spread evenly in the logarithm of time, a hundred per decade or more.
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +93,7 @@ class ScenarioWatch {
     static auto state(auto& self) { return std::tie(self.time, self.merges_before); }
   };
 
-  // A collision is told of before it is made: whether it was a merge shows in the count that comes with the next one.
+  // A collision is reported before it is made: the count that comes with the next one shows whether it was a merge.
   void settle(std::uint64_t merges) {
     if (!meeting_) return;
     const bool passed = merges == meeting_->merges_before;

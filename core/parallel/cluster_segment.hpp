@@ -5,14 +5,14 @@
 // has, both sides know as long as they know the collisions at these two gaps. They are logged by which gap it was,
 // exact time, and what met.
 //
-// Particles merge, and gaps go. What merges at the last gap before a cut goes on in that gap's cell and has behind it
-// the gap that was the first one behind the cut: it changes hands, and the next one is the first behind the cut from
-// there on. The side that takes it over has had it as a ghost. So that it takes over what it should, all that it knows
-// of it is logged by both sides. Whatever else merges is a collision like others. A segment whose last cell is absorbed
-// from the left has nothing left to own: it is joined with its neighbours.
+// Particles merge, and gaps go. What merges at the last gap before a cut stays in that gap's cell and has behind it the
+// gap that was the first one behind the cut: it changes hands, and the next one is the first behind the cut from there
+// on. The side that takes it over has had it as a ghost. So that it takes over what it should, all that it knows of it
+// is logged by both sides. Whatever else merges is a collision like others. A segment whose last cell is absorbed from
+// the left has nothing left to own: it is joined with its neighbours.
 //
-// Where positions are told from the first cell on, mass that crosses the seam is kept account of, in the order in which
-// it crosses: where two segments have such collisions in one time slab the time slab is for the plain loop.
+// Where positions are counted from the first cell, mass that crosses the seam is recorded in the order in which it
+// crosses: where two segments have such collisions in one time slab the time slab is for the plain loop.
 
 #include <algorithm>
 #include <cstddef>

@@ -87,7 +87,7 @@ template <class Law, class Chain> class Segment {
     queue_.rebuild(part_.first(), part_.last());
     ties_.forget();
   }
-  // What the plain loop looks after.
+  // What the plain loop handles.
   static bool is_for_plain(Notice notice) {
     return includes(notice, Notice::origin_must_move) || includes(notice, Notice::gap_below_floor) ||
            includes(notice, Notice::needs_slots);

@@ -17,7 +17,7 @@
 // collision is pending in A as well, and is the next that A makes at a gap it owns, unless A makes one behind the cut
 // before it. That one is in the log, hence the next of the other side's there, at an earlier time than the plain
 // loop's: B, which makes collisions in order, has it pending already, and so has the plain loop, which would have taken
-// it. So the plain loop goes on like the segments, to the end of the time slab.
+// it. So the plain loop continues like the segments, to the end of the time slab.
 //
 // What a time slab must not contain is left to the plain loop, which goes through that time slab instead: collisions
 // out of order (a gap below zero), a collision after which the origin moves, or a gap falls below the floor. Where logs
@@ -80,7 +80,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     if (!(ahead > 0)) return 64;
     const std::size_t middle = (chain.first() + chain.last()) / 2;
     if (!chain.fronts_are_within(middle, middle) || (chain.on_ring() && segments(chain, held) < 2)) return 256;
-    // A time slab looks at every gap.
+    // A time slab visits every gap.
     if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64 + 1;
     return std::exchange(plain_, 0);
   }

@@ -3,7 +3,7 @@
 // heavy one are a point that moves in a wedge: in gaps scaled by masses its sides meet at the angle alpha, cos alpha =
 // m/(m + mu). If alpha = pi/(2k+1), that is c = cos alpha, m/mu = c/(1-c), the point leaves the wedge in one direction
 // whatever the place it came in: after 2k collisions the first two particles are at rest and the third has all of the
-// momentum. So the front goes on from heavy particle to heavy particle at the speed u, for ever, and particle n = 0, 2,
+// momentum. So the front moves from heavy particle to heavy particle at the speed u, for ever, and particle n = 0, 2,
 // 4, ... is first hit when the light one before it, of the speed 2 c u after its first collision, has come from n-1 to
 // n:
 //

@@ -104,7 +104,7 @@ template <class T> class CollapseSequence {
   /// Time from this collision to the next.
   T interval() const { return T(now_.other_gap / next_speed_); }
 
-  /// Goes on to the next collision; false, and nothing changes, where there is none.
+  /// Advances to the next collision; false, and nothing changes, where there is none.
   bool advance() {
     if (!(next_speed_ > T(0))) return false;
     const T speed = next_speed_;

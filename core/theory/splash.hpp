@@ -1,7 +1,8 @@
 // A splash: a gas at rest at x > 0, vacuum at x < 0, kicked at its surface (impulsive load; for hard particles on a
 // line, of alternate masses, arXiv:2203.11097). The shock goes as R ~ t^d, what is left in the gas as E ~ R^3/t^2 ~
-// t^(3d-2), with an exponent that no dimension tells: a self-similar solution of the second kind. With xi = x/R,
-// velocity R' U(xi), density rho G(xi), pressure rho R'^2 P(xi), k = (d - 1)/d and a = U - xi, Euler's equations are
+// t^(3d-2), with an exponent that does not follow from dimensions: a self-similar solution of the second kind. With xi
+// = x/R, velocity R' U(xi), density rho G(xi), pressure rho R'^2 P(xi), k = (d - 1)/d and a = U - xi, Euler's equations
+// are
 //
 //     U' = k (gamma a U - 2 c^2)/(gamma (c^2 - a^2)),  G' = -G U'/a,  P' = -G (k U + a U'),   c^2 = gamma P/G,
 //

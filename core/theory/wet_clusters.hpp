@@ -64,7 +64,7 @@ template <PiecewiseForce Force, class Stepper> class ClusterMotion {
     stepper_.initialize(state_, begin_, 1e-3 * rules.length / rules.speed);
   }
 
-  /// Goes on to time t, not before the last one asked for: the state after all meetings at times <= t.
+  /// Advances to time t, not before the last requested one: the state after all meetings at times <= t.
   void advance(double t) {
     while (true) {
       if (event_ && !(t < known_))

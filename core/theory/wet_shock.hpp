@@ -77,7 +77,7 @@ template <class T> class WetFrontRecursion {
   /// Whether the tracer will stick at the collision to come.
   bool sticks_next() const { return !(closing_speed() > critical_); }
 
-  /// Goes on to the next collision; false, and nothing changes, where the tracer sticks at it.
+  /// Advances to the next collision; false, and nothing changes, where the tracer sticks at it.
   bool advance() {
     if (sticks_next()) return false;
     const T w = closing_speed();
@@ -91,7 +91,7 @@ template <class T> class WetFrontRecursion {
     return true;
   }
 
-  /// Goes on to the last collision at or before `t`.
+  /// Advances to the last collision at or before `t`.
   void advance_to(const T& t) {
     while (!(next_time() > t) && advance()) {
     }

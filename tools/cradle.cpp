@@ -24,9 +24,9 @@ const char* const first_steps =
   cradle plot fig2.h5       its pictures: fig2.png and others beside it
   cradle report fig2.h5     all about it on one page: fig2.html
   cradle new                a commented scene of your own, shock.toml, for `cradle run shock.toml`
-  cradle scenes             the scenes that are there; `cradle scenes --keys` tells what a scene can say
+  cradle scenes             the scenes that are there; `cradle scenes --keys` lists what a scene can say
 
-`cradle --help` lists the commands, `cradle COMMAND --help` what one takes, `cradle manual | man -l -` tells all.
+`cradle --help` lists the commands, `cradle COMMAND --help` what one takes, `cradle manual | man -l -` has all.
 )";
 
 int fail(std::string_view message, Exit status) {
@@ -37,7 +37,7 @@ int fail(std::string_view message, Exit status) {
 // What was printed must have arrived, or a script that reads it takes half of it for all.
 int finish(Exit status) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(status);
-  return fail("standard output cannot be written: look at where it goes, a full disk or a program that has ended",
+  return fail("standard output cannot be written: check where it goes, a full disk or a program that has ended",
               status == Exit::done ? Exit::io : status);
 }
 
@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
     CommandLine program(
         "cradle", "One-dimensional granular gases, event by event: dry, wet and sticky, in any precision.",
         build_description(),
-        "cradle run fig2 -o fig2.h5, then cradle plot fig2.h5; cradle run --help tells what else `run` takes",
+        "cradle run fig2 -o fig2.h5, then cradle plot fig2.h5; cradle run --help lists what else `run` takes",
         "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
         "5 resolution or order lost, 130/143 interrupted.");
     program.begin_with(first_steps);
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     return fail(error.what(), error.status);
   } catch (const std::system_error& error) {  // of output, first of all
-    return fail(fmt::format("{}: look at where the output goes", error.what()), Exit::io);
+    return fail(fmt::format("{}: check where the output goes", error.what()), Exit::io);
   } catch (const std::length_error&) {
     return fail("out of memory: see what `cradle check SCENE` expects", Exit::bad_input);
   } catch (const std::bad_alloc&) {

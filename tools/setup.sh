@@ -1,11 +1,10 @@
 # shellcheck shell=bash
 # What quickstart.sh and test.sh share; both source it. `set_up program|tests` sees to it that everything needed to
-# build the program (and its tests) is there: it looks for what is missing and installs that with apt, as root or
-# through sudo. Where that cannot be done it lists what is missing with Debian's names and stops. If nothing is missing
-# nothing is installed and no network, root or apt is needed. MPI is optional: it is installed where that needs no
-# password, and else left out; so is Chromium, in which tests look at reports. `step` runs a command and, if it fails,
-# stops with what to do.
-# Tried on bare Debian 12 and Debian 13.
+# build the program (and its tests) is there: it finds what is missing and installs that with apt, as root or through
+# sudo. Where that cannot be done it lists what is missing with Debian's names and stops. If nothing is missing nothing
+# is installed and no network, root or apt is needed. MPI is optional: it is installed where that needs no password, and
+# else left out; so is Chromium, in which tests inspect reports. `step` runs a command and, if it fails, stops with what
+# to do. Tried on bare Debian 12 and Debian 13.
 
 preset=release
 build=build/$preset
@@ -95,7 +94,7 @@ has() {
 }
 
 # Fills the arrays missing and debian with what program (or, as well, tests) lacks, optional with what it could use.
-look_for() {
+search_for() {
   local group what probe package
   missing=() debian=() optional=()
   while IFS='|' read -r group what probe package; do
@@ -120,12 +119,12 @@ list_missing_and_stop() {
     for i in "${!missing[@]}"; do printf '  %-22s (Debian: %s)\n' "${missing[i]}" "${debian[i]}"; done
     echo "On Debian 12 or 13, as root:  apt-get install ${debian[*]}"
     echo "Elsewhere install the same under the names it has there. Then run this again. If it is there, in a place not"
-    echo "looked at: export CMAKE_PREFIX_PATH=/that/place (CXX for the compiler)."
+    echo "checked: export CMAKE_PREFIX_PATH=/that/place (CXX for the compiler)."
   } >&2
   exit 1
 }
 
-# as_root COMMAND...: directly or through sudo, which asks for a password only at a terminal.
+# as_root COMMAND...: directly or through sudo, which requires a password only at a terminal.
 as_root() {
   if ((EUID == 0)); then
     env DEBIAN_FRONTEND=noninteractive "$@"
@@ -148,13 +147,13 @@ install_optional() {
     apt_get update && apt_get install -y --no-install-recommends "${optional[@]}" && return
   fi
   echo "== not found, left out: ${optional[*]} (Debian's names; without MPI ensembles
-run in one process, without Chromium tests do not look at reports)"
+run in one process, without Chromium tests do not inspect reports)"
 }
 
 # set_up program|tests
 set_up() {
   local missing debian optional
-  look_for "$1"
+  search_for "$1"
   install_optional
   ((${#missing[@]})) || return 0
   command -v apt-get >/dev/null || list_missing_and_stop "something is missing and there is no apt to install it with"
@@ -164,7 +163,7 @@ set_up() {
   apt_get update || list_missing_and_stop "apt-get update failed (status $?, see above)"
   apt_get install -y --no-install-recommends "${debian[@]}" ||
     list_missing_and_stop "apt-get install failed (status $?, see above)"
-  look_for "$1"
+  search_for "$1"
   ((${#missing[@]} == 0)) || list_missing_and_stop "apt has installed its packages, but this is missing still or too old"
 }
 

@@ -43,7 +43,7 @@ class TimeSlotsEngine {
   std::vector<Gap> gaps_;
   std::vector<std::uint32_t> slots_;
   double slots_per_time_ = 1;
-  std::uint64_t now_ = 0;      // the slot that is looked at
+  std::uint64_t now_ = 0;      // the current slot
   std::uint64_t entered_ = 0;  // gaps in the table
   std::uint64_t collisions_ = 0, fitted_at_ = 0, next_fit_ = 0;
   double fitted_time_ = 0;

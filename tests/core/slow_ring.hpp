@@ -42,7 +42,7 @@ template <Real T> class SlowRing {
     fly(until);
   }
 
-  // As they are told, from the first one on the left; on a ring so large that nothing comes round: a line.
+  // As they are given, from the first one on the left; on a ring so large that nothing comes round: a line.
   const std::vector<Particle>& unfolded() const { return ring_; }
   // From the first particle right of 0.
   std::vector<Particle> folded() const {

@@ -1,5 +1,5 @@
-// States of runs, as they are behind a checkpoint's checksum: they are refused, or the run goes on with whatever it was
-// given, to some end.
+// States of runs, as they are behind a checkpoint's checksum: they are refused, or the run continues with whatever it
+// was given, to some end.
 #include <memory>
 #include <stdexcept>
 

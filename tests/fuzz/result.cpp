@@ -1,6 +1,6 @@
-// A result file without its seal, which is read in a process of its own: slow, and what goes wrong there is told of and
-// no more. So the fuzzer gets results as bytes, too, of any names, types and shapes: what can be written as a file can
-// be read from it.
+// A result file without its seal, which is read in a process of its own: slow, and what goes wrong there is reported
+// and no more. So the fuzzer gets results as bytes, too, of any names, types and shapes: what can be written as a file
+// can be read from it.
 #include <unistd.h>
 
 #include <fstream>

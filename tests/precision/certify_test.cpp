@@ -301,7 +301,7 @@ TEST(Certify, WhatIsProvedOfWetParticlesIsWhatFiftyDigitsGive) {
       return (off < 0 ? -off : off) <= exactly(x.radius()) + exactly(std::abs(high) * 0x1p-100);
     };
     EXPECT_TRUE(holds_wide(checker.state_at(B(until)).energy, wide_particles->kinetic_energy() - wide.energy_lost()));
-    if (d.length > 0) continue;  // places of a ring are told from another one
+    if (d.length > 0) continue;  // places of a ring are counted from another one
     const auto now = wide.configuration(Wide(until));
     checker.for_each(B(until), [&](ParticleIndex particle, const B&, const B& x, const B& v) {
       for (std::size_t j = 0; j < now.index.size(); ++j) {

@@ -65,7 +65,7 @@ TYPED_TEST(LateStart, Shock) {
   expect_same_run(rshock<T>(200), Inelastic<T>(from_text<T>(".9"), from_text<T>("1e-3")), 58);
 }
 
-// Gaps fall to 1e-30 while time goes on at 1e12.
+// Gaps fall to 1e-30 while time advances at 1e12.
 TYPED_TEST(LateStart, Collapse) {
   using T = typename TypeParam::Scalar;
   expect_same_run(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}), Inelastic<T>(from_text<T>(".05"), T(0)), 2,

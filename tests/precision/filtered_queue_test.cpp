@@ -29,7 +29,7 @@ void expect_same_collisions(const Scene<T>& particles, const Inelastic<T>& law, 
   expect_same_meetings(run.meetings, searched(GapChain<T>(particles, T(0)), law, run));
 }
 
-// Of all gaps the chosen one is first by (exact time, position), whatever the keys can tell.
+// Of all gaps the chosen one is first by (exact time, position), whatever the keys.
 template <class T>
 void expect_every_choice_right(const Scene<T>& particles, const Inelastic<T>& law, const T& end,
                                std::uint64_t least_collisions) {

@@ -1,6 +1,6 @@
-// What is infinite or not a number is told from numbers in every scalar type, whatever its numeric_limits say: a run
-// refuses it as a time to go to, and goes on unharmed. (In double-double an infinite time made no collisions and said
-// nothing; in double one that is no number overwrote memory.)
+// What is infinite or not a number is distinguished from numbers in every scalar type, whatever its numeric_limits say:
+// a run refuses it as a time to advance to, and continues unharmed. (In double-double an infinite time made no
+// collisions and said nothing; in double one that is no number overwrote memory.)
 #include <gtest/gtest.h>
 
 #include <stdexcept>

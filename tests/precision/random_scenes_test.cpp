@@ -1,7 +1,7 @@
 // Random small scenes of every law and type, by rapidcheck, which shrinks what fails: invariants hold (guards are
 // silent, energy is never gained), a loop without a queue makes the same collisions, a run saved at random moments and
-// loaded again goes on with the same bits, and so does one that is looked at in between. RC_PARAMS="max_success=10000"
-// makes it more; CTest sets the seed.
+// loaded again continues with the same bits, and so does one that is inspected in between.
+// RC_PARAMS="max_success=10000" makes it more; CTest sets the seed.
 #include <memory>
 #include <vector>
 
@@ -67,11 +67,11 @@ template <class T, class Law, class Chain>
 void check(const Law& law, const std::shared_ptr<const Particles<T>>& particles, const Drawn& d) {
   const auto make = [&] { return Simulation<T, Law, Chain>(law, Chain(particles, T(0))); };
 
-  // Looked at, and saved and loaded, at random moments.
+  // Inspected, and saved and loaded, at random moments.
   auto whole = make(), inspected = make();
   auto saved = std::make_unique<Simulation<T, Law, Chain>>(make());
   std::vector<ParticleIndex> collisions;
-  // Some collapse all the same, in the type's resolution: what is to be looked at comes before that.
+  // Some collapse all the same, in the type's resolution: what is to be inspected comes before that.
   if (whole.advance(T(until), [&](const Collision<T>& c) { collisions.push_back(c.left); }) != Status::reached) return;
   T collision_before(0), energy = particles->kinetic_energy();
   for (const int cut : d.cuts) {
@@ -156,8 +156,8 @@ TYPED_TEST(RandomScenes, Merging) {
   }));
 }
 
-// Found here: three particles collapse down to gaps of 1e-1080, and the times of other collisions, told in such units,
-// are beyond the range of the queue's keys. They were taken for never.
+// Found here: three particles collapse down to gaps of 1e-1080, and the times of other collisions, in such units, are
+// beyond the range of the queue's keys. They were taken for never.
 TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision) {
   using T = typename TestFixture::Scalar;
   const Drawn d{{1, 1, 17, 1, 1, 1},

@@ -1,6 +1,6 @@
 // Text in and out, in every scalar type. Proves: what is written is read back as the same number, random, extreme or
-// subnormal; a literal becomes the nearest number of the type, told from 1300 digits of MPFR; exponents beyond double
-// arrive where the type has room for them; whatever is not a finite decimal literal is refused.
+// subnormal; a literal becomes the nearest number of the type, by 1300 digits of MPFR; exponents beyond double arrive
+// where the type has room for them; whatever is not a finite decimal literal is refused.
 #ifdef CRADLE_WITH_MPFR
 
 #include <gtest/gtest.h>

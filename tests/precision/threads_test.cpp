@@ -22,7 +22,7 @@ template <class T> struct Result {
   Counts counts;
 };
 
-// The restitution tells the runs apart.
+// The restitution distinguishes the runs.
 template <class T> Result<T> result(const char* restitution) {
   auto run = gap_run(rshock<T>(200), Inelastic<T>(from_text<T>(restitution), from_text<T>("1e-3")));
   const T end(75);

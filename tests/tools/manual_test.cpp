@@ -56,7 +56,7 @@ TEST_F(Manual, HasEveryCommandAndItsOptions) {
     for (const std::string& line : matches(help.out, option_lines)) has.merge(matches(line, option));
     has.erase("--help");
     if (has.contains("--set")) documented.insert(common.begin(), common.end());
-    EXPECT_EQ(has, documented) << "options of cradle " << command << ", and those that tools/README.md tells of";
+    EXPECT_EQ(has, documented) << "options of cradle " << command << ", and those that tools/README.md documents";
   }
 }
 

@@ -7,7 +7,7 @@
 # The same file is the script that writes them:
 #   cmake -DFILES=... -DOUTPUT=... -DFROM=... [-DFUNCTION=... -DHEADER=...] -P embed.cmake
 
-# `from`: the folder that names are told from. Further arguments: the header of the function.
+# `from`: the folder that names are relative to. Further arguments: the header of the function.
 function(_embed target output files from function)
   # The list of names is a dependency too: a removed file changes nothing else.
   file(CONFIGURE OUTPUT "${output}.list" CONTENT "${files}\n")

@@ -62,7 +62,7 @@ void add_ensemble(CommandLine& program) {
                  "there is continued");
   command.note(
       "Snapshots, masses and events of the scene are left out. Finished replicas are kept in FILE.part: the same "
-      "command goes on from there.");
+      "command continues from there.");
   command.does([options] { return run_study_command(*options, [&] { return plan(*options); }); });
 }
 

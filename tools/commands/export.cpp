@@ -20,9 +20,9 @@ struct ExportArguments {
 Exit export_result(const ExportArguments& options) {
   if (options.folder.empty() && options.result.empty())
     throw Error({}, "nothing to export to", "", "give --to DIR, --result FILE or both");
-  const bool on_its_way = JournalReader::kind(options.file) == JournalOf::run;
+  const bool in_progress = JournalReader::kind(options.file) == JournalOf::run;
   const Result result =
-      on_its_way ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
+      in_progress ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   if (!options.result.empty()) {
     write_result(result, options.result);
     fmt::print("{}\n", options.result);
@@ -37,7 +37,7 @@ Exit export_result(const ExportArguments& options) {
 void add_export(CommandLine& program) {
   Command command = program.add("export", "a result as CSV, one file per group", "cradle export fig2.h5 --to fig2");
   const auto options = std::make_shared<ExportArguments>();
-  command.argument("FILE", options->file, "result file, or FILE.part of a run on its way");
+  command.argument("FILE", options->file, "result file, or FILE.part of a run in progress");
   command.option("--to", options->folder, "folder to write to; made where it is missing");
   command.option("--result", options->result, "result file to write: of FILE.part what is recorded so far");
   command.does([options] { return export_result(*options); });

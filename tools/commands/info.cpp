@@ -31,7 +31,7 @@ std::string file_of(const std::string& path, std::string_view ending) {
 
 Exit info_of_journal(const InfoArguments& options) {
   const JournalContents journal = read_journal_contents(options.file);
-  fmt::print("journal of {} {}: `cradle resume {}` goes on from here, or the command that was interrupted\n",
+  fmt::print("journal of {} {}: `cradle resume {}` continues from here, as does the command that was interrupted\n",
              journal.kind == "ensemble" ? "an" : "a", journal.kind, file_of(options.file, ".part"));
   if (journal.torn_bytes > 0) fmt::print("{} bytes at its end are damaged\n", journal.torn_bytes);
   for (std::size_t k = 0; k < journal.scenes.size(); ++k) {
@@ -57,7 +57,7 @@ std::string checkpoint_listing(const std::string& path, const RunHeader* journal
 Exit info_of_run(const InfoArguments& options) {
   RunJournal journal = read_run_journal(options.file, Reading::ends);
   const Scene scene = scene_of(journal.header, options.file);
-  fmt::print("journal of a run: `cradle resume {}` goes on with it, if it is not on its way\n",
+  fmt::print("journal of a run: `cradle resume {}` continues it, if it is not running\n",
              file_of(options.file, ".part"));
   if (!journal.statuses.empty()) {
     const RunStatus& now = journal.statuses.back();
@@ -81,7 +81,7 @@ Exit info_of_run(const InfoArguments& options) {
 Exit info_of_checkpoint(const InfoArguments& options) {
   StateReader reader(options.file);
   const CheckpointHeader found = read_checkpoint(reader, options.file);
-  fmt::print("checkpoint of a run: `cradle resume {}` goes on from it\n", file_of(options.file, ".checkpoint"));
+  fmt::print("checkpoint of a run: `cradle resume {}` continues from it\n", file_of(options.file, ".checkpoint"));
   fmt::print("{}{}", line("cradle_version", found.run.version), checkpoint_listing(options.file, nullptr));
   fmt::print("{}", listing(scene_of(found.run, options.file), options.all));
   return Exit::done;
@@ -96,7 +96,7 @@ Exit info(const InfoArguments& options) {
   return Exit::done;
 }
 
-// As long as the run goes on, its journal is there.
+// As long as the run continues, its journal is there.
 Exit follow(const InfoArguments& options) {
   using namespace std::chrono_literals;
   if (!JournalReader::kind(options.file)) return info(options);
@@ -124,7 +124,7 @@ void add_info(CommandLine& program) {
   const auto options = std::make_shared<InfoArguments>();
   command.argument("FILE", options->file, "result file, FILE.part or FILE.checkpoint");
   command.flag("--all", options->all, "also what does not differ from the defaults");
-  command.flag("--follow", options->follow, "of a run on its way: again every two seconds, until it is over");
+  command.flag("--follow", options->follow, "of a run in progress: again every two seconds, until it is over");
   command.does([options] { return options->follow ? follow(*options) : info(*options); });
 }
 

@@ -66,7 +66,8 @@ Exit manual(const CommandLine& program) {
              entry("130, 143", "interrupted by SIGINT; by SIGTERM, SIGUSR1 or SIGHUP"));
   fmt::print(".SH ENVIRONMENT\n{}{}", entry("CRADLE_PYTHON", "the Python that makes pictures and reports"),
              entry("TMPDIR", "the folder for temporary files"));
-  fmt::print(".SH FILES\n{}{}", entry("FILE.part", "what a run on its way has recorded; `cradle resume FILE` goes on"),
+  fmt::print(".SH FILES\n{}{}",
+             entry("FILE.part", "what a run in progress has recorded; `cradle resume FILE` continues it"),
              entry("FILE.checkpoint", "its state, from which that is done"));
   return Exit::done;
 }

@@ -25,7 +25,7 @@ Scene to_start_from(const std::string& name) {
                              "output.profiles.range=[-100,100]"});
 }
 
-// Spelled otherwise, 1.0 instead of 1, a value is told: it stands in the result as it does here.
+// Spelled otherwise, 1.0 instead of 1, a value is written: it stands in the result as it does here.
 bool is_default(const Field& field, const Scene& scene) {
   if (field.fallback == "required") return false;
   Scene other = scene;
@@ -35,8 +35,8 @@ bool is_default(const Field& field, const Scene& scene) {
 
 std::string commented(const Scene& scene, const std::string& file) {
   std::string text = fmt::format(
-      "# A scene for `cradle run {0}`; `cradle check {0}` tells what it would cost. A key that stands behind a #\n"
-      "# has its default, or says nothing here. `cradle scenes --keys` tells of all keys, those of other laws "
+      "# A scene for `cradle run {0}`; `cradle check {0}` estimates its cost. A key that stands behind a #\n"
+      "# has its default, or says nothing here. `cradle scenes --keys` lists all keys, those of other laws "
       "included.\n",
       file);
   std::string_view open;

@@ -1,5 +1,5 @@
 // The command line as commands see it: a command declares its arguments and options, each bound to a variable of its
-// own, and what it does. Only options.cpp knows the library that reads them: seen in every command it was nearly a
+// own, and what it does. Only options.cpp knows the library that reads them: included in every command it was nearly a
 // third of the program's compile time.
 #pragma once
 

@@ -20,15 +20,15 @@ struct PlotArguments {
 };
 
 Exit plot(const PlotArguments& options) {
-  const bool on_its_way = JournalReader::kind(options.file) == JournalOf::run;
+  const bool in_progress = JournalReader::kind(options.file) == JournalOf::run;
   const Result result =
-      on_its_way ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
+      in_progress ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   const Scene scene = scene_in(result.attributes, options.file);
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.output;
   file_behind(output);  // neither a folder nor a device
   const TemporaryFolder folder;
-  const std::string file = on_its_way ? folder.write("so_far.h5", file_image(result)) : options.file;
+  const std::string file = in_progress ? folder.write("so_far.h5", file_image(result)) : options.file;
   std::vector<std::string> words{"plot", file, "-o", output};
   if (const auto table = predictions(scene); !table.empty())
     words.insert(words.end(), {"--theory", folder.write("theory.csv", predictions_csv(table))});
@@ -41,7 +41,7 @@ void add_plot(CommandLine& program) {
   Command command = program.add("plot", "the pictures of a result file; PNG, PDF or SVG by extension",
                                 "cradle plot fig2.h5 -o fig2.pdf");
   const auto options = std::make_shared<PlotArguments>();
-  command.argument("FILE", options->file, "result file, or FILE.part of a run on its way");
+  command.argument("FILE", options->file, "result file, or FILE.part of a run in progress");
   command.option("-o,--output", options->output, "picture (default: FILE with .png)");
   command.does([options] { return plot(*options); });
 }

@@ -15,7 +15,7 @@ struct ReportArguments {
   std::string file, output;
 };
 
-// fig2.h5 and fig2.h5.part are told of in fig2.html.
+// fig2.h5 and fig2.h5.part are reported in fig2.html.
 std::string page_of(std::filesystem::path file) {
   if (file.extension() == ".part") file.replace_extension();
   return file.replace_extension(".html").string();
@@ -35,7 +35,7 @@ void add_report(CommandLine& program) {
   Command command = program.add("report", "one page about a result: pictures, numbers, provenance, how to run it again",
                                 "cradle report fig2.h5 -o fig2.html");
   const auto options = std::make_shared<ReportArguments>();
-  command.argument("FILE", options->file, "result file, or FILE.part of a run on its way");
+  command.argument("FILE", options->file, "result file, or FILE.part of a run in progress");
   command.option("-o,--output", options->output, "the page (default: FILE with .html)");
   command.note("One HTML file with everything in it: it needs no network, and can be sent.");
   command.does([options] { return report(*options); });

@@ -40,20 +40,20 @@ Exit resume(const ResumeArguments& options) {
     if (!options.quiet) fmt::print("{}\n", files.over());
     return files.over_status();
   }
-  if (!options.quiet) fmt::print("{}: going on from {}\n", file, files.resumed_from());
+  if (!options.quiet) fmt::print("{}: continuing from {}\n", file, files.resumed_from());
   return run_command(files, file, options, interrupt);
 }
 
 }  // namespace
 
 void add_resume(CommandLine& program) {
-  Command command = program.add("resume", "go on with a run or an ensemble that was stopped, to the same bytes",
-                                "cradle resume fig2.h5 --until 8000");
+  Command command =
+      program.add("resume", "continue a run or an ensemble that was stopped; the result is byte-identical",
+                  "cradle resume fig2.h5 --until 8000");
   const auto options = std::make_shared<ResumeArguments>();
   command.argument("FILE", options->file,
                    "its result file, there or not yet; FILE.part and FILE.checkpoint are beside it");
-  command.option("--until", options->until,
-                 "a later end, also of a run that is finished; samples go on with the spacing that they have");
+  command.option("--until", options->until, "a later end, also of a run that is finished; samples keep their spacing");
   add_running_options(command, *options);
   command.does([options] { return resume(*options); });
 }

@@ -43,8 +43,8 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
     tools::notify(end.warning);
     tools::notify(
         files.up_to_date()
-            ? fmt::format("interrupted: `cradle resume {}` goes on from there\n", output)
-            : fmt::format("interrupted: `cradle resume {}` goes on from the checkpoint before, if there is one, "
+            ? fmt::format("interrupted: `cradle resume {}` continues from there\n", output)
+            : fmt::format("interrupted: `cradle resume {}` continues from the previous checkpoint, if there is one, "
                           "else it starts anew\n",
                           output));
     if (!options.quiet) fmt::print("{}", text);

@@ -1,4 +1,4 @@
-// What `run` and `resume` have in common: computes, tells how it went, gives the exit status.
+// What `run` and `resume` have in common: computes, reports how it went, gives the exit status.
 #pragma once
 
 #include <string>

@@ -33,7 +33,7 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   notify(end.warning);
   if (end.status == Exit::interrupted || end.status == Exit::terminated) {
     notify(fmt::format(
-        "interrupted: finished replicas are in {}.part; the same command goes on from there, or `cradle resume {}`\n",
+        "interrupted: finished replicas are in {}.part; the same command continues from there, or `cradle resume {}`\n",
         output, output));
   } else if (!options.quiet) {
     fmt::print("{} replicas: {}\n", end.replicas, end.outcome);

@@ -1,4 +1,4 @@
-// What `ensemble` and `sweep` have in common: runs a study, tells how it went, gives the exit status.
+// What `ensemble` and `sweep` have in common: runs a study, reports how it went, gives the exit status.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct StudyPlan {
   std::string output;
 };
 
-/// Runs what the plan's output does not have yet. Under MPI every rank makes the plan; what is wrong with it is told
-/// once.
+/// Runs what the plan's output does not have yet. Under MPI every rank makes the plan; what is wrong with it is
+/// reported once.
 Exit run_study_command(const RunningOptions& options, const std::function<StudyPlan()>& make_plan);
 
 }  // namespace cradle::tools

@@ -104,7 +104,7 @@ ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const 
   const auto put = [&](const std::string& name, double value) {
     for (std::size_t k = 0; k < numbers.size(); ++k)
       if (numbers[k].name == name) return void(row.numbers[k] = value);
-    throw std::logic_error("a run told a number that others of its scene do not: " + name);
+    throw std::logic_error("a run recorded a number that others of its scene do not: " + name);
   };
   put("energy", run.energy);
   if (const Group* collapse = run.result.find("collapse"))

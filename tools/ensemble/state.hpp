@@ -1,5 +1,5 @@
 // One ensemble in memory: statistics of all quantities over replicas (core/ensemble/tree.hpp), the table of replicas,
-// messages of those that failed, and counts in fixed bins where asked for. It goes to journals and between ranks as
+// messages of those that failed, and counts in fixed bins where requested. It goes to journals and between ranks as
 // records, and to result files as groups; both keep every bit, so that ensembles can be continued and merged.
 #pragma once
 
@@ -86,7 +86,7 @@ class EnsembleState {
   void put_records(std::uint64_t point, const JournalWriter::Put& put) const;
   /// The point that a record belongs to comes first in it.
   static std::uint64_t point(std::string_view record) { return ByteReader(record).integer(); }
-  /// How many replicas a record tells of.
+  /// How many replicas a record has.
   static std::uint64_t replicas_in(std::string_view record);
   /// A replica that is there already is passed over. Throws Error (Exit::io) for what is no record.
   void apply(std::string_view record);

@@ -1,5 +1,5 @@
-// What a file of ensembles is about, and how to tell that two files are about the same: same scenes, same version of
-// the program, same bins, same listed particles.
+// What a file of ensembles is about, and how to decide whether two files are about the same: same scenes, same version
+// of the program, same bins, same listed particles.
 #pragma once
 
 #include <cstdint>

@@ -57,10 +57,10 @@ struct Certificate {
   std::vector<Group> snapshots;  // certificate/snapshots/NNNN and exact/snapshots/NNNN
 };
 
-/// Thrown where a proof ends before its run: there is no use in going on.
+/// Thrown where a proof ends before its run: there is no use in continuing.
 struct ProofEnds {};
 
-/// Checks a run while it goes on.
+/// Checks a run while it is in progress.
 class Certifier : public RunObserver {
  public:
   virtual Certificate certificate() const = 0;

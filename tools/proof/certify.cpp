@@ -169,7 +169,7 @@ Certified certify(const Scene& requested, const CertifyOptions& options) {
     attempts.push_back({precision_name(scene.run), certificate.digits_text, samples.empty() ? 0 : samples.back().time,
                         certificate.collisions, seconds, certificate.doubt ? doubt_text(*certificate.doubt) : ""});
     const bool last = digits + 1 == options.digits.end();
-    // Collisions that are wrong ask for digits of the run, those that are open for digits of the balls.
+    // Collisions that are wrong require more digits of the run, those that are open more digits of the balls.
     const auto& doubt = certificate.doubt;
     const bool raised = doubt && doubt->refuted && raise(scene, of_balls);
     if (doubt && doubt->check == Check::agreement && last && !raised)
@@ -193,7 +193,7 @@ std::string certificate_text(const Certified& run) {
     text = fmt::format("undecided {}\nproved up to there: {} collisions\n", run.undecided(), c.collisions);
   if (const std::string beyond = run.not_proved(); !beyond.empty()) text += fmt::format("not proved: {}\n", beyond);
   text += fmt::format("  scene     {}, checksum {:016x}\n", run.scene.name, crc64(effective_toml(run.scene)));
-  text += fmt::format("  run in    {}, proved in balls around {}; {:.4g} % of collisions told by plain doubles\n",
+  text += fmt::format("  run in    {}, proved in balls around {}; {:.4g} % of collisions decided in plain doubles\n",
                       precision_name(run.scene.run), c.digits_text, 100 * share);
   if (!c.samples.empty()) {
     const CertainSample& last = c.samples.back();

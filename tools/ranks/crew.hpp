@@ -38,7 +38,7 @@ class Crew {
   virtual ~Crew() = default;
   Interrupt& interrupt() const { return interrupt_; }
   virtual unsigned rank() const = 0;
-  /// Of each rank, where nothing else is asked for.
+  /// Of each rank, where nothing else is requested.
   virtual unsigned threads() const = 0;
 
   /// Runs a step on every rank. Where it throws on one of them, the first of these throws what it threw, and the others
@@ -46,7 +46,7 @@ class Crew {
   virtual Exit together(const std::function<void()>& step) = 0;
 
   /// Calls work(next) on every rank until rank 0's jobs are done; what another rank is given is not given again. Rank 0
-  /// is told as others take up replicas. Returns the signal that ended it before, on any rank, or 0.
+  /// is called as others take up replicas. Returns the signal that ended it before, on any rank, or 0.
   virtual int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
                     const std::function<void(std::uint64_t replicas)>& others_took) = 0;
 
@@ -57,7 +57,7 @@ class Crew {
   Interrupt& interrupt_;
 };
 
-/// Jobs one after the other, in pieces as they are asked for.
+/// Jobs one after the other, in pieces as they are requested.
 class JobQueue {
  public:
   explicit JobQueue(std::vector<JobRange> ranges) : ranges_(std::move(ranges)) {}

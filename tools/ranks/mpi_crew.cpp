@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 
 constexpr int to_leader = 1, from_leader = 2, records = 3;  // tags
 
-// What another rank tells rank 0.
+// What another rank reports to rank 0.
 enum class Wish : std::uint64_t { nothing, piece, leave };
 struct Report {
   std::uint64_t taken = 0;  // jobs since the last report: finished, or in work
@@ -162,7 +162,7 @@ int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(c
     Workshop shop(work, {}, interrupt());
     follow(shop);
   }
-  // Some were through before a signal came: all go on as rank 0 does, which waits for all.
+  // Some were through before a signal came: all continue as rank 0 does, which waits for all.
   int signal = interrupt().signal();
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibcast(&signal, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);

@@ -48,7 +48,7 @@ class Workshop {
     return taken_;
   }
 
-  /// True when the work has returned. Waits a moment for that or, if asked, for the last job to be taken.
+  /// True when the work has returned. Waits a moment for that or, if requested, for the last job to be taken.
   bool idle(bool or_empty) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return idle_ || (or_empty && jobs_.left() == 0); });

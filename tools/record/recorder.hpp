@@ -1,5 +1,5 @@
-// What a run leaves behind: collects samples, configurations, profiles and collisions while it goes on, and puts them
-// into the tables of a result file (tables.hpp).
+// Collects samples, configurations, profiles and collisions during a run, and puts them into the tables of a result
+// file (tables.hpp).
 #pragma once
 
 #include <algorithm>
@@ -92,7 +92,7 @@ inline Group profile_table(Profile&& p, const std::string& name) {
   return table;
 }
 
-/// Every collision, where a scene asks for them.
+/// Every collision, where a scene requests them.
 template <Real T> class EventRecorder {
  public:
   void operator()(const Collision<T>& c) {

@@ -1,4 +1,4 @@
-// When a run is looked at: the times of series, snapshots and whatever else a scene wants in the working precision, and
+// When a run is sampled: the times of series, snapshots and all other outputs of a scene in the working precision, and
 // their union.
 #pragma once
 
@@ -51,7 +51,7 @@ template <Real T> std::vector<T> series_times(const Series& series, const T& sta
     for (std::int64_t k = 0; k < points || at(k) < until; ++k) times.push_back(at(k));
     if (times.back() < until) times.push_back(until);
   }
-  // Times that the type cannot tell apart are one.
+  // Times that the type cannot distinguish are one.
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }

@@ -1,5 +1,5 @@
 // The tables that a run of a scene writes, without the numbers: names, units, what they mean. They follow from the
-// scene alone, so that ensembles know what their replicas will tell before one of them has run.
+// scene alone, so that ensembles know what their replicas will record before one of them has run.
 #pragma once
 
 #include <optional>
@@ -29,7 +29,7 @@ struct RunTables {
   std::optional<Group> zone;         // with its bins
   std::vector<std::string> summary;  // names of RunOutcome::summary
 };
-/// Throws Error where the zone's reach cannot be told.
+/// Throws Error where the zone's reach is unknown.
 RunTables run_tables(const Scene& scene);
 
 /// Puts the numbers into the columns of a table, in their order. Throws std::logic_error where there is another number

@@ -64,7 +64,7 @@ class Comparison {
   Comparison(const std::string& first, const std::string& second, double rtol)
       : first_(first), second_(second), rtol_(rtol) {}
 
-  // Calls both(x, y) for what is in both lists under one name, in the order of the first, and tells of all others.
+  // Calls both(x, y) for what is in both lists under one name, in the order of the first, and reports all others.
   template <class Named, class Name, class Both>
   void pair(const std::vector<Named>& a, const std::vector<Named>& b, const Name& name, const std::string& kind,
             const Both& both) {

@@ -1,6 +1,6 @@
 // A result in memory: named tables and attributes, in the order in which they are written. Whoever writes files
-// (writer.hpp, csv.hpp) or looks into them (reader.hpp) sees this form only; its layout is that of the contract for
-// result files.
+// (writer.hpp, csv.hpp) or reads them (reader.hpp) uses this form only; its layout is that of the contract for result
+// files.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // What stands behind the last byte of HDF5's in a result file: "CRADLES1", the length of HDF5's part, and the CRC-64 of
 // all that comes before it, eight bytes each. HDF5 passes over it, and drops it when it changes the file (h5py "r+").
 // So a file with a seal is as it was written or known to be damaged before HDF5, which may crash or hang on damaged
-// files, has looked at it; one without was written by an older version or changed on purpose, ends where HDF5 says that
-// it does, and is read with care (guarded.hpp).
+// files, has read it; one without was written by an older version or changed on purpose, ends where HDF5 says that it
+// does, and is read with care (guarded.hpp).
 #pragma once
 
 #include <cstddef>

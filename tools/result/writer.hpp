@@ -22,7 +22,7 @@ void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string
 void write_result(const Result& result, const std::string& path);
 
 /// The same for what took long to compute: where it cannot be written it is kept in the folder for temporary files, and
-/// the Error tells where.
+/// the Error says where.
 void write_or_keep(const Result& result, const std::string& path);
 
 }  // namespace cradle::tools

@@ -7,7 +7,7 @@
 namespace cradle::tools {
 
 /// The layout is that of any run: series, series/heaviest; besides, the force (14) over twice the width of the zone and
-/// what happened where the clusters met. Throws Error where collisions are asked for (trust), of which there are none.
+/// what happened where the clusters met. Throws Error where collisions are requested (trust), of which there are none.
 RunOutcome run_clusters(const Scene& scene, const RunOptions& options);
 
 }  // namespace cradle::tools

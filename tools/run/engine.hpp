@@ -1,5 +1,5 @@
-// What a run asks of its engine, whatever law and chain that is made of: so that everything beside the event loop is
-// compiled once per scalar type, not once per engine. It costs a virtual call per time looked at, none per collision.
+// What a run requires of its engine, whatever law and chain that is made of: so that everything beside the event loop
+// is compiled once per scalar type, not once per engine. It costs a virtual call per sample, none per collision.
 #pragma once
 
 #include <concepts>

@@ -133,7 +133,7 @@ std::string guard_message(const ReportedGuard& g) {
     what = "order: two particles have changed places, the gap is less than rounding can make it";
     break;
   case Guard::past:
-    what = "past: the last collision is not between the one before and the time looked at";
+    what = "past: the last collision is not between the one before and the time of the check";
     break;
   case Guard::energy:
     what = "energy: the sum over all particles is not what the ledger of losses leaves";
@@ -142,12 +142,13 @@ std::string guard_message(const ReportedGuard& g) {
     what = "momentum: not what it was at the start";
     break;
   case Guard::closure:
-    what = "closure: gaps or closing speeds do not add up to what the ends of the line tell";
+    what = "closure: gaps or closing speeds do not add up to what the ends of the line give";
     break;
   }
   return fmt::format(
       "stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): the machine or the program is at fault. "
-      "`cradle resume` goes on from the last checkpoint, made before; if it stops here again, please report the scene",
+      "`cradle resume` continues from the last checkpoint, made before; if it stops here again, please report the "
+      "scene",
       what, g.found, g.bound, g.time, g.particle < 0 ? "" : ", " + place(g.particle));
 }
 

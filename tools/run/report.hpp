@@ -1,4 +1,4 @@
-// What a run tells people when it is over: the collapse that stopped it, and what could not be resolved. Numbers of any
+// What a run prints when it is over: the collapse that stopped it, and what could not be resolved. Numbers of any
 // precision come here as texts with all their digits, beside the double nearest to them.
 #pragma once
 

@@ -23,8 +23,8 @@ RunEnd end_of(Status status, bool order_lost);
 
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
-  RunObserver* observer = nullptr;  // is told of every collision
-  Interrupt* interrupt = nullptr;   // asked now and then whether to stop; heeded once there is something to keep
+  RunObserver* observer = nullptr;  // is notified of every collision
+  Interrupt* interrupt = nullptr;   // polled now and then whether to stop; heeded once there is something to keep
   Workers workers = {};             // for a run that is cut into segments
   RunStore* store = nullptr;        // puts what is recorded where it is safe; without one it comes back in the result
 };

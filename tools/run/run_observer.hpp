@@ -1,5 +1,5 @@
-// Who looks over a run's shoulder: is told of every collision before it is made, and of what the run says of itself at
-// every time that it is looked at. What a witness throws ends the run.
+// Observes a run: is notified of every collision before it is made, and receives a sample of the run at every output
+// time. What an observer throws ends the run.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A run on its way: the engine is advanced from one time that somebody wants to look at to the next, what is seen there
-// is recorded, and in the end it becomes tables and texts.
+// A run in progress: the engine is advanced from one output time to the next, its state is recorded there, and in the
+// end the records become tables and texts.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace cradle::tools {
 template <Real T> class SceneRun {
   static constexpr std::size_t most_rows = 1 << 14;                // that wait for a keeper
   static constexpr std::uint64_t collisions_between_guards = 256;  // of each particle; half as many before the end
-  static constexpr std::uint64_t most_guarded = 1 << 22;           // particles: beyond, a look would double the memory
+  static constexpr std::uint64_t most_guarded = 1 << 22;           // particles: beyond, a check would double the memory
 
  public:
   SceneRun(const Scene& scene, std::shared_ptr<const cradle::Particles<T>> particles, Engine<T>& engine,
@@ -77,20 +77,20 @@ template <Real T> class SceneRun {
   void loaded() const { require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone"); }
 
  private:
-  // ---- what is kept while the run goes on
+  // ---- what is kept during the run
 
   void load(StateReader& from) {
     if (from.text() != shape() || from.text() != precision_name(scene_.run))
-      throw Error({}, "a checkpoint of another build or precision", "", "go on with the program that wrote it",
+      throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
                   Exit::io);
     try {
       engine_.load(from);
       cradle::load(from, *this);
     } catch (const std::invalid_argument& error) {
-      throw Error(std::string("the checkpoint cannot be gone on with: ") + error.what(), Exit::io);
+      throw Error(std::string("the checkpoint cannot be extended: ") + error.what(), Exit::io);
     }
     from.end();
-    // A state that is well formed may still be of no run, and would go on for ever.
+    // A state that is well formed may still be of no run, and would run for ever.
     const auto [guarded_at, last] = std::pair(guarded_at_, engine_.last_collision_time());
     if (static_cast<std::uint64_t>(engine_.collided_particles()) <= most_guarded)
       inspect_all(inspected_ && last < *inspected_ ? *inspected_ : last);
@@ -169,16 +169,15 @@ template <Real T> class SceneRun {
     if (options_.store->due() || series_.rows() >= most_rows) keep(time, false);
     return true;
   }
-  // Looks at all particles once in so many collisions of each, a hundredth of what these take, by the count of
-  // collisions and not by the clock, so that a run that stops here does so always. Throws Error (Exit::lost).
+  // Checks all particles once in so many collisions of each, a hundredth of what these take, by the count of collisions
+  // and not by the clock, so that a run that stops here does so always. Throws Error (Exit::lost).
   void guard(const T& time) {
     const std::uint64_t collisions = engine_.counts().collisions;
     const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
     const std::uint64_t between = collisions_between_guards / (time < plan_.stops.back() ? 1 : 2);
     const bool put_off = guarded_at_ > collisions && time < plan_.stops.back();
-    const bool due = guarded_at_ > collisions
-                         ? collision_before_ < engine_.last_collision_time()  // the end is looked at
-                         : collisions >= guarded_at_ + between * active;
+    const bool due = guarded_at_ > collisions ? collision_before_ < engine_.last_collision_time()  // the end is checked
+                                              : collisions >= guarded_at_ + between * active;
     if (!put_off && due && active <= most_guarded) inspect_all(time);
   }
   void inspect_all(const T& time) {
@@ -189,8 +188,7 @@ template <Real T> class SceneRun {
         guarded(now, *particles_, collisions, T(energy_ - engine_.energy_lost()), T(time - number<T>(scene_.run.start)),
                 engine_.last_collision_time(), collision_before_, account.order_lost + account.unresolved == 0);
     if (check.broken) throw Error(guard_message(reported(*check.broken, time)), Exit::lost);
-    // A look goes over all particles that have merged, too: the next one, but for that at the end, is put off by as
-    // many.
+    // A check visits all particles that have merged, too: the next one, but for that at the end, is put off by as many.
     const auto merged = static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size();
     guarded_at_ = collisions + collisions_between_guards * merged;
     collision_before_ = engine_.last_collision_time();
@@ -355,7 +353,7 @@ template <Real T> class SceneRun {
   Engine<T>& engine_;
   Progress& progress_;
   Schedule<T> plan_;
-  std::optional<T> inspected_;                               // the last time looked at
+  std::optional<T> inspected_;                               // the last time inspected
   std::uint64_t snapshots_ = 0, profiles_ = 0, masses_ = 0;  // tables written
   SeriesRecorder<T> series_;
   HeaviestRecorder<T> heaviest_;
@@ -364,7 +362,7 @@ template <Real T> class SceneRun {
   EventRecorder<T> events_;
   Observer<T> observer_;
   std::uint64_t guarded_at_ =
-      0;  // collisions made, at the last look at all particles, and the time of the last of them
+      0;  // collisions made, at the last check of all particles, and the time of the last of them
   T collision_before_;
   RunStatus status_;      // then
   GrowingTables tables_;  // where there is no keeper

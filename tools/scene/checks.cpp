@@ -99,7 +99,7 @@ class Checks {
                     "remove it");
   }
 
-  // Where particles are displaced at random, replicas are seen to when they are set up (core/initial/walled.hpp).
+  // Where particles are displaced at random, replicas are checked when they are set up (core/initial/walled.hpp).
   void walls_stand() const {
     const auto& [left, right] = scene_.walls;
     if (!scene_.walls.any()) return;

@@ -1,4 +1,4 @@
-// What one key alone cannot tell: rows that do not meet, particles out of order, two ways to say the same thing,
+// What one key alone does not show: rows that do not meet, particles out of order, two ways to say the same thing,
 // numbers that the working precision cannot hold.
 #pragma once
 

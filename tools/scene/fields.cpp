@@ -243,7 +243,7 @@ const Field all_fields[] = {
     {"output.series.points", output_of<&Output::series, &Series::points>, "", "1000", "[2, 1e7]", &by_points,
      "number of samples of the series, from run.start to run.until, both included"},
     {"output.series.over", output_of<&Output::series, &Series::over>, "t", "", "(run.start, run.until]", &by_points,
-     "the points are spread over the time up to here, and go on with the same spacing; without it, up to run.until. "
+     "the points are spread over the time up to here, and continue with the same spacing; without it, up to run.until. "
      "`cradle resume --until` writes it"},
     {"output.series.spacing", output_of<&Output::series, &Series::spacing>, "", "\"linear\"", "linear | log",
      &by_points, "how the samples of the series are spaced"},
@@ -275,7 +275,7 @@ const Field all_fields[] = {
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every collision"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",
      "[0, inf)", &always,
-     "seconds of computing between checkpoints, from which `cradle resume` goes on; 0: only when the run ends or is "
+     "seconds of computing between checkpoints, from which `cradle resume` continues; 0: only when the run ends or is "
      "interrupted. Never changes a result, and is not written into it",
      nullptr, false},
 

@@ -21,8 +21,8 @@ void drop_replaced_series(Entries& entries, std::string_view assignment) {
   });
 }
 
-// A run cut to another span on the command line keeps those of the file's output times that lie in it: what is asked
-// for on the command line itself is still refused there.
+// A run cut to another span on the command line keeps those of the file's output times that lie in it: what is
+// requested for on the command line itself is still refused there.
 void drop_times_cut_off(Entries& entries) {
   const auto bound = [&](const char* key) -> std::optional<Decimal> {
     const auto entry = entries.find(key);

@@ -29,7 +29,7 @@ bool has_row_tables(const Entries& entries) {
 
 void store_all(const Entries& entries, const std::string& scene_file, Scene& scene) {
   for (const Field& field : scene_fields()) {
-    // The tables decide which keys rows take, before the first of these keys is looked at.
+    // The tables decide which keys rows take, before the first of these keys is read.
     if (field.key == "initial.left.particles" && scene.initial.type == InitialType::rows && has_row_tables(entries))
       scene.initial.left.particles = 1;
     if (!field.when->holds(scene)) continue;
@@ -100,7 +100,7 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
                   Exit::io);
     if (text.starts_with("\x89HDF"))
       throw Error({path_or_name, 0, {}}, "a result, not a scene", "HDF5",
-                  "give the scene file, or look at it with `cradle info " + path_or_name + "`");
+                  "give the scene file, or inspect it with `cradle info " + path_or_name + "`");
     return parse_scene(text, path_or_name, overrides);
   }
   for (const BundledScene& scene : bundled_scenes())

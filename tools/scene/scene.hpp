@@ -143,7 +143,7 @@ struct Zone {
 };
 
 struct Checkpoint {
-  Decimal every_seconds;  // of computing; 0: none while the run goes on
+  Decimal every_seconds;  // of computing; 0: none during the run
   bool operator==(const Checkpoint&) const = default;
 };
 

@@ -65,7 +65,8 @@ Study study_in(const JournalContents& journal, const std::string& path) {
                      })
           : ensemble_of(scene, journal.spreads);
   if (study.identity() != journal.identity)
-    throw Error({path, 0, ""}, "of another version of the program", "", "go on with that one, or remove it", Exit::io);
+    throw Error({path, 0, ""}, "of another version of the program", "", "continue with that one, or remove it",
+                Exit::io);
   return study;
 }
 

@@ -33,7 +33,7 @@ void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint6
   journalling_ = true;
   if (rank > 0) return;
   if (journal_)
-    compact();  // whoever goes on from it takes what is wanted now
+    compact();  // whoever continues from it takes what is wanted now
   else
     journal_.emplace(part_, JournalOf::replicas, journal_header());
 }
@@ -136,7 +136,7 @@ void EnsembleStore::finish() {
     write_result(result(), file_);
   } catch (const Error& error) {
     throw Error(std::string(error.what()) + "; finished replicas are in " + part_ +
-                    ", the same command goes on from there",
+                    ", the same command continues from there",
                 error.status);
   }
   drop_journals();

@@ -4,9 +4,9 @@
 //   FILE.part    journal: replicas since, each appended when it is done; survives the end of the program at any moment
 //   FILE.part.R  the same by rank R of an MPI job
 //
-// Whoever runs the same scene on the same FILE goes on from there. A journal that has grown large is written anew as
-// the nodes of the tree of replicas. Journals can be read in any order: each is a set of replicas, and what is in two
-// of them (the program was ended between writing one and removing the other) is in one of them whole.
+// Running the same scene on the same FILE continues from there. A journal that has grown large is written anew as the
+// nodes of the tree of replicas. Journals can be read in any order: each is a set of replicas, and what is in two of
+// them (the program was ended between writing one and removing the other) is in one of them whole.
 #pragma once
 
 #include <chrono>
@@ -26,14 +26,14 @@ namespace cradle::tools {
 
 class EnsembleStore {
  public:
-  /// Looks at no files yet. Throws Error for a scene that no ensemble can be made of.
+  /// Reads no files yet. Throws Error for a scene that no ensemble can be made of.
   EnsembleStore(Study study, std::string file);
 
   /// Claims FILE for as long as this lives, and reads it and all journals. Throws Error:
   /// Exit::bad_input where they belong to other scenes, Exit::io where they cannot be read or another program is at
-  /// work on them. Returns what there is to tell about journals.
+  /// work on them. Returns what there is to report about journals.
   std::string load();
-  /// Reads FILE alone, which must be there; to look at it, or to merge it.
+  /// Reads FILE alone, which must be there; to inspect it, or to merge it.
   void load_result();
 
   const Study& study() const { return study_; }

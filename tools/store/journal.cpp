@@ -63,7 +63,7 @@ JournalReader::JournalReader(const std::string& path, JournalOf kind) : path_(pa
   const auto found = JournalReader::kind(path);
   if (found && found != kind)
     throw Error({path, 0, ""}, "another kind of journal", *found == JournalOf::run ? "of a run" : "of an ensemble",
-                "go on with it by `cradle resume`, or give another -o FILE", Exit::io);
+                "continue it by `cradle resume`, or give another -o FILE", Exit::io);
   if (found) file_.open(path, std::ios::binary);
   if (found && !file_) fail_journal(path, "the journal could not be read");
   if (found) {

@@ -1,6 +1,6 @@
-// A file to which records are appended while work goes on, so that none is lost when the program or the machine stops
-// at any moment: every record carries its length and a checksum. After a kill the last one may be torn; a reader stops
-// there and says how much it left out, and whoever goes on writing cuts it off. The first record is the header.
+// A file to which records are appended during the work, so that none is lost when the program or the machine stops at
+// any moment: every record carries its length and a checksum. After a kill the last one may be torn; a reader stops
+// there and says how much it left out, and whoever continues to write cuts it off. The first record is the header.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ class JournalWriter {
                 const std::function<void(const Put&)>& records = {}, Sync sync = Sync::yes);
   /// The journal that is there: nobody else may write it from now on.
   explicit JournalWriter(const std::string& path);
-  /// Cuts off what is behind the first `whole_bytes` and goes on there.
+  /// Cuts off what is behind the first `whole_bytes` and continues there.
   void continue_after(std::uint64_t whole_bytes);
 
   /// The record is the system's when this returns: it survives the end of the program; that of the machine, only after

@@ -1,4 +1,4 @@
-// What a run that was stopped goes on from: its journal and its checkpoint, or its result and the checkpoint of its
+// What a run that was stopped continues from: its journal and its checkpoint, or its result and the checkpoint of its
 // end.
 #include <fmt/format.h>
 
@@ -43,15 +43,15 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
     throw Error({"--until", 0, ""}, "before the end of the run that is there", until,
                 fmt::format("give a time after {}", scene.run.until.text));
   if (scene.output.zone.from)
-    throw Error({file, 0, "output.zone.from"}, "an average up to run.until cannot be gone on with",
-                scene.run.until.text, "run the scene anew with a later run.until");
+    throw Error({file, 0, "output.zone.from"}, "an average up to run.until cannot be extended", scene.run.until.text,
+                "run the scene anew with a later run.until");
   Series& series = scene.output.series;
   if (series.points && !series.over && scene.run.start < scene.run.until) series.over = scene.run.until;
   scene.run.until = later;
   return parse_scene(effective_toml(scene), file);  // as a scene with that end would be read
 }
 
-// Where nobody asks for collisions the sticky gas goes from time to time, and rounds by these: with other times it is
+// Without an observer of collisions the sticky gas goes from time to time, and rounds by these: with other times it is
 // begun again, which takes it no time.
 bool begins_again(const Scene& scene) { return without_collisions(scene); }
 
@@ -69,7 +69,7 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   for (Group& table : groups)
     std::stable_sort(table.attributes.begin(), table.attributes.end(),
                      [&](const Attribute& a, const Attribute& b) { return rank(a) < rank(b); });
-  // A sample at the end that the spacing does not ask for is one of that end only.
+  // A sample at the end that the spacing does not require is one of that end only.
   const std::vector<double> planned = planned_times(scene).series;
   const auto one_too_many = [&](const Group& table) {
     if (table.name != "series" || table.columns.empty()) return false;
@@ -90,7 +90,7 @@ CheckpointHeader read_checkpoint(StateReader& reader, const std::string& path) {
   if (const std::uint64_t format = reader.integer(); format != CheckpointHeader::format)
     throw Error({path, 0, ""}, "a checkpoint of another format",
                 fmt::format("{}, here {}", format, CheckpointHeader::format),
-                "go on with the version of cradle that wrote it, or remove it: the run then starts anew", Exit::io);
+                "continue with the version of cradle that wrote it, or remove it: the run then starts anew", Exit::io);
   CheckpointHeader header;
   header.run = RunHeader::of(reader.text());
   header.records = reader.integer();
@@ -109,14 +109,14 @@ RunFiles::RunFiles(std::string file, const std::optional<std::string>& until) : 
   started_ = reported_ = saved_ = Clock::now();
 }
 
-// ---- going on
+// ---- resuming
 
 void RunFiles::resume(const std::optional<std::string>& until) {
   const std::string path = journal_of(file_), state = checkpoint_of(file_);
   header_ = RunHeader::of(JournalReader(path, JournalOf::run).header());
   if (header_.version != version)
     throw Error({path, 0, ""}, "a run of another version", fmt::format("{}, here {}", header_.version, version),
-                "go on with that one, or remove the file: the run then starts anew", Exit::io);
+                "continue with that one, or remove the file: the run then starts anew", Exit::io);
   scene_ = scene_of(header_, path);
   CheckpointHeader found;
   if (exists(state)) {
@@ -171,7 +171,8 @@ void RunFiles::resume(const std::optional<std::string>& until) {
 
 void RunFiles::resume_from_result(const std::optional<std::string>& until) {
   if (!exists(file_))
-    throw Error({file_, 0, ""}, "nothing to go on from", "neither a result nor a journal", "run the scene", Exit::io);
+    throw Error({file_, 0, ""}, "nothing to continue from", "neither a result nor a journal", "run the scene",
+                Exit::io);
   Result result = read_result(file_, Reading::ends);
   scene_ = scene_in(result.attributes, file_);
   const bool ensemble = std::any_of(result.attributes.begin(), result.attributes.end(),
@@ -200,7 +201,7 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
     for (const Group& table : result.groups)
       for (const Column& column : table.columns) numbers += column.rows() * column.width;
     if (numbers > most_in_memory)
-      throw Error({file_, 0, ""}, "too large to be gone on with", fmt::format("{} numbers", numbers),
+      throw Error({file_, 0, ""}, "too large to be extended", fmt::format("{} numbers", numbers),
                   "run the scene with a later run.until", Exit::io);
     result = read_result(file_);
   }

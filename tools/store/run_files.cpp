@@ -34,17 +34,17 @@ RunFiles::RunFiles(std::string file, const Scene& scene) : file_(std::move(file)
       throw Error(
           {path, 0, ""}, "a run that is not finished",
           fmt::format("t = {:.6g}, {:.0f} s of computing", before.statuses.back().time, before.statuses.back().seconds),
-          fmt::format("go on with `cradle resume {}`, or remove it, or give another -o FILE", file_));
+          fmt::format("continue with `cradle resume {}`, or remove it, or give another -o FILE", file_));
   } else if (JournalReader::kind(path)) {
     throw Error({path, 0, ""}, "replicas of an ensemble that is not finished", "",
-                fmt::format("go on with `cradle resume {}`, or remove it, or give another -o FILE", file_));
+                fmt::format("continue with `cradle resume {}`, or remove it, or give another -o FILE", file_));
   }
   header_ = {std::string(version), effective_toml(scene), scene.name, scene.output.checkpoint.every_seconds.value,
              drawn_number()};
   journal_.emplace(path, JournalOf::run, header_.bytes(), nullptr, Sync::no);
 }
 
-// ---- while the run goes on
+// ---- during the run
 
 double RunFiles::seconds() const {
   return seconds_before_ + std::chrono::duration<double>(Clock::now() - started_).count();
@@ -130,7 +130,7 @@ void RunFiles::finish(Result&& end, RunEnd how) {
   const auto pieces = [&](const std::function<void(Group &&)>& each) {
     if (for_each_piece(path, each) != records_ - (header_.first_stands_for - 1))
       throw Error({path, 0, ""}, "not what was written", "records are missing",
-                  "check the disk; `cradle resume` goes on from the last checkpoint", Exit::io);
+                  "check the disk; `cradle resume` continues from the last checkpoint", Exit::io);
     for (const std::string& record : unwritten_)
       for (Group& rows : rows_in(record)) each(std::move(rows));
     for (const Group& table : end.groups) each(Group(table));

@@ -1,11 +1,11 @@
-// The files of a run on its way to FILE, from which it goes on after any end:
+// The files of an unfinished run of FILE, from which it continues after any end:
 //
 //   FILE.part        journal: what it has recorded so far, and how far it is (run_journal.hpp)
-//   FILE.checkpoint  all that is to come depends on, at one moment, and how many records the journal had then
+//   FILE.checkpoint the state of the run at one moment, and how many records the journal had then
 //
-// Going on, the journal is cut to those records: what followed is made again, with the same bits. Without a checkpoint
-// the run starts anew. When FILE is there, the journal goes and the last checkpoint stays: a later `--until` goes on
-// from it, with a journal whose first record is what FILE holds.
+// On resuming, the journal is cut to those records: what followed is made again, with the same bits. Without a
+// checkpoint the run starts anew. When FILE is there, the journal goes and the last checkpoint stays: a later `--until`
+// continues from it, with a journal whose first record is what FILE holds.
 #pragma once
 
 #include <chrono>
@@ -48,14 +48,14 @@ class RunFiles final : public RunStore {
   /// A run that begins. FILE is claimed by whoever calls this. Throws Error (Exit::bad_input) where a long run that is
   /// not finished would be lost, else (Exit::io).
   RunFiles(std::string file, const Scene& scene);
-  /// A run that goes on, up to `until` where that is given. Throws Error where there is none, or it is over.
+  /// A run that continues, up to `until` where that is given. Throws Error where there is none, or it is over.
   RunFiles(std::string file, const std::optional<std::string>& until);
 
   const Scene& scene() const { return scene_; }
-  /// Where there is nothing to go on with, says why; else empty. With which status that run ended.
+  /// Where there is nothing to continue with, says why; else empty. With which status that run ended.
   const std::string& over() const { return over_; }
   Exit over_status() const { return over_status_; }
-  /// "t = 1200, 3.4e7 collisions" that it goes on from; "the start".
+  /// "t = 1200, 3.4e7 collisions" that it continues from; "the start".
   const std::string& resumed_from() const { return from_; }
   std::uint64_t collisions_before() const { return collisions_before_; }
   /// Whether all that was computed up to the end of the run is in its files.
@@ -68,7 +68,7 @@ class RunFiles final : public RunStore {
   void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) override;
   StateReader* loaded_from() override { return state_.get(); }
 
-  /// All that was recorded, with what the run tells at its end, becomes FILE; then the journal goes.
+  /// All that was recorded, with what the run reports at its end, becomes FILE; then the journal goes.
   void finish(Result&& end, RunEnd how);
 
  private:
@@ -95,7 +95,7 @@ class RunFiles final : public RunStore {
 
   bool due_ = false, saved_here_ = false, complained_ = false;
   bool up_to_date_ = false;       // the checkpoint, as of the last `keep` that was to write one
-  std::uint64_t next_check_ = 0;  // collisions, when the clock is looked at again
+  std::uint64_t next_check_ = 0;  // collisions, when the clock is checked again
   double seconds_before_ = 0;     // of computing, in earlier calls
   Clock::time_point started_ = Clock::now(), reported_ = started_, saved_ = started_;
 };

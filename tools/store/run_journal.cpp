@@ -159,7 +159,7 @@ Scene scene_of(const RunHeader& header, const std::string& path) {
 
 Result result_so_far(RunJournal&& journal, const std::string& path) {
   const Scene scene = scene_of(journal.header, path);
-  return {provenance(scene, precision_name(scene.run), "on its way"), std::move(journal.tables)};
+  return {provenance(scene, precision_name(scene.run), "in progress"), std::move(journal.tables)};
 }
 
 double collisions_per_second(const std::vector<RunStatus>& statuses) {

@@ -65,7 +65,7 @@ std::uint64_t for_each_piece(const std::string& path, const std::function<void(G
 
 /// The scene that it is of. Throws Error naming the journal.
 Scene scene_of(const RunHeader& header, const std::string& path);
-/// The same as a result, the run being on its way.
+/// The same as a result of a run in progress.
 Result result_so_far(RunJournal&& journal, const std::string& path);
 /// Collisions per second over the last minute of computing, or what there is of it; 0 where there is nothing yet.
 double collisions_per_second(const std::vector<RunStatus>& statuses);

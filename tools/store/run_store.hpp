@@ -1,4 +1,4 @@
-// Where a run puts what it records while it goes on, and now and then its state: a file beside its result
+// Where a run puts what it records during the run, and now and then its state: a file beside its result
 // (run_files.hpp), or nothing, for runs that are over soon and have no file of their own.
 #pragma once
 
@@ -16,7 +16,7 @@ struct RunStatus {
   double seconds = 0;  // of computing
   double time = 0;
   std::uint64_t collisions = 0;
-  /// At the last look at all particles (guards.hpp); NaN before the first, or where there is no such thing.
+  /// At the last check of all particles (guards.hpp); NaN before the first, or where there is no such thing.
   double gap_min = none, closure_gap = none, closure_speed = none;
 
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -29,16 +29,16 @@ class RunStore {
   /// Rows of the table of that name, after those that it has; columns as in the table.
   virtual void add(Group&& rows) = 0;
 
-  /// To be told often how many collisions the run has made: cheap.
+  /// To be called often with the number of collisions that the run has made: cheap.
   virtual void count(std::uint64_t collisions) = 0;
-  /// Looks at the clock.
+  /// Checks the clock.
   virtual void check_clock() = 0;
   /// Whether `keep` is to be called, with all rows that there are added: it has not been for some time.
   virtual bool due() const = 0;
-  /// Writes down how far the run is and, if it is time or asked for, its state.
+  /// Writes down how far the run is and, if it is time or requested, its state.
   virtual void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) = 0;
 
-  /// What is to be loaded before the run goes on; nothing for one that begins.
+  /// What is to be loaded before the run continues; nothing for one that begins.
   virtual StateReader* loaded_from() = 0;
 };
 

@@ -189,7 +189,7 @@ void NewFile::take_name(Sync sync) {
 
 void NewFile::put_in_place(Sync sync) {
   if (sync == Sync::yes) sync_file(file_, path_);
-  // Some network file systems tell only here that they could not keep what was written.
+  // Some network file systems report only here that they could not keep what was written.
   if (::close(file_.release()) != 0) fail(path_, "could not be written");
   take_name(sync);
 }

@@ -6,7 +6,7 @@
 //
 // The claim is an flock on `.NAME.cradle-lock` beside the file. The file itself cannot carry it, since it is replaced
 // or not there yet. A lock file whose mere existence is the lock (O_EXCL) would outlive a crash and block the name;
-// flock ends with the process. On NFS Linux makes it a lock of the server's, seen by all nodes. File systems that
+// flock ends with the process. On NFS Linux makes it a lock of the server's, visible to all nodes. File systems that
 // cannot lock (some Lustre mounts) are taken at their word: two writers there still never mix, the last one's file
 // stays.
 //
@@ -49,7 +49,7 @@ void write_all(int descriptor, std::array<std::string_view, 3> parts, const std:
 void sync_file(int descriptor, const std::string& path);
 
 /// Whoever holds it is the only one to write to the name. Throws Error (Exit::io) where another program does, or where
-/// no file can be made: so it also tells before a long run that its result can be written.
+/// no file can be made: so it also shows before a long run that its result can be written.
 class FileClaim {
  public:
   explicit FileClaim(const std::string& path);

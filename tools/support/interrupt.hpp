@@ -1,5 +1,5 @@
 // Signals end a run at the next opportunity, in order, with what it has computed. Whoever computes is handed an
-// Interrupt and asks it; only a command connects one with the signals of the process.
+// Interrupt and polls it; only a command connects one with the signals of the process.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@ namespace cradle::tools {
 
 class Interrupt {
  public:
-  /// From now on somebody asks, and has something to keep.
+  /// From now on somebody polls, and has something to keep.
   void heed() { heeded_ = true; }
   bool heeded() const { return heeded_; }
 

@@ -1,4 +1,4 @@
-// Messages and progress, on standard error. Where nobody is there to read them (the terminal is gone) work goes on.
+// Messages and progress, on standard error. Where nobody is there to read them (the terminal is gone) work continues.
 #pragma once
 
 #include <cstdio>

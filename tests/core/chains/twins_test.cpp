@@ -49,7 +49,7 @@ void expect_same_collisions(First first, Second second, double step, double end,
   }
   EXPECT_GT(first.counts().collisions, least_collisions);
   EXPECT_EQ(first.chain().account().order_lost, 0U);
-  EXPECT_EQ(second.chain().account().unresolved, 0U) << "positions no longer tell which collision comes first";
+  EXPECT_EQ(second.chain().account().unresolved, 0U) << "positions no longer show which collision comes first";
 }
 
 template <class First, class Second>
@@ -165,7 +165,7 @@ TEST(Twins, OutputAtTheVeryTimeOfACollisionDoesNotChangeABit) {
 }
 
 // Rows displaced by a few 2^-28, so that collisions all along the line are nearly simultaneous, and keys too wide to
-// tell which comes first: output between them must not change what the run makes of them.
+// decide which comes first: output between them must not change the run.
 TEST(Twins, OutputBetweenNearlySimultaneousCollisionsDoesNotChangeABit) {
   for (const ParticleIndex count : {100, 200, 300}) {
     for (ParticleIndex seed = 0; seed < 20; ++seed) {

@@ -110,7 +110,7 @@ TEST(WetSymmetry, GalileanFrame) {
     EXPECT_EQ(moved.c.m, original.c.m);
     EXPECT_EQ(moved.c.index, original.c.index);
     EXPECT_EQ(moved.energy_lost, original.energy_lost);
-    // Positions are told in the frame asked for: here rounded at 1000.25 times the time.
+    // Positions are given in the requested frame: here rounded at 1000.25 times the time.
     for (std::size_t j = 0; j < original.c.x.size(); ++j)
       ASSERT_NEAR(moved.c.x[j] - 1000.25 * scene.end, original.c.x[j],
                   4 * std::numeric_limits<double>::epsilon() * 1000.25 * scene.end);

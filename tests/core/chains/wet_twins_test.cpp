@@ -92,7 +92,7 @@ TEST(WetTwins, IndexBitsChangeNoBit) {
 }
 
 // Rows that are each other's mirror image: collisions come in pairs at the same time but for rounding, so that keys
-// cannot tell which is first, and at the centre three particles meet.
+// cannot decide which is first, and at the centre three particles meet.
 TEST(WetTwins, NeitherCadenceNorIndexBitsMatterAmongSimultaneousCollisions) {
   std::uint64_t close_calls = 0;
   for (ParticleIndex seed = 0; seed < 20; ++seed) {

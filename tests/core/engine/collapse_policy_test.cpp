@@ -1,6 +1,6 @@
 // What a run does about inelastic collapse, on three particles whose collapse time t_c is known in closed form
 // (McNamara and Young, Phys. Fluids A 4, 496 (1992)). Proves: policy stop settles t_c to 15 digits from collisions that
-// a plain clock can still tell apart, two thirds of them where the collapse is slow, or follows the collapse down to
+// a plain clock can still distinguish, two thirds of them where the collapse is slow, or follows the collapse down to
 // any gap asked for; without a policy, and in absolute positions, the run ends by itself, says why, and keeps account
 // of what it could not resolve.
 #include <gtest/gtest.h>
@@ -115,7 +115,7 @@ TEST_P(CollapsePolicies, InterruptEndsTheRunAfterTheCurrentCollision) {
   EXPECT_EQ(calls, 5U);
   EXPECT_GE(run.counts().collisions, 5U);
   const auto made = run.counts().collisions;
-  // Goes on where it stopped.
+  // Continues where it stopped.
   ASSERT_EQ(run.advance(1e6), Status::exhausted);
   EXPECT_GT(run.counts().collisions, made);
 }
@@ -190,7 +190,7 @@ TEST(CollapsePolicies, WhatIsNotProvedEndsWithTheRange) {
 }
 
 // Particles squeezed between dense clusters shrink their intervals by 2^40 and more, then part: near the elastic limit
-// the run in double and the run in more digits both go on (seen at t = 63.0 and 67.0 of this scene).
+// the run in double and the run in more digits both continue (at t = 63.0 and 67.0 of this scene).
 TEST(CollapsePolicies, SqueezedParticlesAreNotTakenForACollapse) {
   auto run = gap_run(rshock<double>(100), Inelastic(0.9), {CollapsePolicy::stop, 0, {}});
   EXPECT_EQ(run.advance(63.5), Status::reached);

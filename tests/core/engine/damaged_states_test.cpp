@@ -172,8 +172,8 @@ TEST(DamagedStates, ReviewsThatNeverComeAreRefused) {
       << "times a number of epochs they are no integer";
 }
 
-// What loading cannot tell is gone on with: found by fuzzing, collisions by which times overflow. They have an end,
-// too.
+// A run continues from what loading cannot detect: found by fuzzing, collisions by which times overflow. They have an
+// end, too.
 TEST(DamagedStates, TimesThatOverflowEnd) {
   using Run = Made<GapChain<double>, Dry>;
   const auto make = [] {

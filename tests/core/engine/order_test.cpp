@@ -52,7 +52,7 @@ TEST(Order, CollisionsEitherSideOfAGapCommuteInTheChainOfClusters) {
 
 // After the collision at t = 1 the gap between, 3/200 wide, closes at speed 3/4, at t = 1.02; the collision on its
 // other side at t = 1.2 comes first here. As of that time the gap is -27/200: it should have closed.
-TEST(Order, AViolationIsSeenAndCounted) {
+TEST(Order, AViolationIsDetectedAndCounted) {
   const auto expect_counted = [](auto chain) {
     collide(chain, 2);
     EXPECT_EQ(chain.account().order_lost, 0U);

@@ -74,7 +74,7 @@ TEST(Merging, CollapseEndsInOneParticle) {
   EXPECT_NEAR(run.energy_lost(), 1.0, 1e-15);
 }
 
-TEST(Merging, NeverAskedForItIsThePlainLaw) {
+TEST(Merging, NeverReachedItIsThePlainLaw) {
   Simulation clusters(InelasticMerging(Inelastic(0.999), 0.0), ClusterChain<double>(shock(400), 0.0));
   Simulation gaps(Inelastic(0.999), GapChain<double>(shock(400), 0.0));
   for (const double t : {50.0, 150.0, 250.0}) {

@@ -139,7 +139,7 @@ struct Shock {
   Displacement displacement;
 };
 
-// 16 slots and a million are the same run: what keys cannot tell apart is decided by exact times.
+// 16 slots and a million are the same run: what keys cannot distinguish is decided by exact times.
 std::uint64_t close_calls_of_the_same_run(const Shock& shock, int bits) {
   const Scene<double> particles =
       std::make_shared<Rows<double>>(symmetric_rows<double>(shock.particles, 0.5, 1, shock.displacement));

@@ -1,7 +1,6 @@
 // The event loop at its boundaries. Proves: what is not finite, or lies in the past, is refused before anything is
-// changed; whatever is thrown by what the caller has asked to be called, the run goes on with the bits of an
-// undisturbed one; no counter and no time depends on how often a run is asked where it stands, also where collisions
-// are simultaneous.
+// changed; whatever the caller's functions throw, the run continues with the bits of an undisturbed one; no counter and
+// no time depends on how often a run is asked where it stands, also where collisions are simultaneous.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -107,7 +106,7 @@ struct Thrown : std::runtime_error {
   Thrown() : std::runtime_error("thrown by the caller") {}
 };
 
-// Goes on after every exception.
+// Continues after every exception.
 template <class Run, class... Observer> int advance_through(Run& run, double until, Observer&&... observer) {
   for (int thrown = 0;; ++thrown) try {
       EXPECT_EQ(run.advance(until, observer...), Status::reached);
@@ -248,7 +247,7 @@ TEST(Cadence, TheFirstIntervalIsSinceTheStart) {
   EXPECT_EQ(first_interval(position_run<double>(particles, Inelastic(0.05), {}, 10)), 1);
 }
 
-TEST(Cadence, StepsStopAtTheTimeAskedForLast) {
+TEST(Cadence, StepsStopAtTheTimeRequestedLast) {
   auto run = gap_run(rshock<double>(400), Inelastic<double>(0.98, 1e-5)), twin = run;
   run.head_for(300);
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(run.step());

@@ -1,5 +1,5 @@
-// The state of a run as a value: saved anywhere and loaded into a run of the same scene, it goes on with the same bits;
-// what has been cut or does not fit together is refused, and takes no memory beforehand.
+// The state of a run as a value: saved anywhere and loaded into a run of the same scene, it continues with the same
+// bits; what has been cut or does not fit together is refused, and takes no memory beforehand.
 #include <limits>
 #include <memory>
 
@@ -94,7 +94,7 @@ void expect_same(const Law& law, const std::shared_ptr<const Particles<double>>&
 
 using Dry = Inelastic<double>;
 
-TEST(State, RunsGoOnWithTheSameBits) {
+TEST(State, RunsContinueWithTheSameBits) {
   expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), rows(60));
   expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), ring(20));
   expect_same<Dry, GapChain<double, IndividualMasses<double>>>(Dry(0.9, 1e-4), rows(60));
@@ -122,7 +122,7 @@ TEST(State, OfCellsLaidOutAnewIsTaken) {
   }
 }
 
-// Every byte of a state changed: it is refused, or a run that can go on.
+// Every byte of a state changed: it is refused, or a run that can continue.
 TEST(State, WhatDoesNotFitTogetherIsRefused) {
   using Run = Simulation<double, Wet<double>, ClusterChain<double>>;
   const auto make = [] { return Run(Wet<double>(0.01), ClusterChain<double>(ring(12), 0.)); };

@@ -1,7 +1,7 @@
-// The order of collisions that the queue's keys cannot tell apart, hundreds of them at a time: (exact time, position in
-// the line) among all of them, so that no bit depends on the width of keys. Gases on a lattice, near the elastic limit:
-// particles at integers with integer speeds, where collisions come in crowds within the resolution of a key, and are
-// moved apart by 1 - eps, from exactly simultaneous to what a key resolves.
+// The order of collisions that the queue's keys cannot distinguish, hundreds of them at a time: (exact time, position
+// in the line) among all of them, so that no bit depends on the width of keys. Gases on a lattice, near the elastic
+// limit: particles at integers with integer speeds, where collisions come in crowds within the resolution of a key, and
+// are moved apart by 1 - eps, from exactly simultaneous to what a key resolves.
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
@@ -95,7 +95,7 @@ TEST(Ties, EveryCollisionIsTheFirstWhereKeysAreRounded) {
   expect_each_the_first<StrictReal>(300, StrictReal::of(1 - 1e-12), 16);
 }
 
-// How much is looked at: a crowd of k collisions takes some k log k looks at exact times, not k^2.
+// The work: a crowd of k collisions takes some k log k comparisons of exact times, not k^2.
 class Counted : public GapChain<double> {
  public:
   using GapChain<double>::GapChain;

@@ -77,7 +77,7 @@ TYPED_TEST(Executors, CancelledAndContinuedIsTheSameAsInOneGo) {
         [&](ReplicaIndex k) {
           ++started;
           dawdle(k);
-          if (started >= stop && k % 2 == 1) throw ReplicaAbandoned();  // a run that looked at the signal itself
+          if (started >= stop && k % 2 == 1) throw ReplicaAbandoned();  // a run that checked the signal itself
           return values_of(k);
         },
         [&] { return started >= stop; });

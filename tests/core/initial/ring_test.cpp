@@ -76,10 +76,10 @@ TEST(Ring, IsItsSlowTwinInRationalArithmetic) {
     }
 }
 
-// The wet law takes roots, so its twin is no oracle to the last bit. What a scene makes of roundings is told by the
-// twin itself: its error in double and in long double, against the twin in 100 digits, in units of the type's rounding,
-// is the same to a factor of two or so. The chain rounds as often, other numbers: it must be within 8 times that of the
-// twin in 100 digits, in every type, and thus agree with it to 1e-97 in 100 digits.
+// The wet law takes roots, so its twin is no oracle to the last bit. The effect of roundings on a scene is measured by
+// the twin itself: its error in double and in long double, against the twin in 100 digits, in units of the type's
+// rounding, is the same to a factor of two or so. The chain rounds as often, other numbers: it must be within 8 times
+// that of the twin in 100 digits, in every type, and thus agree with it to 1e-97 in 100 digits.
 constexpr int wet_times[] = {1, 3, 8, 20};
 using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>, boost::multiprecision::et_off>;
 
@@ -154,7 +154,7 @@ TEST(Ring, WetParticlesPassAndMergeAsTheTwin) {
     }
 }
 
-TEST(Ring, StartsWithZeroMomentumAndTheVarianceAskedFor) {
+TEST(Ring, StartsWithZeroMomentumAndTheRequestedVariance) {
   constexpr ParticleIndex n = 200000;
   for (const bool gaussian : {true, false}) {
     const Ring<double> ring(n, 2.0 * n, 0.5, gaussian ? gaussian_velocity(7, 3) : uniform_velocity(7, 3),

@@ -29,7 +29,7 @@ template <class T> Wall<T> thermal(const T& position, double temperature) {
 }
 template <class T> T half(int halves) { return T(halves) / T(2); }
 
-// The plainest gas between walls there is: positions and velocities, all pairs looked at before every collision.
+// The plainest gas between walls there is: positions and velocities, all pairs compared before every collision.
 template <class T> struct PlainGas {
   std::vector<T> x, v, m;
   T left, right, speed_left, speed_right, restitution_left, restitution_right, restitution;
@@ -228,7 +228,7 @@ TEST(Walls, RunsInSegmentsHaveTheBitsOfThePlainLoop) {
   EXPECT_GT(made.slabs, 200U);
 }
 
-TEST(Walls, SegmentsTellWhatWallsGave) {
+TEST(Walls, SegmentsReportWhatWallsGave) {
   const auto hot = walled<double>(gas<double>(800), thermal(-1., 0.4), thermal(801., 0.1));
   using Chain = GapChain<double>;
   const Inelastic<double> law(0.98, 1e-3);
@@ -258,7 +258,7 @@ template <class Run> void expect_same_from_a_state(const std::function<Run()>& m
   }
 }
 
-TEST(Walls, RunsGoOnFromASavedState) {
+TEST(Walls, RunsContinueFromASavedState) {
   const auto particles = walled<double>(rmix<double>(30), thermal(-1., 0.5), Wall<double>{31., -0.02, .9});
   const Inelastic<double> law(0.97, 1e-4);
   expect_same_from_a_state<GapRun<double>>([&] { return gap_run<double>(particles, law); });

@@ -30,7 +30,7 @@ TEST(WetLaw, ThresholdFromBothSides) {
 }
 
 // The law decides without the root where it can: never other than the root would.
-TEST(WetLaw, IsTheSameWhereItIsToldWithoutTheRoot) {
+TEST(WetLaw, IsTheSameWhereItIsDecidedWithoutTheRoot) {
   const Wet law(0.05);
   for (const double left : {1.0, 3.0, 7e5, 1e12})
     for (const double right : {1.0, 2.5, 1e9}) {

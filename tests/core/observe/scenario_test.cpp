@@ -1,5 +1,5 @@
 // The watch over the two heaviest clusters: what counts as a meeting, a pass, a stick, a change of roles; and exponents
-// of a pair whose path is known. Told the collisions of a made-up shock, and those of a run against a count by hand.
+// of a pair whose path is known. Given the collisions of a made-up shock, and those of a run against a count by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -47,7 +47,7 @@ TEST(Segments, ComeAndGoBetweenAdvances) {
   EXPECT_EQ(seen, made);
 }
 
-TEST(Segments, AskTheCallerAndGoOnAfterAnythingThatIsThrown) {
+TEST(Segments, PollTheCallerAndContinueAfterAnythingThatIsThrown) {
   struct Thrown {};
   int calls = 0, stopped = 0;
   Policy<double> policy;

@@ -254,7 +254,7 @@ TEST(ClusterMeeting, PassingCostsTheLossAndKeepsMomentum) {
   EXPECT_FALSE(run.first_is_left());
   const double v = run.first().v, u = run.second()->v;
   EXPECT_NEAR(2 * v + 3 * u, 2 * 0.5 - 3 * 0.5, 8 * ulp);
-  EXPECT_NEAR(0.6 * (v - u) * (v - u), 0.6 - 0.25, 8 * ulp) << "the first goes on to the right, slower";
+  EXPECT_NEAR(0.6 * (v - u) * (v - u), 0.6 - 0.25, 8 * ulp) << "the first continues to the right, slower";
   EXPECT_GT(v, u);
   EXPECT_NEAR(run.first().x, 2 * v, 16 * ulp);
 }

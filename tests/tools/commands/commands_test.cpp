@@ -21,7 +21,7 @@ class Commands : public ProgramTest {
   }
 };
 
-TEST_F(Commands, InfoTellsSceneTimesAndCounts) {
+TEST_F(Commands, InfoPrintsSceneTimesAndCounts) {
   make_small_result();
   const Printed info = shell("cradle info small.h5");
   EXPECT_EQ(info.status, 0) << info.err;
@@ -65,7 +65,7 @@ TEST_F(Commands, ScenesAreListedAndPrinted) {
   EXPECT_TRUE(line < title && list.out.find('\n', line + 1) > title) << list.out;
 }
 
-TEST_F(Commands, CheckTellsEffectiveValuesAndCost) {
+TEST_F(Commands, CheckPrintsEffectiveValuesAndCost) {
   // Counted: 57079264, and 12153997, where many particles have most of their collisions still before them.
   const std::string fig11 = shell("cradle check fig11").out;
   for (const auto* text : {"collisions: about 5.7e+07\n", "end: 100 at most", "memory: about 20 MB"})

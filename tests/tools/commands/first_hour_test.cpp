@@ -55,7 +55,7 @@ TEST_F(FirstHour, NewScenesAreThoseTheyComeFrom) {
   }
 }
 
-TEST_F(FirstHour, NewSceneTellsOfEveryKeyThatItCouldUse) {
+TEST_F(FirstHour, NewSceneListsEveryKeyThatItCouldUse) {
   const Printed made = shell("cradle new");
   ASSERT_EQ(made.status, 0) << made.err;
   EXPECT_EQ(made.out, "wrote shock.toml: change it, then `cradle run shock.toml`\n");
@@ -90,7 +90,7 @@ TEST_F(FirstHour, ManualPageHasEveryCommandOptionAndKey) {
     EXPECT_NE(page.out.find(option), page.out.npos) << option;
   for (const tools::Field& field : tools::scene_fields())
     EXPECT_NE(page.out.find("\n.B " + std::string(field.key) + "\n"), page.out.npos) << field.key;
-  if (!there("groff")) GTEST_SKIP() << "no groff: how the page is set was not looked at";
+  if (!there("groff")) GTEST_SKIP() << "no groff: how the page is set was not checked";
   const Printed set = shell("cradle manual | groff -man -ww -Tutf8 > page.txt");
   EXPECT_EQ(set.err, "");
   EXPECT_GT(std::filesystem::file_size(folder / "page.txt"), 10000U);

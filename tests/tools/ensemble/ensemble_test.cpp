@@ -128,7 +128,7 @@ TEST_F(Ensembles, CollapseIsAnOutcome) {
         << i;
 }
 
-TEST_F(Ensembles, ValuesAreCountedInBinsWhereAskedFor) {
+TEST_F(Ensembles, ValuesAreCountedInBinsWhereRequested) {
   const std::string spread = " --spread energy=0:40:4000 --spread profiles/0000/density=0:4:8 ";
   run("ensemble shock.toml --replicas 25" + spread + "-o a.h5");
   run("ensemble shock.toml --first 25 --replicas 26" + spread + "-o b.h5");
@@ -213,7 +213,7 @@ TEST_F(Ensembles, AllReplicasMayFail) {
 }
 
 TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
-  // What run_scene tells in RunOutcome::summary, whatever it is, and energy, are there for every replica.
+  // What run_scene reports in RunOutcome::summary, whatever it is, and energy, are there for every replica.
   tools::EnsembleOptions options;
   options.replicas = {0, 3};
   tools::run_ensemble(scene("shock.toml"), options, path("a.h5"));
@@ -223,7 +223,7 @@ TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
   for (const auto& [name, value] : alone.summary) EXPECT_EQ(numbers(result("a.h5"), "replicas", name)[1], value);
 }
 
-TEST_F(Ensembles, InfoTellsWhatFilesAndJournalsHold) {
+TEST_F(Ensembles, InfoPrintsWhatFilesAndJournalsHold) {
   run("ensemble shock.toml --replicas 3 -o a.h5");
   const Printed file = shell("cradle info a.h5");
   for (const auto* text :

@@ -1,4 +1,4 @@
-"""Headless Chromium, driven through a pipe as DevTools speaks it: loads a page, looks at it, photographs it.
+"""Headless Chromium, driven through a pipe as DevTools speaks it: loads a page, inspects it, photographs it.
 
 What it logs, what it throws and what it asks any network for is in `complaints` and `requests`.
 """

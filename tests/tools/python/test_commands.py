@@ -125,7 +125,7 @@ class Progress(unittest.TestCase):
             sys.stderr = kept
         self.assertEqual(text, "\r\033[K[" + "#" * 15 + " " * 15 + "] half\r\033[K")
 
-    def test_nothing_is_shown_where_nobody_looks(self):
+    def test_nothing_is_shown_without_a_terminal(self):
         with progress.shown(False) as show:
             self.assertIsNone(show)
 

@@ -46,7 +46,7 @@ class Files(unittest.TestCase):
             file.attrs["format_version"], file.attrs["scene"] = 1, ""
         self.refused("earlier.h5", "earlier version")
 
-    def test_every_damage_is_seen(self):
+    def test_every_damage_is_found(self):
         with open(small.shock(), "rb") as file:
             whole = file.read()
         cuts = [len(whole) * k // 16 for k in range(1, 16)] + [len(whole) - 1]
@@ -54,13 +54,13 @@ class Files(unittest.TestCase):
             with open("cut.h5", "wb") as file:
                 file.write(whole[:cut])
             self.refused("cut.h5", "damaged|read")
-        for place in range(8, len(whole), len(whole) // 37):  # the first eight bytes tell that it is HDF5
+        for place in range(8, len(whole), len(whole) // 37):  # the first eight bytes say that it is HDF5
             with open("flipped.h5", "wb") as file:
                 file.write(whole[:place] + bytes([whole[place] ^ 16]) + whole[place + 1:])
             if place < len(whole) - 24:
                 self.refused("flipped.h5", "damaged")
 
-    def test_damage_is_seen_in_large_files_when_asked_for(self):
+    def test_damage_is_found_in_large_files_on_request(self):
         with open(small.shock(), "rb") as file:
             whole = bytearray(file.read())
         whole[len(whole) // 2] ^= 1
@@ -86,7 +86,7 @@ class Files(unittest.TestCase):
             self.assertFalse(os.path.exists(made))
 
     def test_pictures_of_a_result_that_lacks_groups(self):
-        # Changed on purpose: h5py drops the seal, and what is missing is told by name.
+        # Changed on purpose: h5py drops the seal, and what is missing is reported by name.
         shutil.copy(small.shock(), "lacking.h5")
         with h5py.File("lacking.h5", "r+") as file:
             del file["snapshots/0001/v"]
@@ -119,7 +119,7 @@ class OnTheWay(unittest.TestCase):
             running.terminate()
             running.wait()
         with open(page, encoding="utf-8") as file:
-            self.assertIn("on its way", file.read())
+            self.assertIn("in progress", file.read())
 
     def test_journals_of_replicas_and_checkpoints_are_named(self):
         for name, magic, wrong in (("a.h5.part", b"CRADLEJ3", "resume a.h5"),

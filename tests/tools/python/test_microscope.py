@@ -316,7 +316,7 @@ class InBrowser(unittest.TestCase):
                     self.browser.picture(f"collapse3-{name}-dark")
                     self.browser.dark(False)
 
-    def test_what_doubles_do_not_hold_is_left_out_and_told(self):
+    def test_what_doubles_do_not_hold_is_left_out_and_reported(self):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
         self.collisions = rational_collapse(Fraction(1, 10**700))[1]
         with collapse_result(self.folder, self.collisions).file as file:

@@ -43,7 +43,7 @@ class Reports(unittest.TestCase):
         for make in small.ALL:
             yield make, small.page(make)
 
-    def test_hold_everything_and_ask_for_nothing(self):
+    def test_hold_everything_and_request_nothing(self):
         for make, text in self.pages():
             page = Page(text)
             for link in page.links:
@@ -90,7 +90,7 @@ class Reports(unittest.TestCase):
             self.assertEqual((out.stdout, out.stderr), ("again.html\n", ""))
             self.assertEqual(read("again.html"), text, make.__name__)
 
-    def test_tell_how_to_run_it_again(self):
+    def test_say_how_to_run_it_again(self):
         # The command and the scene of the page give the same file.
         for make in small.ALL:
             with cradle.open(make()) as result:
@@ -106,7 +106,7 @@ class Reports(unittest.TestCase):
                 self.assertEqual(different.returncode, 0, f"{command}\n{different.stdout}{different.stderr}")
                 os.remove("again.h5")
 
-    def test_tell_what_is_proved(self):
+    def test_say_what_is_proved(self):
         text = small.page(small.collapse)
         self.assertIn("<b>Proved</b>: each of the 322 collisions", text)
         with cradle.open(small.collapse()) as result:

@@ -145,7 +145,7 @@ TEST_F(Mpi, FailedReplicasAreListedWhicheverRankRanThem) {
   EXPECT_NE(again.err.find("replica 7 failed: "), std::string::npos) << again.err;
 }
 
-TEST_F(Mpi, WhatIsWrongIsToldOnce) {
+TEST_F(Mpi, WhatIsWrongIsReportedOnce) {
   const Printed scene_error = shell(job(3, "ensemble wet.toml --replicas 5 --set law.loss=-1"));
   EXPECT_EQ(scene_error.status, 2);
   const auto first = scene_error.err.find("cradle: ");

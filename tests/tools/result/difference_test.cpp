@@ -1,5 +1,5 @@
-// `cradle diff`. Proves: two results are the same only if everything in them is; each kind of difference is told where
-// it is, with its size; a tolerance lets pass what it says and counts it; and the command's statuses.
+// `cradle diff`. Proves: two results are the same only if everything in them is; each kind of difference is reported
+// where it is, with its size; a tolerance lets pass what it says and counts it; and the command's statuses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(Difference, OfAResultAndItselfIsNone) {
   EXPECT_EQ(none.tolerated, 0U);
 }
 
-TEST(Difference, OfEachKindIsToldWhereItIs) {
+TEST(Difference, OfEachKindIsReportedWithItsPlace) {
   const struct {
     std::function<void(Result&)> change;
     std::string reported;

@@ -53,7 +53,7 @@ TEST_F(FullDisk, LimitOnFileSizesIsNoCrash) {
   EXPECT_EQ(contents(folder / "a.h5"), "old\n");
 }
 
-TEST_F(FullDisk, EnsembleGoesOnFromItsJournal) {
+TEST_F(FullDisk, EnsembleContinuesFromItsJournal) {
   const std::string ensemble = "cradle ensemble fig2 --quiet --set initial.particles=100 --set run.until=20 --set "
                                "output.snapshots=[] --set output.profiles.times=[] --replicas 12 -o ";
   ASSERT_EQ(shell(ensemble + "whole.h5").status, 0);

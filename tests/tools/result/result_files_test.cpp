@@ -49,7 +49,7 @@ TEST_F(ResultFiles, WhatStandsInPlaceOfASealIsDamage) {
   EXPECT_THROW(tools::read_result(path()), tools::Error);
 }
 
-TEST_F(ResultFiles, EndsOfColumnsAreEnoughToTellWhatIsThere) {
+TEST_F(ResultFiles, EndsOfColumnsAreEnoughToListWhatIsThere) {
   tools::Result result = small_result();
   std::vector<double> many(1000);
   for (std::size_t k = 0; k < many.size(); ++k) many[k] = static_cast<double>(k) + 0.5;
@@ -64,7 +64,7 @@ TEST_F(ResultFiles, EndsOfColumnsAreEnoughToTellWhatIsThere) {
   EXPECT_EQ(tools::listing(ends, path(), true), tools::listing(tools::read_result(path()), path(), true));
 }
 
-TEST_F(ResultFiles, AnyChangedByteIsSeen) {
+TEST_F(ResultFiles, AnyChangedByteIsDetected) {
   const std::string whole = contents(folder / "a.h5");
   for (std::size_t at = 0; at < whole.size() - tools::seal_size; at += 97) {
     std::string changed = whole;

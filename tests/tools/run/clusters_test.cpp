@@ -138,7 +138,7 @@ TEST_F(RunClusters, LateOscillationsHaveTheExponentsOf17) {
   const auto interval = [&](std::size_t k) { return time[k] - time[k - 1]; };
   const double span = std::log(time[last] / time[from]);
   const double error = (2 * interval(from) / time[from] + 2 * work / energy[from]) / span;
-  EXPECT_LT(error, 0.03) << "better than what simulations can tell";
+  EXPECT_LT(error, 0.03) << "better than what simulations resolve";
   EXPECT_NEAR(std::log(speed[last] / speed[from]) / span, -1. / 3, error);
   EXPECT_NEAR(std::log(energy[last] / energy[from]) / span, 1. / 3, error);
   EXPECT_NEAR(std::log(interval(last) / interval(from)) / span, 2. / 3, error);

@@ -101,7 +101,7 @@ TEST_F(Signals, KeepWhatARunHas) {
         shell(endless_run("long.h5") + until_collisions("long.h5") + "kill -" + signal + " $pid; wait $pid");
     EXPECT_EQ(run.status, status) << signal << run.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "long.h5"));
-    EXPECT_NE(run.err.find("`cradle resume long.h5` goes on from there"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("`cradle resume long.h5` continues from there"), std::string::npos) << run.err;
     const Printed state = shell("cradle info long.h5.checkpoint");
     EXPECT_EQ(state.status, 0) << state.err;
     EXPECT_EQ(state.out.find(" 0 collisions"), std::string::npos) << state.out;

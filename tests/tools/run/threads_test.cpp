@@ -30,7 +30,7 @@ TEST_F(RunThreads, NeverChangeAResult) {
     }
 }
 
-TEST_F(RunThreads, AreWhatCheckTellsBeforehand) {
+TEST_F(RunThreads, AreWhatCheckPrintsBeforehand) {
   const auto printed = [&](const std::string& scene) { return shell("cradle check --threads 2 " + scene).out; };
   EXPECT_NE(printed("fig2").find("threads: 2, about 1.8 times as fast as one once all particles are active\n"),
             std::string::npos);
@@ -38,7 +38,8 @@ TEST_F(RunThreads, AreWhatCheckTellsBeforehand) {
   EXPECT_NE(printed("ring.toml").find("threads: 2, about 1.8 times"), std::string::npos);
   EXPECT_NE(printed("fig2 --set initial.particles=200").find("(few particles)"), std::string::npos);
   EXPECT_NE(printed("fig2 --set run.coordinates=absolute").find("(absolute coordinates)"), std::string::npos);
-  EXPECT_NE(printed("fig2 --set output.events=true").find("(every collision to be told, in order)"), std::string::npos);
+  EXPECT_NE(printed("fig2 --set output.events=true").find("(every collision is recorded, in order)"),
+            std::string::npos);
   EXPECT_NE(printed("collapse3").find("(a collapse to be found)"), std::string::npos);
 }
 

@@ -256,7 +256,7 @@ TEST(Scene, KeysThatDoNotApply) {
             "remove it, it belongs to law.type = \"wet\"");
   EXPECT_TRUE(begins(message(with_line(2, "type = \"sticky\"")),
                      "s.toml:3: law.restitution: key of another law (found law.type = \""));
-  // More telling than the loss that is missing.
+  // More helpful than the loss that is missing.
   EXPECT_TRUE(begins(message(with_line(2, "type = \"wet\"")), "s.toml:3: law.restitution: key of another law "));
   EXPECT_EQ(message(with_line(6, "length = 10")),
             "s.toml:6: initial.length: key of another initial state (found initial.type = \"rows\"): "
@@ -523,7 +523,7 @@ TEST(Scene, CheckpointsAreNoPartOfTheEffectiveScene) {
                      "s.toml:10: output.checkpoint.every_seconds: out of range (found -1): "));
 }
 
-TEST(Scene, PointsAreSpreadOverATimeAndGoOnBehindIt) {
+TEST(Scene, PointsAreSpreadOverATimeAndContinueBehindIt) {
   const Scene scene = parse(good + "[output]\nseries = { points = 11, over = 100 }");
   EXPECT_EQ(scene.output.series.over, tools::Decimal("100"));
   EXPECT_TRUE(begins(message(good + "[output]\nseries = { points = 11, over = 1e9 }"),
@@ -542,7 +542,7 @@ TEST(ReadScene, ResultsAreNoScenes) {
     FAIL() << "a result is no scene";
   } catch (const Error& error) {
     EXPECT_EQ(error.what(), path.string() +
-                                ": a result, not a scene (found HDF5): give the scene file, or look at it "
+                                ": a result, not a scene (found HDF5): give the scene file, or inspect it "
                                 "with `cradle info " +
                                 path.string() + "`");
   }

@@ -62,7 +62,7 @@ TEST_F(Journal, CutAnywhereGivesTheWholeRecordsBeforeTheCut) {
     EXPECT_GE(found.size(), at_least) << size;
     at_least = found.size();
     EXPECT_EQ(reader.whole_bytes() + reader.torn_bytes(), size);
-    // Whoever goes on cuts off what is torn.
+    // Whoever continues cuts off what is torn.
     {
       JournalWriter writer(path());
       writer.continue_after(reader.whole_bytes());
@@ -74,7 +74,7 @@ TEST_F(Journal, CutAnywhereGivesTheWholeRecordsBeforeTheCut) {
   EXPECT_EQ(at_least, 2U);
 }
 
-TEST_F(Journal, AnyChangedByteIsSeen) {
+TEST_F(Journal, AnyChangedByteIsDetected) {
   write_three();
   const std::string whole = contents(path());
   for (std::size_t at = 0; at < whole.size(); ++at) {

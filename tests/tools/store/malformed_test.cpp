@@ -1,7 +1,6 @@
-// Random damage to what a run is started or gone on with: scenes, journals, checkpoints. Damage that a checksum tells
-// of is told of; behind a checksum that is right, which whoever means harm can write, whatever stands there is refused
-// or gone on with to some end, without a crash and within two seconds. CRADLE_MUTATIONS=10000 makes it more than the
-// usual 200.
+// Random damage to what a run is started or resumed from: scenes, journals, checkpoints. Damage that a checksum detects
+// is reported; behind a checksum that is right, which whoever means harm can write, whatever stands there is refused or
+// resumed to some end, without a crash and within two seconds. CRADLE_MUTATIONS=10000 makes it more than the usual 200.
 #include <unistd.h>
 
 #include <csignal>
@@ -175,7 +174,7 @@ TEST_F(MalformedFiles, CheckpointsAndJournals) {
     write("a.h5.checkpoint", state);
     std::filesystem::remove(folder / "a.h5");
     try {
-      const auto done = in_another_process([&] { return resume(path("a.h5")), std::string("gone on"); }, 2);
+      const auto done = in_another_process([&] { return resume(path("a.h5")), std::string("resumed"); }, 2);
       EXPECT_TRUE(done.has_value()) << "a crash, or more than two seconds";
     } catch (const Error& error) {
       ++refused;

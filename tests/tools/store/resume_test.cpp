@@ -1,5 +1,5 @@
-// Runs that are stopped anywhere and gone on with end in the bytes of the run that was left alone: law x scalar type x
-// coordinates x initial state x policy x threads x where it is cut.
+// Runs that are stopped anywhere and resumed end in the bytes of an uninterrupted run: law x scalar type x coordinates
+// x initial state x policy x threads x where it is cut.
 #include <csignal>
 #include <memory>
 #include <ostream>
@@ -18,7 +18,7 @@ namespace resume_test {
 using namespace cradle::tools;
 using cradle::tests::contents;
 
-// Hands on to the files, and stops the run where it is told to.
+// Hands on to the files, and stops the run at a given point.
 class Stopping final : public RunStore {
  public:
   struct At {
@@ -225,7 +225,7 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
                             "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
                         "scene.toml", {std::string("run.precision=") + precision});
         ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);
-        // Which is gone on with as any other.
+        // Which is resumed as any other.
         if (resume("later.h5", "13.05", {.checks = 2}, 1).end == RunEnd::interrupted) {
           ASSERT_EQ(resume("later.h5", std::nullopt, {}, 1).end, RunEnd::reached);
         }

@@ -1,5 +1,5 @@
-// What lies beside a result while its run goes on, as users meet it: looked into, damaged, of another version, in the
-// way of another run.
+// What lies beside a result during its run, as users meet it: inspected, damaged, of another version, in the way of
+// another run.
 #include <algorithm>
 #include <csignal>
 #include <cstring>
@@ -43,7 +43,7 @@ class Files : public ProgramTest {
   }
 };
 
-TEST_F(Files, ARunOnItsWayCanBeLookedInto) {
+TEST_F(Files, ARunInProgressCanBeInspected) {
   const Printed inspected =
       shell(endless_run("a.h5") + until_collisions("a.h5") +
             "until cradle info a.h5.part >info && grep -q '^time.* of 1e+15' info; do sleep 0.1; done; cat info; "
@@ -77,7 +77,7 @@ TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
   EXPECT_NE(done.out.find("nothing to do"), std::string::npos) << done.out;
   const Printed none = shell("cradle resume b.h5");
   EXPECT_EQ(none.status, 4);
-  EXPECT_NE(none.err.find("nothing to go on from"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("nothing to continue from"), std::string::npos) << none.err;
   for (const auto& [until, said] : {std::pair("100", "before the end"), std::pair("soon", "not a number")}) {
     const Printed wrong = shell(std::string("cradle resume a.h5 --until ") + until);
     EXPECT_EQ(wrong.status, 2) << until;
@@ -132,16 +132,16 @@ TEST_F(Files, ALongRunThatIsNotFinishedIsNotThrownAway) {
   const std::string before = contents(folder / "a.h5.part");
   const Printed anew = shell(run + "-o a.h5");
   EXPECT_EQ(anew.status, 2);
-  EXPECT_NE(
-      anew.err.find("a run that is not finished (found t = 5, 3600 s of computing): go on with `cradle resume a.h5`"),
-      std::string::npos)
+  EXPECT_NE(anew.err.find(
+                "a run that is not finished (found t = 5, 3600 s of computing): continue with `cradle resume a.h5`"),
+            std::string::npos)
       << anew.err;
   EXPECT_TRUE(contents(folder / "a.h5.part") == before);
   EXPECT_EQ(shell("cradle resume a.h5").status, 0);
 }
 
 // A number of the state that has changed, as memory without error correction does it: nothing of the file is damaged,
-// but the run that goes on from it cannot be.
+// but the run that continues from it cannot be.
 TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {
   ASSERT_EQ(shell("cradle run cooling --quiet --set law.type=inelastic --set law.restitution=0.99 --set "
                   "law.cutoff=0.01 --set initial.particles=100 --set run.until=50 -o a.h5")

@@ -91,7 +91,7 @@ def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), r
 
 def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
            progress: Progress = None) -> Result:
-    """Goes on with a run, an ensemble or a sweep that was stopped, or, with `until`, further; returns its result."""
+    """Continues a run, an ensemble or a sweep that was stopped, or, with `until`, extends it; returns its result."""
     path = os.fspath(path)
     words = ["resume", path] + (["--until", str(until)] if until is not None else [])
     return called(words, path, threads, progress)

@@ -2,7 +2,7 @@
 
 The page draws world lines of particles, which are straight between collisions, at depths that neither positions nor
 times resolve. So it gets what defines a gap exactly: who meets whom, the interval to the collision before, the closing
-speed, and the gaps at the start. Everything else follows from these by sums near the place that is looked at.
+speed, and the gaps at the start. Everything else follows from these by sums near the place in view.
 
 Arrays are typed, byte planes of equal weight stand together, and the whole is deflated: {"type", "length", "deflate"}.
 Up to `FULL_COLLISIONS` collisions every bit is kept. Beyond, intervals keep 40 bits of mantissa; closing speeds, which

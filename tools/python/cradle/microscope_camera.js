@@ -25,7 +25,7 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Looks at collision e, with given spans; the frame moves with the particles there where the lab's would tilt it.
+  // Moves to collision e, with given spans; the frame moves with the particles there where the lab's would tilt it.
   camera.goTo = (e, T, X) => {
     const anchor = { e, a: world.left[e] };
     // Where the run ends soon after, the end stands at four fifths of the picture.
@@ -182,7 +182,8 @@ function microscopeCamera(world) {
     camera.chartFor();
   };
 
-  // Whether there are far too many collisions for a chart, told quickly from positions; false where these do not tell.
+  // Whether there are far too many collisions for a chart, estimated quickly from positions; false where these do not
+  // show it.
   camera.crowded = () => {
     const { view } = camera, { e } = view.anchor;
     const t0 = e < 0 ? world.start : world.time[e], x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e];

@@ -1,4 +1,4 @@
-// Charts: world lines in coordinates anchored at a collision, and the same in positions where the whole is looked at.
+// Charts: world lines in coordinates anchored at a collision, and the same in positions where the whole is in view.
 //
 // An anchor is {e, a}: collision e, or e = -1, the start, and the particle a with its right neighbour. In a chart tau
 // is the time since then and xi the distance from there in the frame in which these two have no momentum. Both are
@@ -153,7 +153,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
     const start = Math.min(one.tau, Math.max(from, timeOf(one.particle, one.slot - 1)));
     one.from = [start, at(one, start)];
   };
-  // One way through the collisions. `known`: the lines that go on, by particle. `step`: 1 forwards, -1 backwards.
+  // One way through the collisions. `known`: the lines that continue, by particle. `step`: 1 forwards, -1 backwards.
   const follow = (known, begins, ends, step, before, after, endHere, beginHere) => {
     for (let i = begins; i !== ends; i += step) {
       const k = collisions[i], now = tau[i];

@@ -75,7 +75,7 @@ function microscopeFromFuture(world, a, b, e) {
     kicks.push([next, isA ? microscopeKick(world, a, next) : -microscopeKick(world, b, next)]);
     if (isA) ++i; else ++j;
     if (world.event[next] === MICROSCOPE.merge && microscopeGone(world, next) === particle) {
-      // What it merged into goes on in its place.
+      // What it merged into takes its place.
       const heir = microscopeOther(world, particle, next), slot = microscopeSlotAfter(world, heir, next);
       if (isA) { a = heir; i = slot; } else { b = heir; j = slot; }
     }

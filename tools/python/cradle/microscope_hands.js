@@ -21,7 +21,7 @@ function microscopeHands(canvas, scope) {
   };
 
   canvas.addEventListener("wheel", event => {
-    // A page that is scrolled past goes on scrolling: the wheel is the microscope's when that has been clicked.
+    // A page that is scrolled past continues to scroll: the wheel is the microscope's when that has been clicked.
     if (document.activeElement !== canvas && !event.ctrlKey) return;
     event.preventDefault();
     const turned = (event.deltaY || event.deltaX) * (event.deltaMode === 1 ? 30 : event.deltaMode === 2 ? 300 : 1);
@@ -71,7 +71,7 @@ function microscopeHands(canvas, scope) {
     if (event.ctrlKey || event.metaKey) return;
     const box = scope.box(), step = MICROSCOPE_KEYS[event.key], here = scope.camera().view.anchor.e;
     const middle = state.pointer && inside(state.pointer), corner = { x: box.left, y: box.top };
-    // Alt and a key are other letters on some keyboards: the key's own name tells.
+    // Alt and a key are other letters on some keyboards: the key's own name decides.
     const key = event.code === "Equal" || event.code === "NumpadAdd" || event.key === "+" ? "+" :
       event.code === "Minus" || event.code === "NumpadSubtract" ? "-" : event.key;
     const acts = {
@@ -88,7 +88,7 @@ function microscopeHands(canvas, scope) {
 }
 
 // Play. A collapse is flown into: zooming about its last collision at a steady rate, so that collisions pass by evenly.
-// Else time goes on, a picture's width in ten seconds. `frame` draws, `stop` is called at the end.
+// Else time runs, a picture's width in ten seconds. `frame` draws, `stop` is called at the end.
 function microscopePlay(camera, state, frame, stop) {
   const { world } = camera, last = world.n - 1;
   let before = performance.now();

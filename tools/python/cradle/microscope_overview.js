@@ -125,7 +125,7 @@ function microscopeGoneAt(world, particle) {
   return world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === particle ? world.time[last] : Infinity;
 }
 
-// The particles that come into sight. As long as they keep their order some columns tell, else all may.
+// The particles that come into sight. As long as they keep their order some columns suffice, else all are needed.
 function microscopeVisible(world, view, row, height) {
   if (!world.keepsOrder || world.ring) return [0, world.particles - 1];
   let lowest = world.particles - 1, highest = 0;

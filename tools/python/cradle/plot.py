@@ -6,7 +6,7 @@ paper's units, x/l, v/2u0, t 2u0/l, E/(m (2u0)^2) (m = 1); other scenes as they 
 
 Every function takes
     result   an opened result, or a path
-    axes     where to draw: as many matplotlib axes as the picture has panels (else Error tells how many); by default
+    axes     where to draw: as many matplotlib axes as the picture has panels (else Error says how many); by default
              a new figure in the style of the program
     theory   False leaves predictions of the paper out, which else the program is asked for (`cradle theory`)
 and raises Error where the result does not hold what the picture shows.
@@ -55,7 +55,7 @@ __all__ = ["names", "save", *PICTURES]
 
 
 def predictions(result: Result, theory: bool = True):
-    """The program's table for the result's scene; empty without the program, which a warning tells."""
+    """The program's table for the result's scene; empty without the program, with a warning."""
     from .commands import scene_file
     from .drawing.reading import Theory
     if not theory or not result.scene_text:

@@ -29,7 +29,7 @@ def find() -> str:
     for place in tried:
         if found := shutil.which(place):
             return found
-    raise Error(f"the program cradle is missing (looked at {', '.join(tried)}): "
+    raise Error(f"the program cradle is missing (tried {', '.join(tried)}): "
                 "build it with tools/quickstart.sh, or set CRADLE_PROGRAM to it", BAD_FILE)
 
 

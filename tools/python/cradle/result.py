@@ -16,13 +16,13 @@ from .seal import check_seal, damaged, hdf5_length, read_seal
 from .tables import Column, Table, Tables, reading
 
 FORMAT = 2
-CHECKED = 64 << 20  # bytes of a file whose checksum is looked at without being asked: a tenth of a second
+CHECKED = 64 << 20  # bytes of a file whose checksum is checked without a request: a tenth of a second
 JOURNALS = {b"CRADLER2": "run", b"CRADLEJ3": "replicas", b"CRADLEC2": "checkpoint"}
 EARLIER = (b"CRADLER1", b"CRADLEJ1", b"CRADLEJ2", b"CRADLEC1")  # of format 1
 
 
 def open(path: str | os.PathLike, check: bool | None = None) -> Result:
-    """Opens a result, or what there is of a run on its way, FILE.part, which the program then reads (`cradle export`).
+    """Opens a result, or what there is of a run in progress, FILE.part, which the program then reads (`cradle export`).
 
     check: read the whole file and compare it with the checksum that it was sealed with; by default files of up to
     64 MiB, so that large ones open at once. Columns are read when they are used.
@@ -33,10 +33,10 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     if kind == "run":
         return so_far(path)
     if kind == "replicas":
-        raise Error(f"{path}: replicas on their way, no statistics yet: `cradle resume {without_part(path)}` goes on "
-                    f"with them, `cradle info {path}` tells how many are finished", BAD_FILE)
+        raise Error(f"{path}: unfinished replicas, no statistics yet: `cradle resume {without_part(path)}` continues "
+                    f"with them, `cradle info {path}` prints how many are finished", BAD_FILE)
     if kind == "checkpoint":
-        raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` goes on from "
+        raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues from "
                     "it", BAD_FILE)
     try:
         whole = os.path.getsize(path) <= CHECKED if check is None else check
@@ -110,11 +110,11 @@ def opened(path: str) -> h5py.File:
 
 
 def so_far(path: str) -> Result:
-    """Of a run on its way, what is recorded, as the program writes it into a file that is gone when it is opened."""
+    """Of a run in progress, what is recorded, as the program writes it into a file that is gone when it is opened."""
     with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
         copy = os.path.join(folder, "so_far.h5")
         program.call(["export", path, "--result", copy])
-        result = Result(path, open_file(copy), sealed=True, on_its_way=True)
+        result = Result(path, open_file(copy), sealed=True, in_progress=True)
     return result
 
 
@@ -123,13 +123,13 @@ class Result:
 
     path: of the file.
     file: the h5py.File, or of a point its h5py.Group.
-    on_its_way: the run had not ended when the file was read.
+    in_progress: the run had not ended when the file was read.
     sealed: the file has the program's seal, and so is as it was written (see open).
     text, status: what the program printed and its exit status, where run() or its like made it; else "" and 0.
     """
 
-    def __init__(self, path: str, root: h5py.Group, sealed: bool = False, on_its_way: bool = False, label: str = ""):
-        self.path, self.file, self.sealed, self.on_its_way, self.label = path, root, sealed, on_its_way, label
+    def __init__(self, path: str, root: h5py.Group, sealed: bool = False, in_progress: bool = False, label: str = ""):
+        self.path, self.file, self.sealed, self.in_progress, self.label = path, root, sealed, in_progress, label
         self.text, self.status = "", 0
 
     def __enter__(self) -> Result:
@@ -180,7 +180,7 @@ class Result:
 
     @property
     def outcome(self) -> str:
-        return "on its way" if self.on_its_way else str(self.attributes.get("outcome", ""))
+        return "in progress" if self.in_progress else str(self.attributes.get("outcome", ""))
 
     # ---- what came out
 

@@ -1,4 +1,4 @@
-"""Whether a result is as it was written, seen before HDF5, which may crash on damaged files, has looked at it.
+"""Whether a result is as it was written, checked before HDF5, which may crash on damaged files, reads it.
 
 Behind HDF5's last byte stand 24 bytes more: `CRADLES1`, the length of HDF5's part and the CRC-64/XZ of all before it.
 Python has no such CRC, but liblzma checks it behind a block of an .xz file: so the file is handed to it as one,

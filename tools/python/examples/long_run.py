@@ -1,9 +1,9 @@
-"""A long inelastic run: when does the shock collapse, and how does it go on?
+"""A long inelastic run: when does the shock collapse, and what follows?
 
     python long_run.py [PARTICLES] [UNTIL]
 
 Rows of 400 particles by default, which takes a second; 8000 particles to t = 9000 are the paper's shock past its
-collapse (some minutes). The run may be stopped with Ctrl-C and the script started again: it goes on where it was.
+collapse (some minutes). The run may be stopped with Ctrl-C and the script started again: it continues where it was.
 """
 import os
 import sys

@@ -5,7 +5,7 @@ import numpy as np
 from .style import BLUE, GREY, ORANGE, plt, power, shades, stacked, subplots, thinned
 
 DECADES, BINS, FIRST = 4.3, 13, 3  # maxima in so many logarithmic bins over the last decades; the fit begins in bin 3
-ENOUGH = 20  # samples of a bin: of fewer the largest tells nothing of the swing
+ENOUGH = 20  # samples of a bin: of fewer the largest says nothing of the swing
 
 
 def pictures(result, _theory, units):

@@ -6,7 +6,7 @@ import numpy as np
 from .particles import few
 from .style import BLUE, GREY, ORANGE, RED, panel_letter, shades, subplots
 
-MOST_SINGLE = 40  # of the cradle: more circles would not be told apart
+MOST_SINGLE = 40  # of the cradle: more circles could not be distinguished
 
 
 def pictures(result, _theory, units):

@@ -12,7 +12,7 @@ def report(result: Result | str | os.PathLike, output: str | os.PathLike | None 
     """Writes one self-contained HTML file and returns its path: no network, light and dark, prints; same file, same
     bytes.
 
-    result: an opened result, or the path of one, or FILE.part of a run on its way.
+    result: an opened result, or the path of one, or FILE.part of a run in progress.
     output: by default the result's path with .html. Written beside its place and renamed.
     Raises Error where the result cannot be read or the page not be written.
     """

@@ -164,8 +164,8 @@ def warnings(result: Result, version: str) -> list[str]:
     """What makes numbers of this result doubtful or incomplete, HTML each; version: of the program, "" if unknown."""
     about = result.attributes
     found = []
-    if result.on_its_way:
-        found.append("The run is on its way: what is shown is what it had recorded when this page was made.")
+    if result.in_progress:
+        found.append("The run is in progress: this page shows what it had recorded when the page was made.")
     if not result.sealed:
         found.append("The file has no seal: it was changed since the program wrote it, or written by an older version.")
     if "inelastic collapse" in result.outcome and result.kind == "run":

@@ -153,7 +153,7 @@ def cost(result: Result) -> list[tuple[str, str, str]]:
                        if "collisions" in point.replicas)
     entries = [("collisions", number(collisions), "of all replicas" if result.attributes.get("replicas") else "")
                ] if collisions is not None else []
-    if not result.on_its_way:
+    if not result.in_progress:
         entries.append(("file", number(os.path.getsize(result.path)), "bytes"))
     else:
         lines = of_program(["info", result.path]).splitlines()
@@ -178,7 +178,7 @@ def provenance(result: Result, version: str) -> str:
         entries.append(("scene, in the proof", code(result.certificate.attributes["scene_checksum"]), "CRC-64"))
     if "identity" in about:
         entries.append(("identity", code(f"{int(about['identity']):016x}"), "of scenes and what is recorded"))
-    if not result.on_its_way and (seal := read_seal(result.path)):
+    if not result.in_progress and (seal := read_seal(result.path)):
         entries.append(("file", code(f"{seal[1]:016x}"), "its seal, CRC-64/XZ"))
     for line in version.splitlines():
         name, _, value = line.partition(": ")

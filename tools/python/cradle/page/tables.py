@@ -7,7 +7,7 @@ from ..result import Result
 from ..tables import Column, Table
 from .elements import measured, number, rows, sortable, text, unit
 
-MOST_ROWS = 1000  # of replicas: more are told by their statistics
+MOST_ROWS = 1000  # of replicas: more are shown by their statistics
 BESIDE = ("_error", "_replicas")
 QUANTILES = (0, 0.05, 0.25, 0.5, 0.75, 0.95, 1)
 

@@ -327,7 +327,8 @@ class InBrowser(unittest.TestCase):
         self.collisions = self.collisions[:data["collisions"]]
         self.browser.open(page)
         self.browser.run("cradleMicroscopeTest.actions.deepest()")
-        self.browser.until(f"cradleMicroscopeTest.readout().endsWith('the first {data['collisions']} collisions are here')")
+        self.browser.until("cradleMicroscopeTest.readout()"
+                           f".endsWith('the first {data['collisions']} collisions are here')")
         self.assertEqual(self.view()["anchor"]["e"], data["collisions"] - 1)
         self.assert_exact(self.view(), 1)
 

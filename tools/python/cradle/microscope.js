@@ -16,7 +16,8 @@ function cradleMicroscope(element, data) {
   const bar = make("div", "microscope-bar", element), stage = make("div", "microscope-stage", element);
   const canvas = make("canvas", "microscope-canvas", stage), readout = make("div", "microscope-readout", element);
   make("div", "microscope-help", element, "drag: move · click, then wheel, or + −: zoom (shift: time only, alt: space " +
-       "only; over an axis: that one) · n, p: next, previous collision · d: deepest · 0: all · c: colours · space: play");
+       "only; over an axis: that one) · n, p: next, previous collision · d: deepest · 0: all · c: colours · " +
+       "space: play");
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", "world lines of the particles in space and time");
@@ -137,7 +138,8 @@ function cradleMicroscope(element, data) {
 
   // The readout: the collision or the gap under the pointer, else where the view is.
   function describe() {
-    const { view } = camera, where = view.anchor.e < 0 ? `t = ${world.start}, beside particle ${number(view.anchor.a)}` :
+    const { view } = camera, e = view.anchor.e;
+    const where = e < 0 ? `t = ${world.start}, beside particle ${number(view.anchor.a)}` :
       `at collision ${view.anchor.e + 1} of ${world.total}, particles ${pairName(view.anchor.e)}`;
     const n = value => microscopeNumber(value, Math.min(6, world.digits));
     const view_ = `${where}: ${microscopeNumber(view.T, 3)} t across, ${microscopeNumber(view.X, 3)} l high`;

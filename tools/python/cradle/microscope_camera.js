@@ -217,7 +217,8 @@ function microscopeCamera(world) {
     const next = { anchor: view.anchor, early: view.tau - 1.5 * view.T, late: view.tau + 1.5 * view.T, T: view.T,
                    low: view.xi - 1.5 * view.X, high: view.xi + 1.5 * view.X, V: view.V };
     camera.built = next;
-    camera.chart = camera.crowded() ? null : microscopeChart(world, view.anchor, next.early, next.late, next.low, next.high, next.V);
+    camera.chart = camera.crowded() ? null :
+      microscopeChart(world, view.anchor, next.early, next.late, next.low, next.high, next.V);
   };
 
   camera.limits = limits;

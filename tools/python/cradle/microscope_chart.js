@@ -130,7 +130,8 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
 function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   const { left, right, list, begin, event, slotLeft, slotRight } = world, e = anchor.e, all = [];
   for (const { particle } of around)
-    for (let slot = microscopeSlotAfter(world, particle, first - 1); slot < begin[particle + 1] && list[slot] <= last; ++slot) {
+    for (let slot = microscopeSlotAfter(world, particle, first - 1);
+         slot < begin[particle + 1] && list[slot] <= last; ++slot) {
       all.push(list[slot]);
       if (all.length > most) return null;
     }
@@ -194,7 +195,8 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
     line(particle, microscopeSlotAfter(world, particle, e) - 1, 0, place, u));
   const came = new Set();  // slots at which particles came in forwards: known from the collision before on
   const merged = k => event[k] === MICROSCOPE.merge;
-  follow(new Map(middle.map(one => [one.particle, one])), split, collisions.length, 1, k => world.speed[k], (k, known) => {
+  const known = new Map(middle.map(one => [one.particle, one]));
+  follow(known, split, collisions.length, 1, k => world.speed[k], (k, known) => {
     if (!merged(k)) return;
     const one = known.get(microscopeGone(world, k));
     one.to = [one.tau, one.xi];

@@ -99,7 +99,8 @@ function microscopeFromFuture(world, a, b, e) {
 function microscopePlace(world, particle, e) {
   const slot = microscopeSlotAfter(world, particle, e) - 1;
   if (slot < world.begin[particle]) return world.x0[particle] + world.v0[particle] * microscopeFlight(world, -1, e);
-  const last = world.list[slot], turned = world.ring && world.right[last] === particle ? world.turn[last] * world.ring : 0;
+  const last = world.list[slot];
+  const turned = world.ring && world.right[last] === particle ? world.turn[last] * world.ring : 0;
   return world.x[last] + turned + world.velocity[slot] * microscopeFlight(world, last, e);
 }
 function microscopeVelocity(world, particle, e) {

@@ -97,8 +97,9 @@ function microscopePlay(camera, state, frame, stop) {
     const tau = last < 0 || e < 0 ? NaN : microscopeFlight(world, e, last);
     if (!chart || !(Math.abs(tau - view.tau) <= 0.5 * view.T)) return null;
     const i = chart.collisions.length - 1;
-    return i >= 0 && chart.collisions[i] === last && Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2
-      ? [chart.tau[i], chart.xi[i] - view.V * chart.tau[i]] : null;
+    const near = i >= 0 && chart.collisions[i] === last &&
+      Math.abs(chart.xi[i] - view.V * chart.tau[i] - view.xi) < view.X / 2;
+    return near ? [chart.tau[i], chart.xi[i] - view.V * chart.tau[i]] : null;
   };
   if (world.collapse && !inSight()) camera.home();
   const step = now => {
@@ -137,12 +138,15 @@ function microscopeGapAt(camera, [tau, xi]) {
   };
   if (chart) {
     for (const line of chart.lines)
-      if (line.from[0] <= tau && line.to[0] >= tau) consider(line.particle, microscopeAlong(chart, line, tau) - view.V * tau);
+      if (line.from[0] <= tau && line.to[0] >= tau)
+        consider(line.particle, microscopeAlong(chart, line, tau) - view.V * tau);
   } else {
     const x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e], t = world.time[Math.max(0, e)] + tau;
     for (let particle = 0; particle < world.particles; ++particle) {
-      if (!world.keepsOrder && world.begin[particle + 1] > world.begin[particle] && microscopeGoneAt(world, particle) < t) continue;
-      const place = microscopePlace(world, particle, collision) + microscopeVelocity(world, particle, collision) * since;
+      const collided = world.begin[particle + 1] > world.begin[particle];
+      if (!world.keepsOrder && collided && microscopeGoneAt(world, particle) < t) continue;
+      const place = microscopePlace(world, particle, collision) +
+        microscopeVelocity(world, particle, collision) * since;
       consider(particle, place - x0 - (view.lab + view.V) * tau);
     }
   }

@@ -122,7 +122,8 @@ function microscopeFirstAfter(time, t) {
 // When a particle merges into another one; infinite where it does not.
 function microscopeGoneAt(world, particle) {
   const last = world.list[world.begin[particle + 1] - 1];
-  return world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === particle ? world.time[last] : Infinity;
+  const gone = world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === particle;
+  return gone ? world.time[last] : Infinity;
 }
 
 // The particles that come into sight. As long as they keep their order some columns suffice, else all are needed.

@@ -33,7 +33,8 @@ async function microscopeCollisions(data) {
     start: data.start, total: data.total, digits: data.digits, collapse: data.collapse, name: data.name,
     right: right || left.map(particle => particle + 1 === particles && data.length ? 0 : particle + 1),
     speed: speed || new Float64Array(n), speedGiven: Boolean(speed), event: event || new Uint8Array(n),
-    w0: gap0.map((_, particle) => v0[particle] - v0[particle + 1 < particles ? particle + 1 : 0]), index: null, valid: null,
+    w0: gap0.map((_, particle) => v0[particle] - v0[particle + 1 < particles ? particle + 1 : 0]),
+    index: null, valid: null,
   };
   microscopeReplay(world);
   world.end = data.end === null || n === 0 ? world.time[n - 1] : Math.max(data.end, world.time[n - 1]);
@@ -56,8 +57,8 @@ async function microscopeSnapshot(data, snapshot) {
     valid[particle + 1] = due;
   }
   const none = () => new Float64Array(0), world = {
-    n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0), ring: 0,
-    interval: none(), speed: none(), event: new Uint8Array(0), law: data.law, first: snapshot.first, index, valid,
+    n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0),
+    ring: 0, interval: none(), speed: none(), event: new Uint8Array(0), law: data.law, first: snapshot.first, index, valid,
     start: snapshot.time, total: 0, digits: 9, collapse: null, name: data.name, speedGiven: true,
   };
   microscopeReplay(world);

@@ -7,8 +7,8 @@ import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (beyond, blast, particles, certificate, clusters, cooling, domino, energy, ensemble, onset, scenarios, shock,
-               spacetime, splash, sticky, structure, sweep, trust, walls, zone)
+from . import (beyond, blast, certificate, clusters, cooling, domino, energy, ensemble, onset, particles, scenarios,
+               shock, spacetime, splash, sticky, structure, sweep, trust, walls, zone)
 from .reading import read_result
 from .style import Units, style
 

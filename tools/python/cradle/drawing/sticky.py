@@ -101,7 +101,8 @@ def draw_mass(ax, result, units, formula, core, growth):
             label=rf"{formula}, ${core:.4g}+{growth * units.t:.4g}\,t$")
     ax.plot(time[collided] / units.t, cloud[collided], color=BLUE, label="simulation")
     heaviest = np.array([(s["time"], peak(s)[2]) for s in result.snapshots])
-    ax.plot(heaviest[:, 0] / units.t, heaviest[:, 1], "o", color=ORANGE, ms=5, label="heaviest particle of the snapshots")
+    ax.plot(heaviest[:, 0] / units.t, heaviest[:, 1], "o", color=ORANGE, ms=5,
+            label="heaviest particle of the snapshots")
     off = np.abs(cloud - core - growth * time)[collided]
     ax.legend(loc="upper left", title=f"largest difference {off.max():.2g}" if off.size else None, title_fontsize=7.5)
     ax.set(xlabel=units.time_label(), ylabel="mass of the cluster $M$", ylim=(0, None), xlim=(time[0], time[-1]))

@@ -52,7 +52,8 @@ def draw_structure(snapshot, units, axes=None):
     inmost = max(CORE_PARTICLES, len(v) // CORE_SHARE)
     particle, width = densest(gap, inmost)
     x = distances(gap, particle)
-    whole, core = 1.05 * max(-x[0], x[-1]), 1.05 * max(width / 2, -x[particle - inmost // 2], x[particle + (inmost - 1) // 2])
+    whole = 1.05 * max(-x[0], x[-1])
+    core = 1.05 * max(width / 2, -x[particle - inmost // 2], x[particle + (inmost - 1) // 2])
     boxes = []
     steps = np.arange(4) / 3
     # between equal ratios of width and equal ratios of number: a collapsed core would leave middle panels empty

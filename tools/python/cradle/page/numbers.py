@@ -119,11 +119,11 @@ def scenario(result: Result) -> list[tuple[str, str, str]]:
 def certificate(result: Result) -> str:
     about = result.certificate.attributes
     if about.get("verdict") == "proved":
-        message = (f"<p class=proved><b>Proved</b>: each of the {number(about['collisions'])} collisions is that of the exact "
-                "system, the one with the scene's decimals as they are written, and none is missing. ")
+        message = (f"<p class=proved><b>Proved</b>: each of the {number(about['collisions'])} collisions is that of "
+                   "the exact system, the one with the scene's decimals as they are written, and none is missing. ")
     else:
         message = (f"<p class=open><b>Undecided</b> after {number(about.get('collisions', 0))} collisions: "
-                f"{text(about.get('undecided', ''))}. ")
+                   f"{text(about.get('undecided', ''))}. ")
     return message + f"Run in {text(about['precision'])}, proved with {number(about['digits'])} digits.</p>\n"
 
 
@@ -193,7 +193,8 @@ def warnings(result: Result, version: str) -> list[str]:
         found.append("The proof is undecided: what comes after its place is not proved.")
     smallest = min((t.attributes["gap_min"] for t in result.snapshots if "gap_min" in t.attributes), default=1.0)
     if smallest < 0:
-        found.append("A snapshot has a gap below zero, by less than the rounding of the moment: collisions are in order.")
+        found.append("A snapshot has a gap below zero, by less than the rounding of the moment: collisions are in "
+                     "order.")
     if version and about.get("cradle_version") and version != about["cradle_version"]:
         found.append(f"Written by cradle {text(about['cradle_version'])}, this page by {text(version)}.")
     return found

@@ -70,7 +70,8 @@ def lead(result: Result) -> str:
         particles = initial.get("particles") or len(initial.get("x", ())) or sum(
             int(float(initial.get(side, {}).get("particles", 0))) for side in ("left", "right"))
         parts.append(f"{law.get('type', '')} law")
-        parts.append(f"{number(int(float(particles)))} particles in {text(scene.get('run', {}).get('coordinates', ''))}")
+        coordinates = text(scene.get("run", {}).get("coordinates", ""))
+        parts.append(f"{number(int(float(particles)))} particles in {coordinates}")
     if about.get("replicas"):
         parts.append(f"{number(about['replicas'])} replicas")
     parts += [text(about.get("precision", "")), f"<b>{text(result.outcome)}</b>"]
@@ -133,13 +134,13 @@ def again(result: Result) -> str:
     command = "cradle " + " ".join(command_of(result))
     version = text(result.attributes.get("cradle_version", ""))
     caption = (f"<p>With this scene as {code(name + '.toml')} the same cradle, {version}, gives the same bytes:</p>\n"
-            + preformatted(command))
+               + preformatted(command))
     if len(scene) > LONGEST_SCENE:
         export = f"cradle export {os.path.basename(result.path)} --to DIR"
         return caption + f"<p>The scene has {number(len(scene))} characters: {code(export)} writes it.</p>\n"
     link = "data:application/toml;base64," + base64.b64encode(scene.encode()).decode("ascii")
     return caption + ('<p class=screen><button type="button" class="copy" data-of="scene">copy the scene</button> '
-                   f'<a download="{html.escape(name)}.toml" href="{link}">save it</a></p>\n'
+                      f'<a download="{html.escape(name)}.toml" href="{link}">save it</a></p>\n'
                    + preformatted(scene).replace("<pre>", '<pre id="scene">', 1))
 
 

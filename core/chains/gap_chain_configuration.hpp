@@ -19,8 +19,8 @@ template <Real T, class Masses> T GapChain<T, Masses>::front_right(const T& time
   return (outermost < right_.particle() ? x - gap_at(slot(outermost), time) : x).value();
 }
 
-// Particles that are not held move like the outermost one that is. Velocities are told from a wall, where there is one:
-// its own x is known, and its own velocity. On a ring the last gap follows from the others.
+// Particles that are not held move like the outermost one that is. Velocities are relative to a wall, where there is
+// one: its own x is known, and its own velocity. On a ring the last gap follows from the others.
 template <Real T, class Masses> T GapChain<T, Masses>::kinetic_energy() const {
   const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
   const ParticleIndex count = particles_->count();

@@ -22,7 +22,7 @@
 //
 // and d in the same way, with dw'/dw for w'/w where the restitution depends on the speed. That all happens later by
 // tau, D = tau w for all gaps, changes no sequence; late in a collapse it would hide all else. So whenever the origin
-// of time moves, deviations are told anew from the time of the last collision, which is then right by definition; the
+// of time moves, deviations are counted from the time of the last collision, which is then right by definition; the
 // sum of these delays is kept.
 //
 // A collision is certain if `certain_by` times the larger sample changes neither that it happens (its closing speed
@@ -69,7 +69,7 @@ struct Deviation {
       closing[k] += share_of_speed * other.closing[k];
     }
   }
-  // As told so much later: every gap by what it closes in the meantime.
+  // As counted from a later time: every gap by what it closes in the meantime.
   void shift(const std::array<double, samples>& later, double closing_speed) {
     for (std::size_t k = 0; k < samples; ++k) gap[k] -= closing_speed * later[k];
   }

@@ -70,7 +70,7 @@ template <Real T, class Gaps> class Certainty {
     slope_ = to_double(T((law(T(w + step), masses).closing - at.closing) / step));
   }
 
-  // Tells the deviations of all gaps held anew (watched_gap.hpp).
+  // Counts the deviations of all gaps held from a new time (watched_gap.hpp).
   void begin_anew(Gaps& gaps, Slot first, Slot last) {
     for (Slot s = first; s <= last; ++s) gaps[s].off.shift(last_, to_double(gaps[s].closing));
     for (std::size_t k = 0; k < Deviation::samples; ++k) delay_[k] += std::exchange(last_[k], 0);
@@ -139,8 +139,9 @@ template <Real T, class Gaps> class Certainty {
 
   using Delays = std::array<double, Deviation::samples>;
   Roundings roundings_;
-  Delays last_{}, delay_{};  // by which the last collision is late, of what is told now; all that was told anew
-  double slope_ = 0;         // 0: w'/w
+  Delays last_{},
+      delay_{};       // by which the last collision is late, since the deviations are counted; in all times before
+  double slope_ = 0;  // 0: w'/w
 };
 
 }  // namespace cradle

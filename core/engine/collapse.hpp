@@ -120,7 +120,7 @@ template <Real T> struct CollapseWatch {
   }
 
   // The collapse of the gap at s, where a collision has just been made, and the one on its left or right; null where
-  // none is known. Each collision may tell more of it than those before.
+  // none is known. Each collision may bound it better than those before.
   template <class Law, class Chain>
   const KnownCollapse<T>* beside(const Law& law, const Chain& chain, Slot s, bool on_left, const T& local,
                                  std::uint64_t collisions) {

@@ -1,12 +1,12 @@
 #pragma once
 // Whether time advances. Many particles may meet at one time and place, n(n - 1)/2 collisions if they are elastic.
-// Where more follow each other without any time passing, the scalar type cannot tell their times apart, or they have no
-// end.
+// Where more follow each other without any time passing, the scalar type cannot distinguish their times, or they have
+// no end.
 //
-// Offsets from a moving origin tell times apart for as long as a type's exponents last, which may be for ever. So there
-// is a second bound, the same in every type: collisions at one time since the start, as the type holds it. A collapse
-// may end there by a cut-off, and n particles can collapse only if 1 - eps is some pi/n or more: then their speeds fall
-// by a factor exp(x) within n^2 x/pi collisions, and the bound allows for a factor of 10^5000.
+// Offsets from a moving origin distinguish times for as long as a type's exponents last, which may be for ever. So
+// there is a second bound, the same in every type: collisions at one time since the start, as the type holds it. A
+// collapse may end there by a cut-off, and n particles can collapse only if 1 - eps is some pi/n or more: then their
+// speeds fall by a factor exp(x) within n^2 x/pi collisions, and the bound allows for a factor of 10^5000.
 
 #include <cstdint>
 #include <tuple>

@@ -14,7 +14,7 @@
 namespace cradle {
 
 enum class Status {
-  reached,     // all collisions up to the time asked for are made
+  reached,     // all collisions up to the requested time are made
   collapsed,   // policy stop: inelastic collapse, or a gap below the one given; see collapse()
   exhausted,   // a gap is about to underflow, or time stands still: the scalar type resolves no more
   interrupted  // the caller's `interrupt` said so

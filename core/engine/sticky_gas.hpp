@@ -42,7 +42,7 @@ template <Real T> class StickyGas {
     for (ParticleIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }
 
-  // Goes on to the state at a time not before the last one: all that meet up to then have merged. Interrupted, it goes
+  // Advances to the state at a time not before the last one: all that meet up to then have merged. Interrupted, it goes
   // on where the same time is asked for again, to the same bits: what is held is in order already.
   Status advance(const T& time) {
     time_ = time;

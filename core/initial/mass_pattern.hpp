@@ -17,7 +17,7 @@ namespace cradle {
 template <Real T> class MassPattern {
  public:
   MassPattern() = default;
-  // `identical`: whether they are all one number; nothing: as the type tells. Who has them in more digits than the type
+  // `identical`: whether they are all one number; nothing: as in the type. Who has them in more digits than the type
   // says so, since the velocities of a ring depend on it (ring.hpp). Throws std::invalid_argument for masses that are
   // not positive and finite.
   explicit MassPattern(std::vector<T> masses, std::optional<bool> identical = {}) : masses_(std::move(masses)) {

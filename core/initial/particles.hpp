@@ -122,7 +122,7 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   require(particles.kinetic_energy(), "the kinetic energy");
 }
 
-// What every chain asks of its particles. Throws std::invalid_argument.
+// What every chain requires of its particles. Throws std::invalid_argument.
 template <Real T> void require_particles(const Particles<T>& particles, const T& start) {
   if (particles.count() < 1)
     throw std::invalid_argument("a chain without particles (" + std::to_string(particles.count()) +

@@ -9,7 +9,7 @@
 //   ring
 //
 // Bounds follow from the type, the collisions made and what there was at the start, not from how fast particles happen
-// to be when they are looked at: a light particle may have been faster by the square root of any ratio of masses. With
+// to be when they are checked: a light particle may have been faster by the square root of any ratio of masses. With
 // E the energy at the start, M the mass of all particles and m the least one,
 //
 //   delta = 8 epsilon (C + N + 64),   C collisions of N particles, a factor of 5 to spare,

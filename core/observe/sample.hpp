@@ -1,6 +1,6 @@
 #pragma once
-// One row of the time series: the state after all collisions at times <= t, in a few numbers. The ledger of losses
-// holds what walls have given as a loss below zero; here the two are told apart.
+// One row of the time series: the state after all collisions at times <= t, in a few numbers. The ledger holds what
+// walls have given as a negative loss; here the two are separated.
 //
 // The energy comes from the ledger as long as that leaves half of the energy at the start or more, at constant cost;
 // else from the velocities of all particles (relative_motion.hpp), as it does where walls have given or taken some.

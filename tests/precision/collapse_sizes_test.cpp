@@ -61,7 +61,7 @@ template <class T> int expect_ends_of_all_sizes() {
       }
       const bin_float error = wide(report->time.high) + wide(report->time.low) - expected->time.value();
       EXPECT_LE(magnitude(error), wide(report->uncertainty));
-      EXPECT_GT(in_more_digits, collisions) << "more digits, more collisions that they tell apart";
+      EXPECT_GT(in_more_digits, collisions) << "more digits, more collisions that they distinguish";
     }
   return open;
 }

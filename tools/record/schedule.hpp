@@ -80,7 +80,7 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
 template <Real T>
 std::optional<Decimal> series_decimal(const Scene& scene, const std::vector<T>& times, const T& time) {
   const Series& series = scene.output.series;
-  // Times that the type cannot tell apart are left out: the decimal may stand further back in its list.
+  // Times that the type cannot distinguish are left out: the decimal may stand further back in its list.
   auto k = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time) - times.begin());
   const T start = number<T>(scene.run.start);
   if (!series.times.empty()) {

@@ -47,7 +47,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   };
   const std::type_identity<ClusterChain<T>> clusters;
   if (scene.law.type == LawType::wet) return simulation(Wet<T>(number<T>(scene.law.loss)), clusters);
-  if (!law_row(scene).needs_events && !observed)  // where nobody asks for collisions none need be made
+  if (!law_row(scene).needs_events && !observed)  // without an observer no collisions need be made
     return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, particles, start, policy);
   if (scene.law.type == LawType::sticky || scene.run.collapse == scene::CollapsePolicy::merge) {
     const bool sticky = scene.law.type == LawType::sticky;

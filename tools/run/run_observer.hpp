@@ -29,7 +29,7 @@ struct RunSample {
   double time = 0;
   std::string time_text;         // with all digits of the run's precision, as are energy and fronts
   long double epsilon = 0;       // of that precision
-  std::vector<AskedTime> asked;  // all that the run's precision cannot tell from its time
+  std::vector<AskedTime> asked;  // all that the run's precision cannot distinguish from its time
   bool of_series = false;
   bool at_collision = false;  // the run ends here, with the collision that it made last
   Counts counts;

@@ -115,7 +115,7 @@ TEST(Energy, OfRowsAndRings) {
   }
 }
 
-// Velocities are told from the wall that closing speeds begin or end with.
+// Velocities are relative to the wall that closing speeds begin or end with.
 TEST(Energy, BetweenWalls) {
   for (const double speed : {0., .25})
     for (const bool left : {true, false})

@@ -180,7 +180,7 @@ TEST_F(Certified, AMassTooSmallForADoubleIsThere) {
 #endif
 }
 
-// Equal masses are told by their decimals: whether the mean velocity of a ring is a whole number depends on it.
+// Equal masses are recognised by their decimals: whether the mean velocity of a ring is a whole number depends on it.
 TEST_F(Certified, RingsOfOneMassThatIsNoWholeNumber) {
   const Printed printed =
       certify("cooling --set initial.particles=40 --set initial.masses=[0.1] --set run.until=5 --set "

@@ -107,7 +107,7 @@ class OnTheWay(unittest.TestCase):
                         if len(result.series.get("time", ())) < 2:
                             continue
                         self.assertTrue(result.on_its_way)
-                        self.assertEqual(result.outcome, "on its way")
+                        self.assertEqual(result.outcome, "in progress")
                         self.assertLess(result.series.time[-1], 1e7)
                         page = cradle.report(result, "way.html")
                         break

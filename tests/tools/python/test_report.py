@@ -1,4 +1,4 @@
-"""Reports as texts: whole, of one file, the same twice, with what they must tell."""
+"""Reports as texts: whole, of one file, the same twice, with what they must show."""
 import html
 import html.parser
 import os

@@ -163,7 +163,7 @@ TEST(Scene, NumbersThatThePrecisionTakesFor0) {
             std::string::npos);
   EXPECT_NE(message(list + mpfr + "output.profiles.range = [-1e400, 1]").find("not a range of doubles"),
             std::string::npos);
-  // A wall beside a particle by less than any binary number of a hundred digits tells.
+  // A wall beside a particle by less than any binary number of a hundred digits resolves.
   const std::string close = "1." + std::string(400, '0') + "1";
   parse(list + mpfr + "walls.right.position = " + close);
   EXPECT_NE(

@@ -59,9 +59,9 @@ TEST_F(Files, FollowingARunEndsWithIt) {
   // A run that ends takes its journal away. This one never does, so that following it begins in time on any machine.
   const Printed followed =
       shell(endless_run("a.h5") + until_collisions("a.h5") +
-            "cradle info --follow a.h5.part >told & "
-            "follower=$!; while ! grep -q 'journal of a run' told; do sleep 0.02; done; kill -9 $pid; "
-            "rm a.h5.part; wait $follower; status=$?; cat told; (exit $status)");
+            "cradle info --follow a.h5.part >printed & "
+            "follower=$!; while ! grep -q 'journal of a run' printed; do sleep 0.02; done; kill -9 $pid; "
+            "rm a.h5.part; wait $follower; status=$?; cat printed; (exit $status)");
   EXPECT_EQ(followed.status, 0) << followed.err;
   EXPECT_NE(followed.out.find("a.h5.part is gone: the run is over"), std::string::npos) << followed.out;
 }

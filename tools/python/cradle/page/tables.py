@@ -71,7 +71,7 @@ def replicas(result: Result) -> str:
 def outcome_texts(table: Table) -> dict[int, str]:
     """How a replica ended, by the numbers of the column: "0 reached the end, 1 inelastic collapse, ..."."""
     said = table["outcome"].description.split(", ") if "outcome" in table else []
-    return {int(word): told for word, _, told in (one.partition(" ") for one in said) if word.isdigit()}
+    return {int(word): meaning for word, _, meaning in (one.partition(" ") for one in said) if word.isdigit()}
 
 
 def points(result: Result) -> str:

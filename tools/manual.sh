@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Brings tools/README.md up to date: between the lines `<!-- output of: COMMAND -->` and `<!-- end -->` stands what
-# COMMAND prints. With --check it changes nothing and says what differs (status 1).
+# Updates tools/README.md and tools/KEYS.md: between the lines `<!-- output of: COMMAND -->` and `<!-- end -->` stands
+# what COMMAND prints. With --check it changes nothing and prints what differs (status 1).
 #   tools/manual.sh [--check] [PROGRAM]      (default: build/release/tools/cradle)
 set -euo pipefail
 [[ ${1:-} == --check ]] && check=yes && shift || check=no
 cradle=$(realpath "${1:-$(dirname "${BASH_SOURCE[0]}")/../build/release/tools/cradle}")
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-page() {
+updated() {
   local generated=no line
   while IFS= read -r line; do
     [[ $line == '<!-- end -->' ]] && generated=no
@@ -17,12 +17,15 @@ page() {
       read -ra words <<<"${BASH_REMATCH[1]}"
       printf '```text\n%s\n```\n' "$("$cradle" "${words[@]}")"
     fi
-  done <README.md
+  done <"$1"
 }
 
-new=$(page)
-if [[ $check == yes ]]; then
-  diff README.md - <<<"$new" || { echo "tools/README.md is not what the program prints: run tools/manual.sh PROGRAM" >&2; exit 1; }
-else
-  printf '%s\n' "$new" >README.md
-fi
+for page in README.md KEYS.md; do
+  new=$(updated "$page")
+  if [[ $check == no ]]; then
+    printf '%s\n' "$new" >"$page"
+  elif ! diff "$page" - <<<"$new"; then
+    echo "tools/$page is not what the program prints: run tools/manual.sh PROGRAM" >&2
+    exit 1
+  fi
+done

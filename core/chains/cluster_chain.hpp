@@ -25,7 +25,7 @@
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/held_range.hpp"
 #include "cradle/core/engine/state.hpp"
-#include "cradle/core/initial/relative_motion.hpp"
+#include "cradle/core/engine/relative_motion.hpp"
 
 namespace cradle {
 

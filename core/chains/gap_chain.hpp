@@ -26,7 +26,7 @@
 #include "cradle/core/chains/held_range.hpp"
 #include "cradle/core/engine/account.hpp"
 #include "cradle/core/engine/state.hpp"
-#include "cradle/core/initial/relative_motion.hpp"
+#include "cradle/core/engine/relative_motion.hpp"
 
 namespace cradle {
 

@@ -16,7 +16,7 @@
 #include "cradle/core/engine/event_queue.hpp"
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/state.hpp"
-#include "cradle/core/initial/relative_motion.hpp"
+#include "cradle/core/engine/relative_motion.hpp"
 
 namespace cradle {
 

@@ -25,7 +25,7 @@
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/engine/state.hpp"
-#include "cradle/core/initial/relative_motion.hpp"
+#include "cradle/core/engine/relative_motion.hpp"
 
 namespace cradle {
 

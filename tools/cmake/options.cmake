@@ -21,7 +21,7 @@ target_compile_options(cradle_options INTERFACE -ffp-contract=off
                        # Else g++ may call sqrt for what is one instruction, for the sake of errno, which nobody reads.
                        -fno-math-errno
                        # g++ would store two members of a gap in one piece, which are read one by one a collision later:
-                       # processors cannot hand on parts of a store (bench/RESULTS.md: a tenth of the time of a
+                       # processors cannot hand on parts of a store (bench/results/trials.md: a tenth of the time of a
                        # collision).
                        $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 

@@ -1,6 +1,6 @@
 // Free cooling against its laws: the early inelastic gas against Haff's, the late inelastic gas against the sticky one
 // on the same initial data, the wet gas's exponent. Sizes and times are cut to seconds; larger runs are in
-// bench/RESULTS.md.
+// bench/results/paper.md.
 #include <gtest/gtest.h>
 
 #include <cmath>

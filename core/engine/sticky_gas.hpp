@@ -200,7 +200,7 @@ template <Real T> class StickyGas {
   Status take_in_rows() {
     std::uint64_t taken = 0;
     for (bool more = true; more;) {
-      if (++taken % (1 << 14) == 0 && policy_.ask(time_, counts_) != Status::reached) return Status::interrupted;
+      if (++taken % (1 << 14) == 0 && policy_.poll(time_, counts_) != Status::reached) return Status::interrupted;
       more = false;
       const ParticleIndex left = held_.front().first - 1, right = held_.back().first + held_.back().count;
       const bool reaches_left = held_.front().count > 1 && left >= 0;

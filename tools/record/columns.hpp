@@ -125,7 +125,7 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
       {"core_width", "l", "shortest length that holds more than half of the mass that has collided", core,
        filled_by<T, [](At at) { return at.core().width; }>()},
       {"core_velocity_range", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", core,
-       filled_by<T, [](At at) { return at.core().window; }>()},
+       filled_by<T, [](At at) { return at.core().velocity_range; }>()},
       {"core_gap", "l", "median gap within the core", core, filled_by<T, [](At at) { return at.core().gap; }>()},
       {"sticky_excess", "m l^2/t^2", "energy minus that of the sticky gas that began alike", core,
        filled_by<T, [](At at) { return at.sticky_excess(); }>()},

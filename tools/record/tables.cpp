@@ -11,11 +11,6 @@
 
 namespace cradle::tools {
 
-namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 Group series_table(const Scene& scene) {
   Group table{"series", {}, {}};
@@ -158,7 +153,7 @@ std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& s) 
   const bool met = s.passes + s.sticks > 0;
   return {{"pair_established", s.established},
           {"first_meeting", s.first_meeting},
-          {"first_passed", met ? double(s.first_passed) : none},
+          {"first_passed", met ? double(s.first_passed) : none<double>()},
           {"passes", static_cast<double>(s.passes)},
           {"sticks", static_cast<double>(s.sticks)},
           {"role_changes", static_cast<double>(s.role_changes)},

@@ -34,7 +34,8 @@ line() {
   until=$(sed -nE 's/^(proved: .*up to|undecided at) t = ([^ ,]*).*/\2/p' last | head -1)
   balls=$(sed -nE 's/^  run in +(.*), proved in balls around (.*); .*/\1 | \2/p' last)
   energy=$(sed -nE 's/.*energy .*known to ([^)]*)\).*/\1/p' last)
-  printf '| %s | %s | %s until %s | %s | %s | %.1f | %s | %s |\n' "$name" "${collisions% *}" "$verdict" "${until:0:9}" "$run" "$proof" \
+  printf '| %s | %s | %s until %s | %s | %s | %.1f | %s | %s |\n' \
+    "$name" "${collisions% *}" "$verdict" "${until:0:9}" "$run" "$proof" \
     "$(echo "$proof $run" | awk '{print $1 / ($2 > 0 ? $2 : .01)}')" "$balls" "${energy:--}"
 }
 
@@ -52,9 +53,11 @@ line "ring of 1000, dry, to t = 100" 3 $cooling --set initial.particles=1000 --s
 line "ring of 1e5, sticky, to t = 1000" 1 $cooling --set law.type=sticky --set law.restitution= --set law.cutoff= \
   --set initial.particles=100000
 sticky="fig1 --set output.snapshots=[] --set output.series.points=5 --set output.profiles.times=[]"
-line "rows of 1e6, sticky, to the end" 1 $sticky --set initial.left.particles=500000 --set initial.right.particles=500000 \
+line "rows of 1e6, sticky, to the end" 1 $sticky \
+  --set initial.left.particles=500000 --set initial.right.particles=500000 \
   --set initial.perturbation=0.05 --set initial.centre= --set run.until=1000000
-wet="fig6 $few --set output.profiles.times=[] --set output.masses=[] --set initial.particles=20000 --set run.until=19500"
+wet="fig6 $few --set output.profiles.times=[] --set output.masses=[]"
+wet+=" --set initial.particles=20000 --set run.until=19500"
 line "wet rows of 2e4, E = .05, to t = 19500" 1 $wet --set law.loss=0.05
 for digits in 50 100 200 400 800; do
   line "wet rows of 2e4, E = .01, $digits digits" 1 $wet --set law.loss=0.01 --set run.precision=mpfr \
@@ -63,7 +66,13 @@ done
 # Particles of unequal masses: a heavy one between two rows. Here radii grow with the collisions of a particle.
 cat >heavy.toml <<'END'
 law = {type = "inelastic", restitution = 0.95, cutoff = 1e-4}
-initial = {type = "rows", perturbation = 0.05, seed = 1, left = {particles = 500, speed = 0.5, density = 1}, right = {particles = 500, speed = -0.5, density = 1}, centre = {mass = 5}}
+[initial]
+type = "rows"
+perturbation = 0.05
+seed = 1
+left = {particles = 500, speed = 0.5, density = 1}
+right = {particles = 500, speed = -0.5, density = 1}
+centre = {mass = 5}
 run.until = 300
 output.series.points = 11
 END

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cradle=${1:-build/release/tools/cradle}
-[[ -x $cradle ]] || { echo "no program (looked for $cradle): build it first, e.g. with tools/quickstart.sh" >&2; exit 1; }
+[[ -x $cradle ]] || { echo "no program (looked for $cradle): build it by tools/quickstart.sh" >&2; exit 1; }
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -19,7 +19,8 @@ PYTHON
 }
 
 run() {
-  peak "$cradle" run fig2 --quiet --set "initial.particles=$1" --set run.until=1000 --set 'output.snapshots=[500, 1000]' \
+  peak "$cradle" run fig2 --quiet --set "initial.particles=$1" --set run.until=1000 \
+    --set 'output.snapshots=[500, 1000]' \
     --set 'output.profiles.times=[500, 1000]' -o "$scratch/$1.h5"
 }
 

@@ -31,7 +31,8 @@ runs=(
   "$dry"
   'fig2 --set initial.particles=2000 --set run.until=1300 --set output.events=true'
   'fig6 --set initial.particles=8000 --set run.until=2500 --set output.snapshots=[] --set output.masses=[]'
-  'cooling --set law.type=inelastic --set law.restitution=0.99 --set law.cutoff=0.01 --set initial.particles=20000 --set run.until=200'
+  'cooling --set law.type=inelastic --set law.restitution=0.99 --set law.cutoff=0.01'\
+' --set initial.particles=20000 --set run.until=200'
   "fig2 --set initial.particles=1000 --set run.until=700 --set run.precision=mpfr $none"
   'fig2 --set run.until=3000 --set run.coordinates=absolute'
   'cooling --set initial.particles=200000'
@@ -170,7 +171,8 @@ done
 
 # ---- too little memory
 for megabytes in 60 100 200 400; do
-  (ulimit -v $((megabytes * 1024)); cradle run cooling --quiet --threads 1 --set initial.particles=2e6 --set run.until=0.01 -o memory.h5 2>memory.err)
+  (ulimit -v $((megabytes * 1024))
+    cradle run cooling --quiet --threads 1 --set initial.particles=2e6 --set run.until=0.01 -o memory.h5 2>memory.err)
   status=$?
   [ $status = 0 ] || { [ $status -lt 6 ] && [ -s memory.err ] && [ ! -e memory.h5 ]; }
   counted 'too little memory' "$megabytes MB: status $status, $(head -c 200 memory.err)"

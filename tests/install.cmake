@@ -35,7 +35,8 @@ function(check_commands folder)
     message(FATAL_ERROR "the consumer is compiled without -ffp-contract=off: cradle::cradle must hand it on")
   endif()
   if(commands MATCHES "-march=")
-    message(FATAL_ERROR "the consumer is compiled with -march (found ${CMAKE_MATCH_0}): that is for Cradle's own sources")
+    message(FATAL_ERROR "the consumer is compiled with -march (found ${CMAKE_MATCH_0}): "
+                        "that is for Cradle's own sources")
   endif()
   string(REGEX MATCHALL "-I *[^ ]+" roots "${commands}")
   foreach(root IN LISTS roots)
@@ -48,7 +49,8 @@ function(check_commands folder)
   endforeach()
 endfunction()
 
-foreach(file bin/cradle share/man/man1/cradle.1 share/bash-completion/completions/cradle share/zsh/site-functions/_cradle
+foreach(file bin/cradle share/man/man1/cradle.1 share/bash-completion/completions/cradle
+             share/zsh/site-functions/_cradle
              share/fish/vendor_completions.d/cradle.fish share/cradle/python/cradle/__init__.py
              share/cradle/python/cradle/page/page.css share/cradle/python/cradle/cite.bib)
   if(NOT EXISTS ${SCRATCH}/prefix/${file})

@@ -164,7 +164,8 @@ set_up() {
   apt_get install -y --no-install-recommends "${debian[@]}" ||
     list_missing_and_stop "apt-get install failed (status $?, see above)"
   search_for "$1"
-  ((${#missing[@]} == 0)) || list_missing_and_stop "apt has installed its packages, but this is missing still or too old"
+  ((${#missing[@]} == 0)) || 
+    list_missing_and_stop "apt has installed its packages, but this is missing still or too old"
 }
 
 # configure OPTIONS...: the preset's build tree, with the generator that it has or else with what is there.

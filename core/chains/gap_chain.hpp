@@ -25,8 +25,8 @@
 #include "cradle/core/chains/gap_line.hpp"
 #include "cradle/core/chains/held_range.hpp"
 #include "cradle/core/engine/account.hpp"
-#include "cradle/core/engine/state.hpp"
 #include "cradle/core/engine/relative_motion.hpp"
+#include "cradle/core/engine/state.hpp"
 
 namespace cradle {
 

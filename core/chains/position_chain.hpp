@@ -15,8 +15,8 @@
 #include "cradle/core/engine/account.hpp"
 #include "cradle/core/engine/event_queue.hpp"
 #include "cradle/core/engine/ledger.hpp"
-#include "cradle/core/engine/state.hpp"
 #include "cradle/core/engine/relative_motion.hpp"
+#include "cradle/core/engine/state.hpp"
 
 namespace cradle {
 

@@ -23,9 +23,9 @@
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/engine/account.hpp"
 #include "cradle/core/engine/ledger.hpp"
+#include "cradle/core/engine/relative_motion.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/engine/state.hpp"
-#include "cradle/core/engine/relative_motion.hpp"
 
 namespace cradle {
 

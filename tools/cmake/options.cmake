@@ -3,7 +3,8 @@
 
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 foreach(_flags CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${_type})
-  if("${${_flags}}" MATCHES "-(ffast-math|Ofast|funsafe-math-optimizations|fassociative-math|freciprocal-math|ffinite-math-only|fno-signed-zeros)")
+  set(_unsafe "ffast-math|Ofast|funsafe-math-optimizations|fassociative-math|freciprocal-math|ffinite-math-only")
+  if("${${_flags}}" MATCHES "-(${_unsafe}|fno-signed-zeros)")
     message(FATAL_ERROR "fast-math rearranges floating-point arithmetic (found ${CMAKE_MATCH_0} in ${_flags}): "
                         "remove it, Cradle's error bounds and its reproducibility depend on exact IEEE operations")
   endif()
@@ -13,7 +14,8 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)  # libraries outside the system's folders (modules, conda) are found at run time
+# Libraries outside the system's folders (modules, conda) are found at run time.
+set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
 
 add_library(cradle_options INTERFACE)
 target_compile_features(cradle_options INTERFACE cxx_std_20)

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "cradle/precision/scalars.hpp"
+#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/support/checksum.hpp"
 
 namespace cradle::tools {
@@ -39,6 +41,9 @@ void check_certifiable(const Scene& scene) {
   check_built(scene);
   if (scene.initial.type == InitialType::clusters)
     throw Error({"", 0, "initial.type"}, "no collisions to prove", "clusters, a model", "give a scene of particles");
+  if (!law_row(scene).provable)
+    throw Error({"", 0, "law.type"}, "no proof of this law", value_text(*find_field("law.type", scene), scene).value(),
+                "compare precisions with `cradle trust` instead");
   if (scene.walls.any())
     throw Error({"", 0, scene.walls.left.position ? "walls.left.position" : "walls.right.position"},
                 "collisions with walls cannot be proved yet", "a wall",

@@ -11,7 +11,6 @@
 
 namespace cradle::tools {
 
-
 Group series_table(const Scene& scene) {
   Group table{"series", {}, {}};
   for (const auto& column : series_columns<double>())

@@ -143,7 +143,8 @@ def collapse_result(folder, collisions):
     scene = {"title": "collapse3", "law": {"type": "inelastic", "restitution": 0.05, "cutoff": 0},
              "initial": {"type": "list", "x": [0, 1, 3], "v": [1, 0, -1]}, "run": {"until": 2, "collapse": "stop"}}
     times = [collision[1] for collision in collisions]
-    return write_result(folder / "collapse3.h5", scene, ([0, 1, 3], [1, 0, -1]), [c[0] for c in collisions], [c[0] + 1 for c in collisions],
+    return write_result(folder / "collapse3.h5", scene, ([0, 1, 3], [1, 0, -1]),
+                        [c[0] for c in collisions], [c[0] + 1 for c in collisions],
                         [float(t) for t in times], [float(b - a) for a, b in zip([0] + times, times)],
                         [float(c[2]) for c in collisions], "inelastic collapse", time=12 / 7)
 
@@ -580,7 +581,8 @@ class InBrowser(unittest.TestCase):
             print(name, self.browser.run("""new Promise(done => { const m = cradleMicroscopeTest, spent = [];
                 let n = 0; const begun = performance.now(), step = () => { const t = performance.now();
                 %s; spent.push(m.state.drawn); ++n; if (t - begun < 4000) requestAnimationFrame(step);
-                else { spent.sort((a, b) => a - b); done(`${(n / (t - begun) * 1000).toFixed(1)} frames/s, drawing takes ` +
+                else { spent.sort((a, b) => a - b); done(
+                    `${(n / (t - begun) * 1000).toFixed(1)} frames/s, drawing takes ` +
                   `${spent[n >> 1].toFixed(1)} ms (median), ${spent[Math.floor(n * 0.95)].toFixed(1)} (95 %%)`); } };
                 requestAnimationFrame(step); })""" % act))
 

@@ -58,8 +58,8 @@ async function microscopeSnapshot(data, snapshot) {
   }
   const none = () => new Float64Array(0), world = {
     n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0),
-    ring: 0, interval: none(), speed: none(), event: new Uint8Array(0), law: data.law, first: snapshot.first, index, valid,
-    start: snapshot.time, total: 0, digits: 9, collapse: null, name: data.name, speedGiven: true,
+    ring: 0, interval: none(), speed: none(), event: new Uint8Array(0), law: data.law,
+    first: snapshot.first, index, valid, start: snapshot.time, total: 0, digits: 9, collapse: null, name: data.name, speedGiven: true,
   };
   microscopeReplay(world);
   // As far as nine in ten of the world lines are known.

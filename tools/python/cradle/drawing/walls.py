@@ -36,7 +36,8 @@ def draw(result, axes):
     positive = series["energy"] > 0
     axes[2].semilogy(series["time"][positive], series["energy"][positive], color=BLUE, lw=0.8, label="energy")
     given = series["wall_work"] > 0
-    axes[2].semilogy(series["time"][given], series["wall_work"][given], color=ORANGE, lw=1.2, label="given by the walls")
+    axes[2].semilogy(series["time"][given], series["wall_work"][given], color=ORANGE, lw=1.2,
+                     label="given by the walls")
     axes[2].set_ylabel("energy")
     axes[2].set_xlabel(r"time $t$")
     axes[2].legend(loc="lower right", fontsize=7)

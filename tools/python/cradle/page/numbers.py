@@ -176,16 +176,17 @@ def warnings(result: Result, version: str) -> list[str]:
     elif result.outcome in ("order of collisions lost", "resolution exhausted"):
         found.append(f"The run ended early: {text(result.outcome)}. More digits (<code>run.precision</code>) reach "
                      "further.")
-    for name, message in (("order_lost", "collisions came too late by more than rounding"),
-                       ("unresolved_gaps", "collisions beside a gap that positions do not resolve: take "
-                                           "<code>run.coordinates = \"gaps\"</code>"),
-                       ("simultaneous_collisions", "collisions at which three particles met within rounding, decided by the "
-                                                 "tie rule")):
+    for name, message in (
+            ("order_lost", "collisions came too late by more than rounding"),
+            ("unresolved_gaps", "collisions beside a gap that positions do not resolve: take "
+                                "<code>run.coordinates = \"gaps\"</code>"),
+            ("simultaneous_collisions", "collisions at which three particles met within rounding, decided by the tie "
+                                        "rule")):
         if about.get(name):
             found.append(f"{number(about[name])} {message}.")
     if "uncertain_from" in about:
-        found.append(f"Collisions are certain up to t = {number(about['uncertain_from'])} only: from there on rounding may "
-                     "have decided which one was next. More digits (<code>run.precision</code>) reach further.")
+        found.append(f"Collisions are certain up to t = {number(about['uncertain_from'])} only: from there on rounding "
+                     "may have decided which one was next. More digits (<code>run.precision</code>) reach further.")
     found += failures(result)
     for place, point in enumerate(result.points):
         found += failures(point, f"points/{place:04}/")

@@ -118,8 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
              {}},
         Kind{"Ensemble",
              "cradle ensemble fig2 --replicas 4 --set initial.particles=40 --set law.restitution=0.6 "
-             "--set law.cutoff=0 --set run.until=30 --set output.snapshots=[] --set output.series.points=20 "
-             "--set output.profiles.times=[2,4] --set output.profiles.range=[-8,8]",
+             "--set law.cutoff=0 --set run.stop_gap=1e-12 --set run.until=30 --set output.snapshots=[] "
+             "--set output.series.points=20 --set output.profiles.times=[2,4] --set output.profiles.range=[-8,8]",
              {"profiles", "collapse"}},
         Kind{"CoolingSweep",
              "cradle sweep cooling --set initial.particles=500 --set run.until=100 --set output.series.points=20",

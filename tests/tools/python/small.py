@@ -23,7 +23,8 @@ def ensemble():
     """4 replicas of 40 particles, which collapse."""
     cradle.ensemble("fig2", 4, output="ensemble.h5", set={
         "initial.particles": 40, "law.restitution": 0.6, "law.cutoff": 0, "run.stop_gap": 1e-12, "run.until": 30,
-        "output.snapshots": [], "output.series.points": 20, "output.profiles.times": [2, 4], "output.profiles.range": [-8, 8]}).close()
+        "output.snapshots": [], "output.series.points": 20, "output.profiles.times": [2, 4],
+        "output.profiles.range": [-8, 8]}).close()
     return "ensemble.h5"
 
 

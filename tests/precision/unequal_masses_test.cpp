@@ -119,12 +119,12 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
       made.warned = made.warned || run.chain().uncertain_at(run.chain().local_time(end));
     const T energy = particles->kinetic_energy() - run.energy_lost();
     const auto broken = [&](const Configuration<T>& c, const T& left) {
-      const auto look =
+      const auto checked =
           guarded(c, *particles, made.collisions, left, end, run.last_collision_time(), T(0), account.order_lost == 0);
-      if (look.broken)
-        made.guard = {static_cast<double>(look.broken->guard), to_double(look.broken->found),
-                      to_double(look.broken->bound)};
-      return look.broken.has_value();
+      if (checked.broken)
+        made.guard = {static_cast<double>(checked.broken->guard), to_double(checked.broken->found),
+                      to_double(checked.broken->bound)};
+      return checked.broken.has_value();
     };
     const Configuration<T> now = run.configuration(end);
     made.broken = broken(now, energy);

@@ -67,7 +67,7 @@ template <class M> class CertifierIn final : public Certifier {
 
   void sample(const RunSample& sample) override {
     if (certificate_.doubt) throw ProofEnds();
-    for (const AskedTime& asked : sample.asked) inspect(asked, sample);
+    for (const RequestedTime& asked : sample.requested) inspect(asked, sample);
   }
 
   Certificate certificate() const override {
@@ -92,7 +92,7 @@ template <class M> class CertifierIn final : public Certifier {
             static_cast<long double>(doubt.first.radius() + doubt.second.radius())};
   }
 
-  void inspect(const AskedTime& asked, const RunSample& sample) {
+  void inspect(const RequestedTime& asked, const RunSample& sample) {
     const N time = number<N>(asked.time) - start_;
     const CertainState<N> state = sample.at_collision ? checker_.state_now() : checker_.state_at(time);
     snapshots_ += asked.of_snapshots;
@@ -110,7 +110,7 @@ template <class M> class CertifierIn final : public Certifier {
 
   // All that the run has of what is proved of it. A collision on the wrong side of a threshold need not change their
   // sequence; and what the program gets wrong here or there would be called proved.
-  void compare(const RunSample& sample, const AskedTime& asked, const N& time, const CertainState<N>& state) {
+  void compare(const RunSample& sample, const RequestedTime& asked, const N& time, const CertainState<N>& state) {
     const auto& proved = checker_.proved();
     const long double since = std::abs(to_double(time)) + 2 * std::abs(to_double(start_));
     RunErrors errors = run_errors(state.sizes, proved.collisions, means_, sample.epsilon, since,
@@ -149,7 +149,7 @@ template <class M> class CertifierIn final : public Certifier {
   }
   static long double of_balls() { return from_text<long double>(to_text(M(std::numeric_limits<M>::epsilon()))); }
 
-  void compare_particles(const LookedParticles& particles, const N& time, Agreement<N>& run) const {
+  void compare_particles(const SampledParticles& particles, const N& time, Agreement<N>& run) const {
     std::unordered_map<ParticleIndex, std::size_t> at;  // by cluster
     for (std::size_t j = 0; j < particles.index.size(); ++j)
       if (const auto cluster = checker_.cluster(particles.index[j]))
@@ -175,7 +175,7 @@ template <class M> class CertifierIn final : public Certifier {
     return x + N(std::round(to_double(N((from_text<N>(of_run) - x) / length)))) * length;
   }
 
-  void add_sample(const RunSample& sample, const AskedTime& asked, const CertainState<N>& state) {
+  void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
     CertainSample proved_sample{
         sample.time, asked.time.text, asked.of_series, checker_.proved().collisions, enclosed(state.energy), {},
         {},          state.widest,    state.least_gap, state.widest_of_gap};

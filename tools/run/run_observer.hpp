@@ -11,7 +11,7 @@
 namespace cradle::tools {
 
 /// A time that a run is recorded at: the decimal that the scene asks for or, where it asks for none, that of the run.
-struct AskedTime {
+struct RequestedTime {
   Decimal time;
   bool of_series = false, of_snapshots = false;
   bool last = false;  // the run is to reach it
@@ -19,7 +19,7 @@ struct AskedTime {
 
 /// Particles of a snapshot, from the one numbered `from` at the start to the one numbered `to`, as decimals with all
 /// digits of the run's precision.
-struct LookedParticles {
+struct SampledParticles {
   ParticleIndex from = 0, to = -1;
   std::vector<ParticleIndex> index;
   std::vector<std::string> x, v, m;
@@ -27,14 +27,14 @@ struct LookedParticles {
 
 struct RunSample {
   double time = 0;
-  std::string time_text;         // with all digits of the run's precision, as are energy and fronts
-  long double epsilon = 0;       // of that precision
-  std::vector<AskedTime> asked;  // all that the run's precision cannot distinguish from its time
+  std::string time_text;                 // with all digits of the run's precision, as are energy and fronts
+  long double epsilon = 0;               // of that precision
+  std::vector<RequestedTime> requested;  // all that the run's precision cannot distinguish from its time
   bool of_series = false;
   bool at_collision = false;  // the run ends here, with the collision that it made last
   Counts counts;
   std::string energy, front_left, front_right;  // fronts: empty before the first collision
-  LookedParticles particles;                    // of a snapshot
+  SampledParticles particles;                   // of a snapshot
 };
 
 class RunObserver {

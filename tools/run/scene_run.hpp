@@ -242,22 +242,22 @@ template <Real T> class SceneRun {
   void notify_observer(const T& time, bool at_collision) {
     const Sample<T> now = sample(engine_, energy_, time);
     const auto text = [](const std::optional<T>& x) { return x ? to_text(*x) : std::string(); };
-    RunSample look{.time = to_double(time),
-                   .time_text = to_text(time),
-                   .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
-                   .asked = at_collision ? std::vector{AskedTime{Decimal(to_text(time)), true, false, true}}
-                                         : asked_times(scene_, plan_, time),
-                   .of_series = holds(plan_.series, time),
-                   .at_collision = at_collision,
-                   .counts = now.counts,
-                   .energy = to_text(now.energy),
-                   .front_left = text(now.front_left),
-                   .front_right = text(now.front_right),
-                   .particles = {}};
-    if (!at_collision && holds(plan_.snapshots, time)) check.particles = looked(engine_.configuration(time));
-    options_.observer->sample(look);
+    RunSample at_time{.time = to_double(time),
+                      .time_text = to_text(time),
+                      .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
+                      .requested = at_collision ? std::vector{RequestedTime{Decimal(to_text(time)), true, false, true}}
+                                                : requested_times(scene_, plan_, time),
+                      .of_series = holds(plan_.series, time),
+                      .at_collision = at_collision,
+                      .counts = now.counts,
+                      .energy = to_text(now.energy),
+                      .front_left = text(now.front_left),
+                      .front_right = text(now.front_right),
+                      .particles = {}};
+    if (!at_collision && holds(plan_.snapshots, time)) at_time.particles = sampled(engine_.configuration(time));
+    options_.observer->sample(at_time);
   }
-  static LookedParticles looked(const Configuration<T>& c) {
+  static SampledParticles sampled(const Configuration<T>& c) {
     const auto texts = [](const std::vector<T>& numbers) {
       std::vector<std::string> all;
       for (const T& number : numbers) all.push_back(to_text(number));

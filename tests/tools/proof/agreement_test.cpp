@@ -22,10 +22,10 @@ class Tampered final : public Certifier {
   void collision(ParticleIndex left, ParticleIndex right, double time) override {
     proof_->collision(left, right, time);
   }
-  void look(const RunSample& look) override {
-    RunSample changed = look;
+  void sample(const RunSample& given) override {
+    RunSample changed = given;
     plant_(changed);
-    proof_->look(changed);
+    proof_->sample(changed);
   }
   Certificate certificate() const override { return proof_->certificate(); }
 
@@ -66,54 +66,54 @@ TEST(Agreement, OfAProofAndItsRun) {
 TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
   const std::pair<const char*, Plant> plants[] = {
       {"front_left",
-       [](RunSample& look) {
-         if (!look.front_left.empty()) look.front_left = moved(look.front_left, 1e-9);
+       [](RunSample& at) {
+         if (!at.front_left.empty()) at.front_left = moved(at.front_left, 1e-9);
        }},
       {"front_right",
-       [](RunSample& look) {
-         if (look.time > 11) look.front_right = moved(look.front_right, -1e-9);
+       [](RunSample& at) {
+         if (at.time > 11) at.front_right = moved(at.front_right, -1e-9);
        }},
       {"front_left",
-       [](RunSample& look) {
-         if (look.time > 11) look.front_left.clear();
+       [](RunSample& at) {
+         if (at.time > 11) at.front_left.clear();
        }},
       {"front_right",
-       [](RunSample& look) {
-         if (look.time == 0) look.front_right = "1";
+       [](RunSample& at) {
+         if (at.time == 0) at.front_right = "1";
        }},
-      {"energy", [](RunSample& look) { look.energy = moved(look.energy, 1e-10); }},
+      {"energy", [](RunSample& at) { at.energy = moved(at.energy, 1e-10); }},
       {"energy",
-       [](RunSample& look) {
-         if (look.time > 3) look.energy = "nan";
+       [](RunSample& at) {
+         if (at.time > 3) at.energy = "nan";
        }},
-      {"collisions", [](RunSample& look) { look.counts.collisions += look.time > 11; }},
-      {"collisions_below_cutoff", [](RunSample& look) { look.counts.below_cutoff += look.time > 11; }},
-      {"merges", [](RunSample& look) { look.counts.merges += 1; }},
+      {"collisions", [](RunSample& at) { at.counts.collisions += at.time > 11; }},
+      {"collisions_below_cutoff", [](RunSample& at) { at.counts.below_cutoff += at.time > 11; }},
+      {"merges", [](RunSample& at) { at.counts.merges += 1; }},
       {"time of the sample",
-       [](RunSample& look) {
-         if (look.time > 3) look.time_text = moved(look.time_text, 1e-12);
+       [](RunSample& at) {
+         if (at.time > 3) at.time_text = moved(at.time_text, 1e-12);
        }},
       {"x of particle 7 in the snapshot",
-       [](RunSample& look) {
-         for (std::size_t j = 0; j < look.particles.x.size(); ++j)
-           if (look.particles.index[j] == 7) look.particles.x[j] = moved(look.particles.x[j], 1e-9);
+       [](RunSample& at) {
+         for (std::size_t j = 0; j < at.particles.x.size(); ++j)
+           if (at.particles.index[j] == 7) at.particles.x[j] = moved(at.particles.x[j], 1e-9);
        }},
       {"v of particle 12 in the snapshot",
-       [](RunSample& look) {
-         for (std::size_t j = 0; j < look.particles.v.size(); ++j)
-           if (look.time > 9 && look.particles.index[j] == 12) look.particles.v[j] = moved(look.particles.v[j], 1e-10);
+       [](RunSample& at) {
+         for (std::size_t j = 0; j < at.particles.v.size(); ++j)
+           if (at.time > 9 && at.particles.index[j] == 12) at.particles.v[j] = moved(at.particles.v[j], 1e-10);
        }},
       {"m of particle 9 in the snapshot",
-       [](RunSample& look) {
-         for (std::size_t j = 0; j < look.particles.m.size(); ++j)
-           if (look.particles.index[j] == 9) look.particles.m[j] = "1.0000000001";
+       [](RunSample& at) {
+         for (std::size_t j = 0; j < at.particles.m.size(); ++j)
+           if (at.particles.index[j] == 9) at.particles.m[j] = "1.0000000001";
        }},
       {"of particle 8 in the snapshot",
-       [](RunSample& look) {
-         for (ParticleIndex& particle : look.particles.index) particle = particle == 8 ? -1 : particle;
+       [](RunSample& at) {
+         for (ParticleIndex& particle : at.particles.index) particle = particle == 8 ? -1 : particle;
        }},
-      {"in one cluster", [](RunSample& look) {
-         for (ParticleIndex& particle : look.particles.index) particle = particle == 8 ? 7 : particle;
+      {"in one cluster", [](RunSample& at) {
+         for (ParticleIndex& particle : at.particles.index) particle = particle == 8 ? 7 : particle;
        }}};
   for (const auto& [quantity, plant] : plants) {
     try {
@@ -129,8 +129,8 @@ TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
 }
 
 TEST(Agreement, AnErrorOfARunInDoubleAsksForAWiderOne) {
-  const Certified run = certified(shock, [](RunSample& look) {
-    if (look.epsilon > 1e-20L) look.energy = moved(look.energy, 1e-9);
+  const Certified run = certified(shock, [](RunSample& at) {
+    if (at.epsilon > 1e-20L) at.energy = moved(at.energy, 1e-9);
   });
   EXPECT_TRUE(run.proved());
   ASSERT_EQ(run.attempts.size(), 2U);

@@ -43,10 +43,10 @@ TEST(Interrupts, EndARunWithItsLastState) {
 TEST(Interrupts, OnesThatDoNotComeChangeNothing) {
   Interrupt interrupt;
   const auto scene = tools::parse_scene(shock, "s.toml");
-  const auto asked = tools::run_scene(scene, {tools::Progress::Show::never, nullptr, &interrupt});
+  const auto polled = tools::run_scene(scene, {tools::Progress::Show::never, nullptr, &interrupt});
   const auto alone = tools::run_scene(scene, {tools::Progress::Show::never});
-  EXPECT_EQ(asked.result.find("series")->columns[1].values, alone.result.find("series")->columns[1].values);
-  EXPECT_EQ(asked.result.attributes, alone.result.attributes);
+  EXPECT_EQ(polled.result.find("series")->columns[1].values, alone.result.find("series")->columns[1].values);
+  EXPECT_EQ(polled.result.attributes, alone.result.attributes);
 }
 
 // Walks over rows that are longer than anybody waits for: a profile, an average over a zone, a sticky gas.
@@ -129,7 +129,7 @@ TEST_F(Signals, EndAProgramThatIsStillSettingUp) {
   EXPECT_FALSE(std::filesystem::exists(folder / "ring.h5.checkpoint"));
 }
 
-// In a process of its own that has asked for signals and gets some: how soon after the first one another counts as the
+// In a process of its own that has polled for signals and gets some: how soon after the first one another counts as the
 // same decides, not how soon they come here.
 constexpr long at_once = -1, within_a_day = 86400000;
 void get(bool heeded, long same, std::initializer_list<int> signals) {

@@ -255,7 +255,7 @@ template <class T> void put_rows(const Initial& initial, Gas<T>& gas) {
 
 template <class T> Gas<T> gas_of(const Scene& scene) {
   Gas<T> gas;
-  const tools::Law& law = scene.law;
+  const tools::scene::Law& law = scene.law;
   gas.law = law.type == LawType::wet                                           ? GasLaw::wet
             : law.type == LawType::sticky                                      ? GasLaw::sticky
             : scene.run.collapse == tools::scene::CollapsePolicy::merge        ? GasLaw::merging

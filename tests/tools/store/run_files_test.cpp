@@ -174,7 +174,7 @@ TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {
 // More numbers than are held in memory go to the file piece by piece.
 TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   Result whole;
-  whole.attributes = {{"format_version", tools::format_version}, {"scene", std::string("none")}};
+  whole.attributes = {{"format_version", format_version}, {"scene", std::string("none")}};
   std::vector<Group> pieces;
   for (std::uint64_t k = 0; k < 50; ++k) {
     std::vector<double> time, place;

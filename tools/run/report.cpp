@@ -72,7 +72,7 @@ std::string collapse_report(const ReportedCollapse& r, std::uint64_t collisions)
     text += fmt::format("  interval       {} since the collision there before\n", brief(r.interval));
   if (r.settled)
     text += fmt::format("  ratio          {} of successive intervals there\n", within(r.ratio, r.ratio_uncertainty));
-  text += "  to continue       give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
+  text += "  to continue    give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
   return text;
 }
 

@@ -106,7 +106,7 @@ class OnTheWay(unittest.TestCase):
                     with cradle.open("way.h5.part") as result:
                         if len(result.series.get("time", ())) < 2:
                             continue
-                        self.assertTrue(result.on_its_way)
+                        self.assertTrue(result.in_progress)
                         self.assertEqual(result.outcome, "in progress")
                         self.assertLess(result.series.time[-1], 1e7)
                         page = cradle.report(result, "way.html")

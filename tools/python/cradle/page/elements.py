@@ -79,12 +79,12 @@ def rows(entries: Iterable[tuple[str, str, str]]) -> str:
     return '<table class="facts"><tbody>\n' + "\n".join(lines) + "\n</tbody></table>\n"
 
 
-def sortable(caption: str, heads: Sequence[str], particle: Iterable[Sequence[tuple[Any, str]]]) -> str:
+def sortable(caption: str, heads: Sequence[str], rows: Iterable[Sequence[tuple[Any, str]]]) -> str:
     """A table that sorts by a column when its head is pressed. Cells are pairs: what is sorted by, HTML."""
     lines = [f'<div class="wide"><table class="sortable"><caption>{caption}</caption>\n<thead><tr>'
              + "".join(f'<th scope=col aria-sort="none"><button type="button">{head}</button>' for head in heads)
              + "</thead>\n<tbody>"]
-    for cells in particle:
+    for cells in rows:
         lines.append("<tr>" + "".join(f'<td data-by="{html.escape(key_of(by))}">{shown}' for by, shown in cells))
     return "\n".join(lines) + "\n</tbody></table></div>\n"
 

@@ -8,15 +8,15 @@
   }
   document.querySelectorAll("table.sortable thead button").forEach(function (button) {
     button.addEventListener("click", function () {
-      var head = button.parentNode, column = head.cellIndex, particle = head.closest("table").tParticles[0];
+      var head = button.parentNode, column = head.cellIndex, rows = head.closest("table").tBodies[0];
       var down = head.getAttribute("aria-sort") === "ascending";
       head.parentNode.querySelectorAll("th").forEach(function (other) { other.setAttribute("aria-sort", "none"); });
       head.setAttribute("aria-sort", down ? "descending" : "ascending");
-      Array.from(particle.rows)
+      Array.from(rows.rows)
         .sort(function (a, b) {
           return (down ? -1 : 1) * compare(a.cells[column].dataset.by, b.cells[column].dataset.by);
         })
-        .forEach(function (row) { particle.appendChild(row); });
+        .forEach(function (row) { rows.appendChild(row); });
     });
   });
   document.querySelectorAll("button.copy").forEach(function (button) {

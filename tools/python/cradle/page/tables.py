@@ -55,17 +55,17 @@ def replicas(result: Result) -> str:
     heads = [head(name, table[name].unit) for name in names]
     if count <= MOST_ROWS:
         outcomes = outcome_texts(table)
-        particle = ([(int(value), text(outcomes[int(value)])) if name == "outcome" and int(value) in outcomes else
+        rows = ([(int(value), text(outcomes[int(value)])) if name == "outcome" and int(value) in outcomes else
                  cell(value) for name in names for value in (table[name].values[row],)] for row in range(count))
-        return sortable(f"{number(count)} replicas", heads, particle)
-    particle = []
+        return sortable(f"{number(count)} replicas", heads, rows)
+    rows = []
     for share in QUANTILES:
-        particle.append([(share, f"{100 * share:g} %")])
+        rows.append([(share, f"{100 * share:g} %")])
         for name in names[1:]:
             known = np.asarray(table[name], float)
             known = known[np.isfinite(known)]
-            particle[-1].append(cell(np.quantile(known, share)) if known.size else cell(np.nan))
-    return sortable(f"quantiles of {number(count)} replicas (the file has all)", ["quantile", *heads[1:]], particle)
+            rows[-1].append(cell(np.quantile(known, share)) if known.size else cell(np.nan))
+    return sortable(f"quantiles of {number(count)} replicas (the file has all)", ["quantile", *heads[1:]], rows)
 
 
 def outcome_texts(table: Table) -> dict[int, str]:
@@ -82,30 +82,30 @@ def points(result: Result) -> str:
     texts = sorted({word.split("=", 1)[0] for label in labels for word in label.split()} - set(names))
     heads = [text(name) for name in texts]
     heads += [head(name, table[name].unit) for name in names]
-    particle = []
+    rows = []
     for row, label in enumerate(labels):
         said = dict(word.split("=", 1) for word in label.split() if "=" in word)
-        particle.append([cell(said.get(name, "")) for name in texts])
+        rows.append([cell(said.get(name, "")) for name in texts])
         for name in names:
             value = table[name].values[row]
             error = table[name + "_error"].values[row] if name + "_error" in table else np.nan
             by, shown = cell(value)
-            particle[-1].append((by, measured(by, error.item()) if np.isfinite(error) else shown))
-    return sortable(f"{number(len(labels))} points; means over replicas with their standard errors", heads, particle)
+            rows[-1].append((by, measured(by, error.item()) if np.isfinite(error) else shown))
+    return sortable(f"{number(len(labels))} points; means over replicas with their standard errors", heads, rows)
 
 
 def precisions(result: Result) -> str:
     """One row per precision: until when it was right, and digits at the end."""
     heads = ["precision", "coordinates", "outcome", "collisions right", "until t", "counts right until t",
              "proved until t", "digits of energy at the end", "digits of front at the end"]
-    particle = []
+    rows = []
     for number_of, table in enumerate(result.trust):
         about = table.attributes
         whole = "to the end" if about.get("right_to_end") else ""
         proved = about.get("proved_until", -1)
         digits = [table[name][-1].item() if len(table[name]) else np.nan for name in ("energy_digits", "front_digits")]
         reference = number_of == len(result.trust) - 1
-        particle.append([(number_of, text(about["precision"])), (about["coordinates"], text(about["coordinates"])),
+        rows.append([(number_of, text(about["precision"])), (about["coordinates"], text(about["coordinates"])),
                      (about["outcome"], text(about["outcome"])), cell(about["collisions_right"]),
                      (about["collisions_right_until"], whole or number(about["collisions_right_until"], 10)),
                      (about["counts_right_until"], number(about["counts_right_until"], 10)),
@@ -113,4 +113,4 @@ def precisions(result: Result) -> str:
                       (number(proved, 10) if proved >= 0 else "–"))]
                     + [(value, "reference" if reference else number(value, 3))
                        for value in digits])
-    return sortable("the same run at rising precision, each compared with the last", heads, particle)
+    return sortable("the same run at rising precision, each compared with the last", heads, rows)

@@ -19,6 +19,7 @@
 #include <unordered_map>
 
 #include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/engine/gap_errors.hpp"
 #include "cradle/core/engine/two_gaps.hpp"
 #include "cradle/core/initial/particles.hpp"
 
@@ -62,7 +63,8 @@ template <Real T> struct CollapseWatch {
   CollapseReport<T> report;
   T fastest{0};            // closing or opening speed of a gap so far
   T greatest_approach{0};  // of any two particles, for good
-  static auto state(auto& self) { return std::tie(self.last, self.known, self.report, self.fastest); }
+  GapErrors<T> errors;     // of all gaps, among few particles in a chain of gaps
+  static auto state(auto& self) { return std::tie(self.last, self.known, self.report, self.fastest, self.errors); }
 
   // To be called before the first collision; `least` is the smallest gap. Returns the gap below which one beside a
   // collision is of interest: among few particles, which round least before their first collisions, any.
@@ -72,6 +74,7 @@ template <Real T> struct CollapseWatch {
       greatest_approach = sqrt(chain.particles().greatest_approach_squared());
       if (chain.particles().count() <= few) {
         for (Slot s = chain.first(); s <= chain.last(); ++s) moves_at(chain.closing(s));
+        if constexpr (in_gaps<Chain>) errors.begin(chain.particles(), chain.local_time(chain.start()));
         return far_away<T>();
       }
       fastest = greatest_approach;
@@ -92,7 +95,9 @@ template <Real T> struct CollapseWatch {
     for (const auto& gap : {left_of(chain, s), std::optional(s), right_of(chain, s)})
       if (gap) moves_at(chain.closing(*gap));
     if constexpr (ScaleFreeLaw<Law> && provable<Chain>)
-      if (law.scale_free())
+      if (law.scale_free()) {
+        if constexpr (in_gaps<Chain>)
+          if (errors.kept()) errors.collision(law, chain, left_of(chain, s), s, right_of(chain, s), local);
         for (const bool on_left : {true, false})
           if (const KnownCollapse<T>* found = beside(law, chain, s, on_left, local, collisions)) {
             report.settled = true;
@@ -101,11 +106,13 @@ template <Real T> struct CollapseWatch {
             const T left = difference(found->time, now);
             return left < chain.time_resolution(s, local) || found->collisions >= most_followed;
           }
+      }
     return false;
   }
 
   void origin_moved(const T& by) {
     for (auto& [particle, time] : last) time -= by;
+    errors.origin_moved(by);
   }
 
  private:
@@ -113,6 +120,11 @@ template <Real T> struct CollapseWatch {
   template <class Chain>
   static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
     chain.particles();
+  };
+
+  // What else holds gaps, and does not compute with them, has them from positions.
+  template <class Chain> static constexpr bool in_gaps = provable<Chain>&& requires(const Chain& chain) {
+    chain.line();
   };
 
   void moves_at(const T& closing) {
@@ -132,11 +144,10 @@ template <Real T> struct CollapseWatch {
     if (ahead && (found != known.end() || alone(chain, left, right, ahead->time, local))) {
       if (found == known.end()) found = known.try_emplace(chain.particle(left)).first;
       KnownCollapse<T>& k = found->second;
-      // The times of the collisions up to here are rounded once each.
-      const T of_time = T(static_cast<std::int64_t>(collisions + 1)) * chain.time_resolution(s, local) / T(2);
-      const T uncertainty = of_time + ahead->time.error;
+      const Pair<T> time = chain.stamp(local) + ahead->time.value;
+      const T uncertainty = of_time(chain, s, time.value(), local, collisions) + ahead->time.error;
       if (k.collisions == 0 || uncertainty < k.uncertainty)
-        k = {k.collisions, chain.stamp(local) + ahead->time.value, uncertainty, ahead->ratio.value, ahead->ratio.error};
+        k = {k.collisions, time, uncertainty, ahead->ratio.value, ahead->ratio.error};
     }
     if (found == known.end()) return nullptr;
     ++found->second.collisions;
@@ -149,22 +160,45 @@ template <Real T> struct CollapseWatch {
     const auto of_here = chain.at_unit_speed(law, here), of_there = chain.at_unit_speed(law, there);
     if (!of_here || !of_there || !is_positive(chain.closing(there))) return {};
     const bool to_left = there == chain.left(here);
-    // Of what a collision hands over: unequal masses take quotients, and may be rounded decimals.
-    const int of_share = chain.particles().identical_masses() ? 1 : 5;
+    const bool identical = chain.particles().identical_masses();
+    const LawError<T> error_here = law_error(*of_here, identical), error_there = law_error(*of_there, identical);
+    const T rebound_here = T(-of_here->closing), rebound_there = T(-of_there->closing),
+            &handed_there = to_left ? of_here->to_left : of_here->to_right,
+            &handed_here = to_left ? of_there->to_right : of_there->to_left,
+            &of_handed_there = to_left ? error_here.to_left : error_here.to_right,
+            &of_handed_here = to_left ? error_there.to_right : error_there.to_left;
+    if (!is_positive(rebound_here) || !is_positive(rebound_there)) return {};
     const TwoGaps<T> two{T(-chain.closing(here)),
                          chain.gap_at(there, local),
                          chain.closing(there),
-                         T(-of_here->closing),
-                         T(-of_there->closing),
-                         to_left ? of_here->to_left : of_here->to_right,
-                         to_left ? of_there->to_right : of_there->to_left,
-                         of_share};
-    // Each collision so far has rounded speeds and ways by half a unit so often: shares, products and sums. None was
-    // larger than the fastest.
-    const T unit = T(std::numeric_limits<T>::epsilon()),
-            roundings = T((of_share + 2) * static_cast<std::int64_t>(collisions + 1)) / T(2);
-    return collapse_ahead(two, T(roundings * unit * fastest),
-                          T(roundings * (chain.time_resolution(here, local) * fastest + unit * two.gap)));
+                         rebound_here,
+                         rebound_there,
+                         handed_there,
+                         handed_here,
+                         std::max<T>(error_here.rebound / rebound_here, error_there.rebound / rebound_there),
+                         std::max<T>(of_handed_there / handed_there, of_handed_here / handed_here)};
+    if constexpr (in_gaps<Chain>)
+      if (errors.kept()) return collapse_ahead(two, errors.at(chain.particle(here)), errors.at(chain.particle(there)));
+    // Of a history that has not been kept: that of each collision, with the greatest speeds so far; errors add up.
+    const Roundoff<T> of;
+    const T steps = T(static_cast<std::int64_t>(collisions + 1)),
+            largest = std::max(error_here.to_left, error_here.to_right),
+            times = (of.quotient + of.way + T(3) * of.unit) / T(std::numeric_limits<T>::epsilon());
+    const GapError<T> any{T(steps * (times * chain.time_resolution(here, local) * fastest + of.unit * two.gap)),
+                          T(steps * (largest + of.unit) * fastest)};
+    return collapse_ahead(two, any, any);
+  }
+
+  // Of a time in the run: in gaps those of collisions are held in two numbers, and the way to it goes with the gaps;
+  // the bound is to hold for one number too. In positions each collision rounds it.
+  template <class Chain>
+  static T of_time(const Chain& chain, Slot s, const T& time, const T& local, std::uint64_t collisions) {
+    const Roundoff<T> of;
+    const T steps = T(static_cast<std::int64_t>(collisions + 1));
+    if constexpr (in_gaps<Chain>)
+      return of.unit * magnitude(time) * (T(of.nearest ? 1 : 5) + T(8) * steps * of.unit);
+    else
+      return steps * chain.time_resolution(s, local) / T(2);
   }
 
   // Whether nobody else can get there before the collapse. A gap that is not held yet is nowhere.

@@ -38,7 +38,7 @@ class Simulation {
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
         last_collision_(chain_.local_time(chain_.start())), pacing_(last_collision_, Chain::may_collapse),
-        standstill_(last_collision_), target_{chain_.start(), last_collision_, last_collision_} {
+        standstill_(last_collision_, has_threshold(law_)), target_{chain_.start(), last_collision_, last_collision_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
     const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());

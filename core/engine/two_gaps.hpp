@@ -13,6 +13,7 @@
 #include <limits>
 #include <optional>
 
+#include "cradle/core/engine/gap_errors.hpp"
 #include "cradle/core/real.hpp"
 
 namespace cradle {
@@ -23,7 +24,7 @@ template <Real T> struct TwoGaps {
   T gap, closing;                 // g and w of the other one, there
   T rebound_here, rebound_there;  // e, e'
   T handed_there, handed_here;    // c: to there by a collision here, c': to here by one there
-  int roundings;                  // that these two have in them at most
+  T of_rebound, of_handed;        // relative errors of these
 };
 
 // A number, and what its error does not exceed.
@@ -33,29 +34,38 @@ template <Real T> struct CollapseAhead {
   Bounded<T> ratio;  // of successive intervals between collisions at the same gap, in the end
 };
 
-// Nothing where the two part, and where rounding leaves that open. The errors given are those of speeds and of gaps.
+// Nothing where the two part, and where rounding leaves that open. The errors given are those of the gaps here (which
+// is 0) and there, now.
 template <Real T>
-std::optional<CollapseAhead<T>> collapse_ahead(const TwoGaps<T>& two, const T& of_speeds, const T& of_gaps) {
+std::optional<CollapseAhead<T>> collapse_ahead(const TwoGaps<T>& two, const GapError<T>& of_here,
+                                               const GapError<T>& of_there) {
   using std::sqrt;
-  const T &e = two.rebound_here, &f = two.rebound_there, unit = T(std::numeric_limits<T>::epsilon()) / T(2);
+  const T &e = two.rebound_here, &f = two.rebound_there, unit = Roundoff<T>().unit, quotient = Roundoff<T>().quotient;
   if (!is_positive(e) || !is_positive(f) || !is_positive(two.gap) || !is_positive(two.closing)) return {};
-  // Sums of positive numbers: of restitutions that may be rounded decimals, three additions and a root.
-  const T coupling = two.handed_there * two.handed_here, mean = sqrt(T(e * f));
-  const T least = e + f + mean + mean, of_sum = unit * (T(2 * two.roundings + 1) * coupling + T(5) * least);
+  // Sums of positive numbers, whose relative errors are at most those of the terms and one unit more each. The root of
+  // a product has half of what its factors have, that of the product, and one of its own.
+  const T coupling = two.handed_there * two.handed_here, mean = sqrt(T(e * f)), least = e + f + mean + mean;
   const T excess = coupling - least;
-  if (!(excess > of_sum + of_sum)) return {};
-  const T root = sqrt(T(excess * (excess + T(4) * mean)));
-  const T of_root = root * (of_sum / excess + of_sum / (excess + T(4) * mean));
-  const T larger = (excess + mean + mean + root) / T(2), of_larger = (of_sum + of_root) / T(2) + T(2) * unit * larger;
+  const T of_excess = coupling * (T(2) * two.of_handed + unit) + least * (two.of_rebound + T(4) * unit) + unit * excess;
+  if (!(excess > of_excess + of_excess)) return {};
+  // Where x is known to a half, its root is to 3/5 of the relative error of x: 1 - sqrt(1 - d) <= (2 - sqrt 2) d.
+  const T sum = excess + T(4) * mean, of_sum = of_excess + T(4) * mean * (two.of_rebound + T(3) * unit);
+  const T root = sqrt(T(excess * sum)),
+          of_root = root * (T(3) * (of_excess / excess + of_sum / sum) / T(5) + T(2) * unit);
+  const T larger = (excess + mean + mean + root) / T(2),
+          of_larger = (of_excess + of_root) / T(2) + mean * (two.of_rebound + T(2) * unit) + T(2) * unit * larger;
 
   const T share = two.handed_there / (larger + e),
-          of_share = share * (of_larger / (larger + e) + T(two.roundings + 4) * unit);
+          of_share = share * ((of_larger + e * two.of_rebound) / (larger + e) + two.of_handed + unit + quotient);
   const T speed = two.closing - share * two.opening;
-  const T of_speed = of_speeds * (T(1) + share) + two.opening * of_share + unit * (two.closing + two.opening);
+  const T of_speed = of_there.speed + share * of_here.speed + two.opening * (of_share + unit * share) + unit * speed;
   if (!(speed > of_speed + of_speed)) return {};
-  const T time = two.gap / speed, ratio = e * f / (larger * larger);
-  return {{{time, T((of_gaps + time * of_speed) / (speed - of_speed) + T(4) * unit * time)},
-           {ratio, T(T(4) * ratio * (of_larger / larger + unit))}}};
+  // The line of g + k times the line here, which is 0 now, is 0 at t_c.
+  const T time = two.gap / speed, of_gaps = of_there.gap + share * of_here.gap, ratio = e * f / (larger * larger);
+  const T of_time = (of_gaps + time * of_speed) / (speed - of_speed) + quotient * time;
+  if (!is_finite(of_time)) return {};
+  return {{{time, of_time},
+           {ratio, T(ratio * (T(4) * of_larger / larger + T(2) * two.of_rebound + T(2) * unit + quotient))}}};
 }
 
 }  // namespace cradle

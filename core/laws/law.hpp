@@ -86,6 +86,14 @@ concept ScaleFreeLaw = requires(const L law) {
   { law.scale_free() } -> std::same_as<bool>;
 };
 
+// Whether it says that it is not.
+template <class L> bool has_threshold(const L& law) {
+  if constexpr (ScaleFreeLaw<L>)
+    return !law.scale_free();
+  else
+    return false;
+}
+
 template <Real T> class Inelastic {
  public:
   static constexpr bool bounces_only = true;
@@ -164,6 +172,7 @@ template <Real T> class SpeedDependent {
     const Shares<T> shares = masses.shares(half);
     return {after, shares.left, shares.right, missing * half_sum * masses.reduced() * (w * w), w < cutoff_};
   }
+  bool scale_free() const { return false; }
 
  private:
   T missing_, cutoff_;
@@ -183,6 +192,7 @@ template <Real T> class ContactTime {
   template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const { return law_(w, masses); }
   template <class Masses> Outcome<T> elastic(const T& w, const Masses& masses) const { return law_.elastic(w, masses); }
   const T& contact_time() const { return contact_time_; }
+  bool scale_free() const { return false; }
   const T& cutoff() const { return law_.cutoff(); }
 
  private:

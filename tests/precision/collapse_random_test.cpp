@@ -1,7 +1,10 @@
 // Random systems of two to six particles, with walls and unequal masses, under policy stop. Proves: in every type, none
 // is said to collapse that does not with 60 digits, down to gaps of 1e-3000; the error stated of t_c holds in each
-// case, and is less than a few hundred times the true one in half of them. t_c is the last collision before a gap of
-// 1e-6000 with 60 digits, where that is no later than the one before 1e-3000 to 45 digits.
+// case, and is at most a hundred times the true one in half of them. t_c is the last collision before a gap of 1e-6000
+// with 60 digits, where that is no later than the one before 1e-3000 to 45 digits.
+//
+// In double-double it is eight times as much: its operations are bounded by up to eight times as much of epsilon as
+// those that give the nearest number, 4 for 1/2 in a quotient, and hardly ever err by that.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -116,7 +119,7 @@ void expect_errors_hold(int systems, std::uint64_t seed) {
               << of_type[of_type.size() / 2] << '\n';
     EXPECT_GT(of_type.size(), static_cast<std::size_t>(systems) / 4);
     if (systems >= 100) {
-      EXPECT_LT(of_type[of_type.size() / 2], 500);
+      EXPECT_LE(of_type[of_type.size() / 2], &of_type == &ratios[2] ? 800 : 100);
     }
   }
 }

@@ -25,7 +25,7 @@ template <Real T> struct Roundoff {
   static constexpr bool nearest = sums_can_be_exact<T>;
   T unit = T(std::numeric_limits<T>::epsilon()) / T(nearest ? 2 : 1);
   T quotient = nearest ? unit : T(T(4) * unit);
-  T way = T(nearest ? 2 : 4) * unit;  // of a time from the local time of a gap, told from a moved origin
+  T way = T(nearest ? 2 : 4) * unit;  // of a time from the local time of a gap, with a moved origin
 };
 
 // Bounds on the errors of a gap at some time, and of its closing speed.

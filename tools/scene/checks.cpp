@@ -195,7 +195,7 @@ class Checks {
                   "give two positions, the lower one first");
     if (!(range[0].value < range[1].value) || !std::isfinite(range[1].value - range[0].value))
       throw Error(place("output.profiles.range"), "not a range of doubles, in which profiles are",
-                  fmt::format("from {} to {}", range[0].text, range[1].text), "give ends that doubles tell apart");
+                  fmt::format("from {} to {}", range[0].text, range[1].text), "give ends that doubles distinguish");
   }
 
   void numbers_fit() const {

@@ -99,7 +99,8 @@ std::optional<Decimal> series_decimal(const Scene& scene, const std::vector<T>& 
 }
 
 /// The times that a run in this type stands for where it is at one of its stops.
-template <Real T> std::vector<RequestedTime> requested_times(const Scene& scene, const Schedule<T>& plan, const T& time) {
+template <Real T>
+std::vector<RequestedTime> requested_times(const Scene& scene, const Schedule<T>& plan, const T& time) {
   std::vector<RequestedTime> all;
   const Decimal own(to_text(time));
   const auto at = [&](const Decimal& decimal) -> RequestedTime& {

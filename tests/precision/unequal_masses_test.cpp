@@ -162,12 +162,12 @@ template <class T> int expect_right_or_warned(std::uint64_t seed, int systems, d
   int compared = 0;
   for (int k = 0; k < systems; ++k) {
     const System s = draw(decades, longest);
-    const Made right = make<Plain<Mpfr<4>>>(s, 20000), made = make<Watching<T>>(s, 20000);
+    const Made right = make<Watching<Mpfr<4>>>(s, 20000), made = make<Watching<T>>(s, 20000);
     EXPECT_FALSE(made.broken) << "seed " << seed << ", system " << k << ": guard " << made.guard[0] << ", found "
                               << made.guard[1] << ", bound " << made.guard[2];
     EXPECT_EQ(made.missed, 0) << "seed " << seed << ", system " << k;
-    if (right.status != Status::reached || made.status != Status::reached)
-      continue;  // collapse, or too many collisions
+    if (right.status != Status::reached || right.warned || made.status != Status::reached)
+      continue;  // collapse, too many collisions, or too few digits
     ++compared;
     warned += made.warned;
     if (made.warned) continue;
@@ -189,10 +189,30 @@ TEST(UnequalMasses, AreRightOrWarnedOfInWiderTypes) {
   expect_right_or_warned<long double>(3, 60, 8, 1.5);
   expect_right_or_warned<double_double>(4, 60, 8, 2);
 }
+// Down to intervals of 1e-1045 and back, which ranges wider than double's have. Exact: 16753 collisions (140 digits).
+TEST(UnequalMasses, AreWarnedOfBelowTheRangeOfDouble) {
+  Drawing draw(9003);
+  System s;
+  for (int k = 0; k <= 1325; ++k) s = draw(8, 2);
+  EXPECT_TRUE(make<Watching<long double>>(s, 20000).warned);
+#ifdef CRADLE_WITH_FLOAT128
+  EXPECT_TRUE(make<Watching<float128>>(s, 20000).warned);
+#endif
+#ifdef CRADLE_WITH_MPFR
+  MpfrPrecision::set_bits(MpfrPrecision::bits_for(140));
+  const Made right = make<Watching<Mpfr<8>>>(s, 20000);
+  EXPECT_FALSE(right.warned);
+  EXPECT_EQ(right.collisions, 16753U);
+#endif
+}
 TEST(SlowUnequalMasses, AreRightOrWarnedOf) {
   expect_right_or_warned<double>(5, 2000, 8, 1.5);
   expect_right_or_warned<double>(6, 500, 2, 3);
   expect_right_or_warned<double>(7, 500, 0.3, 3);
+  expect_right_or_warned<long double>(8, 300, 8, 2);
+#ifdef CRADLE_WITH_FLOAT128
+  expect_right_or_warned<float128>(9, 100, 8, 2);
+#endif
 }
 
 // Galperin: a light particle between a wall and one of M times its mass that comes in makes floor(pi sqrt(M))

@@ -1,14 +1,13 @@
 // Masses from 1e-8 to 1e8 beside each other. Proves: runs of 2000 random systems (lines, rings, walls, every law that
-// bounces) make the collisions that 70 digits make wherever nothing says that rounding may have decided; guards are
-// silent on all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) come out right up
-// to a ratio of 1e12, or 1e14 in the slow test.
+// bounces) make the collisions of 70 digits unless they warn that rounding may have decided one; guards are silent on
+// all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) are right up to a ratio of
+// 1e12, or 1e14 in the slow test.
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -261,7 +260,7 @@ TEST(UnequalMasses, GuardsAreSilentOnManyParticles) {
   EXPECT_EQ(gaps.missed + positions.missed, 0);
 }
 
-// Where masses are not far apart watching changes nothing: the bits of the chain that does not.
+// Where masses are not far apart, a chain that watches them has the bits of one that does not.
 TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
   Drawing draw(17);
   for (int k = 0; k < 50; ++k) {

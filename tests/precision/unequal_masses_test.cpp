@@ -272,8 +272,8 @@ TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
       Policy<double> policy;
       policy.progress = [&](double, const Counts& counts) { enough = counts.collisions > 2000; };
       policy.interrupt = [&] { return enough; };
-      Simulation watched(law, Watching<double>(particles, 0.), policy),
-          plain(law, Plain<double>(particles, 0.), policy);
+      Simulation watched(law, Watching<double>(particles, 0.), policy);
+      Simulation plain(law, Plain<double>(particles, 0.), policy);
       EXPECT_EQ(watched.advance(s.until), plain.advance(s.until));
       const double end = std::max(watched.last_collision_time(), plain.last_collision_time());
       EXPECT_EQ(watched.counts().collisions, plain.counts().collisions);

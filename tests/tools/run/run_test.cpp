@@ -13,8 +13,6 @@
 
 namespace cradle::tests::run_test {
 
-using tools::read_result;
-
 class Run : public ProgramTest {
  protected:
   // x_i = (2i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28, exact in decimals of 28 and fewer places.

@@ -4,8 +4,8 @@
 //
 //   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
 //
-// Nothing is ever a difference of positions, so gaps keep their relative precision down to underflow, however small
-// they are against the size of the system (timed_gaps.hpp: how they are advanced, and what becomes of rounding).
+// No gap is a difference of positions, so gaps keep their relative precision down to underflow, however small they are
+// against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
 //
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there

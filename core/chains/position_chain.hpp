@@ -1,9 +1,9 @@
 #pragma once
 // The chain in absolute positions and velocities, as conventional event-driven programs keep it: every particle has a
 // position, a velocity and the time of its last collision, and the next collision of neighbours is predicted from
-// differences of positions in absolute time. Plain on purpose: no streaming, no tuning. It is the reference twin of the
-// chain in gaps and one of the two sides of every comparison of precision; in a collapsing core its differences lose
-// their digits, which it keeps account of.
+// differences of positions in absolute time. It is plain on purpose: no streaming, no tuning. It is the reference twin
+// of the chain in gaps and one of the two sides of every comparison of precision; in a collapsing core its differences
+// lose their digits, which it counts.
 
 #include <memory>
 #include <optional>

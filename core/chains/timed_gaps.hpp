@@ -3,15 +3,15 @@
 // moving origin. What both chains in gaps do with a gap g that closes at the speed w is done here, whatever they keep
 // beside it (gap_chain.hpp: closing speeds; cluster_chain.hpp: velocities, from which w follows):
 //
-//   next collision    local time + g/w, if w > 0
+//   next collision  local time + g/w, if w > 0
 //   brought to t    g -= w (t - local time), local time = t
-//   in collision      g = 0 exactly
+//   in collision    g = 0 exactly
 //
-// Collisions may come late: of two that the queue cannot distinguish, or that commute, one beside a gap may be made
-// that is earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong.
-// The gap becomes what it would be had the collision come in time: the gain in closing speed has acted since then, g +=
-// gain (t - local time) with t before the local time; and a collision at the gap itself leaves it open by what it opens
-// in between. Where the order was truly lost the gap falls below zero, and is accounted for.
+// Collisions may come late: if the queue cannot distinguish two collisions, or if they commute, the one beside a gap
+// may be earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong.
+// The gap becomes what it would be if the collision had come in time: the gain in closing speed has acted since then,
+// g += gain (t - local time) with t before the local time; and a collision at the gap itself leaves it open by what it
+// opens in between. Where the order was truly lost, the gap falls below zero and is counted.
 //
 // When the origin moves, a local time is rounded. What it loses is kept (`lag`; the true local time is the sum of both)
 // so that a move touches no gap. A lag is other than zero only where the local time is negative, and is looked up only
@@ -121,7 +121,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     }
   }
   const T& lag(Slot s) const { return lag_[s]; }
-  // Since the gap's local time.
+  // The time since the gap's local time.
   [[gnu::always_inline]] T flown(Slot s, const T& now) const {
     const T& then = cells_[s].time;
     T way = now - then;
@@ -267,10 +267,10 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
  private:
-  // By how much rounding may have put a gap below zero, see `note`. Times are rounded in units of the offset, those due
-  // by when the origin moved last in units of the one then (`blur_`), ways flown in units of the way; either acts on
-  // the gap at its speed before or after the collision. A gap below zero stays so, and has its collision late, which
-  // its neighbours get at the rate of what it hands them: the order was lost, if it was, where that began.
+  // By how much rounding may have put a gap below zero, see `note`. Times are rounded in units of the offset; times due
+  // before the last move of the origin in units of the offset at that move (`blur_`); ways flown in units of the way.
+  // Each acts on the gap at its speed before or after the collision. A gap below zero stays so and has its collision
+  // late, which shifts its neighbours in proportion to what it hands them: only the first such gap shows a lost order.
   T below_zero(Slot s, const T& closing, const T& gain, const T& since, const T& struck, const T& time) const {
     const T& gap = cells_[s].gap;
     const T before = is_negative(since) ? T(gap - gain * since) : T(gap + (closing - gain) * since);
@@ -317,7 +317,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   std::vector<T> lag_;
   Clock<T> clock_;
   T floor_{0};
-  T blur_{0};  // what times were rounded by when the origin moved last: so late, or later, may come what was due then
+  T blur_{0};       // rounding of times when the origin moved last: collisions due then may be late by it
   long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
   Account<T> account_;
   Ledger<T> lost_;

@@ -4,26 +4,26 @@
 //
 // Exact sums, where masses are far apart. A collision with a particle of 1/M of its mass changes a heavy particle's
 // velocity by 2/M of the light one's. Both velocities are in one closing speed, of the size of the light one's:
-// rounding it loses the kick, the heavy particle's velocity is nowhere, and what is lost adds up. So the rest that
-// rounding leaves of a closing speed is kept, w = closing + rest, with twice the digits. What a collision takes from
-// its own closing speed it gives to the neighbours exactly (gap_line.hpp). Hence the velocity of every particle is what
-// it was plus all its kicks, each rounded to the digits that it has itself, whatever the masses of the others:
+// rounding it loses the kick, no other number holds the heavy particle's velocity, and the losses add up. So the rest
+// that rounding leaves of a closing speed is kept, w = closing + rest, with twice the digits. A collision gives to the
+// neighbours exactly what it takes from its own closing speed (gap_line.hpp). Hence the velocity of every particle is
+// its initial velocity plus all its kicks, each rounded to its own digits, whatever the masses of the others:
 //
 //   |dv_i| <= 2 epsilon (sum of the magnitudes of its own kicks).
 //
-// Deviations. Errors grow, by as many digits as gaps shrink where particles all but collapse and come apart again, and
-// one day they decide which collision is next. Two
-// samples of how far a gap and its closing speed may be from those of the exact system are carried along, in units of
-// epsilon. Random errors of the size of rounding enter at every collision; the motion carries them on as it carries any
-// small difference. With D the deviation of a gap at a given time and d that of its closing speed,
+// Deviations. Where particles nearly collapse and come apart again, errors grow by as many digits as gaps shrink, until
+// they decide which collision is next. So two samples of how far a gap and its closing speed may be from those of the
+// exact system are computed with the run, in units of epsilon. Every collision adds random errors of the size of
+// rounding, which then obey the linearised motion. With D the deviation of a gap at a given time and d that of its
+// closing speed,
 //
 //   flight of t         D -= d t
 //   collision at gap s    D_s -> (w'/w) D_s,  D_p += (J/m_l w) D_s,  D_n += (J/m_r w) D_s,
 //
-// and d in the same way, with dw'/dw for w'/w where the restitution depends on the speed. That all happens later by
-// tau, D = tau w for all gaps, changes no sequence; late in a collapse it would hide all else. So whenever the origin
-// of time moves, deviations are counted from the time of the last collision, which is then right by definition; the
-// sum of these delays is kept.
+// and d in the same way, with dw'/dw for w'/w where the restitution depends on the speed. A common delay tau of all
+// events, D = tau w for all gaps, changes no sequence, but late in a collapse it would hide everything else. So
+// whenever the origin of time moves, deviations are counted from the time of the last collision, which is then exact by
+// definition; the sum of these delays is kept.
 //
 // A collision is certain if `certain_by` times the larger sample changes neither that it happens (its closing speed
 // stays positive) nor its place in the sequence: the gaps g beside it stay positive at its time, which is itself off by

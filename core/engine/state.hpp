@@ -31,7 +31,7 @@ namespace cradle {
 
 static_assert(std::endian::native == std::endian::little);
 
-// How a scalar type that is not one of the language's is kept: `save(To&, const X&)` and `load(From&, X&)`.
+// How a scalar type that is not built in is kept: `save(To&, const X&)` and `load(From&, X&)`.
 template <class X> struct SavedNumber;
 
 template <class X>
@@ -60,7 +60,7 @@ inline constexpr std::size_t bytes_of = std::numeric_limits<X>::digits == 64 ? 1
 
 template <class X> using Plain = std::remove_cvref_t<X>;
 
-// The least that one takes as bytes: how many there can be in a file.
+// The least number of bytes of a value, which bounds how many there can be in a file.
 template <class X> constexpr std::size_t least_bytes() {
   if constexpr (is_whole<X>) {
     return 8;

@@ -12,10 +12,12 @@
 #include <vector>
 
 #include "cradle/tests/places.hpp"
+#include "cradle/tests/texts.hpp"
 
 namespace architecture_test {
 
 namespace fs = std::filesystem;
+using cradle::test::has;
 using cradle::test::source_folder;
 
 struct Line {
@@ -74,8 +76,7 @@ TEST(Architecture, CoreIncludesTheStandardLibraryAndItselfOnly) {
 }
 
 TEST(Architecture, PrecisionDoesNotKnowTheTools) {
-  for (const Line& line : code("precision"))
-    EXPECT_EQ(line.text.find("#include \"cradle/tools/"), std::string::npos) << place(line);
+  for (const Line& line : code("precision")) EXPECT_FALSE(has(line.text, "#include \"cradle/tools/")) << place(line);
 }
 
 // Theory says `using std::sqrt;` and then calls sqrt unqualified, as does the wet law; the rest needs none. What works

@@ -1,14 +1,13 @@
 // Masses from 1e-8 to 1e8 beside each other. Proves: runs of 2000 random systems (lines, rings, walls, every law that
-// bounces) make the collisions that 70 digits make wherever nothing says that rounding may have decided; guards are
-// silent on all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) come out right up
-// to a ratio of 1e12, or 1e14 in the slow test.
+// bounces) make the collisions of 70 digits unless they warn that rounding may have decided one; guards are silent on
+// all of them, and find an error of 1e-6 planted into any; closed forms (the digits of pi) are right up to a ratio of
+// 1e12, or 1e14 in the slow test.
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -281,7 +280,7 @@ TEST(UnequalMasses, GuardsAreSilentOnManyParticles) {
   EXPECT_EQ(gaps.missed + positions.missed, 0);
 }
 
-// Where masses are not far apart watching changes nothing: the bits of the chain that does not.
+// Where masses are not far apart, a chain that watches them has the bits of one that does not.
 TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
   Drawing draw(17);
   for (int k = 0; k < 50; ++k) {
@@ -293,8 +292,8 @@ TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
       Policy<double> policy;
       policy.progress = [&](double, const Counts& counts) { enough = counts.collisions > 2000; };
       policy.interrupt = [&] { return enough; };
-      Simulation watched(law, Watching<double>(particles, 0.), policy),
-          plain(law, Plain<double>(particles, 0.), policy);
+      Simulation watched(law, Watching<double>(particles, 0.), policy);
+      Simulation plain(law, Plain<double>(particles, 0.), policy);
       EXPECT_EQ(watched.advance(s.until), plain.advance(s.until));
       const double end = std::max(watched.last_collision_time(), plain.last_collision_time());
       EXPECT_EQ(watched.counts().collisions, plain.counts().collisions);

@@ -1,14 +1,13 @@
 // Every scene of the package, at a size of a second or less, ends with the status that it is meant to end with: 0, or 3
 // for those that follow a collapse (in sweeps and ensembles a collapse is an outcome, and the status is 0). A scene
-// that is added is asked for here.
+// that is added needs a row here.
 #include <set>
 #include <string>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
-namespace cradle::tests {
-namespace scenes_test {
+namespace cradle::tests::scenes_test {
 
 struct Meant {
   const char *scene, *command, *smaller;
@@ -65,8 +64,7 @@ class Scenes : public ProgramTest, public testing::WithParamInterface<Meant> {};
 TEST_P(Scenes, EndAsTheyAreMeantTo) {
   const auto& [scene, command, smaller, status] = GetParam();
   const std::string line = std::string("cradle ") + command + " " + scene + smaller + " --quiet -o it.h5";
-  const Printed ended = shell(line);
-  EXPECT_EQ(ended.status, status) << line << "\n" << ended.err;
+  shell(line, status);
 }
 
 INSTANTIATE_TEST_SUITE_P(, Scenes, testing::ValuesIn(scenes), [](const auto& parameter) {
@@ -82,5 +80,4 @@ TEST(ScenesMeant, AreAllThereAre) {
   EXPECT_EQ(tried, bundled);
 }
 
-}  // namespace scenes_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::scenes_test

@@ -4,12 +4,8 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <random>
 
-#include <gtest/gtest.h>
-
+#include "cradle/tests/tools/mutator.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/guarded.hpp"
 #include "cradle/tools/result/result_bytes.hpp"
@@ -22,60 +18,10 @@ namespace malformed_test {
 using namespace cradle::tests;
 using namespace cradle::tools;
 
-int mutations() {
-  const char* more = std::getenv("CRADLE_MUTATIONS");
-  return more != nullptr ? std::atoi(more) : 200;
-}
-
-class Mutator {
- public:
-  explicit Mutator(unsigned seed) : random_(seed) {}
-  std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
-
-  // Flips bits, writes numbers that are extreme, cuts, repeats, takes out; only from the given byte on.
-  std::string mutate(std::string bytes, std::size_t from = 0) {
-    for (std::size_t left = 1 + below(3); left > 0 && bytes.size() > from + 8; --left) {
-      const std::size_t at = from + below(bytes.size() - from - 7);
-      switch (below(6)) {
-      case 0:
-        bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-        break;
-      case 1: {
-        constexpr std::uint64_t extreme[] = {0,
-                                             1,
-                                             ~std::uint64_t{0},
-                                             std::uint64_t{1} << 63,
-                                             std::uint64_t{1} << 40,
-                                             0x7FF0000000000000,
-                                             0x7FF8000000000000,
-                                             0xFFEFFFFFFFFFFFFF};
-        std::memcpy(bytes.data() + at, &extreme[below(std::size(extreme))], 8);
-        break;
-      }
-      case 2:
-        bytes.resize(at);
-        break;
-      case 3:
-        bytes.insert(at, bytes.substr(at, 1 + below(40)));
-        break;
-      case 4:
-        bytes.erase(at, 1 + below(40));
-        break;
-      default:
-        bytes[at] = static_cast<char>(below(256));
-      }
-    }
-    return bytes;
-  }
-
- private:
-  std::mt19937 random_;
-};
-
 TEST(Malformed, Scenes) {
   Mutator mutator(1);
   int refused = 0;
-  for (int k = 0; k < mutations(); ++k) {
+  for (int k = 0; k < mutations(200); ++k) {
     const auto scenes = bundled_scenes();
     const std::string text = mutator.mutate(std::string(scenes[mutator.below(scenes.size())].text));
     try {
@@ -87,7 +33,7 @@ TEST(Malformed, Scenes) {
       EXPECT_STRNE(error.what(), "");
     }
   }
-  EXPECT_GT(refused, mutations() / 4);
+  EXPECT_GT(refused, mutations(200) / 4);
 }
 
 class MalformedFiles : public ProgramTest {
@@ -147,7 +93,7 @@ TEST_F(MalformedFiles, CheckpointsAndJournals) {
     whole.emplace_back(contents(folder / (name + ".part")), contents(folder / (name + ".checkpoint")));
   }
   int refused = 0;
-  for (int k = 0; k < mutations(); ++k) {
+  for (int k = 0; k < mutations(200); ++k) {
     SCOPED_TRACE(k);
     auto [journal, state] = whole[mutator.below(whole.size())];
     const bool of_state = mutator.below(2) == 0, sealed = mutator.below(4) > 0;
@@ -182,7 +128,7 @@ TEST_F(MalformedFiles, CheckpointsAndJournals) {
     }
     for (const char* file : {"a.h5.part", "a.h5.checkpoint"}) std::filesystem::remove(folder / file);
   }
-  EXPECT_GT(refused, mutations() / 4);
+  EXPECT_GT(refused, mutations(200) / 4);
 }
 
 }  // namespace malformed_test

@@ -11,8 +11,7 @@
 
 #include "cradle/tools/support/checksum.hpp"
 
-namespace cradle::tests {
-namespace bytes_test {
+namespace cradle::tests::bytes_test {
 
 TEST(Checksum, IsTheCrc64OfXz) {
   EXPECT_EQ(tools::crc64("123456789"), 0x995DC9BBDF1939FAU);  // the check value of the catalogue of CRC algorithms
@@ -48,5 +47,4 @@ TEST(Bytes, LengthsThatCannotBeAreRefused) {
   EXPECT_THROW(tools::ByteReader(writer.bytes()).text(), tools::Error);
 }
 
-}  // namespace bytes_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::bytes_test

@@ -48,7 +48,7 @@ def main(words: list[str] | None = None) -> int:
 
 def plot(options) -> None:
     import cradle
-    from cradle.drawing.reading import Theory
+    from cradle.drawing.theory import Theory
     from cradle.plot import saved
     out = options.out or os.path.splitext(options.file)[0] + ".png"
     paths = saved(cradle.open(options.file), out, Theory(options.theory) if options.theory else Theory())

@@ -57,7 +57,7 @@ __all__ = ["names", "save", *PICTURES]
 def predictions(result: Result, theory: bool = True):
     """The program's table for the result's scene; empty without the program, with a warning."""
     from .commands import scene_file
-    from .drawing.reading import Theory
+    from .drawing.theory import Theory
     if not theory or not result.scene_text:
         return Theory()
     try:

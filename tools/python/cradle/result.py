@@ -13,7 +13,7 @@ from . import program
 from .errors import BAD_FILE, Error
 from .scene import parse_toml
 from .seal import check_seal, damaged, hdf5_length, read_seal
-from .tables import Column, Table, Tables, reading
+from .tables import Means, Table, Tables, reading
 
 FORMAT = 2
 CHECKED = 64 << 20  # bytes of a file whose checksum is checked without a request: a tenth of a second
@@ -150,8 +150,11 @@ class Result:
                 return found
         return None
 
-    def _table(self, *names: str) -> Table:
-        return Table(self._group(*names), f"{self.path}: {names[0]}")
+    def _table(self, *names: str, kind: type[Table] = Table) -> Table:
+        return kind(self._group(*names), f"{self.path}: {names[0]}")
+
+    def _tables(self, *names: str, kind: type[Table] = Table) -> Tables:
+        return Tables(self._group(*names), f"{self.path}: {names[0]}", kind)
 
     # ---- what was run
 
@@ -178,6 +181,24 @@ class Result:
         """The same as nested dicts, `result.scene["law"]["restitution"]`; numbers as floats."""
         return reading(self.path, lambda: parse_toml(self.scene_text))
 
+    def word(self, table: str, key: str) -> str:
+        """A value of the scene, "" where it has none."""
+        return str(self.scene.get(table, {}).get(key, ""))
+
+    def setting(self, table: str, key: str, default: float | None = None) -> Any:
+        """A number of the scene (numbers may be quoted; keys may be dotted), or the default."""
+        value = self.scene.get(table, {})
+        for part in key.split("."):
+            value = value.get(part) if isinstance(value, dict) else None
+        try:
+            return float(default if value is None else value)
+        except (TypeError, ValueError):
+            return default
+
+    @property
+    def law(self) -> str:
+        return self.word("law", "type")
+
     @property
     def outcome(self) -> str:
         return "in progress" if self.in_progress else str(self.attributes.get("outcome", ""))
@@ -194,20 +215,30 @@ class Result:
         return self._table("series", "ensemble/series")
 
     @cached_property
+    def means(self) -> Table:
+        """The series of a run, or of an ensemble the means of its quantities, by the same names."""
+        return self._table("series", "ensemble/series", kind=Means)
+
+    @cached_property
     def snapshots(self) -> Tables:
         """Particles at times: `x`, `v`, `m`, `index` of shape (particles,), `gap`, `closing_speed` of shape (particles
         - 1,)."""
-        return Tables(self._group("snapshots"), f"{self.path}: snapshots")
+        return self._tables("snapshots")
 
     @cached_property
     def profiles(self) -> Tables:
         """Averages over bins at times: `x`, `velocity`, `density`, ... of shape (bins,); of an ensemble tables."""
-        return Tables(self._group("profiles", "ensemble/profiles"), f"{self.path}: profiles")
+        return self._tables("profiles", "ensemble/profiles")
+
+    @cached_property
+    def mean_profiles(self) -> Tables:
+        """Profiles of a run, or of an ensemble their means, by the same names."""
+        return self._tables("profiles", "ensemble/profiles", kind=Means)
 
     @cached_property
     def masses(self) -> Tables:
         """Distributions of cluster masses at times."""
-        return Tables(self._group("masses"), f"{self.path}: masses")
+        return self._tables("masses")
 
     @cached_property
     def events(self) -> Table:
@@ -238,7 +269,7 @@ class Result:
     @cached_property
     def trust(self) -> Tables:
         """One table per precision of a comparison: attributes `precision`, `collisions_right_until`, ..."""
-        return Tables(self._group("trust"), f"{self.path}: trust")
+        return self._tables("trust")
 
     @cached_property
     def certificate(self) -> Table:

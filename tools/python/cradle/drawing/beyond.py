@@ -19,7 +19,7 @@ def pictures(result, _theory, units):
         if len(with_rates(points, since, units)) > 1:
             found.append(("rates", lambda axes=None: draw_rates(points, since, units, axes)))
         return found
-    if result.points or result.statistics or not has_core(result) or not np.isfinite(onset(result)):
+    if result.points or result.replicas or not has_core(result) or not np.isfinite(onset(result)):
         return []
     found = [("beyond", lambda axes=None: draw_run(result, units, axes))]
     dense = [s for s in result.snapshots if s["time"] >= onset(result) and len(core_of(s)[0]) > 2]
@@ -31,17 +31,17 @@ def pictures(result, _theory, units):
 
 
 def has_core(result):
-    return np.isfinite(result.series.get("core_width", ())).sum() > 2
+    return np.isfinite(result.means.get("core_width", ())).sum() > 2
 
 
 def slowest(result):
     """The closing speed below which a collision loses nothing (or all: merge_speed); 0 where there is none."""
-    merging = result.text("run", "collapse") == "merge"
+    merging = result.word("run", "collapse") == "merge"
     return result.setting("run", "merge_speed", 0.0) if merging else result.setting("law", "cutoff", 0.0)
 
 
 def label_of(result):
-    policy = result.text("run", "collapse")
+    policy = result.word("run", "collapse")
     if policy == "contact-time":
         return rf"contact time {result.setting('run', 'contact_time'):.4g}"
     return rf"merge below {slowest(result):.4g}" if policy == "merge" else rf"$\delta=${slowest(result):.4g}"
@@ -49,13 +49,13 @@ def label_of(result):
 
 def onset(result):
     """The first of the samples up to the narrowest core in which half of the mass is in less than NARROW."""
-    width = result.series["core_width"]
+    width = result.means["core_width"]
     if not np.isfinite(width).any():
         return np.inf
     narrowest = int(np.nanargmin(width))
     wide = np.flatnonzero(~(width[:narrowest + 1] < NARROW * result.setting("initial", "spacing", 1.0)))
     first = wide[-1] + 1 if len(wide) else 0
-    return result.series["time"][first] if first <= narrowest else np.inf
+    return result.means["time"][first] if first <= narrowest else np.inf
 
 
 def used_up(result, units):
@@ -65,14 +65,13 @@ def used_up(result, units):
 
 def excess(result, kind="mean"):
     """Of the energy over that of the sticky gas, in units of the energy at the start."""
-    start = result.series["energy"][0] + result.series["energy_lost"][0]
-    values = result.statistics.get("sticky_excess", {}).get(kind) if kind != "mean" else None
-    return (result.series["sticky_excess"] if values is None else values) / start
+    start = result.means["energy"][0] + result.means["energy_lost"][0]
+    return (result.means["sticky_excess"] if kind == "mean" else result.series["sticky_excess"][kind]) / start
 
 
 def rate(result, name):
     """Per unit of time, between samples; and the times in their middle."""
-    time, counts = result.series["time"], np.asarray(result.series[name], float)
+    time, counts = result.means["time"], np.asarray(result.means[name], float)
     apart = np.diff(time) > 0
     return ((time[1:] + time[:-1]) / 2)[apart], np.diff(counts)[apart] / np.diff(time)[apart]
 
@@ -95,10 +94,10 @@ def most_frequent(result, cutoff):
 
 
 def draw_excess(ax, result, since, units, colour, label=None, line="-"):
-    late = result.series["time"] >= since
-    time = result.series["time"][late] / units.t
+    late = result.means["time"] >= since
+    time = result.means["time"][late] / units.t
     ax.plot(time, excess(result)[late], line, color=colour, label=label)
-    if result.statistics:
+    if result.replicas:
         ax.fill_between(time, excess(result, "min")[late], excess(result, "max")[late], color=colour, alpha=0.2, lw=0)
     ax.set_yscale("symlog", linthresh=1e-5)
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)
@@ -124,7 +123,7 @@ def positive(ax, time, values, **how):
 # ---- a run
 
 def draw_run(result, units, axes=None):
-    series, scale = result.series, slowest(result)
+    series, scale = result.means, slowest(result)
     late = series["time"] >= onset(result)
     time = series["time"][late] / units.t
     figure, axes = stacked(axes, 4, width=5.8, height=2.1, sharex=True)
@@ -209,18 +208,18 @@ def draw_spacetime(snapshots, units, axes=None):
 
 def draw_points(points, since, units, axes=None):
     figure, axes = stacked(axes, 3, width=7.2, height=2.7, sharex=True)
-    replaced = [p for p in points if p.text("run", "collapse") in ("merge", "contact-time")]
+    replaced = [p for p in points if p.word("run", "collapse") in ("merge", "contact-time")]
     others = [p for p in points if p not in replaced]
     how = [(p, colour, "-") for p, colour in zip(others, shades(len(others)))]
     warm = plt.get_cmap("autumn")(np.linspace(0, 0.8, len(replaced)))
     how += [(p, colour, "--") for p, colour in zip(replaced, warm)]
     for point, colour, line in how:
-        late = point.series["time"] >= since
-        time = point.series["time"][late] / units.t
+        late = point.means["time"] >= since
+        time = point.means["time"][late] / units.t
         draw_excess(axes[0], point, since, units, colour, label_of(point), line)
         if slowest(point):
-            positive(axes[1], time, point.series["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
-        positive(axes[2], time, point.series["core_width"][late] / units.x, color=colour, ls=line)
+            positive(axes[1], time, point.means["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
+        positive(axes[2], time, point.means["core_width"][late] / units.x, color=colour, ls=line)
     axes[1].set_ylabel("velocity range\n/ cut-off or merging speed")
     axes[2].set(ylabel=length_label(units, "length with half of the mass"), xlabel=units.time_label())
     axes[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1))
@@ -228,7 +227,7 @@ def draw_points(points, since, units, axes=None):
 
 
 def with_rates(points, since, units):
-    return [p for p in points if p.text("run", "collapse") not in ("merge", "contact-time") and slowest(p)
+    return [p for p in points if p.word("run", "collapse") not in ("merge", "contact-time") and slowest(p)
             and np.isfinite(rates(p, since, units)[0][0])]
 
 

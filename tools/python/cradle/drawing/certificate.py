@@ -22,7 +22,7 @@ def draw_certificate(result, units, axes=None):
         top.plot(time[known], proof[name][known], color=colour, label=label)
     top.axhline(0, color="k", lw=0.8, ls=":")
     top.set_ylabel(r"$\log_{10}$")
-    top.set_title(f"{proof['verdict']}: {int(proof['collisions_of_run']):,} collisions, run in {proof['precision']}, "
+    top.set_title(f"{proof['verdict']}: {int(proof.attributes['collisions']):,} collisions, run in {proof['precision']}, "
                   f"proved with {int(proof['digits'])} digits", fontsize="medium")
     top.legend(loc="best", fontsize="small")
     below.plot(time, proof["collisions"], color=BLUE)

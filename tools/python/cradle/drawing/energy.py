@@ -5,15 +5,15 @@ from .style import BLUE, GREEN, GREY, ORANGE, panel_letter, subplots
 
 
 def pictures(result, theory, units):
-    if (len(result.series.get("time", ())) > 1 and "energy" in result.series
-            and result.text("initial", "type") != "ring"):  # which has the cooling picture
+    if (len(result.means.get("time", ())) > 1 and "energy" in result.means
+            and result.word("initial", "type") != "ring"):  # which has the cooling picture
         return [("energy", lambda axes=None: draw_energy(result, theory, units, axes))]
     return []
 
 
 def draw_energy(result, theory, units, axes=None):
     """Energy, with equation (7) dotted and the sticky gas dashed; below it the number of collisions."""
-    series = result.series
+    series = result.means
     time = series["time"] / units.t
     figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), layout="constrained",
                                        gridspec_kw={"height_ratios": (3, 2)})

@@ -18,7 +18,7 @@ def curves_of(result):
     """(N, collapsed, replicas) by increasing N, for each restitution; of rings that stop at a collapse."""
     found = {}
     for point in result.points:
-        if point.text("initial", "type") != "ring" or point.text("run", "collapse") != "stop":
+        if point.word("initial", "type") != "ring" or point.word("run", "collapse") != "stop":
             continue
         if "collapse_time" not in point.replicas:
             continue

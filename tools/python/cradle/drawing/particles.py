@@ -7,7 +7,7 @@ FEW_PARTICLES = 20       # up to here every particle has a path of its own
 
 
 def few(result):
-    return 0 < max((len(s["x"]) for s in result.snapshots), default=0) <= FEW_PARTICLES and not result.profiles
+    return 0 < max((len(s["x"]) for s in result.snapshots), default=0) <= FEW_PARTICLES and not result.mean_profiles
 
 
 def pictures(result, theory, units):
@@ -28,7 +28,7 @@ def draw_particles(result, units, axes=None):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
     for (particle, path), colour in zip(sorted(paths.items()), shades(len(paths))):
         axes[0].plot(*(np.array(path) / (units.t, units.x)).T, "o-", ms=3, color=colour, label=f"particle {particle}")
-    series = result.series
+    series = result.means
     for name, line in (("front_left", ":"), ("front_right", "--")):
         if name in series:
             axes[0].plot(series["time"] / units.t, series[name] / units.x, line, color="k", lw=0.8, zorder=0,

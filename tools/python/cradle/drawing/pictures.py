@@ -9,7 +9,6 @@ from ..errors import BAD_FILE, Error
 from ..files import whole
 from . import (beyond, blast, certificate, clusters, cooling, domino, energy, ensemble, onset, particles, scenarios,
                shock, spacetime, splash, sticky, structure, sweep, trust, walls, zone)
-from .reading import read_result
 from .style import Units, style
 
 CLASSICS = (onset, blast, domino, splash, walls)
@@ -30,10 +29,9 @@ def pictures_of(result, theory, units):
 def available(result, theory):
     """Names and functions of the pictures of an opened result, the main one first: each draws on new axes, or on those
     that it is given, and returns the figure. Raises Error."""
-    contents = read_result(result)
     with lacking(result.path):
         return {name: drawing(result.path, name, draw)
-                for name, draw in pictures_of(contents, theory, Units.of(contents))}
+                for name, draw in pictures_of(result, theory, Units.of(result))}
 
 
 def drawing(path, name, draw):

@@ -11,11 +11,16 @@ BIN_PARTICLES = 25       # bins of mean velocity are merged to hold so many: the
 
 
 def pictures(result, theory, units):
-    if result.text("initial", "type") == "ring" or (result.law == "sticky" and result.snapshots):
+    if result.word("initial", "type") == "ring" or (result.law == "sticky" and result.snapshots):
         return []  # these have pictures of their own: cooling, sticky
-    if result.profiles or len(result.snapshots) > 1 or (result.snapshots and core_of(result, units) is None):
+    if profiles_of(result) or len(result.snapshots) > 1 or (result.snapshots and core_of(result, units) is None):
         return [("shock", lambda axes=None: draw_shock(result, theory, units, axes))]
     return []
+
+
+def profiles_of(result):
+    """A single bin averages over all: no picture of that."""
+    return [profile for profile in result.mean_profiles if len(profile["x"]) > 1]
 
 
 def averaged(snapshot, bins=50):
@@ -49,7 +54,7 @@ def draw_shock(result, theory, units, axes=None):
     """Velocities of single particles, averaged velocities, density."""
     most = 8 if result.law == "wet" else 7  # a wet shock goes through one stage more
     snapshots = thinned(result.snapshots, most)
-    profiles = result.profiles or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
+    profiles = profiles_of(result) or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
     common = [p for p in profiles if p["time"] in {s["time"] for s in snapshots}]
     profiles = thinned(common if len(common) > 1 else profiles, most)
     times = sorted({group["time"] for group in snapshots + profiles})

@@ -105,11 +105,11 @@ def draw_cradle(ax, snapshots, units):
 
 
 def draw_energy_steps(ax, result, units):
-    if not result.series:
+    if not result.means:
         return
-    time = result.series["time"] / units.t
-    ax.plot(time, result.series["energy"] / units.energy, color=BLUE, drawstyle="steps-post")
+    time = result.means["time"] / units.t
+    ax.plot(time, result.means["energy"] / units.energy, color=BLUE, drawstyle="steps-post")
     for t in result.events.get("time", ()):
         ax.axvline(t / units.t, color=GREY, lw=0.8, ls=":", zorder=0)
     ax.set(xlabel=units.time_label(), ylabel=units.energy_label(), xlim=(time[0], time[-1]))
-    ax.set_ylim(0, 1.1 * (result.series["energy"].max() / units.energy or 1))
+    ax.set_ylim(0, 1.1 * (result.means["energy"].max() / units.energy or 1))

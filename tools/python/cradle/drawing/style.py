@@ -41,7 +41,7 @@ class Units:
     @classmethod
     def of(cls, result):
         spacing, speed = result.setting("initial", "spacing", 1.0), result.setting("initial", "speed", 0.5)
-        equal_rows = result.text("initial", "type") == "rows" and "left" not in result.scene["initial"]
+        equal_rows = result.word("initial", "type") == "rows" and "left" not in result.scene["initial"]
         return cls(spacing, 2 * speed, True) if equal_rows and spacing > 0 and speed > 0 else cls()
 
     @property
@@ -110,7 +110,7 @@ def power(value, digits=5):
 def thinned(items, most=7):
     """At most so many, evenly chosen, first and last kept."""
     if len(items) <= most:
-        return items
+        return list(items)
     return [items[i] for i in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 

@@ -60,7 +60,7 @@ def error_of(result, name):
 # ---- free cooling
 
 def cooling_points(result):
-    return [p for p in result.points if p.text("initial", "type") == "ring" and len(p.series.get("time", ())) > 1]
+    return [p for p in result.points if p.word("initial", "type") == "ring" and len(p.means.get("time", ())) > 1]
 
 
 def label_of(point):
@@ -79,22 +79,22 @@ def draw_cooling(result, axes=None):
     others = [p for p in points if p is not reference]
     for point, colour in list(zip(others, shades(len(others)))) + ([(reference, "k")] if reference else []):
         particles, speed, spacing = ring_of(point)
-        later = point.series["time"] * speed / spacing > 0.03  # nothing has met before
-        time = point.series["time"][later]
-        energy = point.series["energy"][later] / particles
+        later = point.means["time"] * speed / spacing > 0.03  # nothing has met before
+        time = point.means["time"][later]
+        energy = point.means["energy"][later] / particles
         line = "--" if point.law == "inelastic" else "-"
         top.loglog(time, energy, line, color=colour, label=label_of(point), zorder=3 if point is reference else 2)
         if reference is not None:
-            seen = reference.series["time"] > 0
-            known = np.interp(np.log(time), np.log(reference.series["time"][seen]),
-                              np.log(reference.series["energy"][seen] / ring_of(reference)[0]), left=np.nan,
+            seen = reference.means["time"] > 0
+            known = np.interp(np.log(time), np.log(reference.means["time"][seen]),
+                              np.log(reference.means["energy"][seen] / ring_of(reference)[0]), left=np.nan,
                               right=np.nan)
             below.loglog(time, energy / np.exp(known), line, color=colour)
         else:
             below.loglog(time, energy / sticky_law(point, time), line, color=colour)
-    time = points[0].series["time"]
+    time = points[0].means["time"]
     law = sticky_law(points[0], time)
-    shown = law < 2 * max(p.series["energy"].max() / ring_of(p)[0] for p in points)
+    shown = law < 2 * max(p.means["energy"].max() / ring_of(p)[0] for p in points)
     top.plot(time[shown], law[shown], ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
     below.axhline(1, color=GREY, lw=0.8, zorder=0)
     top.set_ylabel(r"energy per particle $E\,/\,N$")

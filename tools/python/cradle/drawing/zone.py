@@ -9,7 +9,7 @@ EXCESS = np.sqrt(6.0)  # k = n~/n0, where (12) and (13) agree
 
 
 def pictures(result, _theory, units):
-    return [("zone", lambda axes=None: draw_zone(result, units, axes))] if "x" in result.zone else []
+    return [("zone", lambda axes=None: draw_zone(result, units, axes))] if "x" in result.table("zone") else []
 
 
 def model_width(speed, loss, spacing=1.0):
@@ -18,7 +18,7 @@ def model_width(speed, loss, spacing=1.0):
 
 
 def draw_zone(result, units, axes=None):
-    zone = result.zone
+    zone = result.table("zone")
     speed, loss = result.setting("initial", "speed", 0.5), result.setting("law", "loss", np.nan)
     spacing = result.setting("initial", "spacing", 1.0)
     x = zone["x"] / units.x

@@ -16,38 +16,29 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
-import tomllib
-import types
 import unittest
+import zlib
 from fractions import Fraction
 
-SOURCES = pathlib.Path(__file__).resolve().parents[3] / "tools" / "python"
-sys.path[:0] = [str(SOURCES), os.path.dirname(__file__)]
-import browser  # noqa: E402, beside this file
+import h5py
+import numpy as np
 
-try:
-    import h5py
-    import numpy as np
-    from cradle import microscope
-    MISSING = ""
-except ImportError as error:
-    MISSING = f"no {error.name} (Debian: python3-h5py)"
-PROGRAM = os.environ.get("CRADLE_PROGRAM")
+import browser
+import cradle
+from cradle import microscope
+from cradle.program import find
+from cradle.scene import scene_text
+
+SOURCES = pathlib.Path(microscope.__file__).parent
 HUNDREDTH = 0.01  # of a pixel
 
 
 class Microscope(browser.Browser):
     """The browser, with the hands that a person has."""
 
-    def __init__(self, width=1100, height=760):
-        super().__init__(width, height)
-
-    def run(self, script):
-        """The value of an expression, awaited."""
-        return self.evaluate(script)
+    run = browser.Browser.evaluate
 
     def open(self, path, dark=False):
         self.dark(dark)
@@ -120,15 +111,13 @@ def rational_collapse(least_gap=Fraction(1, 10**290)):
             return start, collisions
 
 
-def write_result(path, scene, start, left, right, moments, intervals, speeds, outcome="reached the end", **collapse):
+def write_result(path, scene, start, left, right, intervals, speeds, outcome="reached the end", **collapse):
     """A result file with events and the initial state alone; start: positions and velocities."""
     with h5py.File(path, "w") as file:
-        file.attrs.update({"scene": json.dumps(scene), "name": scene["title"], "outcome": outcome})
-        for name, column in (("left", left), ("right", right)):
+        file.attrs.update({"scene": scene_text(scene), "name": scene["title"], "outcome": outcome})
+        for name, column in (("left", left), ("right", right), ("kind", np.zeros(len(left)))):
             file[f"events/{name}"] = np.asarray(column, np.uint64)
-        file["events/time"], file["events/interval"] = np.asarray(moments), np.asarray(intervals)
-        file["events/time_low"] = np.zeros(len(moments))
-        file["events/closing_speed"] = np.asarray(speeds)
+        file["events/interval"], file["events/closing_speed"] = np.asarray(intervals), np.asarray(speeds)
         x, v = (np.asarray(column, float) for column in start)
         for name, column in (("index", np.arange(len(x), dtype=np.uint64)), ("x", x), ("v", v), ("m", np.ones(len(x))),
                              ("gap", np.append(np.diff(x), np.nan))):
@@ -136,7 +125,7 @@ def write_result(path, scene, start, left, right, moments, intervals, speeds, ou
         file["initial"].attrs["circumference"] = 0.0
         if collapse:
             file.create_group("collapse").attrs.update(collapse)
-    return types.SimpleNamespace(file=h5py.File(path, "r"), scene=scene)
+    return cradle.Result(str(path), h5py.File(path, "r"))
 
 
 def collapse_result(folder, collisions):
@@ -145,8 +134,7 @@ def collapse_result(folder, collisions):
     times = [collision[1] for collision in collisions]
     return write_result(folder / "collapse3.h5", scene, ([0, 1, 3], [1, 0, -1]),
                         [c[0] for c in collisions], [c[0] + 1 for c in collisions],
-                        [float(t) for t in times], [float(b - a) for a, b in zip([0] + times, times)],
-                        [float(c[2]) for c in collisions], "inelastic collapse", time=12 / 7)
+                        [float(b - a) for a, b in zip([0] + times, times)], [float(c[2]) for c in collisions], "inelastic collapse", time=12 / 7)
 
 
 def crossing_rows(half, restitution="1"):
@@ -169,17 +157,23 @@ def crossing_rows(half, restitution="1"):
 
 def rows_result(folder, half):
     scene, start, moments, places, left = crossing_rows(half)
-    result = write_result(folder / f"rows{half}.h5", scene, start, left, left + 1, moments,
+    result = write_result(folder / f"rows{half}.h5", scene, start, left, left + 1,
                           np.diff(moments, prepend=0.0), np.ones(len(moments)))
     return result, moments, places, left
+
+
+def unpack(packed):
+    """The array of which `microscope.pack` made a text."""
+    kind = np.dtype("<" + packed["type"])
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["deflate"])), np.uint8)
+    return planes.reshape(kind.itemsize, packed["length"]).T.copy().view(kind).ravel()
 
 
 def write_page(folder, result, name):
     """The smallest page with a microscope in it; (its path, the data)."""
     data = microscope.data(result)
-    sources = SOURCES / "cradle"
-    scripts = "\n".join((sources / script).read_text("utf-8") for script in microscope.SCRIPTS)
-    styles = "\n".join((sources / style).read_text("utf-8") for style in microscope.STYLES)
+    scripts = "\n".join((SOURCES / script).read_text("utf-8") for script in microscope.SCRIPTS)
+    styles = (SOURCES / "microscope.css").read_text("utf-8")
     path = folder / f"{name}.html"
     path.write_text("<!doctype html><meta charset=utf-8><meta name=color-scheme content='light dark'><title>microscope"
                     f"</title><style>{styles} body{{margin:12px}}</style><div id=here></div><script>{scripts}</script>"
@@ -187,49 +181,47 @@ def write_page(folder, result, name):
     return path, data
 
 
-@unittest.skipIf(MISSING, MISSING)
 class Data(unittest.TestCase):
     """What goes into a page, without a browser."""
 
     def test_arrays_come_back_bit_by_bit(self):
         for array in (np.array([1e-300, -0.1, 3.0, 0.0]), np.arange(70000, dtype=np.uint32), np.zeros(0, np.uint16)):
-            back = microscope.unpack(microscope.pack(array))
+            back = unpack(microscope.pack(array))
             self.assertEqual(back.dtype, array.dtype)
             self.assertEqual(back.tobytes(), array.tobytes())
 
     def test_rounded_mantissas_are_within_half_a_unit(self):
         array = np.random.default_rng(1).random(1000) * 10.0 ** np.arange(-250, 250, 0.5)
-        back = microscope.unpack(microscope.pack(array, 24))
+        back = unpack(microscope.pack(array, 24))
         self.assertLessEqual(np.max(np.abs(back / array - 1)), 2.0 ** -25)
         self.assertFalse(np.array_equal(back, array))
 
     def test_nothing_to_show_is_none(self):
-        with tempfile.TemporaryDirectory() as folder, h5py.File(pathlib.Path(folder) / "empty.h5", "w") as file:
-            scene = {"law": {"type": "inelastic", "restitution": 0.5}, "initial": {"type": "list", "x": [0], "v": [0]}}
-            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+        with h5py.File("empty.h5", "w") as file:
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
+            file.attrs["scene"] = '[law]\ntype = "inelastic"\nrestitution = 0.5\n[initial]\ntype = "list"\nx = [0]\n'
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
             file.create_group("snapshots")
-            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
             file.attrs["kind"] = "ensemble"
-            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
 
     def test_same_result_same_bytes(self):
         with tempfile.TemporaryDirectory() as folder:
             result, *_ = rows_result(pathlib.Path(folder), 30)
-            with result.file:
+            with result:
                 self.assertEqual(json.dumps(microscope.data(result)), json.dumps(microscope.data(result)))
 
 
-@unittest.skipIf(MISSING, MISSING)
 @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
 class InBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp())
         cls.start, cls.collisions = rational_collapse()
-        with collapse_result(cls.folder, cls.collisions).file as file:
-            scene = json.loads(file.attrs["scene"])
-            cls.page, cls.data = write_page(cls.folder, types.SimpleNamespace(file=file, scene=scene), "collapse3")
-        cls.browser = Microscope()
+        with collapse_result(cls.folder, cls.collisions) as result:
+            cls.page, cls.data = write_page(cls.folder, result, "collapse3")
+        cls.browser = Microscope(height=760)
 
     @classmethod
     def tearDownClass(cls):
@@ -320,9 +312,8 @@ class InBrowser(unittest.TestCase):
     def test_what_doubles_do_not_hold_is_left_out_and_reported(self):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
         self.collisions = rational_collapse(Fraction(1, 10**700))[1]
-        with collapse_result(self.folder, self.collisions).file as file:
-            scene = json.loads(file.attrs["scene"])
-            page, data = write_page(self.folder, types.SimpleNamespace(file=file, scene=scene), "deeper")
+        with collapse_result(self.folder, self.collisions) as result:
+            page, data = write_page(self.folder, result, "deeper")
         self.assertLess(data["collisions"], data["total"])
         self.assertGreater(data["collisions"], 325)
         self.collisions = self.collisions[:data["collisions"]]
@@ -533,12 +524,11 @@ class InBrowser(unittest.TestCase):
 
     def test_a_million_collisions(self):
         result, moments, places, left = rows_result(self.folder, 1000)
-        with result.file:
+        with result:
             begun = time.monotonic()
             page, data = write_page(self.folder, result, "million")
             took = time.monotonic() - begun
         self.assertEqual(data["collisions"], 1_000_000)
-        self.assertIsNone(data["speed"])  # the law gives them again
         self.assertLess(page.stat().st_size, 15e6)
         self.browser.open(page)
         self.assertFalse(self.view()["exact"])
@@ -589,16 +579,13 @@ class InBrowser(unittest.TestCase):
     # With the program
 
     def program_result(self, name, scene, **keys):
-        """The result of a run of the program, with its effective scene."""
-        if not PROGRAM:
-            self.skipTest("no program (CRADLE_PROGRAM)")
-        path = self.folder / f"{name}.h5"
+        """The result of a run of the program."""
+        path = str(self.folder / f"{name}.h5")
         sets = [f"--set={key}={value}" for key, value in keys.items()]
-        subprocess.run([PROGRAM, "run", scene, "--quiet", "-o", str(path), *sets], check=False,
-                       stdout=subprocess.DEVNULL)
-        file = h5py.File(path, "r")
-        self.addCleanup(file.close)
-        return types.SimpleNamespace(file=file, scene=tomllib.loads(file.attrs["scene"]))
+        subprocess.run([find(), "run", scene, "--quiet", "-o", path, *sets], check=False, stdout=subprocess.DEVNULL)
+        result = cradle.open(path)
+        self.addCleanup(result.close)
+        return result
 
     def assert_gaps_of_snapshots(self, result, bound):
         """The gaps right after the collision before a snapshot, flown until then, are the snapshot's."""

@@ -33,8 +33,8 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     if kind == "run":
         return so_far(path)
     if kind == "replicas":
-        raise Error(f"{path}: unfinished replicas, no statistics yet: `cradle resume {without_part(path)}` continues "
-                    f"with them, `cradle info {path}` prints how many are finished", BAD_FILE)
+        raise Error(f"{path}: unfinished replicas, no statistics yet: `cradle resume {path.removesuffix('.part')}` "
+                    f"continues with them, `cradle info {path}` prints how many are finished", BAD_FILE)
     if kind == "checkpoint":
         raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues from "
                     "it", BAD_FILE)
@@ -76,10 +76,6 @@ def unreadable(path: str, error: OSError) -> Error:
                  "give a file written by `cradle run`", BAD_FILE)
 
 
-def without_part(path: str) -> str:
-    return path[:-5] if path.endswith(".part") else path
-
-
 def open_file(path: str) -> h5py.File:
     try:
         file = opened(path)
@@ -99,8 +95,6 @@ def open_file(path: str) -> h5py.File:
 
 def opened(path: str) -> h5py.File:
     """Without locks, which some cluster file systems do not have; but as the caller has it open already, if so."""
-    if h5py.version.version_tuple < (3, 5):
-        return h5py.File(path, "r")
     try:
         return h5py.File(path, "r", locking=False)
     except OSError as error:
@@ -118,6 +112,14 @@ def so_far(path: str) -> Result:
     return result
 
 
+def part(kind, text: str, *names: str) -> cached_property:
+    """A property of a result: the first of these groups that is there, as a table of this kind."""
+    def read(result: Result):
+        return kind(result._group(*names), f"{result.path}: {names[0]}")
+    read.__doc__ = text
+    return cached_property(read)
+
+
 class Result:
     """A run, an ensemble, a sweep, or one point of a sweep. Use it in `with`, or close() it.
 
@@ -132,15 +134,14 @@ class Result:
         self.path, self.file, self.sealed, self.in_progress, self.label = path, root, sealed, in_progress, label
         self.text, self.status = "", 0
 
+    def close(self, *_) -> None:
+        if isinstance(self.file, h5py.File):
+            self.file.close()
+
     def __enter__(self) -> Result:
         return self
 
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def close(self) -> None:
-        if isinstance(self.file, h5py.File):
-            self.file.close()
+    __exit__ = close
 
     def _group(self, *names: str) -> h5py.Group | None:
         """The first that is there."""
@@ -149,12 +150,6 @@ class Result:
             if isinstance(found, h5py.Group):
                 return found
         return None
-
-    def _table(self, *names: str, kind: type[Table] = Table) -> Table:
-        return kind(self._group(*names), f"{self.path}: {names[0]}")
-
-    def _tables(self, *names: str, kind: type[Table] = Table) -> Tables:
-        return Tables(self._group(*names), f"{self.path}: {names[0]}", kind)
 
     # ---- what was run
 
@@ -205,56 +200,29 @@ class Result:
 
     # ---- what came out
 
-    @cached_property
-    def series(self) -> Table:
-        """Columns of shape (samples,): `time`, `energy`, `collisions`, `front_right`, ...; `heaviest` is a table
-        inside.
-
-        In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`, `.min`, `.max`.
-        """
-        return self._table("series", "ensemble/series")
-
-    @cached_property
-    def means(self) -> Table:
-        """The series of a run, or of an ensemble the means of its quantities, by the same names."""
-        return self._table("series", "ensemble/series", kind=Means)
-
-    @cached_property
-    def snapshots(self) -> Tables:
-        """Particles at times: `x`, `v`, `m`, `index` of shape (particles,), `gap`, `closing_speed` of shape (particles
-        - 1,)."""
-        return self._tables("snapshots")
-
-    @cached_property
-    def profiles(self) -> Tables:
-        """Averages over bins at times: `x`, `velocity`, `density`, ... of shape (bins,); of an ensemble tables."""
-        return self._tables("profiles", "ensemble/profiles")
-
-    @cached_property
-    def mean_profiles(self) -> Tables:
-        """Profiles of a run, or of an ensemble their means, by the same names."""
-        return self._tables("profiles", "ensemble/profiles", kind=Means)
-
-    @cached_property
-    def masses(self) -> Tables:
-        """Distributions of cluster masses at times."""
-        return self._tables("masses")
-
-    @cached_property
-    def events(self) -> Table:
-        """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`), `interval`,
-        `closing_speed`."""
-        return self._table("events")
-
-    @cached_property
-    def replicas(self) -> Table:
-        """One row per replica: `index`, `outcome`, `collisions`, `merges`, `energy`, ..."""
-        return self._table("replicas")
-
-    @cached_property
-    def sweep(self) -> Table:
-        """One row per point: the keys that vary, then every number with `_error` and `_replicas`."""
-        return self._table("sweep")
+    series: Table = part(Table, """Columns of shape (samples,): `time`, `energy`, `collisions`, `front_right`, ...;
+        `heaviest` is a table inside. In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`,
+        `.min`, `.max`.""", "series", "ensemble/series")
+    means: Table = part(Means, "The same; of an ensemble the means, as a run has them.", "series", "ensemble/series")
+    snapshots: Tables = part(Tables, """Particles at times: `x`, `v`, `m`, `index` of shape (particles,), `gap`,
+        `closing_speed` of shape (particles - 1,).""", "snapshots")
+    profiles: Tables = part(Tables, """Averages over bins at times: `x`, `velocity`, `density`, ... of shape (bins,); of
+        an ensemble tables.""", "profiles", "ensemble/profiles")
+    mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "The same; of an ensemble the means.",
+                                 "profiles", "ensemble/profiles")
+    masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
+    events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
+        `interval`, `closing_speed`, `kind`.""", "events")
+    replicas: Table = part(Table, "One row per replica: `index`, `outcome`, `collisions`, `energy`, ...", "replicas")
+    sweep: Table = part(Table, """One row per point: the keys that vary, then every number with `_error` and
+        `_replicas`.""", "sweep")
+    trust: Tables = part(Tables, """One table per precision of a comparison: attributes `precision`,
+        `collisions_right_until`, ...""", "trust")
+    certificate: Table = part(Table, """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`,
+        `gap`, `widest`, ...""", "certificate")
+    exact: Table = part(Table, """Decimal texts: all digits of a run in a type wider than double,
+        `result.exact.series.energy.mpmath()`, and what a proof knows, `result.exact.series.energy_low.fractions()`.""",
+                        "exact")
 
     @cached_property
     def points(self) -> list[Result]:
@@ -267,29 +235,13 @@ class Result:
                        str(labels.get(f"label_{name}", name))) for name in sorted(groups)]
 
     @cached_property
-    def trust(self) -> Tables:
-        """One table per precision of a comparison: attributes `precision`, `collisions_right_until`, ..."""
-        return self._tables("trust")
-
-    @cached_property
-    def certificate(self) -> Table:
-        """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`, `gap`, `widest`, ..."""
-        return self._table("certificate")
-
-    @cached_property
     def collapse(self) -> dict[str, Any]:
         """`time`, `uncertainty`, `gap`, ... where the run ended at inelastic collapse; else empty."""
-        return self._table("collapse").attributes
-
-    @cached_property
-    def exact(self) -> Table:
-        """Decimal texts: all digits of a run in a type wider than double, `result.exact.series.energy.mpmath()`, and
-        what a proof knows, `result.exact.series.energy_low.fractions()`."""
-        return self._table("exact")
+        return self.table("collapse").attributes
 
     def table(self, name: str) -> Table:
         """Any group by its path, `"zone"`, `"scenario"`, `"meetings"`; empty where there is none."""
-        return self._table(name)
+        return Table(self._group(name), f"{self.path}: {name}")
 
     def enclosure(self, name: str) -> tuple[list, list]:
         """Lower and upper bounds of a quantity of the series, proved, as two lists of Fractions.

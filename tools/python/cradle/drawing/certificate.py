@@ -22,8 +22,9 @@ def draw_certificate(result, units, axes=None):
         top.plot(time[known], proof[name][known], color=colour, label=label)
     top.axhline(0, color="k", lw=0.8, ls=":")
     top.set_ylabel(r"$\log_{10}$")
-    top.set_title(f"{proof['verdict']}: {int(proof.attributes['collisions']):,} collisions, run in {proof['precision']}, "
-                  f"proved with {int(proof['digits'])} digits", fontsize="medium")
+    about = proof.attributes
+    top.set_title(f"{about['verdict']}: {int(about['collisions']):,} collisions, run in {about['precision']}, "
+                  f"proved with {int(about['digits'])} digits", fontsize="medium")
     top.legend(loc="best", fontsize="small")
     below.plot(time, proof["collisions"], color=BLUE)
     if proof["collisions"].max() > 1000:

@@ -10,6 +10,7 @@ from ..files import whole
 from . import (beyond, blast, certificate, clusters, cooling, domino, energy, ensemble, onset, particles, scenarios,
                shock, spacetime, splash, sticky, structure, sweep, trust, walls, zone)
 from .style import Units, style
+from .theory import Theory
 
 CLASSICS = (onset, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
@@ -26,12 +27,12 @@ def pictures_of(result, theory, units):
     return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + proof
 
 
-def available(result, theory):
+def available(result, predictions):
     """Names and functions of the pictures of an opened result, the main one first: each draws on new axes, or on those
-    that it is given, and returns the figure. Raises Error."""
+    that it is given, and returns the figure. predictions: as `cradle theory --csv` prints them. Raises Error."""
     with lacking(result.path):
         return {name: drawing(result.path, name, draw)
-                for name, draw in pictures_of(result, theory, Units.of(result))}
+                for name, draw in pictures_of(result, Theory(predictions), Units.of(result))}
 
 
 def drawing(path, name, draw):
@@ -52,32 +53,17 @@ def lacking(path, purpose=""):
                     BAD_FILE) from None
 
 
-def make(result, base, extension, theory):
-    """Writes all pictures of an opened result and yields the name of each; raises Error."""
-    pictures = available(result, theory)
-    if not pictures:
-        raise Error(f"{result.path} holds nothing to draw (no series, snapshots or profiles): "
-                    "give the file of a completed run", BAD_FILE)
-    for number, (name, draw) in enumerate(pictures.items()):
-        path = f"{base}-{name}{extension}" if number else base + extension
-        figure = draw()
-        with lacking(result.path, f" for the {name} picture"):
-            save(figure, path)
-        yield path
-
-
-def save(figure, path):
-    """Written beside its place and renamed, so that no half a picture is left; no time stamps."""
-    extension = os.path.splitext(path)[1][1:].lower()
+def write_file(figure, path):
+    """Written beside its place and renamed, so that no half a picture is left; closes the figure."""
     try:
         with whole(path) as part:
-            write(figure, part, extension)
+            write(figure, part, os.path.splitext(path)[1][1:].lower())
     finally:
         plt.close(figure)
 
 
 def write(figure, file, extension):
-    """As PNG, PDF or SVG, into a file or what can be written like one: same figure, same bytes."""
+    """As PNG, PDF or SVG, into a file or what can be written like one: same figure, same bytes, no time stamps."""
     stamps = {"png": {"Software": None}, "pdf": {"CreationDate": None, "ModDate": None}, "svg": {"Date": None}}
     with style():
         figure.savefig(file, format=extension, metadata=stamps[extension])

@@ -5,25 +5,13 @@ import re
 
 import numpy as np
 
-from ..errors import BAD_FILE, Error
-
 
 class Theory:
     """Predictions in long format: quantity, equation, form, t, value; an empty t marks a number."""
 
-    def __init__(self, path=None, text=""):
-        self.rows = []
-        try:
-            with open(path, newline="", encoding="utf-8") if path is not None else io.StringIO(text) as file:
-                for row in csv.DictReader(file):
-                    self.rows.append((row["quantity"], row["form"], float(row["t"]) if row["t"] else None,
-                                      float(row["value"]), row["equation"]))
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise Error(f"{path} cannot be read ({error}): give the output of `cradle theory --csv`",
-                            BAD_FILE) from None
-        except (KeyError, TypeError, ValueError) as error:
-            raise Error(f"{path} is not a table of predictions ({type(error).__name__}: {error}): "
-                            "give the output of `cradle theory --csv`", BAD_FILE) from None
+    def __init__(self, text):
+        self.rows = [(row["quantity"], row["form"], float(row["t"]) if row["t"] else None, float(row["value"]),
+                      row["equation"]) for row in csv.DictReader(io.StringIO(text))]
 
     def _pick(self, quantity, with_time):
         for form in ("continuous", "discrete", ""):  # never the misprinted one

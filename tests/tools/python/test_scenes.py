@@ -19,11 +19,12 @@ def made(line):
     if run.returncode != int(status):
         return f"{line}: status {run.returncode}\n{run.stderr}"
     with open(f"{name}.err", "w+") as file, contextlib.redirect_stderr(file), contextlib.redirect_stdout(file):
-        for words in (["plot", f"{name}.h5", "-o", f"{name}.png"], ["report", f"{name}.h5"]):
-            ended = __main__.main(words)  # what it throws is a failure, too
+        for make, output in (("plot", f"{name}.png"), ("report", f"{name}.html")):
+            ended = __main__.main([make, f"{name}.h5", "-o", output])  # what it throws is a failure, too
             file.seek(0)
-            if ended or "Traceback" in (printed := file.read()) or not os.path.getsize(f"{name}.png"):
-                return f"{line}: {words[0]}, status {ended}\n{printed}"
+            printed = file.read()
+            if ended or "Traceback" in printed or not os.path.getsize(output):
+                return f"{line}: {make}, status {ended}\n{printed}"
     return ""
 
 

@@ -165,7 +165,10 @@ function cradleMicroscope(element, data) {
 
   // Where a pointer is: [tau, xi] in the view's frame.
   function placeOf(x, y) {
-    if (x < box.left || x > box.left + box.width || y < box.top || y > box.top + box.height) return null;
+    const inside = x >= box.left && x <= box.left + box.width && y >= box.top && y <= box.top + box.height;
+    return inside ? unbounded(x, y) : null;
+  }
+  function unbounded(x, y) {
     const { view } = camera;
     return [view.tau + view.T * ((x - box.left) / box.width - 0.5),
             view.xi - view.X * ((y - box.top) / box.height - 0.5)];
@@ -251,7 +254,7 @@ function cradleMicroscope(element, data) {
     // Where a particle's world line is drawn at a pixel column.
     height: (particle, x) => {
       const line = camera.chart.byParticle.get(particle - world.first), { view } = camera;
-      const tau = view.tau + view.T * ((x - box.left) / box.width - 0.5);
+      const [tau] = unbounded(x, 0);
       return microscopeScales(view, box).y(microscopeAlong(camera.chart, line, tau), tau);
     },
     gap: (a, b, event) => microscopeRelative(world, a - world.first, b - world.first, event),
@@ -275,7 +278,7 @@ function cradleMicroscope(element, data) {
       choice.addEventListener("change", show);
       await show();
     }
-    microscopeHands(canvas, { zoom, pan, visit, actions, collisionAt, camera: () => camera, state, request,
+    microscopeHands(canvas, { zoom, pan, visit, actions, collisionAt, unbounded, camera: () => camera, state, request,
                               box: () => box, strip: () => strip, deepest: () => stores.strip.deepest });
     new ResizeObserver(layout).observe(stage);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", layout);

@@ -77,16 +77,11 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
         return values
 
     def __getitem__(self, index):
-        if "values" in self.__dict__:
+        rows = isinstance(index, slice) and (index.step or 1) > 0
+        if "values" in self.__dict__ or not (rows or isinstance(index, (int, np.integer))):
             return self.values[index]
-        if isinstance(index, slice) or np.ndim(index) == 0 and not isinstance(index, tuple) and index is not None:
-            if isinstance(index, slice) and index.step is not None and index.step < 0:
-                return self.values[index]
-            if not isinstance(index, slice):
-                row = range(self.shape[0])[index]  # IndexError as lists have it
-                return reading(self._place, lambda: self._texts(self._dataset[row])[()])
-            return reading(self._place, lambda: self._texts(self._dataset[index]))
-        return self.values[index]
+        wanted = index if rows else range(self.shape[0])[index]  # IndexError as lists have it
+        return reading(self._place, lambda: self._texts(self._dataset[wanted])[()])
 
     def __array__(self, dtype=None, copy=None):
         return np.array(self.values, dtype=dtype) if dtype is not None or copy else self.values

@@ -2,7 +2,7 @@
 particles meet in it. Of a run, or of a sweep of cut-offs and of what replaces them."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked, subplots
+from .style import BLUE, GREY, ORANGE, lettered, plt, shades, stacked, subplots
 
 MANY = 20         # snapshots that make a picture in space and time
 PATHS = 80        # of particles in it
@@ -58,11 +58,6 @@ def onset(result):
     return result.means["time"][first] if first <= narrowest else np.inf
 
 
-def used_up(result, units):
-    """When the sticky gas has the last particle of equal rows."""
-    return result.setting("initial", "particles", np.nan) * units.t
-
-
 def excess(result, kind="mean"):
     """Of the energy over that of the sticky gas, in units of the energy at the start."""
     start = result.means["energy"][0] + result.means["energy_lost"][0]
@@ -81,7 +76,8 @@ def rates(result, since, units):
     after a time until the rows end."""
     time, every = rate(result, "collisions")
     elastic = rate(result, "collisions_below_cutoff")[1]
-    late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up(result, units))
+    used_up = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
+    late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up)
     return [(np.mean(values[late]) * units.t, np.std(values[late]) * units.t) if late.any() else (np.nan, np.nan)
             for values in (every - elastic, elastic)]
 
@@ -102,14 +98,6 @@ def draw_excess(ax, result, since, units, colour, label=None, line="-"):
     ax.set_yscale("symlog", linthresh=1e-5)
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)
     ax.set_ylabel(r"$(E-E_\mathrm{sticky})\,/\,E_0$")
-
-
-def per_time(units):
-    return units.label("collisions per unit of time", r"collisions per $l/2u_0$")
-
-
-def length_label(units, name):
-    return units.label(name, name + r"$\,/\,l$")
 
 
 def positive(ax, time, values, **how):
@@ -140,8 +128,8 @@ def draw_run(result, units, axes=None):
     for values, colour, label in ((elastic, ORANGE, "elastic"), (every - elastic, BLUE, "dissipative")):
         positive(axes[3], middle[shown] / units.t, values[shown] * units.t, color=colour, label=label)
     axes[1].set_ylabel("core")
-    axes[2].set_ylabel(length_label(units, "core"))
-    axes[3].set(ylabel=per_time(units), xlabel=units.time_label())
+    axes[2].set_ylabel(units.label("core", r"core$\,/\,l$"))
+    axes[3].set(ylabel=units.rate_label(), xlabel=units.time_label())
     for ax in axes[1:]:
         if ax.get_lines():
             ax.legend(loc="best")
@@ -162,7 +150,7 @@ def core_of(snapshot):
 
 
 def draw_distributions(snapshots, scale, units, axes=None):
-    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4), layout="constrained")
+    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4))
     chosen = snapshots[::max(1, len(snapshots) // 6)]
     for snapshot, colour in zip(chosen, shades(len(chosen))):
         particles, gap = core_of(snapshot)
@@ -179,8 +167,7 @@ def draw_distributions(snapshots, scale, units, axes=None):
     right.set(xscale="log", yscale="log", ylim=(1e-5, 10), xlabel=r"gap $g\,/\,\langle g\rangle$")
     left.legend(loc="best")
     right.legend(loc="best")
-    for letter, ax in zip("ab", (left, right)):
-        panel_letter(ax, letter)
+    lettered((left, right))
     return figure
 
 
@@ -189,7 +176,7 @@ def draw_spacetime(snapshots, units, axes=None):
     particles keep their order."""
     core, _ = core_of(snapshots[-1])
     particles = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
-    figure, ax = subplots(axes, figsize=(5.8, 4.6), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.8, 4.6))
     time = np.array([s["time"] for s in snapshots]) / units.t
     middle = int(snapshots[-1]["index"][core[len(core) // 2]])
     places = []
@@ -221,7 +208,8 @@ def draw_points(points, since, units, axes=None):
             positive(axes[1], time, point.means["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
         positive(axes[2], time, point.means["core_width"][late] / units.x, color=colour, ls=line)
     axes[1].set_ylabel("velocity range\n/ cut-off or merging speed")
-    axes[2].set(ylabel=length_label(units, "length with half of the mass"), xlabel=units.time_label())
+    length = "length with half of the mass"
+    axes[2].set(ylabel=units.label(length, length + r"$\,/\,l$"), xlabel=units.time_label())
     axes[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1))
     return figure
 
@@ -235,12 +223,12 @@ def draw_rates(points, since, units, axes=None):
     points = sorted(with_rates(points, since, units), key=slowest)
     cutoff = np.array([slowest(p) for p in points])
     found = np.array([rates(p, since, units) for p in points])
-    figure, ax = subplots(axes, figsize=(5.2, 4), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.2, 4))
     for k, (name, colour) in enumerate((("dissipative", BLUE), ("elastic", ORANGE))):
         ax.errorbar(cutoff, found[:, k, 0], yerr=found[:, k, 1], fmt="o-", color=colour, capsize=3,
                     label=name + ", and how it varies")
     ax.plot(cutoff, [most_frequent(p, slowest(p)) for p in points], "k:",
             label=r"all that arrives lost at the cut-off, $2u_0^2/(1-\epsilon^2)\delta^2$")
-    ax.set(xscale="log", yscale="log", xlabel=r"cut-off $\delta$", ylabel=per_time(units))
+    ax.set(xscale="log", yscale="log", xlabel=r"cut-off $\delta$", ylabel=units.rate_label())
     ax.legend(loc="best")
     return figure

@@ -31,7 +31,7 @@ def solution(size=400):
 
 def draw(result, axes=None):
     energy, rho = gas(result)
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6), layout="constrained")
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6))
     draw_front(axes[0, 0], result, energy, rho)
     xi, density, velocity, temperature = solution()
     for profile, spread, colour in zip(result.mean_profiles, result.profiles, shades(len(result.profiles))):

@@ -2,7 +2,7 @@
 swing grows: separation as t^(1/3), speed as t^(-1/3) (section VI). Lines follow a cluster, not a side."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, plt, power, shades, stacked, subplots, thinned
+from .style import BLUE, GREY, ORANGE, beside, plt, power, shades, stacked, subplots, thinned
 
 DECADES, BINS, FIRST = 4.3, 13, 3  # maxima in so many logarithmic bins over the last decades; the fit begins in bin 3
 ENOUGH = 20  # samples of a bin: of fewer the largest says nothing of the swing
@@ -170,10 +170,10 @@ def draw_masses(ax, masses, units):
         above = np.cumsum(group["clusters"][::-1].astype(float))[::-1]
         ax.step(group["mass"], above, where="pre", color=colour, label=rf"$t={power(group['time'] / units.t)}$")
     ax.set(xscale="log", yscale="log", xlabel=r"mass $M\,/\,m$", ylabel="clusters heavier than $M$")
-    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    beside(ax)
 
 
 def draw_masses_alone(result, units, axes=None):
-    figure, ax = subplots(axes, figsize=(5.6, 2.9), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.6, 2.9))
     draw_masses(ax, result.masses, units)
     return figure

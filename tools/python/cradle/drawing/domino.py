@@ -36,8 +36,7 @@ def first_hits(result):
     first = np.flatnonzero((right > before) & (right % 2 == 0))
     delay = 1 - (heavy + light) / (2 * heavy)
     time, low = events["time"].values, events["time_low"].values
-    late = [(Decimal(float(time[e])) + Decimal(float(low[e]))) / step
-            - (int(right[e]) - delay) for e in first]
+    late = [(Decimal(float(time[e])) + Decimal(float(low[e]))) / step - (int(right[e]) - delay) for e in first]
     return right[first], np.array([float(x) for x in late])
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from .cooling import ring_of, sticky_law
 from .shock import draw_slope
-from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
+from .style import BLUE, GREY, ORANGE, beside, shades, stacked, thinned
 
 SERIES = (("energy", "energy"), ("collisions", "collisions"), ("merges", "merges"), ("front_right", "right front"),
           ("cloud_width", "width of the cloud"))
@@ -81,13 +81,11 @@ def draw_profiles(result, theory, units, axes=None):
         band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=rf"$t={profile['time'] / units.t:.5g}$")
         band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
     draw_slope(velocity, profiles, theory, units)
-    velocity.set_ylabel(units.label(r"mean velocity $\langle v\rangle$",
-                                    r"mean velocity $\langle v\rangle\,/\,2u_0$"))
-    density.set_ylabel(("mass " if name == "mass_density" else "")
-                       + units.label("density", r"density $\rho\,/\,\rho_0$"))
+    velocity.set_ylabel(units.mean_velocity_label())
+    density.set(ylabel=("mass " if name == "mass_density" else "") + units.density_label(),
+                xlabel=units.position_label())
     density.set_ylim(bottom=0)
-    density.set_xlabel(units.position_label())
-    velocity.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    beside(velocity)
     return figure
 
 

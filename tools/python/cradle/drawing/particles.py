@@ -1,7 +1,7 @@
 """Paths of a few particles, and how their gaps or the intervals between their collisions shrink."""
 import numpy as np
 
-from .style import BLUE, ORANGE, RED, panel_letter, shades, subplots
+from .style import BLUE, ORANGE, RED, lettered, shades, subplots
 
 FEW_PARTICLES = 20       # up to here every particle has a path of its own
 
@@ -21,7 +21,7 @@ def draw_particles(result, units, axes=None):
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
     gaps = not shrinking and len(result.snapshots) > 1
     rows = 2 + (shrinking or gaps)
-    figure, axes = subplots(axes, rows, 1, figsize=(5.6, 2.4 * rows + 0.3), layout="constrained")
+    figure, axes = subplots(axes, rows, 1, figsize=(5.6, 2.4 * rows + 0.3))
     paths = {}
     for snapshot in result.snapshots:
         for particle, x in zip(snapshot["index"], snapshot["x"]):
@@ -60,6 +60,5 @@ def draw_particles(result, units, axes=None):
             axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-", ms=3, label=f"gap {pair}")
         axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
         axes[2].legend(loc="best")
-    for letter, ax in zip("abc", axes):
-        panel_letter(ax, letter)
+    lettered(axes)
     return figure

@@ -7,24 +7,24 @@ import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (beyond, blast, certificate, clusters, cooling, domino, energy, ensemble, onset, particles, scenarios,
-               shock, spacetime, splash, sticky, structure, sweep, trust, walls, zone)
+from . import (beyond, blast, clusters, cooling, domino, energy, ensemble, onset, particles, proof, scenarios, shock,
+               spacetime, splash, sticky, structure, sweep, walls, zone)
 from .style import Units, style
 from .theory import Theory
 
 CLASSICS = (onset, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
-ALONE = (trust, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
+ALONE = (proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 
 
 def pictures_of(result, theory, units):
     """The main picture first; a proof comes last."""
-    proof = certificate.pictures(result, theory, units)
+    last = proof.certificates(result, units)
     for kind in ALONE:
         if found := kind.pictures(result, theory, units):
-            return found + proof
-    return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + proof
+            return found + last
+    return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + last
 
 
 def available(result, predictions):

@@ -34,7 +34,7 @@ def fit(time, value):
 
 
 def draw(points, axes=None):
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), layout="constrained", sharex="col", width_ratios=(1.6, 1))
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), sharex="col", width_ratios=(1.6, 1))
     fronts = [(p.means["time"], p.means["front_right"]) for p in points]
     inside = [energies(p) for p in points]
     for row, (curves, known, label, colour) in enumerate(((fronts, FRONT, "front $R$", BLUE),

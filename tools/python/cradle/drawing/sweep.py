@@ -4,7 +4,7 @@ import numpy as np
 
 from . import beyond
 from .cooling import ring_of, sticky_law
-from .style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked, subplots
+from .style import BLUE, GREY, ORANGE, lettered, plt, shades, stacked, subplots
 from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
@@ -114,7 +114,7 @@ def draw_widths(result, keys, axes=None):
     spacing = first.setting("initial", "spacing", 1.0)
     error = error_of(result, "zone_width")
     error = np.zeros(len(width)) if error is None else error
-    figure, ax = subplots(axes, figsize=(5.2, 4.2), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.2, 4.2))
     other = ax.twiny()
     for axes, key, values, fixed, mark, line, colour in ((ax, SPEED, speed, loss, "o", "--", BLUE),
                                                          (other, LOSS, loss, speed, "s", "-", ORANGE)):
@@ -156,8 +156,7 @@ def draw_cuts(result, keys, axes=None):
     names = numbers(result)
     columns = dict(list(keys.items())[:3]) or {"point": np.arange(len(result.sweep[names[0]]))}
     size = (max(5.6, 3 * len(columns)), 1.9 * len(names) + 0.3)
-    figure, axes = subplots(axes, len(names), len(columns), figsize=size, layout="constrained", squeeze=False,
-                            sharex="col", sharey="row")
+    figure, axes = subplots(axes, len(names), len(columns), figsize=size, squeeze=False, sharex="col", sharey="row")
     for column, (key, x) in enumerate(columns.items()):
         cut = np.all([values == commonest(values) for name, values in keys.items() if name != key], axis=0)
         at = np.flatnonzero(cut & np.isfinite(x))
@@ -189,8 +188,7 @@ def draw_map(result, keys, axes=None):
     names, (x_key, y_key) = numbers(result), sorted(keys, key=lambda key: -len(np.unique(keys[key])))
     columns = min(2 if len(names) < 5 else 3, len(names))
     rows = -(-len(names) // columns)
-    figure, axes = subplots(axes, rows, columns, figsize=(3.4 * columns, 2.8 * rows), layout="constrained",
-                            squeeze=False)
+    figure, axes = subplots(axes, rows, columns, figsize=(3.4 * columns, 2.8 * rows), squeeze=False)
     x, y = keys[x_key], keys[y_key]
     for k, ax in enumerate(axes.flat):
         if k >= len(names):
@@ -205,5 +203,5 @@ def draw_map(result, keys, axes=None):
         spread(ax.set_xscale, x, 8)
         spread(ax.set_yscale, y, 8)
         ax.set(xlabel=x_key, ylabel=y_key)
-        panel_letter(ax, "abcdefghi"[k])
+    lettered(axes.flat[:len(names)])
     return figure

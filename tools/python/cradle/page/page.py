@@ -80,9 +80,9 @@ def lead(result: Result) -> str:
 
 def pictures(result: Result) -> str:
     found = []
-    for order, (name, draw) in enumerate(drawings(result).items()):
+    for name, draw in drawings(result).items():
         caption = PICTURES.get(name, name)
-        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), order, caption)}\n'
+        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), caption)}\n'
                      f"<figcaption>{text(caption)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
                      "</figure>\n")
     return "".join(found)

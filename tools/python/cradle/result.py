@@ -17,7 +17,10 @@ from .tables import Means, Table, Tables, reading
 
 FORMAT = 2
 CHECKED = 64 << 20  # bytes of a file whose checksum is checked without a request: a tenth of a second
-JOURNALS = {b"CRADLER2": "run", b"CRADLEJ3": "replicas", b"CRADLEC2": "checkpoint"}
+REFUSED = {
+    b"CRADLEJ3": "unfinished replicas, no statistics yet: `cradle resume {}` continues with them, `cradle info` prints "
+                 "how many are finished",
+    b"CRADLEC2": "a checkpoint, not a result: open the result beside it, or `cradle resume` continues from it"}
 EARLIER = (b"CRADLER1", b"CRADLEJ1", b"CRADLEJ2", b"CRADLEC1")  # of format 1
 
 
@@ -29,51 +32,32 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     Raises Error (status 4) for what is missing, empty, half-written, damaged, or no result of this program.
     """
     path = os.fspath(path)
-    kind = inspect(path)
-    if kind == "run":
-        return so_far(path)
-    if kind == "replicas":
-        raise Error(f"{path}: unfinished replicas, no statistics yet: `cradle resume {path.removesuffix('.part')}` "
-                    f"continues with them, `cradle info {path}` prints how many are finished", BAD_FILE)
-    if kind == "checkpoint":
-        raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues from "
-                    "it", BAD_FILE)
-    try:
-        whole = os.path.getsize(path) <= CHECKED if check is None else check
-        sealed = bool(check_seal(path) if whole else read_seal(path))
-        if not sealed and (length := hdf5_length(path)) not in (None, os.path.getsize(path)):
-            raise damaged(path, f"{os.path.getsize(path)} bytes, HDF5 wrote {length}")
-    except OSError as error:
-        raise unreadable(path, error) from None
-    return Result(path, open_file(path), sealed)
-
-
-def inspect(path: str) -> str:
-    """What a file begins with: "run", "replicas", "checkpoint", or "result" for HDF5. Raises Error for others."""
     try:
         with builtins_open(path, "rb") as file:
             head = file.read(8)
+        if head == b"CRADLER2":
+            return so_far(path)
+        if head in REFUSED:
+            raise Error(f"{path}: {REFUSED[head].format(path.removesuffix('.part'))}", BAD_FILE)
+        if head in EARLIER:
+            raise other_format(path, 1)
+        if head != b"\x89HDF\r\n\x1a\n":
+            raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
+                        "give a file written by `cradle run`", BAD_FILE)
+        size = os.path.getsize(path)
+        sealed = bool(check_seal(path) if check or check is None and size <= CHECKED else read_seal(path))
+        if not sealed and (length := hdf5_length(path)) not in (None, size):
+            raise damaged(path, f"{size} bytes, HDF5 wrote {length}")
     except OSError as error:
-        raise unreadable(path, error) from None
-    if head in JOURNALS:
-        return JOURNALS[head]
-    if head in EARLIER:
-        raise other_format(path, 1)
-    if head == b"\x89HDF\r\n\x1a\n":
-        return "result"
-    raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
-                "give a file written by `cradle run`", BAD_FILE)
+        raise Error(f"{path}: not a file that can be read ({error.strerror or error}): "
+                    "give a file written by `cradle run`", BAD_FILE) from None
+    return Result(path, open_file(path), sealed)
 
 
 def other_format(path: str, version: int) -> Error:
     return Error(f"{path}: a file of {'an earlier' if version < FORMAT else 'a later'} version of cradle (found format "
                  f"{version}, here {FORMAT}): read it with the version that wrote it, or remove it and run its scene "
                  "again", BAD_FILE)
-
-
-def unreadable(path: str, error: OSError) -> Error:
-    return Error(f"{path}: not a file that can be read ({error.strerror or error}): "
-                 "give a file written by `cradle run`", BAD_FILE)
 
 
 def open_file(path: str) -> h5py.File:

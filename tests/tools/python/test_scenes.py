@@ -1,4 +1,4 @@
-"""Every scene of the package at reduced size (tests/tools/run/small_scenes.txt): its pictures and its report are made."""
+"""Pictures and a report are made of every scene of the package, at the size of tests/tools/run/small_scenes.txt."""
 import contextlib
 import multiprocessing
 import os

@@ -20,7 +20,8 @@ def draw_trust(result, axes=None):
     for ax, name in zip(panels, ("energy", "front")):
         for run, colour in zip(result.trust[:-1], plt.rcParams["axes.prop_cycle"].by_key()["color"] * 4):
             line = "--" if run["coordinates"] == "absolute" else "-"
-            ax.plot(run["time"], run[f"{name}_digits"], line, color=colour, label=f"{run['precision']}, {run['coordinates']}")
+            label = f"{run['precision']}, {run['coordinates']}"
+            ax.plot(run["time"], run[f"{name}_digits"], line, color=colour, label=label)
             if not run["right_to_end"]:
                 ax.axvline(run["collisions_right_until"], color=colour, linestyle=line, linewidth=0.8)
         ax.set_ylabel(f"digits of the {name}")

@@ -118,7 +118,9 @@ template <Real T> class SceneRun {
   void put_rows() {
     put(series_.take());
     if (has_clouds(scene_)) put(heaviest_.take());
-    if (scene_.output.events) put(events_.take());
+    if (!scene_.output.events) return;
+    events_.made(engine_.counts());
+    put(events_.take());
   }
   // Decimals only where somebody keeps them: ensembles and proofs have no use for them.
   void put(Recorded<T>&& rows) {
@@ -198,8 +200,9 @@ template <Real T> class SceneRun {
   }
 
   void record_collision(const Collision<T>& c) {
-    events_(c);
+    events_.made(engine_.counts());
     if (options_.store != nullptr && events_.rows() >= most_rows) put(events_.take());
+    events_(c);
   }
   Profile profile_at(const Configuration<T>& now, const T& time) const {
     const auto& wanted = scene_.output.profiles;

@@ -183,40 +183,36 @@ class SavedState {
 
 // The shape of a class's state, as text: which fields of which kind. States of one shape cannot be distinguished
 // otherwise.
-template <class X> void append_state_shape(std::string& shape) {
+template <class X> void append_shape(std::string& shape);
+template <class... X> void append_shapes(std::string& shape, const char* open, const char* close) {
+  shape += open;
+  (append_shape<X>(shape), ...);
+  shape += close;
+}
+template <class X> void append_shape(std::string& shape) {
   if constexpr (detail::is_whole<X>) {
     shape += 'i';
   } else if constexpr (std::floating_point<X>) {
-    shape += 'f';
-    shape += std::to_string(detail::bytes_of<X>);
+    shape += 'f' + std::to_string(detail::bytes_of<X>);
   } else if constexpr (detail::is_sequence<X>) {
-    shape += '[';
-    append_state_shape<typename X::value_type>(shape);
-    shape += ']';
+    append_shapes<typename X::value_type>(shape, "[", "]");
   } else if constexpr (detail::is_map<X>) {
-    shape += '{';
-    append_state_shape<typename X::key_type>(shape);
-    append_state_shape<typename X::mapped_type>(shape);
-    shape += '}';
+    append_shapes<typename X::key_type, typename X::mapped_type>(shape, "{", "}");
   } else if constexpr (detail::is_optional<X>) {
-    shape += '?';
-    append_state_shape<typename X::value_type>(shape);
+    append_shapes<typename X::value_type>(shape, "?", "");
   } else if constexpr (detail::is_pair<X>) {
-    append_state_shape<typename X::first_type>(shape);
-    append_state_shape<typename X::second_type>(shape);
+    append_shapes<typename X::first_type, typename X::second_type>(shape, "", "");
   } else if constexpr (ListsState<X>) {
-    shape += '(';
     [&]<class... F>(std::type_identity<std::tuple<F...>>) {
-      (append_state_shape<detail::Plain<F>>(shape), ...);
+      append_shapes<detail::Plain<F>...>(shape, "(", ")");
     }(std::type_identity<decltype(X::state(std::declval<X&>()))>{});
-    shape += ')';
   } else {
     shape += 'n';
   }
 }
 template <class X> std::string state_shape() {
   std::string shape;
-  append_state_shape<X>(shape);
+  append_shape<X>(shape);
   return shape;
 }
 

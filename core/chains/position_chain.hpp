@@ -17,6 +17,7 @@
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/relative_motion.hpp"
 #include "cradle/core/engine/state.hpp"
+#include "cradle/core/laws/one_of.hpp"
 
 namespace cradle {
 
@@ -182,6 +183,10 @@ template <Real T> class PositionChain {
 
   Outcome<T> strike_wall(Slot s) {
     return walls_.strike(particle(s), closing_[s], at(walls_.left_of(particle(s)) ? s + 1 : s).m);
+  }
+  template <LawChoice Law, class Masses>
+  Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
+    return law.visit([&](const auto& own) { return outcome_of(own, s, time, masses); });
   }
   template <class Law, class Masses>
   Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {

@@ -49,16 +49,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   Cell& operator[](Slot s) { return cells_[s]; }
   const Cell& operator[](Slot s) const { return cells_[s]; }
   // Changes to so many slots. Those from `first` on hold what was at `kept`, in that order.
-  void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept) {
-    std::vector<Cell> cells(slots);
-    std::vector<T> lag(slots, T(0));
-    for (const Slot s : kept) {
-      cells[first] = std::move(cells_[s]);
-      lag[first++] = std::move(lag_[s]);
-    }
-    cells_ = std::move(cells);
-    lag_ = std::move(lag);
-  }
+  void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept);
   void put(Slot s, Cell&& cell) {
     cells_[s] = std::move(cell);
     lag_[s] = T(0);
@@ -212,19 +203,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
   // The origin of time moves by so much. `each_held` calls what it is given with every gap held and its closing speed.
-  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held) {
-    clock_.move_origin(by);
-    if (magnitude(by) > blur_) blur_ = rounding_of(magnitude(by));
-    each_held([&](Slot s, const T& closing) {
-      const Pair<T> moved = two_sum(cells_[s].time, T(-by));
-      const T lag = lag_[s] + moved.low;
-      const bool past = is_negative(moved.high);  // not so where a late collision has left it ahead of the origin
-      cells_[s].time = past ? moved.high : T(moved.high + lag);
-      lag_[s] = past ? lag : T(0);
-      foresee(s, closing);
-    });
-    if constexpr (beyond_double) choose_shift(each_held);
-  }
+  // (timed_gaps_origin.hpp)
+  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held);
 
   // ---- what must be inspected: gaps that a collision beside them leaves below the floor
   void set_floor(const T& floor) { floor_ = floor; }
@@ -302,16 +282,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
   // Queue times are local times in units of 2^-shift, such that the next collision is within the range of double.
-  template <class EachHeld> void choose_shift(const EachHeld& each_held) {
-    long least = std::numeric_limits<long>::max();
-    each_held([&](Slot s, const T& closing) {
-      if (!is_positive(closing)) return;
-      const T next = collision_time(s, closing);
-      long exponent = 0;
-      if (split(next, exponent) > 0) least = std::min(least, exponent);
-    });
-    shift_ = least < -500 || (least > 500 && least < std::numeric_limits<long>::max()) ? -least : 0;
-  }
+  template <class EachHeld> void choose_shift(const EachHeld& each_held);
 
   std::vector<Cell> cells_;
   std::vector<T> lag_;
@@ -324,3 +295,5 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
 };
 
 }  // namespace cradle
+
+#include "cradle/core/chains/timed_gaps_origin.hpp"

@@ -79,6 +79,17 @@ template <class X> constexpr std::size_t least_bytes() {
   }
 }
 
+[[noreturn, gnu::cold, gnu::noinline]] inline void refuse_number(const char* what, std::uint64_t number) {
+  throw std::invalid_argument(std::string(what) + " (" + std::to_string(number) + "): take the file from a copy");
+}
+// How many entries follow, of at least so many bytes each.
+template <class From> std::size_t length(From& from, std::size_t least) {
+  std::uint64_t number = 0;
+  from.get(&number, sizeof number);
+  if (number > from.left() / least) refuse_number("a list longer than what holds it, in entries", number);
+  return number;
+}
+
 }  // namespace detail
 
 template <class To, class X> void save(To& to, const X& x) {
@@ -108,28 +119,19 @@ template <class To, class X> void save(To& to, const X& x) {
 
 // Throws std::invalid_argument where the bytes cannot be of such a value, and whatever `from` throws at its end.
 template <class From, class X> void load(From& from, X& x) {
-  const auto count = [&](std::size_t least) {
-    std::uint64_t number = 0;
-    load(from, number);
-    if (number > from.left() / least)
-      throw std::invalid_argument("a list longer than what holds it (" + std::to_string(number) +
-                                  " entries): take the file from a copy");
-    return number;
-  };
   if constexpr (detail::is_whole<X>) {
     std::uint64_t number = 0;
     from.get(&number, sizeof number);
     x = static_cast<X>(number);
-    if (static_cast<std::uint64_t>(x) != number)
-      throw std::invalid_argument("a number out of range (" + std::to_string(number) + "): take the file from a copy");
+    if (static_cast<std::uint64_t>(x) != number) detail::refuse_number("a number out of range", number);
   } else if constexpr (std::floating_point<X>) {
     from.get(&x, detail::bytes_of<X>);
   } else if constexpr (detail::is_sequence<X>) {
-    x.resize(count(detail::least_bytes<typename X::value_type>()));
+    x.resize(detail::length(from, detail::least_bytes<typename X::value_type>()));
     for (auto& each : x) load(from, each);
   } else if constexpr (detail::is_map<X>) {
     x.clear();
-    for (auto left = count(detail::least_bytes<typename X::key_type>()); left > 0; --left) {
+    for (auto left = detail::length(from, detail::least_bytes<typename X::key_type>()); left > 0; --left) {
       typename X::key_type key{};
       load(from, key);
       load(from, x[key]);
@@ -181,26 +183,37 @@ class SavedState {
 
 // The shape of a class's state, as text: which fields of which kind. States of one shape cannot be distinguished
 // otherwise.
-template <class X> std::string state_shape() {
+template <class X> void append_shape(std::string& shape);
+template <class... X> void append_shapes(std::string& shape, const char* open, const char* close) {
+  shape += open;
+  (append_shape<X>(shape), ...);
+  shape += close;
+}
+template <class X> void append_shape(std::string& shape) {
   if constexpr (detail::is_whole<X>) {
-    return "i";
+    shape += 'i';
   } else if constexpr (std::floating_point<X>) {
-    return "f" + std::to_string(detail::bytes_of<X>);
+    shape += 'f' + std::to_string(detail::bytes_of<X>);
   } else if constexpr (detail::is_sequence<X>) {
-    return "[" + state_shape<typename X::value_type>() + "]";
+    append_shapes<typename X::value_type>(shape, "[", "]");
   } else if constexpr (detail::is_map<X>) {
-    return "{" + state_shape<typename X::key_type>() + state_shape<typename X::mapped_type>() + "}";
+    append_shapes<typename X::key_type, typename X::mapped_type>(shape, "{", "}");
   } else if constexpr (detail::is_optional<X>) {
-    return "?" + state_shape<typename X::value_type>();
+    append_shapes<typename X::value_type>(shape, "?", "");
   } else if constexpr (detail::is_pair<X>) {
-    return state_shape<typename X::first_type>() + state_shape<typename X::second_type>();
+    append_shapes<typename X::first_type, typename X::second_type>(shape, "", "");
   } else if constexpr (ListsState<X>) {
-    return []<class... F>(std::type_identity<std::tuple<F...>>) {
-      return "(" + (std::string() + ... + state_shape<detail::Plain<F>>()) + ")";
+    [&]<class... F>(std::type_identity<std::tuple<F...>>) {
+      append_shapes<detail::Plain<F>...>(shape, "(", ")");
     }(std::type_identity<decltype(X::state(std::declval<X&>()))>{});
   } else {
-    return "n";
+    shape += 'n';
   }
+}
+template <class X> std::string state_shape() {
+  std::string shape;
+  append_shape<X>(shape);
+  return shape;
 }
 
 // For `loaded`: throws where fields contradict each other.

@@ -6,7 +6,6 @@
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/theory/table.hpp"
@@ -20,7 +19,7 @@ struct PlotArguments {
 };
 
 Exit plot(const PlotArguments& options) {
-  const bool in_progress = JournalReader::kind(options.file) == JournalOf::run;
+  const bool in_progress = stored_in(options.file) == Stored::journal;
   const Result result =
       in_progress ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   const Scene scene = scene_in(result.attributes, options.file);

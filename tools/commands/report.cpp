@@ -22,7 +22,8 @@ std::string page_of(std::filesystem::path file) {
 }
 
 Exit report(const ReportArguments& options) {
-  if (!JournalReader::kind(options.file)) read_result(options.file, Reading::ends);  // or Python would see it damaged
+  if (stored_in(options.file) == Stored::other)
+    read_result(options.file, Reading::ends);  // or Python would see it damaged
   const std::string output = options.output.empty() ? page_of(options.file) : options.output;
   file_behind(output);  // neither a folder nor a device
   const TemporaryFolder folder;

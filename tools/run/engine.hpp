@@ -12,7 +12,7 @@
 #include "cradle/core/engine/state.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "cradle/tools/store/state_file.hpp"
+#include "cradle/tools/store/checkpoint.hpp"
 
 namespace cradle::tools {
 

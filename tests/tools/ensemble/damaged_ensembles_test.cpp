@@ -48,28 +48,28 @@ TEST(DamagedRecords, AreRefused) {
   const tools::Scene scene = tools::parse_scene(
       "law.type = 'sticky'\ninitial = { type = 'rows', particles = 8 }\nrun.until = 9\noutput.series.points = 3\n",
       "records.toml");
-  const auto refused = [&](const tools::ByteWriter& record) -> std::string {
+  const auto refused = [&](const tools::EnsembleRecord& record) -> std::string {
     tools::EnsembleState state("", scene, {});
     try {
-      state.apply(record.bytes());
+      state.apply(tools::from_bytes<tools::EnsembleRecord>(tools::to_bytes(record)));
     } catch (const tools::Error& error) {
       EXPECT_EQ(error.status, Exit::io) << error.what();
       return error.what();
     }
     return "applied";
   };
-  constexpr std::uint64_t beyond = std::uint64_t{1} << 63, point = 0, replica = 1, failed = 2, spread = 4;
+  constexpr std::uint64_t beyond = std::uint64_t{1} << 63;
   const tools::EnsembleState state("", scene, {});
   tools::ReplicaRow row;
-  row.index = beyond;
   const std::vector<double> values(state.layout().entries, 1.);
-  const std::string damaged = "a journal: a damaged ensemble (found replica 9223372036854775808)";
-  EXPECT_EQ(refused(tools::ByteWriter().put(point).put(replica).put(beyond)).rfind(damaged, 0), 0U);
-  EXPECT_EQ(refused(tools::ByteWriter().put(point).put(failed).put(beyond).put("lost")).rfind(damaged, 0), 0U);
-  EXPECT_THROW(tools::EnsembleState("", scene, {}).apply(tools::EnsembleState::record(0, row, values)), tools::Error);
-  EXPECT_NE(refused(tools::ByteWriter().put(point).put(spread).put(std::uint64_t{0}).put(std::vector<std::uint64_t>(3)))
-                .find("3 counts for the spread 0"),
-            std::string::npos);
+  EXPECT_EQ(refused({0, tools::ReplicaRecord{row, values}}), "applied");
+  row.outcome = tools::RunEnd::undecided;
+  EXPECT_NE(refused({0, tools::ReplicaRecord{row, values}}).find("no outcome of a replica"), std::string::npos);
+  row = {};
+  row.index = beyond;
+  EXPECT_NE(refused({0, tools::ReplicaRecord{row, values}}).find("a replica beyond the last"), std::string::npos);
+  EXPECT_NE(refused({0, tools::FailureRecord{beyond, "lost"}}).find("a replica beyond the last"), std::string::npos);
+  EXPECT_NE(refused({0, tools::SpreadRecord{0, {1, 2, 3}}}).find("3 counts for the spread 0"), std::string::npos);
 }
 
 TEST_F(DamagedEnsembles, AreRefused) {

@@ -17,8 +17,8 @@ from .tables import Column, Table, Tables, reading
 
 FORMAT = 2
 CHECKED = 64 << 20  # bytes of a file whose checksum is checked without a request: a tenth of a second
-JOURNALS = {b"CRADLER2": "run", b"CRADLEJ3": "replicas", b"CRADLEC2": "checkpoint"}
-EARLIER = (b"CRADLER1", b"CRADLEJ1", b"CRADLEJ2", b"CRADLEC1")  # of format 1
+STORED = {b"CRADLEJ": "journal", b"CRADLER": "journal", b"CRADLEC": "checkpoint"}
+STORED_FORMAT = 4  # the last letter of how these files begin
 
 
 def open(path: str | os.PathLike, check: bool | None = None) -> Result:
@@ -30,11 +30,8 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     """
     path = os.fspath(path)
     kind = inspect(path)
-    if kind == "run":
+    if kind == "journal":
         return so_far(path)
-    if kind == "replicas":
-        raise Error(f"{path}: unfinished replicas, no statistics yet: `cradle resume {without_part(path)}` continues "
-                    f"with them, `cradle info {path}` prints how many are finished", BAD_FILE)
     if kind == "checkpoint":
         raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues from "
                     "it", BAD_FILE)
@@ -49,25 +46,25 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
 
 
 def inspect(path: str) -> str:
-    """What a file begins with: "run", "replicas", "checkpoint", or "result" for HDF5. Raises Error for others."""
+    """What a file begins with: "journal", "checkpoint", or "result" for HDF5. Raises Error for others."""
     try:
         with builtins_open(path, "rb") as file:
             head = file.read(8)
     except OSError as error:
         raise unreadable(path, error) from None
-    if head in JOURNALS:
-        return JOURNALS[head]
-    if head in EARLIER:
-        raise other_format(path, 1)
+    if head[:7] in STORED and head[7:].isdigit():
+        if int(head[7:]) != STORED_FORMAT:
+            raise other_format(path, int(head[7:]), STORED_FORMAT)
+        return STORED[head[:7]]
     if head == b"\x89HDF\r\n\x1a\n":
         return "result"
     raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
                 "give a file written by `cradle run`", BAD_FILE)
 
 
-def other_format(path: str, version: int) -> Error:
-    return Error(f"{path}: a file of {'an earlier' if version < FORMAT else 'a later'} version of cradle (found format "
-                 f"{version}, here {FORMAT}): read it with the version that wrote it, or remove it and run its scene "
+def other_format(path: str, found: int, here: int = FORMAT) -> Error:
+    return Error(f"{path}: a file of {'an earlier' if found < here else 'a later'} version of cradle (found format "
+                 f"{found}, here {here}): read it with the version that wrote it, or remove it and run its scene "
                  "again", BAD_FILE)
 
 

@@ -19,7 +19,7 @@ namespace resume_test {
 using namespace cradle::tools;
 using cradle::tests::contents;
 
-// Hands on to the files, and stops the run at a given point.
+// Passes all to the files, begins their journal at the first sample, and stops the run at a given point.
 class Stopping final : public RunStore {
  public:
   struct At {
@@ -36,8 +36,9 @@ class Stopping final : public RunStore {
     files_.check_clock();
     if (++checks_ >= at_.checks) interrupt_.note(SIGTERM);
   }
-  bool due() const override { return files_.due(); }
+  bool due() const override { return files_.due() || (checks_ == 1 && !begun_); }
   void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs now) override {
+    begun_ = true;
     files_.keep(status, save, now);
   }
   StateReader* loaded_from() override { return files_.loaded_from(); }
@@ -47,6 +48,7 @@ class Stopping final : public RunStore {
   Interrupt& interrupt_;
   At at_;
   std::uint64_t checks_ = 0;
+  bool begun_ = false;
 };
 
 struct Case {
@@ -213,8 +215,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 // ---- extended
 
-// So long between two checkpoints that there is one at every sample, on any machine.
-constexpr const char* from_the_start = "checkpoint.every_seconds=1e-9";
+// A checkpoint at every sample, on any machine.
+constexpr const char* from_the_start = "output.checkpoint.every_seconds=1e-9";
 
 TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
   const std::string inelastic = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n";
@@ -224,10 +226,10 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
       for (const std::string& initial : {rows, general}) {
         SCOPED_TRACE(law + initial + series);
         const char* precision = series == every[1] ? "double-double" : "double";  // there with decimals beside
-        const Scene scene = parse_scene(
-            law + initial + "output = { series = { " + series + " }, snapshots = [5], core = true, " +
-                "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
-            "scene.toml", {std::string("run.precision=") + precision, std::string("output.") + from_the_start});
+        const Scene scene =
+            parse_scene(law + initial + "output = { series = { " + series + " }, snapshots = [5], core = true, " +
+                            "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
+                        "scene.toml", {std::string("run.precision=") + precision});
         ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);
         // Which is resumed as any other.
         if (resume("later.h5", "13.05", {.checks = 2}, 1).end == RunEnd::interrupted) {
@@ -259,7 +261,7 @@ TEST_F(Resuming, WithoutACheckpointALaterEndIsRunFromTheStart) {
 
 // An extension whose journal has no checkpoint yet begins again from the result and its checkpoint.
 TEST_F(Resuming, AnExtensionStoppedBeforeItsFirstCheckpointBeginsAgain) {
-  const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {std::string("output.") + from_the_start});
+  const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {from_the_start});
   begin("a.h5", scene, {}, 1);
   const std::string checkpoint = contents(file("a.h5.checkpoint"));
   ASSERT_EQ(resume("a.h5", "120", {.checks = 2}, 1).end, RunEnd::interrupted);
@@ -291,7 +293,7 @@ TEST_F(Resuming, ARunThatHasNothingToLoseWritesItsFileAlone) {
 
 // A run whose result could not be written is finished before it is extended: its last sample belongs to its end.
 TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
-  const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {std::string("output.") + from_the_start});
+  const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {from_the_start});
   {
     RunFiles files(file("a.h5"), scene);
     Interrupt interrupt;

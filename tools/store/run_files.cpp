@@ -47,11 +47,10 @@ RunFiles::RunFiles(std::string file, const Scene& scene) : file_(std::move(file)
 
 // ---- during the run
 
-// Does what may fail on a full disk; reported once, until it has worked again.
+// Does what may fail on a full disk; reported once, until there is a checkpoint again.
 bool RunFiles::saved(const std::function<void()>& what) {
   try {
     what();
-    complained_ = false;
     return true;
   } catch (const Error& error) {
     if (!std::exchange(complained_, true))
@@ -118,7 +117,7 @@ void RunFiles::keep(const RunStatus& status, const std::function<void(StateWrite
         save(writer);
         writer.finish();
       });
-  saved_here_ = saved_here_ || up_to_date_;
+  if (up_to_date_) saved_here_ = true, complained_ = false;
 }
 
 // ---- the end

@@ -27,8 +27,8 @@ TEST_F(FullDisk, RunKeepsItsResultElsewhere) {
                                     std::string(too_large) + "; status=$?; cat a.h5; ls -A; exit $status");
   if (run.status == 77) GTEST_SKIP() << "no file system of our own here: " << run.err;
   EXPECT_EQ(run.status, 4) << run.err;
-  EXPECT_EQ(run.out, "old\na.h5\na.h5.part\n");
-  EXPECT_EQ(run.err.rfind("a.h5.part: could not be written (found No space left on device): ", 0), 0U) << run.err;
+  EXPECT_EQ(run.out, "old\na.h5\na.h5.checkpoint\na.h5.part\n");
+  EXPECT_EQ(run.err.rfind("a.h5.checkpoint: could not be written (found No space left on device): ", 0), 0U) << run.err;
   const std::string begin = "cradle: a.h5: could not be written (found No space left on device): check the folder and "
                             "the space on its disk; what was computed is in ";
   const std::size_t at = run.err.find(begin);
@@ -43,7 +43,7 @@ TEST_F(FullDisk, WhereNothingCanBeKeptTheMessageSaysSo) {
   if (run.status == 77) GTEST_SKIP() << "no file system of our own here: " << run.err;
   EXPECT_EQ(run.status, 4) << run.err;
   EXPECT_NE(run.err.find("it could not be kept elsewhere either: "), std::string::npos) << run.err;
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 2) << "the journal's, and this: " << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 2) << "the checkpoint's, and this: " << run.err;
 }
 
 // Without a file system of its own: files may grow to 8 blocks only.

@@ -189,7 +189,7 @@ TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {
   EXPECT_EQ(stopped.status, 5) << stopped.out;
   EXPECT_NE(stopped.err.find("stopped by the guard of"), std::string::npos) << stopped.err;
   EXPECT_TRUE(contents(folder / "a.h5.checkpoint") == state) << "the one from before stays";
-  EXPECT_TRUE(exists("a.h5.part"));
+  EXPECT_TRUE(exists("a.h5"));
 }
 
 // More numbers than are held in memory go to the file piece by piece.

@@ -47,7 +47,7 @@ RunFiles::RunFiles(std::string file, const Scene& scene) : file_(std::move(file)
 
 // ---- during the run
 
-// Does what may fail on a full disk; reported once, until there is a checkpoint again.
+// Does what may fail on a full disk, which is reported once.
 bool RunFiles::saved(const std::function<void()>& what) {
   try {
     what();
@@ -117,7 +117,7 @@ void RunFiles::keep(const RunStatus& status, const std::function<void(StateWrite
         save(writer);
         writer.finish();
       });
-  if (up_to_date_) saved_here_ = true, complained_ = false;
+  saved_here_ = saved_here_ || up_to_date_;
 }
 
 // ---- the end

@@ -8,8 +8,9 @@
 // says `void loaded()`, which throws std::invalid_argument where its fields contradict each other.
 //
 // Numbers are kept exactly, little-endian: integers in 8 bytes, floating point as it is, other scalar types by a list
-// of their own or a specialisation of SavedNumber. `To` says put(const void*, size_t), `From` get(void*, size_t), which
-// throws at its end, and left(), the bytes to come.
+// of their own or a specialisation of SavedNumber. Lists, maps and text come behind their length, an alternative of a
+// variant behind its number. `To` says put(const void*, size_t), `From` get(void*, size_t), which throws at its end,
+// and left(), the bytes to come.
 
 #include <bit>
 #include <concepts>
@@ -25,6 +26,7 @@
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace cradle {
@@ -52,6 +54,13 @@ template <class X> inline constexpr bool is_optional<std::optional<X>> = true;
 template <class X> inline constexpr bool is_pair = false;
 template <class A, class B> inline constexpr bool is_pair<std::pair<A, B>> = true;
 
+template <class X> inline constexpr bool is_variant = false;
+template <class... X> inline constexpr bool is_variant<std::variant<X...>> = true;
+// Kept as it is in memory, at once.
+template <class X>
+inline constexpr bool is_plain =
+    std::same_as<X, std::string> || std::same_as<X, std::vector<double>> || std::same_as<X, std::vector<std::uint64_t>>;
+
 template <class X> inline constexpr bool is_whole = std::is_integral_v<X> || std::is_enum_v<X>;
 
 // Of a floating-point number without its padding.
@@ -68,7 +77,7 @@ template <class X> constexpr std::size_t least_bytes() {
     return bytes_of<X>;
   } else if constexpr (is_pair<X>) {
     return least_bytes<typename X::first_type>() + least_bytes<typename X::second_type>();
-  } else if constexpr (is_sequence<X> || is_map<X> || is_optional<X>) {
+  } else if constexpr (is_plain<X> || is_sequence<X> || is_map<X> || is_optional<X> || is_variant<X>) {
     return 8;
   } else if constexpr (ListsState<X>) {
     return []<class... F>(std::type_identity<std::tuple<F...>>) {
@@ -98,6 +107,9 @@ template <class To, class X> void save(To& to, const X& x) {
     to.put(&number, sizeof number);
   } else if constexpr (std::floating_point<X>) {
     to.put(&x, detail::bytes_of<X>);
+  } else if constexpr (detail::is_plain<X>) {
+    save(to, x.size());
+    to.put(x.data(), x.size() * sizeof x[0]);
   } else if constexpr (detail::is_sequence<X>) {
     save(to, x.size());
     for (const auto& each : x) save(to, each);
@@ -110,6 +122,9 @@ template <class To, class X> void save(To& to, const X& x) {
     if (x) save(to, *x);
   } else if constexpr (detail::is_pair<X>) {
     save(to, x.first), save(to, x.second);
+  } else if constexpr (detail::is_variant<X>) {
+    save(to, x.index());
+    std::visit([&](const auto& value) { save(to, value); }, x);
   } else if constexpr (ListsState<X>) {
     std::apply([&](const auto&... field) { (save(to, field), ...); }, X::state(x));
   } else {
@@ -126,6 +141,9 @@ template <class From, class X> void load(From& from, X& x) {
     if (static_cast<std::uint64_t>(x) != number) detail::refuse_number("a number out of range", number);
   } else if constexpr (std::floating_point<X>) {
     from.get(&x, detail::bytes_of<X>);
+  } else if constexpr (detail::is_plain<X>) {
+    x.resize(detail::length(from, sizeof x[0]));
+    if (!x.empty()) from.get(x.data(), x.size() * sizeof x[0]);
   } else if constexpr (detail::is_sequence<X>) {
     x.resize(detail::length(from, detail::least_bytes<typename X::value_type>()));
     for (auto& each : x) load(from, each);
@@ -147,6 +165,14 @@ template <class From, class X> void load(From& from, X& x) {
     load(from, *x);
   } else if constexpr (detail::is_pair<X>) {
     load(from, x.first), load(from, x.second);
+  } else if constexpr (detail::is_variant<X>) {
+    std::uint64_t number = 0;
+    load(from, number);
+    if (number >= std::variant_size_v<X>) detail::refuse_number("of a kind that is not known", number);
+    [&]<std::size_t... K>(std::index_sequence<K...>) {
+      ((number == K ? load(from, x.template emplace<K>()) : void()), ...);
+    }
+    (std::make_index_sequence<std::variant_size_v<X>>{});
   } else if constexpr (ListsState<X>) {
     std::apply([&](auto&... field) { (load(from, field), ...); }, X::state(x));
     if constexpr (requires { x.loaded(); }) x.loaded();
@@ -165,7 +191,8 @@ class SavedState {
     save(state, x);
     return state;
   }
-  const std::string& bytes() const { return bytes_; }
+  const std::string& bytes() const& { return bytes_; }
+  std::string bytes() && { return std::move(bytes_); }
   bool operator==(const SavedState& other) const { return bytes_ == other.bytes_; }
 
   void put(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
@@ -194,6 +221,8 @@ template <class X> void append_shape(std::string& shape) {
     shape += 'i';
   } else if constexpr (std::floating_point<X>) {
     shape += 'f' + std::to_string(detail::bytes_of<X>);
+  } else if constexpr (std::same_as<X, std::string>) {
+    shape += 's';
   } else if constexpr (detail::is_sequence<X>) {
     append_shapes<typename X::value_type>(shape, "[", "]");
   } else if constexpr (detail::is_map<X>) {
@@ -202,6 +231,10 @@ template <class X> void append_shape(std::string& shape) {
     append_shapes<typename X::value_type>(shape, "?", "");
   } else if constexpr (detail::is_pair<X>) {
     append_shapes<typename X::first_type, typename X::second_type>(shape, "", "");
+  } else if constexpr (detail::is_variant<X>) {
+    [&]<class... A>(std::type_identity<std::variant<A...>>) {
+      append_shapes<A...>(shape, "<", ">");
+    }(std::type_identity<X>{});
   } else if constexpr (ListsState<X>) {
     [&]<class... F>(std::type_identity<std::tuple<F...>>) {
       append_shapes<detail::Plain<F>...>(shape, "(", ")");

@@ -98,7 +98,7 @@ std::string output_beside(std::filesystem::path file, const char* extension) {
 Exit run_python(const std::string& command, const PageArguments& arguments, const char* extension,
                 std::string_view what) {
   const auto& [file, wanted] = arguments;
-  if (!JournalReader::kind(file)) read_result(file, Reading::ends);  // or Python would see it damaged
+  if (stored_in(file) == Stored::other) read_result(file, Reading::ends);  // or Python would see it damaged
   const std::string output = wanted.empty() ? output_beside(file, extension) : wanted;
   file_behind(output);  // neither a folder nor a device
   const TemporaryFolder folder;

@@ -16,7 +16,7 @@
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/tools/model/laws.hpp"
-#include "cradle/tools/store/state_file.hpp"
+#include "cradle/tools/store/checkpoint.hpp"
 
 namespace cradle::tools {
 

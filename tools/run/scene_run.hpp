@@ -62,7 +62,8 @@ template <Real T> class SceneRun {
     }
     const T end = status == Status::reached ? plan_.stops.back() : engine_.last_collision_time();
     const bool can_continue = status == Status::reached || status == Status::interrupted;
-    if (options_.store != nullptr && can_continue) keep(end, true);
+    if (options_.store != nullptr && can_continue)
+      keep(end, status == Status::reached ? RunIs::over : RunIs::interrupted);
     if (!can_continue || (options_.store == nullptr && status == Status::interrupted)) record_end(end);
     return finish(status, end);
   }
@@ -79,10 +80,12 @@ template <Real T> class SceneRun {
   // ---- what is kept during the run
 
   void load(StateReader& from) {
-    if (from.text() != shape() || from.text() != precision_name(scene_.run))
-      throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
-                  Exit::io);
     try {
+      std::pair<std::string, std::string> kind;
+      cradle::load(from, kind);
+      if (kind != std::pair(shape(), precision_name(scene_.run)))
+        throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
+                    Exit::io);
       engine_.load(from);
       cradle::load(from, *this);
     } catch (const std::invalid_argument& error) {
@@ -96,7 +99,7 @@ template <Real T> class SceneRun {
   std::string shape() const { return engine_.shape() + state_shape<SceneRun>() + std::string(exact_part<T>); }
 
   // Rows that have been recorded go to the keeper, and now and then the state, which then follows from nothing else.
-  void keep(const T& time, bool state_too) {
+  void keep(const T& time, RunIs run_is = RunIs::in_progress) {
     put_rows();
     RunStatus now = guards_.status();
     now.time = to_double(time);
@@ -104,12 +107,11 @@ template <Real T> class SceneRun {
     options_.store->keep(
         now,
         [this](StateWriter& to) {
-          to.put(shape());
-          to.put(precision_name(scene_.run));
+          cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
           engine_.save(to);
           cradle::save(to, *this);
         },
-        state_too);
+        run_is);
   }
   void put_rows() {
     put(series_.take());
@@ -135,7 +137,7 @@ template <Real T> class SceneRun {
     for (;;) {
       const Status status = engine_.advance(until, observer_);
       if (status != Status::interrupted || stopped()) return status;
-      keep(engine_.last_collision_time(), false);
+      keep(engine_.last_collision_time());
     }
   }
 
@@ -164,7 +166,10 @@ template <Real T> class SceneRun {
     if (options_.observer != nullptr) notify_observer(time, false);
     if (options_.store == nullptr) return true;
     options_.store->check_clock();
-    if (options_.store->due() || series_.rows() >= most_rows) keep(time, false);
+    if (options_.store->due())
+      keep(time);
+    else if (series_.rows() >= most_rows)
+      put_rows();
     return true;
   }
   void record_collision(const Collision<T>& c) {

@@ -38,21 +38,25 @@ TEST(DamagedRecords, AreRefused) {
   const tools::Scene scene = tools::parse_scene(
       "law.type = 'sticky'\ninitial = { type = 'rows', particles = 8 }\nrun.until = 9\noutput.series.points = 3\n",
       "records.toml");
-  const auto refused = [&](const tools::ByteWriter& record) {
-    return refusal(Exit::io, [&] { tools::EnsembleState("", scene, {}).apply(record.bytes()); });
+  const auto refused = [&](const tools::EnsembleRecord& record) {
+    return refusal(Exit::io, [&] {
+      tools::EnsembleState("", scene, {}).apply(tools::from_bytes<tools::EnsembleRecord>(tools::to_bytes(record)));
+    });
   };
-  constexpr std::uint64_t beyond = std::uint64_t{1} << 63, point = 0, replica = 1, failed = 2, spread = 4;
+  constexpr std::uint64_t beyond = std::uint64_t{1} << 63;
   const tools::EnsembleState state("", scene, {});
   tools::ReplicaRow row;
-  row.index = beyond;
   const std::vector<double> values(state.layout().entries, 1.);
-  const std::string damaged = "a journal: a damaged ensemble (found replica 9223372036854775808)";
-  EXPECT_TRUE(begins(refused(tools::ByteWriter().put(point).put(replica).put(beyond)), damaged));
-  EXPECT_TRUE(begins(refused(tools::ByteWriter().put(point).put(failed).put(beyond).put("lost")), damaged));
-  EXPECT_THROW(tools::EnsembleState("", scene, {}).apply(tools::EnsembleState::record(0, row, values)), tools::Error);
-  EXPECT_TRUE(
-      has(refused(tools::ByteWriter().put(point).put(spread).put(std::uint64_t{0}).put(std::vector<std::uint64_t>(3))),
-          "3 counts for the spread 0"));
+  EXPECT_NO_THROW(tools::EnsembleState("", scene, {})
+                      .apply(tools::from_bytes<tools::EnsembleRecord>(
+                          tools::to_bytes(tools::EnsembleRecord{0, tools::ReplicaRecord{row, values}}))));
+  row.outcome = tools::RunEnd::undecided;
+  EXPECT_TRUE(has(refused({0, tools::ReplicaRecord{row, values}}), "no outcome of a replica"));
+  row = {};
+  row.index = beyond;
+  EXPECT_TRUE(has(refused({0, tools::ReplicaRecord{row, values}}), "a replica beyond the last"));
+  EXPECT_TRUE(has(refused({0, tools::FailureRecord{beyond, "lost"}}), "a replica beyond the last"));
+  EXPECT_TRUE(has(refused({0, tools::SpreadRecord{0, {1, 2, 3}}}), "3 counts for the spread 0"));
 }
 
 TEST_F(DamagedEnsembles, AreRefused) {

@@ -17,15 +17,16 @@ class FullDisk : public ProgramTest {
 };
 
 constexpr const char* too_large = "cradle run fig2 --quiet --set initial.particles=4000 --set run.until=20 --set "
-                                  "output.snapshots=[5,10,15,20] --set output.events=true -o a.h5";
+                                  "output.snapshots=[5,10,15,20] --set output.events=true "
+                                  "--set output.checkpoint.every_seconds=1e-9 -o a.h5";
 
 TEST_F(FullDisk, RunKeepsItsResultElsewhere) {
   const Printed run = on_small_disk("echo old > a.h5; mkdir $HERE/tmp; export TMPDIR=$HERE/tmp; " +
                                     std::string(too_large) + "; status=$?; cat a.h5; ls -A; exit $status");
   if (run.status == 77) GTEST_SKIP() << "no file system of our own here: " << run.err;
   EXPECT_EQ(run.status, 4) << run.err;
-  EXPECT_EQ(run.out, "old\na.h5\na.h5.part\n");
-  EXPECT_TRUE(begins(run.err, "a.h5.part: could not be written (found No space left on device): "));
+  EXPECT_EQ(run.out, "old\na.h5\na.h5.checkpoint\na.h5.part\n");
+  EXPECT_TRUE(begins(run.err, "a.h5.checkpoint: could not be written (found No space left on device): "));
   const std::string begin = "cradle: a.h5: could not be written (found No space left on device): check the folder and "
                             "the space on its disk; what was computed is in ";
   const std::size_t at = run.err.find(begin);
@@ -40,7 +41,7 @@ TEST_F(FullDisk, WhereNothingCanBeKeptTheMessageSaysSo) {
   if (run.status == 77) GTEST_SKIP() << "no file system of our own here: " << run.err;
   EXPECT_EQ(run.status, 4) << run.err;
   EXPECT_TRUE(has(run.err, "it could not be kept elsewhere either: "));
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 2) << "the journal's, and this: " << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 2) << "the checkpoint's, and this: " << run.err;
 }
 
 // Without a file system of its own: files may grow to 8 blocks only.

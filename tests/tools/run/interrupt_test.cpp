@@ -121,10 +121,10 @@ TEST_F(Signals, HangUpsAreIgnoredUnderNohup) {
 TEST_F(Signals, EndAProgramThatIsStillSettingUp) {
   // 2e9 velocities are drawn twice before there is anything to hold in memory.
   const Printed run = shell("cradle run cooling --set initial.particles=2e9 -o ring.h5 & pid=$!; "
-                            "until [ -e ring.h5.part ]; do sleep 0.01; done; kill -INT $pid; wait $pid",
+                            "until [ -e .ring.h5.cradle-lock ]; do sleep 0.01; done; kill -INT $pid; wait $pid",
                             130);
   EXPECT_TRUE(has(run.err, "before there was anything to keep"));
-  EXPECT_FALSE(exists("ring.h5.checkpoint"));
+  for (const char* file : {"ring.h5.part", "ring.h5.checkpoint"}) EXPECT_FALSE(exists(file)) << file;
 }
 
 // In a process of its own that has polled for signals and gets some: how soon after the first one another counts as the

@@ -17,11 +17,8 @@ from .tables import Means, Table, Tables, reading
 
 FORMAT = 2
 CHECKED = 64 << 20  # bytes of a file whose checksum is checked without a request: a tenth of a second
-REFUSED = {
-    b"CRADLEJ3": "unfinished replicas, no statistics yet: `cradle resume {}` continues with them, `cradle info` prints "
-                 "how many are finished",
-    b"CRADLEC2": "a checkpoint, not a result: open the result beside it, or `cradle resume` continues from it"}
-EARLIER = (b"CRADLER1", b"CRADLEJ1", b"CRADLEJ2", b"CRADLEC1")  # of format 1
+STORED = {b"CRADLEJ": "journal", b"CRADLER": "journal", b"CRADLEC": "checkpoint"}
+STORED_FORMAT = 4  # the last letter of how these files begin
 
 
 def open(path: str | os.PathLike, check: bool | None = None) -> Result:
@@ -35,12 +32,14 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     try:
         with builtins_open(path, "rb") as file:
             head = file.read(8)
-        if head == b"CRADLER2":
+        stored = STORED.get(head[:7]) if head[7:].isdigit() else None
+        if stored and int(head[7:]) != STORED_FORMAT:
+            raise other_format(path, int(head[7:]), STORED_FORMAT)
+        if stored == "journal":
             return so_far(path)
-        if head in REFUSED:
-            raise Error(f"{path}: {REFUSED[head].format(path.removesuffix('.part'))}", BAD_FILE)
-        if head in EARLIER:
-            raise other_format(path, 1)
+        if stored:
+            raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues "
+                        "from it", BAD_FILE)
         if head != b"\x89HDF\r\n\x1a\n":
             raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
                         "give a file written by `cradle run`", BAD_FILE)
@@ -54,9 +53,9 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     return Result(path, open_file(path), sealed)
 
 
-def other_format(path: str, version: int) -> Error:
-    return Error(f"{path}: a file of {'an earlier' if version < FORMAT else 'a later'} version of cradle (found format "
-                 f"{version}, here {FORMAT}): read it with the version that wrote it, or remove it and run its scene "
+def other_format(path: str, found: int, here: int = FORMAT) -> Error:
+    return Error(f"{path}: a file of {'an earlier' if found < here else 'a later'} version of cradle (found format "
+                 f"{found}, here {here}): read it with the version that wrote it, or remove it and run its scene "
                  "again", BAD_FILE)
 
 

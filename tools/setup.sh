@@ -30,6 +30,7 @@ program | h5py                  | python h5py                  | python3-h5py
 tests   | GoogleTest            | header gtest/gtest.h         | libgtest-dev
 tests   | rapidcheck            | header rapidcheck.h          | librapidcheck-dev
 tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev
+option  | Highway               | header hwy/highway.h         | libhwy-dev
 option  | MPI compiler          | command mpicc                | libopenmpi-dev
 option  | MPI launcher          | command mpirun               | openmpi-bin
 look    | Chromium              | command chromium             | chromium

@@ -1,0 +1,275 @@
+// A step on vectors. Google Highway compiles this file once for each kind of vectors and takes the widest ones that the
+// processor has; no other file knows it.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cradle/core/parallel/steps/steps.cpp"
+#include <hwy/foreach_target.h>  // before highway.h
+#include <hwy/highway.h>
+
+#include <string>
+
+#include "cradle/core/parallel/steps/loop.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace cradle {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Tests plant errors: no radius, no check, a mask of the wrong lane, no bounds of tiles.
+#ifndef CRADLE_PLANTED_ERROR
+#define CRADLE_PLANTED_ERROR 0
+#endif
+constexpr bool planted(int error) { return error == CRADLE_PLANTED_ERROR; }
+
+using Lanes = hn::ScalableTag<double>;  // of neighbours that are compared
+using Few = hn::CappedTag<double, 4>;   // of the three gaps of a collision and the next one
+using Indices = hn::CappedTag<std::uint32_t, hn::MaxLanes(Lanes())>;
+constexpr std::size_t lanes = hn::MaxLanes(Lanes()), few = hn::MaxLanes(Few());
+
+// The places of a mask's bits, one after the other: Highway's own Compress copies a large table each time.
+struct Places {
+  alignas(64) std::uint32_t of[256][8] = {};
+  constexpr Places() {
+    for (unsigned bits = 0; bits < 256; ++bits)
+      for (unsigned k = 0, n = 0; k < 8; ++k)
+        if (bits >> k & 1) of[bits][n++] = k;
+  }
+};
+constexpr Places places;
+
+// Appends the numbers of the mask's lanes, counted from `base`, to a list.
+template <class Mask> HWY_INLINE void append(Mask mask, std::size_t base, std::uint32_t* list, std::size_t& length) {
+  std::uint8_t bits[8];
+  hn::StoreMaskBits(Lanes(), mask, bits);
+  const unsigned set = bits[0] & ((1U << lanes) - 1);
+  const Indices indices;
+  hn::StoreU(hn::Add(hn::LoadU(indices, places.of[set]), hn::Set(indices, static_cast<std::uint32_t>(base))), indices,
+             list + length);
+  length += static_cast<std::size_t>(__builtin_popcount(set));
+}
+
+// All gaps that are due up to `end`, from the tiles that may have some; renews the bounds of these.
+HWY_INLINE std::size_t scan(StepLine& line, double end) {
+  const Lanes d;
+  std::uint32_t *tiles = line.waiting.data(), *candidates = line.candidates.data();
+  const auto last = hn::Set(d, end), never = hn::Set(d, StepLine::never);
+  std::size_t visited = 0, found = 0;
+  for (std::size_t k = 0; k < line.tiles(); k += lanes)
+    append(hn::Le(hn::LoadU(d, line.bound + k), last), k, tiles, visited);
+  for (std::size_t v = 0; v < visited; ++v) {
+    const std::size_t from = StepLine::tile * tiles[v];
+    auto later = never;
+    for (std::size_t k = from; k < from + StepLine::tile; k += lanes) {
+      const auto due = hn::Load(d, line.due + k);
+      const auto now = hn::Le(due, last);
+      later = hn::Min(later, hn::IfThenElse(now, never, due));
+      append(now, k, candidates, found);
+    }
+    line.bound[tiles[v]] = hn::GetLane(hn::MinOfLanes(d, later));
+  }
+  return found;
+}
+
+// Whether a gap is due before its neighbours, 7 on the left and 8 on the right.
+HWY_INLINE bool is_first(const double* due) {
+  if (planted(1)) return true;
+  const Lanes d;
+  const auto own = hn::Set(d, *due);
+  std::size_t no_later = 0;
+  for (std::size_t k = 0; k < 8; k += lanes)
+    no_later += hn::CountTrue(d, hn::Le(hn::LoadU(d, due - 7 + k), own)) +
+                hn::CountTrue(d, hn::Le(hn::LoadU(d, due + 1 + k), own));
+  return no_later == 1;
+}
+
+// Numbers for the gaps left, at, and right of a collision, and for the next one, which does not change.
+struct Four {
+  alignas(32) double of[4];
+  HWY_INLINE auto from(std::size_t k) const { return hn::Load(Few(), of + k); }
+};
+
+// Sums of what collisions do beside changing gaps.
+struct Sums {
+  hn::Vec<Lanes> lost, rest;
+  std::uint64_t below_cutoff = 0;
+};
+
+// Enters the collisions at so many gaps in the ledger (ledger.hpp), closing speeds in `struck`.
+template <bool unequal> HWY_INLINE void enter(StepLine& line, const StepTask& task, std::size_t count, Sums& sums) {
+  const Lanes d;
+  hn::StoreU(hn::Zero(d), d, line.struck.data() + count);
+  if (unequal) hn::StoreU(hn::Zero(d), d, line.struck_mass.data() + count);
+  const auto cutoff = hn::Set(d, task.cutoff), share = hn::Set(d, task.lost), rounder = hn::Set(d, task.rounder),
+             per_fine = hn::Set(d, task.per_fine), whole = hn::Set(d, 0x1.8p52);
+  for (std::size_t k = 0; k < count; k += lanes) {
+    const auto w = hn::LoadU(d, line.struck.data() + k);
+    const auto elastic = hn::Lt(w, cutoff);
+    sums.below_cutoff += hn::CountTrue(d, hn::And(elastic, hn::Gt(w, hn::Zero(d))));
+    auto factor = hn::IfThenZeroElse(elastic, share);
+    if (unequal) factor = hn::Mul(factor, hn::LoadU(d, line.struck_mass.data() + k));
+    const auto loss = hn::Mul(factor, hn::Mul(w, w));
+    const auto coarse = hn::Sub(hn::Add(loss, rounder), rounder);
+    sums.lost = hn::Add(sums.lost, coarse);
+    const auto fine = hn::Mul(hn::Sub(loss, coarse), per_fine);
+    sums.rest = hn::Add(sums.rest, hn::Sub(hn::Add(fine, whole), whole));
+  }
+}
+
+template <StepLaw law, bool unequal, bool lags>
+int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result) {
+  constexpr int most_passes = 24;
+  constexpr double never = StepLine::never;
+  const Few f;
+  const Four is_side{1, 0, planted(3) ? 0. : 1., planted(3) ? 1. : 0.}, is_own{0, 1, 0, 0}, is_next{0, 0, 0, 1},
+      of_left{-1, 0, 1, 0};
+  const Four soon{0, 0x1p-40, 0, -never}, floor{task.floor, -never, task.floor, -never};
+  const auto zero = hn::Zero(f), one = hn::Set(f, 1.);
+  auto wrong = hn::Ne(zero, zero);
+  auto latest = hn::Set(f, result.last);
+  Sums sums{hn::Zero(Lanes()), hn::Zero(Lanes())};
+  std::uint32_t *candidates = line.candidates.data(), *waiting = line.waiting.data(), *first = line.first.data(),
+                *edges = line.edges.data();
+  double *gap = line.gap, *closing = line.closing, *time = line.time, *due = line.due, *lag = line.lag;
+  const std::size_t inner_first = line.inner_first, inner = line.inner;
+
+  std::size_t count = scan(line, end);
+  int passes = 0;
+  for (; count > 0; ++passes) {
+    if (passes == most_passes || count > line.gaps()) return -1;
+    // Decide: which collisions are first in their neighbourhoods.
+    std::size_t firsts = 0, at_edges = 0, later = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = candidates[k];
+      const bool is_due = due[i] <= end, now = is_due & is_first(due + i), within = i - inner_first < inner;
+      first[firsts] = static_cast<std::uint32_t>(i);
+      firsts += now & within;
+      edges[at_edges] = static_cast<std::uint32_t>(i);
+      at_edges += now & !within;
+      waiting[later] = static_cast<std::uint32_t>(i);
+      later += is_due & !now;
+    }
+    if (firsts + at_edges == 0 && later > 0) return -1;  // at the same time
+    if (law == StepLaw::any) scalars.outcomes(first, firsts);
+    // Make these. Neighbours that are due now and were not before are candidates too.
+    const auto renew = [&](std::size_t neighbour, double due_before) HWY_ATTR {
+      double& bound = line.bound[neighbour / StepLine::tile];
+      if (!planted(4)) bound = bound < due[neighbour] ? bound : due[neighbour];
+      waiting[later] = static_cast<std::uint32_t>(neighbour);
+      later += (due[neighbour] <= end) & (due_before > end);
+    };
+    for (std::size_t k = 0; k < firsts; ++k) {
+      const std::size_t i = first[k];
+      const double left_before = due[i - 1], right_before = due[i + 1];
+      const auto x = hn::Set(f, due[i]), w = hn::Set(f, closing[i]);
+      const double fraction = unequal && law != StepLaw::any ? line.fraction[i] : 0;
+      if (law != StepLaw::any) line.struck[k] = closing[i];
+      if (unequal && law != StepLaw::any) line.struck_mass[k] = line.reduced[i];
+      latest = hn::Max(latest, x);
+      for (std::size_t h = 0; h < 4; h += few) {
+        const std::size_t at = i - 1 + h;
+        const auto side = hn::Eq(is_side.from(h), one), own = hn::Eq(is_own.from(h), one),
+                   next = hn::Eq(is_next.from(h), one);
+        const auto g = hn::LoadU(f, gap + at), u = hn::LoadU(f, closing + at), then = hn::LoadU(f, time + at),
+                   was_due = hn::LoadU(f, due + at);
+        auto after = w, gain = w;
+        if constexpr (law == StepLaw::any) {
+          after = hn::Set(f, line.after[k]);
+          gain =
+              hn::IfThenElse(hn::Lt(of_left.from(h), zero), hn::Set(f, line.to_left[k]), hn::Set(f, line.to_right[k]));
+        } else {
+          const auto elastic = hn::Lt(w, hn::Set(f, task.cutoff));
+          if constexpr (law == StepLaw::hard) {
+            gain = hn::Mul(hn::IfThenElse(elastic, one, hn::Set(f, task.half_sum)), w);
+            after = hn::Sub(w, hn::Add(gain, gain));
+          } else {
+            after = hn::Neg(hn::Mul(hn::IfThenElse(elastic, one, hn::Set(f, task.restitution)), w));
+            gain = hn::Mul(hn::Sub(w, after), hn::Set(f, 0.5));
+          }
+          if constexpr (unequal) {
+            const auto handed = hn::Add(gain, gain), share = hn::Set(f, fraction);
+            const auto small = hn::Mul(handed, hn::Abs(share)), large = hn::Sub(handed, small);
+            gain = hn::IfThenElse(hn::Gt(hn::Mul(share, of_left.from(h)), zero), large, small);
+          }
+        }
+        auto since = hn::Sub(x, then);
+        if constexpr (lags) since = hn::Sub(since, hn::LoadU(f, lag + at));
+        wrong = hn::Or(wrong, hn::Le(since, hn::Mul(x, soon.from(h))));
+        const auto g_now = hn::Sub(g, hn::Mul(u, since)), u_now = hn::Add(u, gain);
+        wrong = hn::Or(wrong, hn::Lt(g_now, floor.from(h)));
+        const auto due_now =
+            hn::IfThenElse(hn::And(side, hn::Gt(u_now, zero)), hn::Add(x, hn::Div(g_now, u_now)), hn::Set(f, never));
+        hn::StoreU(hn::IfThenElse(next, g, hn::IfThenElseZero(side, g_now)), f, gap + at);
+        hn::StoreU(hn::IfThenElse(next, u, hn::IfThenElse(own, after, u_now)), f, closing + at);
+        hn::StoreU(hn::IfThenElse(next, then, x), f, time + at);
+        hn::StoreU(hn::IfThenElse(next, was_due, due_now), f, due + at);
+        if constexpr (lags) hn::StoreU(hn::IfThenElseZero(next, hn::LoadU(f, lag + at)), f, lag + at);
+      }
+      renew(i - 1, left_before);
+      renew(i + 1, right_before);
+    }
+    for (std::size_t k = 0; k < at_edges; ++k) {
+      const std::size_t i = edges[k];
+      const double left_before = i > 0 ? due[i - 1] : 0, right_before = due[i + 1];
+      if (!scalars.collide(i)) return -1;
+      if (i > 0) renew(i - 1, left_before);
+      renew(i + 1, right_before);
+    }
+    result.collisions += firsts;
+    if (law != StepLaw::any) enter<unequal>(line, task, firsts, sums);
+    std::swap(candidates, waiting);
+    count = later;
+  }
+  result.last = hn::GetLane(latest);
+  result.lost += hn::GetLane(hn::SumOfLanes(Lanes(), sums.lost));
+  result.rest += hn::GetLane(hn::SumOfLanes(Lanes(), sums.rest));
+  result.below_cutoff += sums.below_cutoff;
+  return planted(2) || (hn::AllFalse(f, wrong) && result.last <= end) ? passes : -1;
+}
+
+bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result) {
+  const auto run_by = [&]<StepLaw law, bool unequal>() {
+    return run_steps(step<law, unequal, false>, step<law, unequal, true>, line, task, scalars, pace, result);
+  };
+  if (task.law == StepLaw::hard)
+    return task.unequal ? run_by.template operator()<StepLaw::hard, true>()
+                        : run_by.template operator()<StepLaw::hard, false>();
+  if (task.law == StepLaw::soft)
+    return task.unequal ? run_by.template operator()<StepLaw::soft, true>()
+                        : run_by.template operator()<StepLaw::soft, false>();
+  return run_by.template operator()<StepLaw::any, false>();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace cradle
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace cradle {
+
+HWY_EXPORT(run);
+
+const std::vector<Steps>& all_steps() {
+  static const std::vector<Steps> all = [] {
+    std::vector<Steps> found;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().Update(target);
+      found.push_back({hwy::TargetName(target), &HWY_DYNAMIC_DISPATCH(run)});
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return found;
+  }();
+  return all;
+}
+
+const Steps* fastest_steps() {
+  if (all_steps().empty()) return nullptr;
+  const Steps& widest = all_steps().front();
+  const std::string name = widest.target;
+  return name == "SSSE3" || name == "EMU128" || name == "SCALAR" ? nullptr : &widest;
+}
+
+}  // namespace cradle
+#endif

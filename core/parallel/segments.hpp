@@ -57,8 +57,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
   explicit Segments(Workers workers = {}, Segmentation how = {})
       : workers_(std::move(workers)), how_(how), segments_(workers_.count) {
-    if (how_.gaps == 0)
-      how_.gaps = how_.steps != nullptr && Stepped<Law, typename Segment<Law, Chain>::Part>::possible ? 6000 : 2800;
+    if (how_.gaps == 0) how_.gaps = in_steps() ? 6000 : 2800;
     how_.ghosts = std::max<std::size_t>(how_.ghosts, 1);  // a cut has a gap on either side
   }
 
@@ -122,7 +121,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
         (first ? all : again) += reports_[k].counts.collisions;
       }
       todo = join(chain);
-      if (own_.size() < 2 && !todo.empty()) return give_up(chain);
+      // Steps are quicker than the plain loop on a whole line too.
+      if (own_.size() < 2 && !todo.empty() && (!in_steps() || chain.on_ring())) return give_up(chain);
     }
     Slab slab;
     std::uint64_t largest = 0;
@@ -150,6 +150,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
  private:
   using Report = typename Segment<Law, Chain>::Report;
+  bool in_steps() const { return how_.steps != nullptr && Stepped<Law, typename Segment<Law, Chain>::Part>::possible; }
   static constexpr double least_per_gap = 1. / 8;
 
   std::optional<Slab> give_up(const Chain& chain) {

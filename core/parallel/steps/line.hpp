@@ -47,6 +47,10 @@ class StepLine {
     std::fill(bound, bound + tiles() + tile, never);
     for (double* one : {gap, closing, time, lag})
       for (std::size_t k = 0; k < 2; ++k) one[-1 - static_cast<std::ptrdiff_t>(k)] = one[gaps + k] = 0;
+    if (guarded_.size() < tiles()) {
+      guarded_.resize(tiles()), kept_at_.resize(tiles());
+      kept_.resize(kept_size * tiles());
+    }
     if (first.size() < gaps + tile) {
       for (auto* list : {&candidates, &waiting}) list->resize(3 * gaps + tile);
       for (auto* list : {&first, &edges}) list->resize(gaps + tile);
@@ -59,25 +63,50 @@ class StepLine {
   }
   double least_due() const { return *std::min_element(bound, bound + tiles()); }
 
-  // ---- an undo copy of what collisions change
+  // ---- an undo copy of what collisions change from now on, tile by tile as they come near
   void keep() {
     if (lags) lags = std::any_of(lag, lag + gaps_, [](double x) { return x != 0; });
-    const std::size_t size = (lags ? 5 : 4) * stride_;
-    kept_.resize(std::max(kept_.size(), size + stride_));
-    std::copy_n(gap - tile, size, kept_.data());
-    std::copy_n(bound, tiles(), kept_.data() + size);
-    kept_size_ = size;
+    ++stretch_;
+    kept_tiles_.clear();
+  }
+  // Collisions of gaps of this tile are to come: they and what they set off in a step stay within the tiles beside it.
+  void guard(std::size_t k) {
+    if (guarded_[k] == stretch_) return;
+    guarded_[k] = stretch_;
+    for (std::size_t beside = k > 0 ? k - 1 : 0; beside <= k + 1 && beside < tiles(); ++beside)
+      if (kept_at_[beside] != stretch_) keep_tile(beside);
   }
   void restore() {
-    std::copy_n(kept_.data(), kept_size_, gap - tile);
-    std::copy_n(kept_.data() + kept_size_, tiles(), bound);
+    const double* from = kept_.data();
+    for (const std::uint32_t k : kept_tiles_) {
+      for (double* array : {gap, closing, time, due, lag}) from = copy(from, array + tile * k);
+      bound[k] = *from++;
+    }
   }
 
  private:
   static constexpr std::size_t alignment = 8;  // in doubles: a cache line
 
-  std::size_t gaps_ = 0, stride_ = 0, kept_size_ = 0;
-  std::vector<double> numbers_, kept_;
+  static constexpr std::size_t kept_size = 5 * tile + 1;
+
+  void keep_tile(std::size_t k) {
+    kept_at_[k] = stretch_;
+    double* to = kept_.data() + kept_size * kept_tiles_.size();
+    kept_tiles_.push_back(static_cast<std::uint32_t>(k));
+    for (const double* array : {gap, closing, time, due, lag}) to = std::copy_n(array + tile * k, tile, to);
+    *to = bound[k];
+  }
+  static const double* copy(const double* from, double* to) {
+    std::copy_n(from, tile, to);
+    return from + tile;
+  }
+
+  std::size_t gaps_ = 0, stride_ = 0;
+  std::vector<double> numbers_;
+  std::uint64_t stretch_ = 0;                     // number of the undo copy
+  std::vector<std::uint64_t> guarded_, kept_at_;  // the last one that a tile was guarded for, and kept in
+  std::vector<double> kept_;
+  std::vector<std::uint32_t> kept_tiles_;
 };
 
 }  // namespace cradle

@@ -6,8 +6,6 @@
 #include <hwy/foreach_target.h>  // before highway.h
 #include <hwy/highway.h>
 
-#include <string>
-
 #include "cradle/core/parallel/steps/loop.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -59,6 +57,7 @@ HWY_INLINE std::size_t scan(StepLine& line, double end) {
     append(hn::Le(hn::LoadU(d, line.bound + k), last), k, tiles, visited);
   for (std::size_t v = 0; v < visited; ++v) {
     const std::size_t from = StepLine::tile * tiles[v];
+    line.guard(tiles[v]);
     auto later = never;
     for (std::size_t k = from; k < from + StepLine::tile; k += lanes) {
       const auto due = hn::Load(d, line.due + k);
@@ -88,6 +87,15 @@ struct Four {
   alignas(32) double of[4];
   HWY_INLINE auto from(std::size_t k) const { return hn::Load(Few(), of + k); }
 };
+
+// The gap right of a collision, in a vector of all four or of the last ones.
+HWY_INLINE double third(hn::Vec<Few> last) {
+#if HWY_MAX_BYTES >= 32
+  return hn::GetLane(hn::UpperHalf(hn::Half<Few>(), last));
+#else
+  return hn::GetLane(last);
+#endif
+}
 
 // Sums of what collisions do beside changing gaps.
 struct Sums {
@@ -119,6 +127,7 @@ template <bool unequal> HWY_INLINE void enter(StepLine& line, const StepTask& ta
 template <StepLaw law, bool unequal, bool lags>
 int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result) {
   constexpr int most_passes = 24;
+  static_assert(most_passes < StepLine::tile);  // StepLine::guard
   constexpr double never = StepLine::never;
   const Few f;
   const Four is_side{1, 0, planted(3) ? 0. : 1., planted(3) ? 1. : 0.}, is_own{0, 1, 0, 0}, is_next{0, 0, 0, 1},
@@ -130,7 +139,8 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
   Sums sums{hn::Zero(Lanes()), hn::Zero(Lanes())};
   std::uint32_t *candidates = line.candidates.data(), *waiting = line.waiting.data(), *first = line.first.data(),
                 *edges = line.edges.data();
-  double *gap = line.gap, *closing = line.closing, *time = line.time, *due = line.due, *lag = line.lag;
+  double *gap = line.gap, *closing = line.closing, *time = line.time, *due = line.due, *lag = line.lag,
+         *bounds = line.bound, *struck = line.struck.data(), *struck_mass = line.struck_mass.data();
   const std::size_t inner_first = line.inner_first, inner = line.inner;
 
   std::size_t count = scan(line, end);
@@ -141,31 +151,34 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
     std::size_t firsts = 0, at_edges = 0, later = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = candidates[k];
-      const bool is_due = due[i] <= end, now = is_due & is_first(due + i), within = i - inner_first < inner;
-      first[firsts] = static_cast<std::uint32_t>(i);
-      firsts += now & within;
-      edges[at_edges] = static_cast<std::uint32_t>(i);
-      at_edges += now & !within;
+      const bool is_due = due[i] <= end, now = is_due & is_first(due + i);
       waiting[later] = static_cast<std::uint32_t>(i);
       later += is_due & !now;
+      if (i - inner_first >= inner) [[unlikely]] {
+        if (now) edges[at_edges++] = static_cast<std::uint32_t>(i);
+        continue;
+      }
+      first[firsts] = static_cast<std::uint32_t>(i);
+      firsts += now;
     }
     if (firsts + at_edges == 0 && later > 0) return -1;  // at the same time
     if (law == StepLaw::any) scalars.outcomes(first, firsts);
     // Make these. Neighbours that are due now and were not before are candidates too.
-    const auto renew = [&](std::size_t neighbour, double due_before) HWY_ATTR {
-      double& bound = line.bound[neighbour / StepLine::tile];
-      if (!planted(4)) bound = bound < due[neighbour] ? bound : due[neighbour];
+    const auto renew = [&](std::size_t neighbour, double due_before, double due_now) HWY_ATTR {
+      double& bound = bounds[neighbour / StepLine::tile];
+      if (!planted(4)) bound = bound < due_now ? bound : due_now;
       waiting[later] = static_cast<std::uint32_t>(neighbour);
-      later += (due[neighbour] <= end) & (due_before > end);
+      later += (due_now <= end) & (due_before > end);
     };
     for (std::size_t k = 0; k < firsts; ++k) {
       const std::size_t i = first[k];
       const double left_before = due[i - 1], right_before = due[i + 1];
       const auto x = hn::Set(f, due[i]), w = hn::Set(f, closing[i]);
       const double fraction = unequal && law != StepLaw::any ? line.fraction[i] : 0;
-      if (law != StepLaw::any) line.struck[k] = closing[i];
-      if (unequal && law != StepLaw::any) line.struck_mass[k] = line.reduced[i];
+      if (law != StepLaw::any) struck[k] = closing[i];
+      if (unequal && law != StepLaw::any) struck_mass[k] = line.reduced[i];
       latest = hn::Max(latest, x);
+      double left_now = never, right_now = never;
       for (std::size_t h = 0; h < 4; h += few) {
         const std::size_t at = i - 1 + h;
         const auto side = hn::Eq(is_side.from(h), one), own = hn::Eq(is_own.from(h), one),
@@ -199,21 +212,23 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
         wrong = hn::Or(wrong, hn::Lt(g_now, floor.from(h)));
         const auto due_now =
             hn::IfThenElse(hn::And(side, hn::Gt(u_now, zero)), hn::Add(x, hn::Div(g_now, u_now)), hn::Set(f, never));
+        if (h == 0) left_now = hn::GetLane(due_now);
+        if (h == (few > 2 ? 0 : 2)) right_now = third(due_now);
         hn::StoreU(hn::IfThenElse(next, g, hn::IfThenElseZero(side, g_now)), f, gap + at);
         hn::StoreU(hn::IfThenElse(next, u, hn::IfThenElse(own, after, u_now)), f, closing + at);
         hn::StoreU(hn::IfThenElse(next, then, x), f, time + at);
         hn::StoreU(hn::IfThenElse(next, was_due, due_now), f, due + at);
         if constexpr (lags) hn::StoreU(hn::IfThenElseZero(next, hn::LoadU(f, lag + at)), f, lag + at);
       }
-      renew(i - 1, left_before);
-      renew(i + 1, right_before);
+      renew(i - 1, left_before, left_now);
+      renew(i + 1, right_before, right_now);
     }
     for (std::size_t k = 0; k < at_edges; ++k) {
       const std::size_t i = edges[k];
       const double left_before = i > 0 ? due[i - 1] : 0, right_before = due[i + 1];
       if (!scalars.collide(i)) return -1;
-      if (i > 0) renew(i - 1, left_before);
-      renew(i + 1, right_before);
+      if (i > 0) renew(i - 1, left_before, due[i - 1]);
+      renew(i + 1, right_before, due[i + 1]);
     }
     result.collisions += firsts;
     if (law != StepLaw::any) enter<unequal>(line, task, firsts, sums);
@@ -226,6 +241,8 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
   result.below_cutoff += sums.below_cutoff;
   return planted(2) || (hn::AllFalse(f, wrong) && result.last <= end) ? passes : -1;
 }
+
+std::size_t width() { return lanes; }
 
 bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result) {
   const auto run_by = [&]<StepLaw law, bool unequal>() {
@@ -248,6 +265,7 @@ HWY_AFTER_NAMESPACE();
 namespace cradle {
 
 HWY_EXPORT(run);
+HWY_EXPORT(width);
 
 const std::vector<Steps>& all_steps() {
   static const std::vector<Steps> all = [] {
@@ -265,10 +283,9 @@ const std::vector<Steps>& all_steps() {
 }
 
 const Steps* fastest_steps() {
-  if (all_steps().empty()) return nullptr;
-  const Steps& widest = all_steps().front();
-  const std::string name = widest.target;
-  return name == "SSSE3" || name == "EMU128" || name == "SCALAR" ? nullptr : &widest;
+  // Of two lanes they are slower.
+  const std::vector<Steps>& all = all_steps();
+  return !all.empty() && HWY_DYNAMIC_DISPATCH(width)() >= 4 ? &all.front() : nullptr;
 }
 
 }  // namespace cradle

@@ -52,10 +52,11 @@ struct StepResult {
   double lost = 0, rest = 0;       // for Ledger::add_sums
 };
 
-// How a segment goes: steps of this length (0: unknown), an undo copy after so many.
+// How a segment goes: steps of this length (0: unknown), such that about so many passes make one; an undo copy after so
+// many steps.
 struct StepPace {
-  double length = 0;
-  int stretch = 40;
+  double length = 0, passes = 4;
+  int stretch = 32;
 };
 
 struct Steps {

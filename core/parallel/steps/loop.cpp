@@ -9,9 +9,11 @@ namespace cradle {
 bool run_steps(Step step, Step step_with_lags, StepLine& line, const StepTask& task, StepScalars& scalars,
                StepPace& pace, StepResult& result) {
   constexpr int most_failures = 6, least_stretch = 4, most_stretch = 512;
+  constexpr std::uint64_t least_collisions = 6;  // in a step, for steps to pay
   double now = line.least_due(), kept_at = now, failed_at = now, shorter = 1;
   StepResult kept;
   if (!(pace.length > 0)) pace.length = (task.stop - now) / 1024;
+  std::uint64_t steps = 0;
   for (int left = 0, failures = 0; now <= task.stop; --left) {
     if (left == 0) {
       line.keep(), scalars.keep();
@@ -36,6 +38,7 @@ bool run_steps(Step step, Step step_with_lags, StepLine& line, const StepTask& t
     }
     if (result.collisions >= task.most || !(result.lost < task.rounder)) return false;
     if (end == task.stop) return true;
+    if (++steps % 256 == 0 && result.collisions < least_collisions * steps) return false;
     now = end;
     if (shorter == 1) pace.length *= passes > pace.passes ? 0.8 : passes < pace.passes - 1 ? 1.1 : 1.02;
   }

@@ -3,6 +3,7 @@
 // at cuts, fronts and walls itself, and takes back gaps, counts and losses. Where steps cannot, it is as before, but
 // for what the segment's part has logged: the segment takes its copy anew and goes through its event loop.
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -28,6 +29,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
 
   // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
   bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
+    if (report.pace.rest > 0) return --report.pace.rest, false;
     part_ = &part, law_ = &law, report_ = &report;
     const StepTask task = task_of(stop, most);
     if (!(task.rounder > 0)) return false;  // a plain sum
@@ -35,7 +37,11 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     made_ = {};
     ledger_ = part.line_.gaps.ledger();
     StepResult inner;
-    if (!steps.run(line_, task, *this, report.pace, inner)) return false;
+    StepPace& pace = report.pace;
+    const bool done = steps.run(line_, task, *this, pace, inner);
+    pace.rest = done ? 0 : pace.next_rest;
+    pace.next_rest = done ? std::max(pace.next_rest / 2, 1) : std::min(2 * pace.next_rest, 64);
+    if (!done) return false;
     report.counts = made_.counts;
     report.counts.collisions += inner.collisions;
     report.counts.below_cutoff += inner.below_cutoff;

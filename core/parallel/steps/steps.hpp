@@ -53,10 +53,11 @@ struct StepResult {
 };
 
 // How a segment goes: steps of this length (0: unknown), such that about so many passes make one; an undo copy after so
-// many steps.
+// many steps. After slabs in which steps did not do, so many are left to the event loop at once.
 struct StepPace {
   double length = 0, passes = 4;
   int stretch = 32;
+  int rest = 0, next_rest = 1;
 };
 
 struct Steps {

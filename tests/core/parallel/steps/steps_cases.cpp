@@ -8,6 +8,7 @@
 
 #include <bit>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string>
@@ -311,6 +312,7 @@ TEST_F(Steps, RandomScenes) {
   std::uint64_t seed = asked == nullptr ? 1 : std::random_device()();
   for (; std::chrono::steady_clock::now() < end && !HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
+    if (asked != nullptr) std::printf("seed %llu\n", static_cast<unsigned long long>(seed)), std::fflush(stdout);
     Dice dice(seed);
     dice.below(2) == 0 ? fuzz_once<Equal>(dice) : fuzz_once<Unequal>(dice);
   }

@@ -202,7 +202,7 @@ std::uint64_t plain_loop(StepLine& line, double stop) {
 TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
   constexpr std::size_t gaps = 500;
   constexpr double stop = 6;
-  int undone_in_gas = 0, undone_in_core = 0;
+  int undone_in_gas = 0, undone_in_core = 0, done = 0;
   for (const cradle::Steps* steps : targets())
     for (const double dense : {1., 300.})
       for (std::uint64_t seed = 1; seed < 20; ++seed) {
@@ -213,7 +213,11 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
         NoEdges scalars;
         StepResult result;
         StepPace pace{.length = 0.003};
-        ASSERT_TRUE(steps->run(line, elastic_until(stop), scalars, pace, result));
+        if (!steps->run(line, elastic_until(stop), scalars, pace, result)) {
+          ASSERT_GT(dense, 1) << "a gas is for steps";
+          continue;  // too few collisions in a step to pay
+        }
+        ++done;
         EXPECT_EQ(result.collisions, plain_loop(plain, stop));
         for (std::size_t i = 0; i < gaps; ++i) {
           ASSERT_EQ(bits(line.gap[i]), bits(plain.gap[i])) << i;
@@ -223,6 +227,7 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
         }
         (dense > 1 ? undone_in_core : undone_in_gas) += scalars.undone;
       }
+  EXPECT_GT(done, 30 * static_cast<int>(targets().size()));
   EXPECT_LE(undone_in_gas, 4);
   EXPECT_GT(undone_in_core, 0) << "steps that fail are part of what is to be shown";
 }
@@ -245,7 +250,7 @@ TEST_F(Steps, SlowFigure2ThroughItsCollapse) {
   EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions));
 }
 
-// ---- random scenes: seconds here, as many as CRADLE_FUZZ_SECONDS says by hand
+// ---- random scenes: seconds here; by hand as many as CRADLE_FUZZ_SECONDS says, from the scene CRADLE_FUZZ_SEED on
 
 class Dice {
  public:
@@ -309,7 +314,10 @@ TEST_F(Steps, RandomScenes) {
   const char* asked = std::getenv("CRADLE_FUZZ_SECONDS");
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(asked == nullptr ? 4. : std::atof(asked));
-  std::uint64_t seed = asked == nullptr ? 1 : std::random_device()();
+  const char* first = std::getenv("CRADLE_FUZZ_SEED");
+  std::uint64_t seed = first != nullptr   ? std::strtoull(first, nullptr, 10)
+                       : asked == nullptr ? 1
+                                          : std::random_device()();
   for (; std::chrono::steady_clock::now() < end && !HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     if (asked != nullptr) std::printf("seed %llu\n", static_cast<unsigned long long>(seed)), std::fflush(stdout);

@@ -82,6 +82,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     std::copy_n(&other.cells_[from], gaps, &cells_[to]);
     std::copy_n(&other.lag_[from], gaps, &lag_[to]);
   }
+  void take_lags(Slot first, const T* lags, std::size_t gaps) { std::copy_n(lags, gaps, &lag_[first]); }
+  void set_ledger(const Ledger<T>& ledger) { lost_ = ledger; }
   void resize(std::size_t slots) {  // to be given gaps in so many slots
     cells_.resize(slots);
     lag_.resize(slots);
@@ -208,6 +210,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
 
   // ---- what must be inspected: gaps that a collision beside them leaves below the floor
   void set_floor(const T& floor) { floor_ = floor; }
+  const T& floor() const { return floor_; }
   bool below_floor(Slot s) const { return cells_[s].gap < floor_; }
   // Of a gap below the floor that a collision beside it has just closed faster by `gain`: `since` is what kick said,
   // particle the one on its left, `struck` the time since the local time of the gap that had the collision. (Out of

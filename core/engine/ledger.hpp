@@ -51,6 +51,13 @@ template <Real T> class Ledger {
     sum_ += other.sum_;
     add_rest(other.rest_);
   }
+  // The grid, for those who sum up many terms at once: coarse parts, and the rests in units of the fine grid.
+  const T& rounder() const { return rounder_; }
+  const T& per_fine() const { return per_fine_; }
+  void add_sums(const T& coarse, std::int64_t rest) {
+    sum_ += coarse;
+    add_rest(rest);
+  }
   void clear() {
     sum_ = T(0);
     rest_ = 0;

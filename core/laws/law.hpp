@@ -114,6 +114,10 @@ template <Real T> class Inelastic {
   const T& restitution() const { return restitution_; }
   const T& cutoff() const { return cutoff_; }
   bool scale_free() const { return !is_positive(cutoff_); }
+  // The same in the form in which it is computed.
+  const T& half_sum() const { return half_sum_; }
+  const T& lost_share() const { return lost_; }
+  bool soft() const { return soft_; }
 
  private:
   template <class Masses> Outcome<T> outcome(const T& w, const Masses& masses, bool elastic) const {

@@ -15,6 +15,7 @@
 #include "cradle/core/engine/state.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/store/checkpoint.hpp"
 
@@ -63,7 +64,7 @@ template <Real T> class Engine {
 
 // What takes a run through time slabs in segments; nothing for runs that cannot be cut.
 struct NoSegments {
-  explicit NoSegments(const Workers&) {}
+  NoSegments(const Workers&, const Segmentation&) {}
 };
 template <class Run> struct SegmentsFor { using Type = NoSegments; };
 template <Real T, class Law, class Masses>
@@ -78,7 +79,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
  public:
   template <class... Arguments>
   explicit EngineOf(const Workers& workers, Arguments&&... arguments)
-      : run_(std::forward<Arguments>(arguments)...), segments_(workers) {}
+      : run_(std::forward<Arguments>(arguments)...), segments_(workers, {.steps = fastest_steps()}) {}
 
   bool makes_collisions() const override { return has_chain; }
   Status advance(const T& until, const Observer<T>& observer) override {

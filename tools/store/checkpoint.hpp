@@ -1,6 +1,6 @@
 // A file that holds the state of a run at one moment (core/engine/state.hpp): written and read as a stream, however
-// large, with a checksum over all of it at the end. It is there whole or not at all (atomic_file.hpp), and nothing in it
-// is used before its checksum has been found right.
+// large, with a checksum over all of it at the end. It is there whole or not at all (atomic_file.hpp), and nothing in
+// it is used before its checksum has been found right.
 #pragma once
 
 #include <cstdint>

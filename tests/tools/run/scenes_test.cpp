@@ -21,8 +21,9 @@ std::vector<Meant> scenes() {
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
     Meant meant;
-    if (words >> meant.status >> meant.command >> meant.scene && std::getline(words, meant.options))
-      all.push_back(meant);
+    if (!(words >> meant.status >> meant.command >> meant.scene)) continue;  // a comment
+    std::getline(words, meant.options);
+    all.push_back(meant);
   }
   return all;
 }

@@ -83,7 +83,7 @@ halted() {
   for ((until = 6000; ; until *= 2)); do
     rm -f "$1"*
     "$program" run $dry --set run.until=$until $often -o "$1" 2>/dev/null & pid=$!
-    until [ -e "$1.checkpoint" ]; do :; done
+    until [ -e "$1.checkpoint" ] || [ -e "$1" ]; do :; done
     kill -STOP $pid
     [ ! -e "$1" ] && [ -e "$1.part" ] && break
     kill -CONT $pid; wait $pid

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
         build_description(),
         "cradle run fig2 -o fig2.h5, then cradle plot fig2.h5; cradle run --help lists what else `run` takes",
         "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
-        "5 resolution or order lost, 130/143 interrupted.");
+        "5 resolution or order lost, 6 processor too old for this build, 130/143 interrupted.");
     program.begin_with(first_steps);
     for (const auto add :
          {add_run, add_resume, add_check, add_info, add_export, add_diff, add_theory, add_scenes, add_new, add_plot,

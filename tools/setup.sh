@@ -2,9 +2,9 @@
 # What quickstart.sh and test.sh share; both source it. `set_up program|tests` sees to it that everything needed to
 # build the program (and its tests) is there: it finds what is missing and installs that with apt, as root or through
 # sudo. Where that cannot be done it lists what is missing with Debian's names and stops. If nothing is missing nothing
-# is installed and no network, root or apt is needed. MPI is optional: it is installed where that needs no password, and
-# else left out; so is Chromium, in which tests inspect reports. `step` runs a command and, if it fails, stops with what
-# to do. Tried on bare Debian 12 and Debian 13.
+# is installed and no network, root or apt is needed. MPI and Highway are optional: they are installed where that needs
+# no password, and else left out; so is Chromium, in which tests inspect reports. `step` runs a command and, if it
+# fails, stops with what to do. Tried on bare Debian 12 and Debian 13.
 
 preset=release
 build=build/$preset
@@ -30,6 +30,7 @@ program | h5py                  | python h5py                  | python3-h5py
 tests   | GoogleTest            | header gtest/gtest.h         | libgtest-dev
 tests   | rapidcheck            | header rapidcheck.h          | librapidcheck-dev
 tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-dev
+option  | Highway               | header hwy/highway.h         | libhwy-dev
 option  | MPI compiler          | command mpicc                | libopenmpi-dev
 option  | MPI launcher          | command mpirun               | openmpi-bin
 look    | Chromium              | command chromium             | chromium
@@ -146,8 +147,8 @@ install_optional() {
     echo "== installing with apt: ${optional[*]}"
     apt_get update && apt_get install -y --no-install-recommends "${optional[@]}" && return
   fi
-  echo "== not found, left out: ${optional[*]} (Debian's names; without MPI ensembles
-run in one process, without Chromium tests do not inspect reports)"
+  echo "== not found, left out: ${optional[*]} (Debian's names; without Highway runs
+take longer, without MPI ensembles run in one process, without Chromium tests do not inspect reports)"
 }
 
 # set_up program|tests

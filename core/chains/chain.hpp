@@ -50,8 +50,8 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.due(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.queue_due(s) } -> std::same_as<double>;
 
-  // Collisions that leave a gap below the floor beside them say so. The smaller gap beside the last collision; by how
-  // much two collision times at a place must differ to be distinguished; what could not be resolved.
+  // Collisions that leave a gap below the floor beside them are noticed. The smaller gap beside the last collision; by
+  // how much two collision times at a place must differ to be distinguished; what could not be resolved.
   changing.set_floor(time);
   { chain.nearest_gap(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;

@@ -260,7 +260,7 @@ template <Real T> class ClusterChain {
       line_.place_end(first() - 1, first());
     }
     if (range_.beyond_right(n) == HeldRange::Beyond::row) {
-      // The gap right of n was not one before: it is as at the start.
+      // The gap right of n is new: it is as at the start.
       line_.gaps.start(n, particles_->gap(particle(n)), time);
       const ParticleIndex b = range_.take_in_right(particles_->count());
       line_.gaps.put(last(), load(b, time, false));

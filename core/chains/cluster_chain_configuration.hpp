@@ -32,8 +32,8 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
   const Slot to = collided && range_.front_right() < last() ? right(range_.front_right()) : last();
   Configuration<T> c;
   c.time = clock().time(time);
-  // A particle that has not collided is still itself; where all at an end have, they are those from the end of the
-  // line.
+  // A particle that has not collided still has its initial number. Where all particles at an end have collided, they
+  // are numbered from the end of the line.
   const bool free_left = !on_ring() && (!collided || from != range_.front_left());
   const bool free_right = !on_ring() && (!collided || to != range_.front_right());
   c.from = free_left ? particle(from) : 0;

@@ -20,7 +20,7 @@ namespace cradle {
 template <Real T> struct Cell : TimedGap<T> {
   T velocity{0}, mass{1};
   Slot left = 0, right = 0;
-  ParticleIndex particle = 0;  // by whose number at the start a cluster goes: its heaviest one's
+  ParticleIndex particle = 0;  // initial number of the heaviest particle, which names the cluster
 
   static auto state(auto& self) {
     return std::tuple_cat(TimedGap<T>::state(self),
@@ -52,7 +52,8 @@ template <Real T> class ClusterLine {
     gaps[s].right = next;
     gaps[next].left = s;
   }
-  // Beyond the particles held something runs away, faster than any particle can. (Inlined, g++ 12 warns of a slot -1.)
+  // A cell beyond the particles held, which runs away faster than any particle can. (Inlined, g++ 12 warns of a slot
+  // -1.)
   [[gnu::noinline]] void place_end(Slot s, Slot beside) {
     const bool on_left = s < beside;
     gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), on_left ? s : beside, on_left ? beside : s, 0});

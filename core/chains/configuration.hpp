@@ -1,6 +1,6 @@
 #pragma once
-// A chain as it stands at one time, for whoever reads it: positions and velocities put together from the chain's own
-// coordinates, and the gaps and closing speeds themselves, since positions cannot resolve a collapsing core.
+// The state of a chain at one time: positions and velocities computed from the chain's own coordinates, and the gaps
+// and closing speeds themselves, since positions cannot resolve a collapsing core.
 // Lengths, speeds and masses in units of the scene.
 
 #include <algorithm>
@@ -50,7 +50,7 @@ template <Real T> void leave_out_walls(Configuration<T>& c, ParticleIndex count)
 }
 
 // Folds positions on a ring, increasing and spanning less than its circumference, to 0 <= x < circumference, the
-// smallest first. Places so many turns away that they have no digits within one stay where they are.
+// smallest first. Places that are too many turns away to have digits within one turn stay as they are.
 template <Real T> void fold(Configuration<T>& c, const T& circumference) {
   if (c.x.empty()) return;
   const double whole = std::floor(to_double(T(c.x.front() / circumference)));

@@ -4,8 +4,8 @@
 //
 //   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
 //
-// Nothing is ever a difference of positions, so gaps keep their relative precision down to underflow, however small
-// they are against the size of the system (timed_gaps.hpp: how they are advanced, and what becomes of rounding).
+// No gap is a difference of positions, so gaps keep their relative precision down to underflow, however small they are
+// against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
 //
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
@@ -27,6 +27,7 @@
 #include "cradle/core/engine/account.hpp"
 #include "cradle/core/engine/relative_motion.hpp"
 #include "cradle/core/engine/state.hpp"
+#include "cradle/core/laws/one_of.hpp"
 
 namespace cradle {
 
@@ -186,26 +187,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Slot front_slot_left() const { return range_.front_left(); }
   Slot front_slot_right() const { return range_.front_right(); }
   // Goes over to the gaps after a held range, at the same slots and at those that the fronts have reached.
-  void continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left, const FrontMove<T>& to_right) {
-    line_.gaps.swap_gaps(after);
-    if (on_ring()) return;
-    range_.reach(to_left.reached, to_right.reached);
-    while (first() >= range_.front_left() && range_.beyond_left(first()) == HeldRange::Beyond::row) {
-      range_.take_in_left();
-      line_.load_mass(first(), *particles_);
-    }
-    while (last() <= range_.front_right() && range_.beyond_right(last()) == HeldRange::Beyond::row) {
-      range_.take_in_right(particles_->count());
-      line_.load_mass(last() + 1, *particles_);
-    }
-    walls_.continue_with(to_left.wall, to_right.wall);
-    const ParticleIndex left = particle(range_.front_left()), right = particle(range_.front_right()) + 1;
-    const GapRange all = particles_->gaps();
-    if (left > all.first || walls_.has(End::left)) left_.take(std::max(left - 1, all.first));
-    if (right < all.last + 1 || walls_.has(End::right)) right_.take(std::min(right + 1, all.last + 1));
-    for (const auto& collision : to_left.at_end) follow_end(End::left, left, collision.time, T(-collision.handed));
-    for (const auto& collision : to_right.at_end) follow_end(End::right, right, collision.time, collision.handed);
-  }
+  // (gap_chain_ends.hpp)
+  void continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left, const FrontMove<T>& to_right);
 
   // The particles that have collided and the next one on each side; all that are held before the first collision. On a
   // ring all particles, from the first one right of x = 0. (gap_chain_configuration.hpp)
@@ -255,6 +238,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     for (Slot s = first(); s <= last() + 1; ++s) line_.load_mass(s, *particles_);
   }
 
+  template <LawChoice Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
+    return law.visit([&](const auto& own) { return outcome(own, s, time); });
+  }
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
     if constexpr (Line::watched && requires { law.cutoff(); })
       line_.certainty.threshold(line_.gaps, s, particle(s), time, law.cutoff());
@@ -265,6 +251,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     if constexpr (Line::watched && !requires { law.cutoff(); })
       line_.certainty.slope(law, closing(s), line_.masses.of_pair(s), outcome);
     return outcome;
+  }
+  template <LawChoice Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
+    return law.visit([&](const auto& own) { return outcome_at_wall(own, s, time); });
   }
   template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
     if constexpr (LawWithMemory<Law, T>) memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());
@@ -279,38 +268,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 
   // A collision at an end of the active zone: takes in the next particle there, or, at an end of the line, follows the
   // last one.
-  Notice widen(Slot s, const T& time, const Outcome<T>& outcome) {
-    range_.reach(s, s);
-    if (s == range_.front_left()) {
-      const HeldRange::Beyond beyond = range_.beyond_left(s);
-      if (beyond == HeldRange::Beyond::row) {
-        range_.take_in_left();
-        line_.load(s - 1, *particles_, time);
-        line_.load_mass(s - 1, *particles_);
-      }
-      if (beyond != HeldRange::Beyond::nothing) {
-        left_.take(particle(s) - 1);
-      } else {
-        follow_end(End::left, particle(s), time, -line_.handed(s, outcome).left);
-        line_.seal(s - 1, time, outcome.to_left);
-      }
-    }
-    if (s == range_.front_right()) {
-      const HeldRange::Beyond beyond = range_.beyond_right(s);
-      if (beyond == HeldRange::Beyond::row) {
-        range_.take_in_right(particles_->count());
-        line_.load(s + 1, *particles_, time);
-        line_.load_mass(s + 2, *particles_);
-      }
-      if (beyond != HeldRange::Beyond::nothing) {
-        right_.take(particle(s) + 2);
-      } else {
-        follow_end(End::right, particle(s) + 1, time, line_.handed(s, outcome).right);
-        line_.seal(s + 1, time, outcome.to_right);
-      }
-    }
-    return range_.cramped(slots()) ? Notice::needs_slots : Notice::none;
-  }
+  Notice widen(Slot s, const T& time, const Outcome<T>& outcome);
 
   std::shared_ptr<const Particles<T>> particles_;
   Line line_;
@@ -324,3 +282,4 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 }  // namespace cradle
 
 #include "cradle/core/chains/gap_chain_configuration.hpp"
+#include "cradle/core/chains/gap_chain_ends.hpp"

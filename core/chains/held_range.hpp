@@ -1,7 +1,7 @@
 #pragma once
 // How much of a line a chain holds, and how far collisions have come in it. Rows are streamed: particles of a row never
-// meet each other, so of each row only the particle next to the front is held, and the one after it is taken in by the
-// collision that hits it. From left to right:
+// meet each other, so a chain holds only the particle of each row that is next to the front; the collision that hits it
+// takes in the next one. From left to right:
 //
 //   unheld particles | first ... left front ~~~ collisions ~~~ right front ... last | unheld particles
 //
@@ -79,7 +79,7 @@ class HeldRange {
   // ---- of a front
   Beyond beyond_left(Slot s) const { return s != first_ ? Beyond::held : row_or_nothing(unheld_left_); }
   Beyond beyond_right(Slot s) const { return s != last_ ? Beyond::held : row_or_nothing(unheld_right_); }
-  // Held are other slots now, fewer of them.
+  // Other slots are held now, and fewer.
   void hold(Slot first, Slot last) { first_ = first, last_ = last; }
   // Takes in the next particle of a row, in the slot next to the last one held; returns its number, `count` particles
   // in all.

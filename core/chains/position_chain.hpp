@@ -1,9 +1,9 @@
 #pragma once
 // The chain in absolute positions and velocities, as conventional event-driven programs keep it: every particle has a
 // position, a velocity and the time of its last collision, and the next collision of neighbours is predicted from
-// differences of positions in absolute time. Plain on purpose: no streaming, no tuning. It is the reference twin of the
-// chain in gaps and one of the two sides of every comparison of precision; in a collapsing core its differences lose
-// their digits, which it keeps account of.
+// differences of positions in absolute time. It is plain on purpose: no streaming, no tuning. It is the reference twin
+// of the chain in gaps and one of the two sides of every comparison of precision; in a collapsing core its differences
+// lose their digits, which it counts.
 
 #include <memory>
 #include <optional>
@@ -17,6 +17,7 @@
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/relative_motion.hpp"
 #include "cradle/core/engine/state.hpp"
+#include "cradle/core/laws/one_of.hpp"
 
 namespace cradle {
 
@@ -182,6 +183,10 @@ template <Real T> class PositionChain {
 
   Outcome<T> strike_wall(Slot s) {
     return walls_.strike(particle(s), closing_[s], at(walls_.left_of(particle(s)) ? s + 1 : s).m);
+  }
+  template <LawChoice Law, class Masses>
+  Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
+    return law.visit([&](const auto& own) { return outcome_of(own, s, time, masses); });
   }
   template <class Law, class Masses>
   Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {

@@ -3,15 +3,15 @@
 // moving origin. What both chains in gaps do with a gap g that closes at the speed w is done here, whatever they keep
 // beside it (gap_chain.hpp: closing speeds; cluster_chain.hpp: velocities, from which w follows):
 //
-//   next collision    local time + g/w, if w > 0
+//   next collision  local time + g/w, if w > 0
 //   brought to t    g -= w (t - local time), local time = t
-//   in collision      g = 0 exactly
+//   in collision    g = 0 exactly
 //
-// Collisions may come late: of two that the queue cannot distinguish, or that commute, one beside a gap may be made
-// that is earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong.
-// The gap becomes what it would be had the collision come in time: the gain in closing speed has acted since then, g +=
-// gain (t - local time) with t before the local time; and a collision at the gap itself leaves it open by what it opens
-// in between. Where the order was truly lost the gap falls below zero, and is accounted for.
+// Collisions may come late: if the queue cannot distinguish two collisions, or if they commute, the one beside a gap
+// may be earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong.
+// The gap becomes what it would be if the collision had come in time: the gain in closing speed has acted since then,
+// g += gain (t - local time) with t before the local time; and a collision at the gap itself leaves it open by what it
+// opens in between. Where the order was truly lost, the gap falls below zero and is counted.
 //
 // When the origin moves, a local time is rounded. What it loses is kept (`lag`; the true local time is the sum of both)
 // so that a move touches no gap. A lag is other than zero only where the local time is negative, and is looked up only
@@ -49,16 +49,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   Cell& operator[](Slot s) { return cells_[s]; }
   const Cell& operator[](Slot s) const { return cells_[s]; }
   // Changes to so many slots. Those from `first` on hold what was at `kept`, in that order.
-  void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept) {
-    std::vector<Cell> cells(slots);
-    std::vector<T> lag(slots, T(0));
-    for (const Slot s : kept) {
-      cells[first] = std::move(cells_[s]);
-      lag[first++] = std::move(lag_[s]);
-    }
-    cells_ = std::move(cells);
-    lag_ = std::move(lag);
-  }
+  void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept);
   void put(Slot s, Cell&& cell) {
     cells_[s] = std::move(cell);
     lag_[s] = T(0);
@@ -91,6 +82,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     std::copy_n(&other.cells_[from], gaps, &cells_[to]);
     std::copy_n(&other.lag_[from], gaps, &lag_[to]);
   }
+  void take_lags(Slot first, const T* lags, std::size_t gaps) { std::copy_n(lags, gaps, &lag_[first]); }
+  void set_ledger(const Ledger<T>& ledger) { lost_ = ledger; }
   void resize(std::size_t slots) {  // to be given gaps in so many slots
     cells_.resize(slots);
     lag_.resize(slots);
@@ -121,7 +114,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     }
   }
   const T& lag(Slot s) const { return lag_[s]; }
-  // Since the gap's local time.
+  // The time since the gap's local time.
   [[gnu::always_inline]] T flown(Slot s, const T& now) const {
     const T& then = cells_[s].time;
     T way = now - then;
@@ -212,22 +205,12 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
   // The origin of time moves by so much. `each_held` calls what it is given with every gap held and its closing speed.
-  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held) {
-    clock_.move_origin(by);
-    if (magnitude(by) > blur_) blur_ = rounding_of(magnitude(by));
-    each_held([&](Slot s, const T& closing) {
-      const Pair<T> moved = two_sum(cells_[s].time, T(-by));
-      const T lag = lag_[s] + moved.low;
-      const bool past = is_negative(moved.high);  // not so where a late collision has left it ahead of the origin
-      cells_[s].time = past ? moved.high : T(moved.high + lag);
-      lag_[s] = past ? lag : T(0);
-      foresee(s, closing);
-    });
-    if constexpr (beyond_double) choose_shift(each_held);
-  }
+  // (timed_gaps_origin.hpp)
+  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held);
 
   // ---- what must be inspected: gaps that a collision beside them leaves below the floor
   void set_floor(const T& floor) { floor_ = floor; }
+  const T& floor() const { return floor_; }
   bool below_floor(Slot s) const { return cells_[s].gap < floor_; }
   // Of a gap below the floor that a collision beside it has just closed faster by `gain`: `since` is what kick said,
   // particle the one on its left, `struck` the time since the local time of the gap that had the collision. (Out of
@@ -267,10 +250,10 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
  private:
-  // By how much rounding may have put a gap below zero, see `note`. Times are rounded in units of the offset, those due
-  // by when the origin moved last in units of the one then (`blur_`), ways flown in units of the way; either acts on
-  // the gap at its speed before or after the collision. A gap below zero stays so, and has its collision late, which
-  // its neighbours get at the rate of what it hands them: the order was lost, if it was, where that began.
+  // By how much rounding may have put a gap below zero, see `note`. Times are rounded in units of the offset; times due
+  // before the last move of the origin in units of the offset at that move (`blur_`); ways flown in units of the way.
+  // Each acts on the gap at its speed before or after the collision. A gap below zero stays so and has its collision
+  // late, which shifts its neighbours in proportion to what it hands them: only the first such gap shows a lost order.
   T below_zero(Slot s, const T& closing, const T& gain, const T& since, const T& struck, const T& time) const {
     const T& gap = cells_[s].gap;
     const T before = is_negative(since) ? T(gap - gain * since) : T(gap + (closing - gain) * since);
@@ -302,25 +285,18 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
   // Queue times are local times in units of 2^-shift, such that the next collision is within the range of double.
-  template <class EachHeld> void choose_shift(const EachHeld& each_held) {
-    long least = std::numeric_limits<long>::max();
-    each_held([&](Slot s, const T& closing) {
-      if (!is_positive(closing)) return;
-      const T next = collision_time(s, closing);
-      long exponent = 0;
-      if (split(next, exponent) > 0) least = std::min(least, exponent);
-    });
-    shift_ = least < -500 || (least > 500 && least < std::numeric_limits<long>::max()) ? -least : 0;
-  }
+  template <class EachHeld> void choose_shift(const EachHeld& each_held);
 
   std::vector<Cell> cells_;
   std::vector<T> lag_;
   Clock<T> clock_;
   T floor_{0};
-  T blur_{0};  // what times were rounded by when the origin moved last: so late, or later, may come what was due then
+  T blur_{0};       // rounding of times when the origin moved last: collisions due then may be late by it
   long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
   Account<T> account_;
   Ledger<T> lost_;
 };
 
 }  // namespace cradle
+
+#include "cradle/core/chains/timed_gaps_origin.hpp"

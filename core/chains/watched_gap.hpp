@@ -4,26 +4,26 @@
 //
 // Exact sums, where masses are far apart. A collision with a particle of 1/M of its mass changes a heavy particle's
 // velocity by 2/M of the light one's. Both velocities are in one closing speed, of the size of the light one's:
-// rounding it loses the kick, the heavy particle's velocity is nowhere, and what is lost adds up. So the rest that
-// rounding leaves of a closing speed is kept, w = closing + rest, with twice the digits. What a collision takes from
-// its own closing speed it gives to the neighbours exactly (gap_line.hpp). Hence the velocity of every particle is what
-// it was plus all its kicks, each rounded to the digits that it has itself, whatever the masses of the others:
+// rounding it loses the kick, no other number holds the heavy particle's velocity, and the losses add up. So the rest
+// that rounding leaves of a closing speed is kept, w = closing + rest, with twice the digits. A collision gives to the
+// neighbours exactly what it takes from its own closing speed (gap_line.hpp). Hence the velocity of every particle is
+// its initial velocity plus all its kicks, each rounded to its own digits, whatever the masses of the others:
 //
 //   |dv_i| <= 2 epsilon (sum of the magnitudes of its own kicks).
 //
-// Deviations. Errors grow, by as many digits as gaps shrink where particles all but collapse and come apart again, and
-// one day they decide which collision is next. Two
-// samples of how far a gap and its closing speed may be from those of the exact system are carried along, in units of
-// epsilon. Random errors of the size of rounding enter at every collision; the motion carries them on as it carries any
-// small difference. With D the deviation of a gap at a given time and d that of its closing speed,
+// Deviations. Where particles nearly collapse and come apart again, errors grow by as many digits as gaps shrink, until
+// they decide which collision is next. So two samples of how far a gap and its closing speed may be from those of the
+// exact system are computed with the run, in units of epsilon. Every collision adds random errors of the size of
+// rounding, which then obey the linearised motion. With D the deviation of a gap at a given time and d that of its
+// closing speed,
 //
 //   flight of t         D -= d t
 //   collision at gap s    D_s -> (w'/w) D_s,  D_p += (J/m_l w) D_s,  D_n += (J/m_r w) D_s,
 //
-// and d in the same way, with dw'/dw for w'/w where the restitution depends on the speed. That all happens later by
-// tau, D = tau w for all gaps, changes no sequence; late in a collapse it would hide all else. So whenever the origin
-// of time moves, deviations are counted from the time of the last collision, which is then right by definition; the
-// sum of these delays is kept.
+// and d in the same way, with dw'/dw for w'/w where the restitution depends on the speed. A common delay tau of all
+// events, D = tau w for all gaps, changes no sequence, but late in a collapse it would hide everything else. So
+// whenever the origin of time moves, deviations are counted from the time of the last collision, which is then exact by
+// definition; the sum of these delays is kept.
 //
 // A collision is certain if `certain_by` times the larger sample changes neither that it happens (its closing speed
 // stays positive) nor its place in the sequence: the gaps g beside it stay positive at its time, which is itself off by
@@ -42,6 +42,7 @@
 
 #include "cradle/core/chains/timed_gap.hpp"
 #include "cradle/core/initial/particles.hpp"
+#include "cradle/core/laws/wall.hpp"
 #include "cradle/core/real.hpp"
 
 namespace cradle {
@@ -52,51 +53,62 @@ template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap 
   static auto state(auto& self) { return std::tuple_cat(TimedGap<T>::state(self), std::tie(self.closing)); }
 };
 
-// Of a gap as of its local time, and of its closing speed; samples side by side.
-struct Deviation {
-  static constexpr std::size_t samples = 2;
-  static constexpr double certain_by = 64;
-  std::array<double, samples> gap{}, closing{};
+// The numbers of deviations need few digits, but the range of the scalar type: gaps of 1e-1000 deviate by less.
+template <Real T> using DeviationNumber = std::conditional_t<WiderRange<T>, T, double>;
+template <Real T> auto deviation_number(const T& x) {
+  if constexpr (WiderRange<T>)
+    return x;
+  else
+    return to_double(x);
+}
 
-  Deviation after(double time) const {
+// Of a gap as of its local time, and of its closing speed; samples side by side.
+template <Real N> struct Deviation {
+  static constexpr std::size_t samples = 2;
+  static constexpr int certain_by = 64;
+  using Samples = std::array<N, samples>;
+  Samples gap{N(0), N(0)}, closing{N(0), N(0)};
+
+  Deviation after(const N& time) const {
     Deviation then = *this;
     for (std::size_t k = 0; k < samples; ++k) then.gap[k] -= closing[k] * time;
     return then;
   }
-  void add(const Deviation& other, double share, double share_of_speed) {
+  void add(const Deviation& other, const N& share, const N& share_of_speed) {
     for (std::size_t k = 0; k < samples; ++k) {
       gap[k] += share * other.gap[k];
       closing[k] += share_of_speed * other.closing[k];
     }
   }
   // As counted from a later time: every gap by what it closes in the meantime.
-  void shift(const std::array<double, samples>& later, double closing_speed) {
+  void shift(const Samples& later, const N& closing_speed) {
     for (std::size_t k = 0; k < samples; ++k) gap[k] -= closing_speed * later[k];
   }
-  static double largest(const std::array<double, samples>& of) { return std::max(magnitude(of[0]), magnitude(of[1])); }
+  static N largest(const Samples& of) { return std::max<N>(magnitude(of[0]), magnitude(of[1])); }
   static auto state(auto& self) { return std::tie(self.gap[0], self.gap[1], self.closing[0], self.closing[1]); }
 };
 
 template <Real T> struct WatchedGap : Gap<T> {
   T rest{0};
-  Deviation off;
+  Deviation<DeviationNumber<T>> off;
   bool fits(const T& speed) const { return Gap<T>::fits(speed) && is_finite(rest); }
   static auto state(auto& self) { return std::tuple_cat(Gap<T>::state(self), std::tie(self.rest, self.off)); }
 };
 
 // Numbers from -1 to 1, as if random: in sequence, the same for the same collisions; and of a number, the same for the
 // same one, since it is rounded in the same way wherever it stands.
-class Roundings {
+template <Real N> class Roundings {
  public:
-  double next() {
+  N next() {
     if (left_ == 0) bits_ = mixed(counter_ += step), left_ = 8;
     --left_;
-    const double value = (static_cast<double>(bits_ & 0xFF) - 127.5) / 128;
+    const N value = N(static_cast<int>(2 * (bits_ & 0xFF)) - 255) / N(256);
     bits_ >>= 8;
     return value;
   }
-  static double of(double number, std::size_t sample) {
-    return static_cast<double>(mixed(std::bit_cast<std::uint64_t>(number) + sample * step) >> 11) * 0x1p-52 - 1;
+  static N of(double number, std::size_t sample) {
+    const std::uint64_t bits = mixed(std::bit_cast<std::uint64_t>(number) + sample * step) >> 11;
+    return N(static_cast<std::int64_t>(bits)) / N(std::int64_t{1} << 52) - N(1);
   }
   static auto state(auto& self) { return std::tie(self.counter_, self.bits_, self.left_); }
 
@@ -111,13 +123,14 @@ class Roundings {
 };
 
 // Of the gap right of a particle at the start: its decimals have been rounded.
-template <Real T> Deviation at_start(const Particles<T>& particles, ParticleIndex particle, ParticleIndex next) {
-  const auto half_unit = [](const T& x, std::size_t sample) {
-    const double number = to_double(x);
-    return Roundings::of(number, sample) * magnitude(number) / 2;
+template <Real T>
+Deviation<DeviationNumber<T>> at_start(const Particles<T>& particles, ParticleIndex particle, ParticleIndex next) {
+  using N = DeviationNumber<T>;
+  const auto half_unit = [](const T& x, std::size_t sample) -> N {
+    return Roundings<N>::of(to_double(x), sample) * magnitude(deviation_number(x)) / N(2);
   };
-  Deviation off;
-  for (std::size_t k = 0; k < Deviation::samples; ++k) {
+  Deviation<N> off;
+  for (std::size_t k = 0; k < off.samples; ++k) {
     off.gap[k] = half_unit(particles.gap(particle), k) + half_unit(particles.rounded_place(next), k) -
                  half_unit(particles.rounded_place(particle), k);
     off.closing[k] = half_unit(particles.velocity(particle), k) - half_unit(particles.velocity(next), k);

@@ -1,5 +1,5 @@
 #pragma once
-// What could not be resolved, and how often; nothing is clamped or skipped.
+// Counts of what a run could not resolve; nothing is clamped or skipped.
 
 #include <cstdint>
 #include <tuple>

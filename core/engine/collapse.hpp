@@ -8,7 +8,7 @@
 // It is settled where two gaps side by side are proved to collapse: by the closed form of their collisions
 // (two_gaps.hpp), with bounds on what rounding has done to it, and with all other particles too far away to come in
 // time. From then on the run follows them until the time left is less than the chain's resolution, or a gap is about to
-// underflow, for so many collisions at most. What shrinks without such a proof is no collapse that a run reports.
+// underflow, or `most_followed` collisions are made. Without such a proof a run reports no collapse.
 
 #include <algorithm>
 #include <array>
@@ -201,7 +201,7 @@ template <Real T> struct CollapseWatch {
       return steps * chain.time_resolution(s, local) / T(2);
   }
 
-  // Whether nobody else can get there before the collapse. A gap that is not held yet is nowhere.
+  // Whether no other particle can get there before the collapse. A gap that is not held yet does not count.
   template <class Chain>
   bool alone(const Chain& chain, Slot left, Slot right, const Bounded<T>& ahead, const T& local) const {
     const T reach = T(2) * greatest_approach * (ahead.value + ahead.error);

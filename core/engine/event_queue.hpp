@@ -33,8 +33,8 @@ class EventQueue {
   Key next() const { return tree_[1]; }
   Slot slot(Key key) const { return key & mask_; }
 
-  // A negative time (an event left behind when the origin moved) has its sign bit set and would sort last: it comes
-  // first.
+  // A negative time (of an event before the origin, after a move) has its sign bit set and would sort last; this key
+  // sorts it first.
   Key key(double due, Slot slot) const {
     return (static_cast<Key>(std::max<std::int64_t>(std::bit_cast<std::int64_t>(due), 0)) & ~mask_) | slot;
   }
@@ -60,7 +60,7 @@ class EventQueue {
   Key key_of(Slot s) const { return tree_[leaves_ + s]; }
 
   // Sets the times of three neighbouring gaps. Their paths to the root are two neighbouring paths that soon meet.
-  // Branches are on the shape of the tree only: which of two times is the smaller cannot be predicted.
+  // Branches depend on the shape of the tree only: a processor cannot predict which of two times is smaller.
   [[gnu::always_inline]] void replace(Slot s, double left_due, double due, double right_due) {
     Key* const tree = tree_.data();
     const std::size_t leaf = leaves_ + s;

@@ -1,9 +1,9 @@
 #pragma once
-// The ledger of energy: the sum of what collisions have lost. In the native types it is the same whatever the order of
-// its terms, for collisions that commute are not always made in one order (segments.hpp). Each term is rounded to a
-// grid on which sums of up to four times the energy E that there is are exact; what it lacks there is rounded to an
-// even finer one, of E eps / 2^22 or less, and summed up as an integer, for which 1e12 terms are few enough. A term is
-// off by half of that at most.
+// The ledger of energy: the sum of what collisions have lost. In the native types the sum does not depend on the order
+// of its terms, since collisions that commute are made in different orders (segments.hpp). Each term is rounded to a
+// grid on which sums of up to four times the energy E are exact; the rest of the term is rounded to a finer grid, of
+// E eps / 2^22 or less, and summed as an integer, which does not overflow in 1e12 terms. The error of a term is half of
+// the finer grid at most.
 //
 // Wider types have digits to spare for a plain sum, and no cheap way to this one: chains keep one sum for each gap
 // (timed_gaps.hpp).
@@ -51,6 +51,13 @@ template <Real T> class Ledger {
     sum_ += other.sum_;
     add_rest(other.rest_);
   }
+  // The grid, for those who sum up many terms at once: coarse parts, and the rests in units of the fine grid.
+  const T& rounder() const { return rounder_; }
+  const T& per_fine() const { return per_fine_; }
+  void add_sums(const T& coarse, std::int64_t rest) {
+    sum_ += coarse;
+    add_rest(rest);
+  }
   void clear() {
     sum_ = T(0);
     rest_ = 0;
@@ -65,7 +72,7 @@ template <Real T> class Ledger {
   static auto state(auto& self) { return std::tie(self.sum_, self.rest_); }
 
  private:
-  // Wraps around where particles lose far more than there is: so they may by a state from a damaged file.
+  // Wraps around where particles lose far more than there is, which a state from a damaged file may cause.
   [[gnu::always_inline]] void add_rest(std::int64_t more) {
     rest_ = static_cast<std::int64_t>(static_cast<std::uint64_t>(rest_) + static_cast<std::uint64_t>(more));
   }

@@ -1,12 +1,12 @@
 #pragma once
 // How often the event loop reviews what is not a collision, and when the origin of time moves. Both follow from the
-// history of collisions alone, never from who calls or how often.
+// history of collisions alone, not from the calls of `advance`.
 //
 // A small zone is reviewed by numbers of collisions. A move of the origin costs as much as a few collisions per gap: it
 // comes with every second collision in a few-particle collapse and after some 32 collisions per particle otherwise.
 //
-// A large zone goes through time in epochs: when the origin moves next is a time, known since it moved last, so that
-// collisions far apart need no common order for it (segments.hpp). An epoch lasts as long as some 8 collisions per
+// In a large zone time is divided into epochs: the time of the next move of the origin is known since the last move, so
+// that collisions far apart need no common order for it (segments.hpp). An epoch lasts as long as some 8 collisions per
 // active particle should take, or 32 where particles merge, by the rate of the epoch before. It ends early, with the
 // collision after which the chain requests that: where the flight before it was too short for the time since the
 // origin, or where there are four times as many collisions per particle as it should have.

@@ -24,6 +24,7 @@
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/engine/ties.hpp"
 #include "cradle/core/laws/law.hpp"
+#include "cradle/core/laws/one_of.hpp"
 
 namespace cradle {
 
@@ -53,12 +54,13 @@ class Simulation {
     head_for(until);
     return make_collisions();
   }
-  // The same in segments (segments.hpp), unless it is to stop at a collision.
+  // The same in segments (segments.hpp), unless it is to stop at a collision or the law has memory.
   template <class Segments>
   requires requires { typename Segments::Slab; }
   Status advance(const T& until, Segments& segments) {
     head_for(until);
-    return policy_.collapse == CollapsePolicy::stop ? make_collisions() : make_slabs(segments);
+    const bool plain = policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_);
+    return plain ? make_collisions() : make_slabs(segments);
   }
   // The same, with observer(const Collision<T>&) called for every collision. It may throw: the collision is then still
   // to be made.

@@ -8,8 +8,9 @@
 // says `void loaded()`, which throws std::invalid_argument where its fields contradict each other.
 //
 // Numbers are kept exactly, little-endian: integers in 8 bytes, floating point as it is, other scalar types by a list
-// of their own or a specialisation of SavedNumber. `To` says put(const void*, size_t), `From` get(void*, size_t), which
-// throws at its end, and left(), the bytes to come.
+// of their own or a specialisation of SavedNumber. Lists, maps and text come behind their length, an alternative of a
+// variant behind its number. `To` says put(const void*, size_t), `From` get(void*, size_t), which throws at its end,
+// and left(), the bytes to come.
 
 #include <bit>
 #include <concepts>
@@ -25,13 +26,14 @@
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace cradle {
 
 static_assert(std::endian::native == std::endian::little);
 
-// How a scalar type that is not one of the language's is kept: `save(To&, const X&)` and `load(From&, X&)`.
+// How a scalar type that is not built in is kept: `save(To&, const X&)` and `load(From&, X&)`.
 template <class X> struct SavedNumber;
 
 template <class X>
@@ -52,6 +54,13 @@ template <class X> inline constexpr bool is_optional<std::optional<X>> = true;
 template <class X> inline constexpr bool is_pair = false;
 template <class A, class B> inline constexpr bool is_pair<std::pair<A, B>> = true;
 
+template <class X> inline constexpr bool is_variant = false;
+template <class... X> inline constexpr bool is_variant<std::variant<X...>> = true;
+// Kept as it is in memory, at once.
+template <class X>
+inline constexpr bool is_plain =
+    std::same_as<X, std::string> || std::same_as<X, std::vector<double>> || std::same_as<X, std::vector<std::uint64_t>>;
+
 template <class X> inline constexpr bool is_whole = std::is_integral_v<X> || std::is_enum_v<X>;
 
 // Of a floating-point number without its padding.
@@ -60,7 +69,7 @@ inline constexpr std::size_t bytes_of = std::numeric_limits<X>::digits == 64 ? 1
 
 template <class X> using Plain = std::remove_cvref_t<X>;
 
-// The least that one takes as bytes: how many there can be in a file.
+// The least number of bytes of a value, which bounds how many there can be in a file.
 template <class X> constexpr std::size_t least_bytes() {
   if constexpr (is_whole<X>) {
     return 8;
@@ -68,7 +77,7 @@ template <class X> constexpr std::size_t least_bytes() {
     return bytes_of<X>;
   } else if constexpr (is_pair<X>) {
     return least_bytes<typename X::first_type>() + least_bytes<typename X::second_type>();
-  } else if constexpr (is_sequence<X> || is_map<X> || is_optional<X>) {
+  } else if constexpr (is_plain<X> || is_sequence<X> || is_map<X> || is_optional<X> || is_variant<X>) {
     return 8;
   } else if constexpr (ListsState<X>) {
     return []<class... F>(std::type_identity<std::tuple<F...>>) {
@@ -79,6 +88,17 @@ template <class X> constexpr std::size_t least_bytes() {
   }
 }
 
+[[noreturn, gnu::cold, gnu::noinline]] inline void refuse_number(const char* what, std::uint64_t number) {
+  throw std::invalid_argument(std::string(what) + " (" + std::to_string(number) + "): take the file from a copy");
+}
+// How many entries follow, of at least so many bytes each.
+template <class From> std::size_t length(From& from, std::size_t least) {
+  std::uint64_t number = 0;
+  from.get(&number, sizeof number);
+  if (number > from.left() / least) refuse_number("a list longer than what holds it, in entries", number);
+  return number;
+}
+
 }  // namespace detail
 
 template <class To, class X> void save(To& to, const X& x) {
@@ -87,6 +107,9 @@ template <class To, class X> void save(To& to, const X& x) {
     to.put(&number, sizeof number);
   } else if constexpr (std::floating_point<X>) {
     to.put(&x, detail::bytes_of<X>);
+  } else if constexpr (detail::is_plain<X>) {
+    save(to, x.size());
+    to.put(x.data(), x.size() * sizeof x[0]);
   } else if constexpr (detail::is_sequence<X>) {
     save(to, x.size());
     for (const auto& each : x) save(to, each);
@@ -99,6 +122,9 @@ template <class To, class X> void save(To& to, const X& x) {
     if (x) save(to, *x);
   } else if constexpr (detail::is_pair<X>) {
     save(to, x.first), save(to, x.second);
+  } else if constexpr (detail::is_variant<X>) {
+    save(to, x.index());
+    std::visit([&](const auto& value) { save(to, value); }, x);
   } else if constexpr (ListsState<X>) {
     std::apply([&](const auto&... field) { (save(to, field), ...); }, X::state(x));
   } else {
@@ -108,28 +134,22 @@ template <class To, class X> void save(To& to, const X& x) {
 
 // Throws std::invalid_argument where the bytes cannot be of such a value, and whatever `from` throws at its end.
 template <class From, class X> void load(From& from, X& x) {
-  const auto count = [&](std::size_t least) {
-    std::uint64_t number = 0;
-    load(from, number);
-    if (number > from.left() / least)
-      throw std::invalid_argument("a list longer than what holds it (" + std::to_string(number) +
-                                  " entries): take the file from a copy");
-    return number;
-  };
   if constexpr (detail::is_whole<X>) {
     std::uint64_t number = 0;
     from.get(&number, sizeof number);
     x = static_cast<X>(number);
-    if (static_cast<std::uint64_t>(x) != number)
-      throw std::invalid_argument("a number out of range (" + std::to_string(number) + "): take the file from a copy");
+    if (static_cast<std::uint64_t>(x) != number) detail::refuse_number("a number out of range", number);
   } else if constexpr (std::floating_point<X>) {
     from.get(&x, detail::bytes_of<X>);
+  } else if constexpr (detail::is_plain<X>) {
+    x.resize(detail::length(from, sizeof x[0]));
+    if (!x.empty()) from.get(x.data(), x.size() * sizeof x[0]);
   } else if constexpr (detail::is_sequence<X>) {
-    x.resize(count(detail::least_bytes<typename X::value_type>()));
+    x.resize(detail::length(from, detail::least_bytes<typename X::value_type>()));
     for (auto& each : x) load(from, each);
   } else if constexpr (detail::is_map<X>) {
     x.clear();
-    for (auto left = count(detail::least_bytes<typename X::key_type>()); left > 0; --left) {
+    for (auto left = detail::length(from, detail::least_bytes<typename X::key_type>()); left > 0; --left) {
       typename X::key_type key{};
       load(from, key);
       load(from, x[key]);
@@ -145,6 +165,14 @@ template <class From, class X> void load(From& from, X& x) {
     load(from, *x);
   } else if constexpr (detail::is_pair<X>) {
     load(from, x.first), load(from, x.second);
+  } else if constexpr (detail::is_variant<X>) {
+    std::uint64_t number = 0;
+    load(from, number);
+    if (number >= std::variant_size_v<X>) detail::refuse_number("of a kind that is not known", number);
+    [&]<std::size_t... K>(std::index_sequence<K...>) {
+      ((number == K ? load(from, x.template emplace<K>()) : void()), ...);
+    }
+    (std::make_index_sequence<std::variant_size_v<X>>{});
   } else if constexpr (ListsState<X>) {
     std::apply([&](auto&... field) { (load(from, field), ...); }, X::state(x));
     if constexpr (requires { x.loaded(); }) x.loaded();
@@ -163,7 +191,8 @@ class SavedState {
     save(state, x);
     return state;
   }
-  const std::string& bytes() const { return bytes_; }
+  const std::string& bytes() const& { return bytes_; }
+  std::string bytes() && { return std::move(bytes_); }
   bool operator==(const SavedState& other) const { return bytes_ == other.bytes_; }
 
   void put(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
@@ -181,26 +210,43 @@ class SavedState {
 
 // The shape of a class's state, as text: which fields of which kind. States of one shape cannot be distinguished
 // otherwise.
-template <class X> std::string state_shape() {
+template <class X> void append_shape(std::string& shape);
+template <class... X> void append_shapes(std::string& shape, const char* open, const char* close) {
+  shape += open;
+  (append_shape<X>(shape), ...);
+  shape += close;
+}
+template <class X> void append_shape(std::string& shape) {
   if constexpr (detail::is_whole<X>) {
-    return "i";
+    shape += 'i';
   } else if constexpr (std::floating_point<X>) {
-    return "f" + std::to_string(detail::bytes_of<X>);
+    shape += 'f' + std::to_string(detail::bytes_of<X>);
+  } else if constexpr (std::same_as<X, std::string>) {
+    shape += 's';
   } else if constexpr (detail::is_sequence<X>) {
-    return "[" + state_shape<typename X::value_type>() + "]";
+    append_shapes<typename X::value_type>(shape, "[", "]");
   } else if constexpr (detail::is_map<X>) {
-    return "{" + state_shape<typename X::key_type>() + state_shape<typename X::mapped_type>() + "}";
+    append_shapes<typename X::key_type, typename X::mapped_type>(shape, "{", "}");
   } else if constexpr (detail::is_optional<X>) {
-    return "?" + state_shape<typename X::value_type>();
+    append_shapes<typename X::value_type>(shape, "?", "");
   } else if constexpr (detail::is_pair<X>) {
-    return state_shape<typename X::first_type>() + state_shape<typename X::second_type>();
+    append_shapes<typename X::first_type, typename X::second_type>(shape, "", "");
+  } else if constexpr (detail::is_variant<X>) {
+    [&]<class... A>(std::type_identity<std::variant<A...>>) {
+      append_shapes<A...>(shape, "<", ">");
+    }(std::type_identity<X>{});
   } else if constexpr (ListsState<X>) {
-    return []<class... F>(std::type_identity<std::tuple<F...>>) {
-      return "(" + (std::string() + ... + state_shape<detail::Plain<F>>()) + ")";
+    [&]<class... F>(std::type_identity<std::tuple<F...>>) {
+      append_shapes<detail::Plain<F>...>(shape, "(", ")");
     }(std::type_identity<decltype(X::state(std::declval<X&>()))>{});
   } else {
-    return "n";
+    shape += 'n';
   }
+}
+template <class X> std::string state_shape() {
+  std::string shape;
+  append_shape<X>(shape);
+  return shape;
 }
 
 // For `loaded`: throws where fields contradict each other.

@@ -11,8 +11,8 @@
 // found from its increments m [y - (L/M)(M_k + m/2) - (S_N/M - L/2)], y = x + v t: differences of terms of N^2 L would
 // not resolve it.
 //
-// Of incoming rows only what has been hit is held, and one particle more on either side, which flies freely; so do all
-// beyond it, in order with it. They are taken in at both ends as long as the outermost cluster held is more than one
+// Of incoming rows only particles that have been hit are held, and one more on either side, which flies freely, as do
+// all particles beyond it. Particles are taken in at both ends as long as the outermost cluster held is more than one
 // particle.
 
 #include <algorithm>
@@ -42,8 +42,8 @@ template <Real T> class StickyGas {
     for (ParticleIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }
 
-  // Advances to the state at a time not before the last one: all that meet up to then have merged. Interrupted, it goes
-  // on where the same time is asked for again, to the same bits: what is held is in order already.
+  // Advances to the state at a time not before the last one: all particles that meet up to then have merged. After an
+  // interruption a call with the same time continues, to the same bits: the clusters held are in order already.
   Status advance(const T& time) {
     time_ = time;
     elapsed_ = time - start_;
@@ -84,7 +84,7 @@ template <Real T> class StickyGas {
   T front_left(const T&) const { return held_[collided().first].x; }
   T front_right(const T&) const { return held_[collided().second - 1].x; }
 
-  // As that of a chain; a cluster goes by its heaviest particle, of equal ones the one furthest left.
+  // As that of a chain; a cluster is named after its heaviest particle; ties go left to right.
   Configuration<T> configuration(const T&) const {
     Configuration<T> c;
     c.time = time_;

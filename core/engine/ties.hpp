@@ -1,9 +1,9 @@
 #pragma once
 // Collisions that the queue's keys cannot distinguish: which of them is first by (exact time, position in the line)?
 //
-// All whose keys may belong to the same time as the root's are candidates, wherever on the line they are. To compare
-// neighbours only is right pair by pair and wrong in its consequences: far collisions overtake each other, by as much
-// as keys are wide, and what they set off meets in between in the wrong order.
+// All collisions whose keys may belong to the same time as the root's are candidates, wherever on the line they are.
+// Comparing neighbours only would be right for each pair and yet wrong: far collisions would overtake each other, by as
+// much as keys are wide, and their consequences would meet in the wrong order.
 //
 // A few candidates are compared anew for every collision. On a lattice thousands are simultaneous: these are kept in a
 // heap from one collision to the next, and only the three gaps that a collision changes are checked again. An entry

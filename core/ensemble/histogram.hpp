@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct FixedBins {
   double edge(std::size_t k) const {
     return k == bins ? to : from + (to - from) * (static_cast<double>(k) / static_cast<double>(bins));
   }
+  static auto state(auto& self) { return std::tie(self.from, self.to, self.bins); }
   bool operator==(const FixedBins&) const = default;
 };
 

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct Moments {
     return n < 2 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(squares[entry] / (n - 1) / n);
   }
 
+  static auto state(auto& self) {
+    return std::tie(self.replicas, self.mean, self.squares, self.least, self.greatest, self.counts);
+  }
   bool operator==(const Moments&) const = default;
 };
 

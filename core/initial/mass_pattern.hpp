@@ -17,9 +17,9 @@ namespace cradle {
 template <Real T> class MassPattern {
  public:
   MassPattern() = default;
-  // `identical`: whether they are all one number; nothing: as in the type. Who has them in more digits than the type
-  // says so, since the velocities of a ring depend on it (ring.hpp). Throws std::invalid_argument for masses that are
-  // not positive and finite.
+  // `identical`: whether all masses are one number; without it, whether they are so in the type. Callers that have
+  // masses in more digits than the type give it, since the velocities of a ring depend on it (ring.hpp). Throws
+  // std::invalid_argument for masses that are not positive and finite.
   explicit MassPattern(std::vector<T> masses, std::optional<bool> identical = {}) : masses_(std::move(masses)) {
     for (std::size_t j = 0; j < masses_.size(); ++j) {
       require_finite(masses_[j], "mass " + std::to_string(j) + " of the pattern");

@@ -1,6 +1,6 @@
 #pragma once
-// The particles of a scene as they are at the start: read-only initial data, numbered from left to right. Chains take
-// from here what they hold; particles of a row that the front has not reached are in no chain, only here.
+// The particles of a scene at the start: read-only initial data, numbered from left to right. Chains copy from here the
+// particles that they hold; particles of a row that the front has not reached are in no chain, only here.
 
 #include <cstdint>
 #include <limits>
@@ -61,8 +61,8 @@ template <Real T> class Particles {
 
   virtual T kinetic_energy() const = 0;
   virtual T momentum() const = 0;
-  // The same where more is known of it than the sum of rounded numbers, which need not be 0 where it is: what particles
-  // that have come to rest against each other have left.
+  // The momentum of all particles, exact where the initial state knows it: a sum of rounded numbers need not be 0 where
+  // the momentum is. Particles at rest against each other keep this momentum alone.
   virtual T conserved_momentum() const { return momentum(); }
   virtual T total_mass() const = 0;
   // Of particles [from, to).
@@ -100,7 +100,7 @@ template <Real T> class Particles {
   }
 };
 
-// A number as messages give it.
+// A number as messages print it.
 template <Real T> std::string in_message(const T& x) { return std::to_string(to_double(x)); }
 
 // Throws std::invalid_argument unless the number is finite; `what` it is, as in "position of particle 3".
@@ -122,7 +122,7 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   require(particles.kinetic_energy(), "the kinetic energy");
 }
 
-// What every chain requires of its particles. Throws std::invalid_argument.
+// Checks what every chain requires of its particles. Throws std::invalid_argument.
 template <Real T> void require_particles(const Particles<T>& particles, const T& start) {
   if (particles.count() < 1)
     throw std::invalid_argument("a chain without particles (" + std::to_string(particles.count()) +

@@ -1,7 +1,7 @@
 #pragma once
 // Two rows of particles that run into each other (the paper's Riemann problem, section II): the left one of velocity
-// u_l and spacing l_l = 1/n_l, the right one of u_r and l_r, a particle of any mass between them where the scene has
-// one. Their masses are 1, or repeat by a pattern from particle 0 on (in which the particle between the rows takes a
+// u_l and spacing l_l = 1/n_l, the right one of u_r and l_r; a scene may have a particle of any mass between them. The
+// masses of the rows are 1, or repeat by a pattern from particle 0 on (in which the particle between the rows takes a
 // place but not a mass). The first particles are half a spacing from the origin. Every particle of a row is displaced
 // by a random multiple of 2^-28 of the spacing, so that every scalar type and both representations start from the same
 // places.

@@ -2,14 +2,13 @@
 // The few transcendental functions that a law needs, made of the four operations, so that every machine and every
 // build gets the same bits and every scalar type all of its digits. Libraries differ in the last place.
 //
-//   1 - exp(-y), y >= 0     h = y 2^-k <= 1/8; series; then k times E(2h) = E(h) (2 - E(h)), by which relative errors
-//   do
-//                           not grow: each step adds a rounding or two. Nothing cancels for small y.
+//   1 - exp(-y), y >= 0     h = y 2^-k <= 1/8; series; then k times E(2h) = E(h) (2 - E(h)), by which relative
+//                           errors do not grow: each step adds a rounding or two. Nothing cancels for small y.
 //   x^s, x >= 0, s > 0      whole s: products, halving s. Else exp(u), u = s ln x, with x = 2^n m, ln m = 2 artanh
 //                           ((m - 1)/(m + 1)) and exp(u) = 2^j (1 - E(-v)) or 2^j/(1 - E(v)), u = j ln 2 + v. The
 //                           relative error is that of u, some |u| + 8 units.
 //
-// Tables of reciprocals are as long as the type has digits: they are made once, when a law is.
+// Tables of reciprocals grow with the digits of the type; they are made once, with the law.
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +71,7 @@ template <Real T> class ExponentialRise {
   ExponentialRise() {
     const int terms = detail::terms_needed<T>([](int n) { return T(1) / T(8 * (n + 1)); });
     for (int n = 1; n <= terms + 1; ++n) reciprocals_.push_back(T(1) / T(n));
-    // From where on the exponential is less than an eighth of a unit of 1: ln 2 < 0.7.
+    // Beyond this argument the exponential is less than an eighth of a unit of 1: ln 2 < 0.7.
     for (T rest(1); rest > T(std::numeric_limits<T>::epsilon()) / T(8); rest /= T(2)) all_ += T(7) / T(10);
   }
 

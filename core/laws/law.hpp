@@ -39,7 +39,7 @@ template <Real T> struct Outcome {
 // What each of two particles does to the closing speed, J/m_l and J/m_r; together w - w'.
 template <Real T> struct Shares { T left, right; };
 
-// The masses of two particles in collision. They refer to numbers held elsewhere: to be passed on, not to be kept.
+// The masses of two particles in collision: references to numbers held elsewhere, not to be kept.
 template <Real T> struct TwoMasses {
   const T &left, &right;
 
@@ -79,8 +79,8 @@ concept LawWithMemory = Law<L, T> && requires(const L law, const T& w, const Two
   { law.elastic(w, two) } -> std::same_as<Outcome<T>>;
 };
 
-// A law that says whether all that comes of a collision is in proportion to the closing speed, at any speed: the others
-// are not known to be, and no collapse is proved for them (two_gaps.hpp).
+// A law that says whether every result of a collision is proportional to the closing speed, at any speed. Of other laws
+// this is unknown, and no collapse is proved for them (two_gaps.hpp).
 template <class L>
 concept ScaleFreeLaw = requires(const L law) {
   { law.scale_free() } -> std::same_as<bool>;
@@ -114,6 +114,10 @@ template <Real T> class Inelastic {
   const T& restitution() const { return restitution_; }
   const T& cutoff() const { return cutoff_; }
   bool scale_free() const { return !is_positive(cutoff_); }
+  // The same in the form in which it is computed.
+  const T& half_sum() const { return half_sum_; }
+  const T& lost_share() const { return lost_; }
+  bool soft() const { return soft_; }
 
  private:
   template <class Masses> Outcome<T> outcome(const T& w, const Masses& masses, bool elastic) const {

@@ -38,7 +38,7 @@ template <Real T> struct Wall {
   std::uint64_t seed = 1, replica = 0;
 };
 
-// What has come of a wall: collisions at it, energy that it has given to the particles (negative: taken).
+// The tally of a wall: collisions at it, and the energy that it has given to the particles (negative: taken).
 template <Real T> struct WallTally {
   std::uint64_t collisions = 0;
   CompensatedSum<T> given;
@@ -56,7 +56,7 @@ inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, 
   return std::sqrt(-2 * detail::portable_log(uniform));
 }
 
-// The double as it is; types need not be made from one.
+// The double, exactly; a scalar type need not be constructible from one.
 template <Real T> T exactly(double x) {
   int exponent = 0;
   T value = T(static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53)));

@@ -14,13 +14,13 @@ namespace cradle {
 
 template <Real T> struct Cluster {
   T mass{0}, x{0}, v{0};
-  // Number at the start of the particle that the cluster goes by. It stays when clusters pass each other; when they
+  // The initial number of the particle that names the cluster. It stays when clusters pass each other; when they
   // merge it is that of the heavier one.
   ParticleIndex index = -1;
 };
 
 template <Real T> struct Cloud {
-  // The two heaviest clusters in the order of the line; of equal masses the ones further left. After they have passed
+  // The two heaviest clusters in the order of the line; ties go left to right. After they have passed
   // each other the index says which is which.
   std::optional<Cluster<T>> left, right;
   T mass{0};   // of all that have collided

@@ -1,10 +1,10 @@
 #pragma once
 // The core that a shock of dissipative particles leaves at its centre: how much of the mass it holds, how wide it is,
-// how much its velocities differ, how close its particles are. By definition here, of all particles that have collided,
+// how much its velocities differ, how close its particles are. Definitions, for all particles that have collided:
 //
 //   width   is the length of the shortest interval that holds more than half of their mass (a robust measure: particles
 //           on their way in do not count until they are half of all); 0 where that is one particle, merged from many;
-//   mass    is what lies within three such lengths about the same middle: the core. With m = 1 its number of particles;
+//   mass    is the mass within three such lengths about the same middle: the core. With m = 1 its number of particles;
 //   range   is the range of the velocities of the core, from the one that 5 % of its mass stay below to the one that
 //           5 % are above;
 //   gap     is the median of the gaps within the core; NaN where it is one particle.
@@ -31,7 +31,7 @@ struct Interval {  // particles first to last, both included
   std::size_t first, last;
 };
 
-// The shortest one with more than half of the mass; of equal ones the leftmost.
+// The shortest one with more than half of the mass; ties go left to right.
 template <Real T> Interval shortest_half(const Configuration<T>& c) {
   double all = 0, held = 0;
   for (std::size_t j = c.collided_from; j < c.collided_to; ++j) all += to_double(c.m[j]);

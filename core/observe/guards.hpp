@@ -1,12 +1,12 @@
 #pragma once
-// What holds in every run, whatever its physics: where it does not, the machine or the program is at fault, and what
-// follows means nothing. Checked on a configuration, that is, now and then:
+// What holds in every run, whatever its physics. Where it does not hold, the machine or the program is at fault, and
+// later results mean nothing. It is checked on a configuration, now and then:
 //
-//   order no two particles have changed places (unless the run's account records it) past the last collision is not
-//   later than the time of the check, nor earlier than the one before it energy the sum over all particles is what the
-//   ledger of losses leaves, and no particle has more than there was momentum is what it was at the start, between
-//   walls excepted closure gaps and closing speeds add up to what the particles at the ends of the line give, or to the
-//   ring
+//   order     no two particles have changed places, unless the run's account records it
+//   past      the last collision is not later than the time of the check, nor earlier than that of the check before
+//   energy    the sum over all particles is what the ledger of losses leaves; no particle has more than there was
+//   momentum  is what it was at the start, except between walls
+//   closure   gaps and closing speeds add up to what the particles at the ends of the line give, or to the ring
 //
 // Bounds follow from the type, the collisions made and what there was at the start, not from how fast particles happen
 // to be when they are checked: a light particle may have been faster by the square root of any ratio of masses. With
@@ -35,8 +35,8 @@
 // the ledger of losses is laid out for (Walled::energy_to_lose).
 //
 // An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is less: for 5e8 collisions where velocities
-// are the particles' own, for 5e8 sqrt(E/(M U^2/2)) where they are sums. One in a place is found where delta U t is
-// less than it, which masses of 1e-8 beside 1 can make 1e4 times as much as for equal ones.
+// are the particles' own, for 5e8 sqrt(E/(M U^2/2)) where they are sums. An error in a place is found where it exceeds
+// delta U t, which masses of 1e-8 beside 1 can make 1e4 times as large as equal masses do.
 
 #include <cstdint>
 #include <limits>

@@ -59,13 +59,13 @@ inline double mean(double sum, double weight) {
 
 }  // namespace detail
 
-// What leaves a walk over particles that its caller has stopped: what it was to fill is not whole.
+// Thrown out of a walk over particles that its caller has stopped: its result is incomplete.
 struct WalkStopped : std::exception {
   const char* what() const noexcept override { return "a walk over particles was stopped"; }
 };
 
 // Calls visit(x, v, m) for every particle in a range, also for those that the fronts have not reached: they fly as at
-// the start. These can be more than anybody waits for: `stopped` is called now and then, and true throws WalkStopped.
+// the start. They may be too many to wait for: `stopped` is called now and then, and true throws WalkStopped.
 template <Real T, class Visit>
 void for_each_particle(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed, BinRange range,
                        Visit visit, const std::function<bool()>& stopped = {}) {

@@ -4,14 +4,14 @@
 //
 // The energy comes from the ledger as long as that leaves half of the energy at the start or more, at constant cost;
 // else from the velocities of all particles (relative_motion.hpp), as it does where walls have given or taken some.
-// Why: rounding adds an energy e_c to the state at a collision c, which the ledger does not know. The energy E(t) of
-// the state contains what is left of it, the share E(t)/E(t_c) of e_c as of any other energy; the energy of the ledger
-// misses the rest of e_c, which losses have taken. So the error of the one is sum e_c E(t)/E(t_c), that of the other
-// sum e_c (1 - E(t)/E(t_c)): nothing where particles are elastic, all of it where they have come to rest, where that is
-// more than there is left. A ledger that leaves half is moreover rounded to 2 eps of it. Where much is lost in many
-// collisions losses have errors of their own: of Fig. 2 in double the ledger is off by 3e-14 at t = 2000, where 74 % is
-// left, and by 6e-13 at t = 6500, where 19 % is; the sum over velocities by 9e-15 and 7e-14 (of double-double's
-// energy).
+// Reason: at a collision c rounding adds an energy e_c to the state that the ledger does not contain. Later the energy
+// E(t) of the state contains the share E(t)/E(t_c) of e_c, as of any other energy; the energy of the ledger misses the
+// rest of e_c, which losses have taken. So the error of the former is sum e_c E(t)/E(t_c), that of the latter
+// sum e_c (1 - E(t)/E(t_c)): zero for elastic particles; where particles have come to rest, the sum of all e_c, more
+// than the energy that is left. Besides, a ledger that leaves half is rounded to 2 eps of it. Where many collisions
+// lose much, losses have errors of their own: for Fig. 2 in double the ledger is off by 3e-14 at t = 2000, where 74 %
+// of the energy is left, and by 6e-13 at t = 6500, where 19 % is left; the sum over velocities is off by 9e-15 and
+// 7e-14 (of double-double's energy).
 
 #include <limits>
 #include <optional>

@@ -3,14 +3,14 @@
 // through each other when they meet, and continue to oscillate, or stick, and then another cluster becomes the second
 // one. The watch receives every collision, and samples the clusters now and then.
 //
-//   pair the two heaviest clusters, from the first sample in which they hold more than half of the mass that has
-//                 collided, and ten particles each or more
-//   meeting a collision of the two clusters that were the pair at the last sample: a pass or a stick role change a
-//   sample in which the pair is not made of the same two clusters as in the sample before regime apart: these two have
-//   not met yet; through: their last meeting was a pass; stuck: it was a stick exponents powers of time by which the
-//   largest separation and the largest speed of the pair grow: one point for
-//                 each third of a decade since there is a pair, at least four, least squares in the logarithms
-//                 (theory: (17), 1/3 and -1/3)
+//   pair         the two heaviest clusters, from the first sample in which they hold more than half of the mass that
+//                has collided, and ten particles each or more
+//   meeting      a collision of the two clusters that were the pair at the last sample: a pass or a stick
+//   role change  a sample whose pair is not made of the same two clusters as the pair of the sample before
+//   regime       apart: these two have not met yet; through: their last meeting was a pass; stuck: it was a stick
+//   exponents    powers of time by which the largest separation and the largest speed of the pair grow: one point for
+//                each third of a decade since there is a pair, at least four, least squares in the logarithms
+//                (theory: (17), 1/3 and -1/3)
 // Samples should be spread evenly in the logarithm of time, a hundred per decade or more.
 
 #include <algorithm>
@@ -47,7 +47,7 @@ struct Scenario {
 
 class ScenarioWatch {
  public:
-  // To be called before each collision, of the particles with these numbers; there were `merges` so far.
+  // To be called before each collision, with the numbers of its particles and of the merges so far.
   void collision(ParticleIndex left, ParticleIndex right, double time, std::uint64_t merges) {
     settle(merges);
     if (!pair_ ||
@@ -56,7 +56,7 @@ class ScenarioWatch {
     meeting_ = {time, merges};
   }
 
-  // A look, when all collisions up to `time` (since the start) are made.
+  // A sample, when all collisions up to `time` (since the start) are made.
   template <Real T> void sample(const Cloud<T>& cloud, double time, std::uint64_t merges) {
     settle(merges);
     if (!cloud.left || !cloud.right) return;

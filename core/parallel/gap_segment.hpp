@@ -80,8 +80,8 @@ template <Real T, class Masses> class GapSegment {
     Outcome<T> outcome = law(line_.closing(s), line_.masses.of_pair(s));
     Edge edge;
     if (!(s - inner_first_ < inner_)) [[unlikely]] {
-      if (walls_.beside(line_.particle(s))) outcome = at_wall(s);
-      edge = at_edge(s, time, outcome, report);
+      if (walls_.beside(line_.particle(s))) outcome = at_wall(s, line_.closing(s));
+      edge = at_edge(s, time, line_.closing(s), outcome, report);
     }
     return {line_.strike(s - 1, s, s + 1, time, outcome, edge.notice), edge.own};
   }
@@ -133,13 +133,12 @@ template <Real T, class Masses> class GapSegment {
     }
   }
 
-  [[gnu::noinline]] Outcome<T> at_wall(Slot s) {
+  [[gnu::noinline]] Outcome<T> at_wall(Slot s, const T& closing) {
     const ParticleIndex gap = line_.particle(s);
-    return walls_.strike(gap, line_.closing(s), line_.masses[walls_.left_of(gap) ? s + 1 : s]);
+    return walls_.strike(gap, closing, line_.masses[walls_.left_of(gap) ? s + 1 : s]);
   }
   // A collision that may be at a cut or a front, or beyond.
-  [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
-    const T& closing = line_.closing(s);
+  [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const T& closing, const Outcome<T>& outcome, Report& report) {
     Notice notice = Notice::none;
     if (!left_end_ && s + 1 - own_first_ < 2) report.left.push_back({s == own_first_, time, closing});
     if (!right_end_ && s - own_last_ < 2) report.right.push_back({s != own_last_, time, closing});
@@ -167,6 +166,23 @@ template <Real T, class Masses> class GapSegment {
   void set_inner() {
     inner_first_ = reached_left_ + 1;
     inner_ = reached_right_ > inner_first_ ? reached_right_ - inner_first_ : 0;
+  }
+
+  // ---- for steps (steps/stepped.hpp)
+  template <class Law, class Part> friend struct Stepped;
+  template <class Law> Outcome<T> outcome_at_edge(const Law& law, Slot s, const T& closing) {
+    return walls_.beside(line_.particle(s)) ? at_wall(s, closing) : law(closing, line_.masses.of_pair(s));
+  }
+  // What collisions at edges change.
+  struct Edges {
+    Slot reached_left, reached_right;
+    Walls<T> walls;
+  };
+  Edges edges() const { return {reached_left_, reached_right_, walls_}; }
+  void set_edges(const Edges& edges) {
+    reached_left_ = edges.reached_left, reached_right_ = edges.reached_right;
+    walls_ = edges.walls;
+    set_inner();
   }
 
   GapLine<T, Masses> line_;

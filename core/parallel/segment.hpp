@@ -17,6 +17,7 @@
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/engine/ties.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 
 namespace cradle {
 
@@ -32,6 +33,8 @@ template <Real T, class CutCollision> struct SegmentReport {
   bool nothing_left = false;  // what the segment owned has merged with what others own
   Counts counts;
   T last_collision{0};  // if there was one
+  bool in_steps = false;
+  StepPace pace;
   Ledger<T> lost;
   std::vector<CutCollision> left, right;  // at the cuts on either side
 };
@@ -45,6 +48,9 @@ template <Real T> struct OwnedResult {
 // The part of a chain that a segment works on.
 template <class Chain> struct PartOf;
 
+// How it makes collisions in steps, where it can (steps/stepped.hpp).
+template <class Law, class Part> struct Stepped { static constexpr bool possible = false; };
+
 template <class Law, class Chain> class Segment {
  public:
   using T = typename Chain::Scalar;
@@ -55,8 +61,14 @@ template <class Law, class Chain> class Segment {
 
   // Makes all collisions up to the local time `stop`, fewer than `most`, on a copy of a part of the chain, and puts
   // what is the segment's own into `after`, at the chain's slots. Several segments of one chain may do so at once.
+  // `steps` may be null.
   void run(const Chain& chain, const Law& law, const Own& own, std::size_t ghosts, const T& stop, std::uint64_t most,
-           typename Chain::Line::Gaps& after, Report& report) {
+           const Steps* steps, typename Chain::Line::Gaps& after, Report& report) {
+    if constexpr (Stepped<Law, Part>::possible)
+      if (steps != nullptr && take(chain, own, ghosts, report)) {
+        report.in_steps = stepped_.run(*steps, part_, law, stop, most, report);
+        if (report.in_steps) return part_.give(chain, own, after, report);
+      }
     if (!begin(chain, own, ghosts, report)) return;
     Made made = make_collisions<false>(law, stop, most, report);
     if (made == Made::contested) {
@@ -71,11 +83,14 @@ template <class Law, class Chain> class Segment {
   enum class Made { all, contested, for_plain };
 
   // Takes what is to be computed; false if there is nothing.
-  bool begin(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
+  bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
     report.left.clear(), report.right.clear();
-    report.nothing_left = report.plain = false;
+    report.nothing_left = report.plain = report.in_steps = false;
     report.counts = {};
-    const bool some = part_.take(chain, own, ghosts, report);
+    return part_.take(chain, own, ghosts, report);
+  }
+  bool begin(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
+    const bool some = take(chain, own, ghosts, report);
     if (some) fill_queue();
     return some;
   }
@@ -152,6 +167,7 @@ template <class Law, class Chain> class Segment {
   Part part_;
   EventQueue queue_;
   Ties<Part> ties_;
+  Stepped<Law, Part> stepped_;
 };
 
 }  // namespace cradle

@@ -35,16 +35,18 @@
 
 #include "cradle/core/parallel/cluster_segment.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
+#include "cradle/core/parallel/steps/stepped.hpp"
 #include "cradle/core/parallel/workers.hpp"
 
 namespace cradle {
 
 // How segments are made. What is chosen here shows in how long a run takes, never in what it gives.
 struct Segmentation {
-  std::size_t gaps = 2800;  // owned by a segment, about
-  std::size_t ghosts = 64;  // on either side
-  double collisions = 0;    // per gap in a time slab; 0: as many as do well
-  bool anywhere = false;    // also where the plain loop is sure to be quicker
+  std::size_t gaps = 0;          // owned by a segment, about; 0: as many as do well
+  std::size_t ghosts = 64;       // on either side
+  double collisions = 0;         // per gap in a time slab; 0: as many as do well
+  bool anywhere = false;         // also where the plain loop is sure to be quicker
+  const Steps* steps = nullptr;  // fastest_steps() where that is linked (steps/steps.hpp); null: none
 };
 
 // Goes through time slabs in segments.
@@ -55,7 +57,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
   explicit Segments(Workers workers = {}, Segmentation how = {})
       : workers_(std::move(workers)), how_(how), segments_(workers_.count) {
-    how_.gaps = std::max<std::size_t>(how_.gaps, 1);
+    if (how_.gaps == 0) how_.gaps = in_steps() ? 6000 : 2800;
     how_.ghosts = std::max<std::size_t>(how_.ghosts, 1);  // a cut has a gap on either side
   }
 
@@ -68,6 +70,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   struct Statistics {
     std::uint64_t slabs = 0, given_up = 0;  // made in segments; begun so, and left to the plain loop
     std::uint64_t collisions = 0;           // in the former
+    std::uint64_t in_steps = 0;             // of these
     std::uint64_t again = 0;                // collisions of joined segments
     std::uint64_t largest = 0;              // collisions of the largest segment of each time slab, summed up
   };
@@ -110,14 +113,16 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     for (bool first = true; !todo.empty(); first = false) {
       workers_.run(todo.size(), [&](std::size_t job, std::size_t worker) {
         if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<Law, Chain>>(chain);
-        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, most, *after_, reports_[todo[job]]);
+        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, most, how_.steps, *after_,
+                               reports_[todo[job]]);
       });
       for (const std::size_t k : todo) {
         if (reports_[k].plain) return give_up(chain);
         (first ? all : again) += reports_[k].counts.collisions;
       }
       todo = join(chain);
-      if (own_.size() < 2 && !todo.empty()) return give_up(chain);
+      // Steps are quicker than the plain loop on a whole line too.
+      if (own_.size() < 2 && !todo.empty() && (!in_steps() || chain.on_ring())) return give_up(chain);
     }
     Slab slab;
     std::uint64_t largest = 0;
@@ -135,6 +140,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     for (const Report& report : reports_) chain.lose(report.lost);
     statistics_.slabs += 1;
     statistics_.collisions += slab.counts.collisions;
+    for (const Report& report : reports_)
+      if (report.in_steps) statistics_.in_steps += report.counts.collisions;
     statistics_.again += again;
     statistics_.largest += largest;
     adapt(chain, static_cast<double>(again) / static_cast<double>(all + 1));
@@ -143,6 +150,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
  private:
   using Report = typename Segment<Law, Chain>::Report;
+  bool in_steps() const { return how_.steps != nullptr && Stepped<Law, typename Segment<Law, Chain>::Part>::possible; }
   static constexpr double least_per_gap = 1. / 8;
 
   std::optional<Slab> give_up(const Chain& chain) {

@@ -55,6 +55,17 @@ template <class T> Scene<T> rshock(ParticleIndex n, const T& speed) {
 }
 template <class T> Scene<T> rshock(ParticleIndex n) { return rshock(n, T(T(1) / T(2))); }
 
+// Undisplaced: pairs of a generation meet at one time.
+template <class T = double> Scene<T> lattice_rows(ParticleIndex n) {
+  return std::make_shared<Rows<T>>(
+      symmetric_rows<T>(n, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
+}
+// Rows that differ in density and speed, with a heavy particle between them.
+inline Scene<double> unequal_rows() {
+  return std::make_shared<Rows<double>>(Row<double>{160, 0.75, .5}, Row<double>{240, -0.25, 1.5},
+                                        CentralParticle<double>{20, .125}, rshock_displacement);
+}
+
 // Rows and rings as scenes have them, displaced by counters.
 inline Scene<double> uniform_rows(ParticleIndex count) {
   return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));

@@ -11,25 +11,18 @@
 #include <vector>
 
 #include "cradle/tests/places.hpp"
+#include "cradle/tests/texts.hpp"
 
 namespace manual_test {
 
 namespace fs = std::filesystem;
+using cradle::test::matches;
 
 fs::path root() { return cradle::test::source_folder; }
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// The first group of every match.
-std::vector<std::string> all(const std::string& text, const std::string& pattern) {
-  const std::regex regex(pattern);
-  std::vector<std::string> found;
-  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match)
-    found.push_back((*match)[1]);
-  return found;
 }
 
 TEST(Manual, LinksLeadSomewhere) {
@@ -39,7 +32,7 @@ TEST(Manual, LinksLeadSomewhere) {
     for (const auto& entry : fs::recursive_directory_iterator(root() / folder))
       if (entry.path().extension() == ".md") pages.push_back(entry.path());
   for (const fs::path& file : pages) {
-    for (const std::string& link : all(text_of(file), R"(\]\(([^):#]+)\))")) {
+    for (const std::string& link : matches(text_of(file), R"(\]\(([^):#]+)\))")) {
       EXPECT_TRUE(fs::exists(file.parent_path() / link)) << file << ": there is no " << link;
       ++links;
     }
@@ -57,7 +50,7 @@ TEST(Manual, OfTheCoreNamesEveryHeaderAndNoOther) {
                 (file.has_parent_path() && manual.find('`' + folder + '`') != std::string::npos))
         << "core/README.md does not name " << file << ": say there what it is for";
   }
-  for (const std::string& named : all(manual, R"(([A-Za-z_0-9/.]+\.[ch]pp)\b)")) {
+  for (const std::string& named : matches(manual, R"(([A-Za-z_0-9/.]+\.[ch]pp)\b)")) {
     bool there = fs::exists(root() / named) || fs::exists(root() / "core" / named);
     for (const char* folder : {"core", "tests/core"})
       for (const auto& entry : fs::recursive_directory_iterator(root() / folder))

@@ -2,6 +2,9 @@
 // Exact arithmetic: quotients of integers of any size, without expression templates, as the engine's scalar. The oracle
 // of small cases: no rounding, so every identity of the dynamics holds with ==.
 
+#include <algorithm>
+#include <string>
+
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "cradle/core/real.hpp"
@@ -13,5 +16,24 @@ using Rational =
 
 // A double is a quotient of integers.
 inline Rational exactly(double x) { return Rational(x); }
+
+// 12.5, -3e-20: without rounding in rationals.
+template <class T> T decimal(const std::string& text) {
+  const auto e = text.find_first_of("eE");
+  std::string digits = text.substr(0, e);
+  long power = e == text.npos ? 0 : std::stol(text.substr(e + 1));
+  const bool negative = digits.starts_with('-');
+  if (negative || digits.starts_with('+')) digits.erase(0, 1);
+  if (const auto point = digits.find('.'); point != digits.npos) {
+    power -= static_cast<long>(digits.size() - point - 1);
+    digits.erase(point, 1);
+  }
+  // Boost reads a leading 0 as octal.
+  digits.erase(0, std::min(digits.find_first_not_of('0'), digits.size() - 1));
+  using Integer = boost::multiprecision::cpp_int;
+  const Integer shift = pow(Integer(10), static_cast<unsigned>(power < 0 ? -power : power));
+  const T size = power < 0 ? T(T(Integer(digits)) / T(shift)) : T(Integer(Integer(digits) * shift));
+  return negative ? T(-size) : size;
+}
 
 }  // namespace cradle::test

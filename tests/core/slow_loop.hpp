@@ -1,6 +1,6 @@
 #pragma once
 // The event loop in its plainest form, twin of Simulation: no queue, no keys, no ties by rounding. Before every
-// collision all gaps are looked through for the least exact time, the leftmost of equal ones; the origin of time may be
+// collision all gaps are searched for the least exact time, ties go left to right; the origin of time may be
 // moved after any number of collisions. Made one collision at a time, which the real loop cannot be.
 
 #include <optional>

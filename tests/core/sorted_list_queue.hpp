@@ -1,7 +1,6 @@
 #pragma once
 // The event queue in its plainest form, twin of EventQueue: a list sorted by (time, slot), every time in full.
 
-#include <limits>
 #include <set>
 #include <utility>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
-// The strictest scalar the engine must take: the arithmetic of double and nothing else. Made from an int or a 64-bit
-// integer only when asked to, turned into a double only when asked to, no default value, no std:: mathematics but by
-// argument-dependent lookup. What compiles with it converts nothing in silence; what it computes has the bits of
+// The strictest scalar that the engine must accept: the arithmetic of double and nothing else. Conversions from an int
+// or a 64-bit integer and to a double are explicit; there is no default value, and std:: mathematics is found by
+// argument-dependent lookup only. Code that compiles with it has no implicit conversions; its results have the bits of
 // double.
 
 #include <cmath>
@@ -21,7 +21,7 @@ class StrictReal {
   requires std::is_arithmetic_v<Other> StrictReal(Other)
   = delete;
 
-  // Only the tests say this; the engine cannot know it.
+  // For the tests only; the engine does not use it.
   static StrictReal of(double value) {
     StrictReal x(0);
     x.value_ = value;

@@ -11,10 +11,8 @@
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/tools/result/result_bytes.hpp"
-#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/store/ensemble_journal.hpp"
+#include "cradle/tools/store/ensemble_store.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 
 namespace {
@@ -54,19 +52,17 @@ int main(int argc, char** argv) {
       "snapshots = [5] }\n",
       "seed.toml");
   const tools::RunOutcome run = tools::run_scene(scene, {tools::Progress::Show::never});
-  put("result", "run", tools::file_image(run.result).substr(0, tools::file_image(run.result).size() - 24));
-  put("result", "bytes", tools::to_bytes(run.result));
-  put("journal", "header", '\0' + tools::RunHeader{"0.1.0", effective_toml(scene), "seed", 60, 7}.bytes());
+  put("result", "bytes", tools::to_bytes(std::pair(run.result.attributes, run.result.groups)));
+  put("journal", "header", '\0' + tools::to_bytes(tools::JournalHeader{"run", 7, effective_toml(scene), "seed"}));
   for (const tools::Group& group : run.result.groups) {
     std::string name = group.name;
     std::replace(name.begin(), name.end(), '/', '-');
-    put("journal", name, '\1' + tools::record_of(std::vector<tools::Group>{group}));
+    put("journal", name, '\1' + tools::to_bytes(tools::RunRecord(std::vector<tools::Group>{group})));
   }
-  const tools::Study study = tools::ensemble_of(scene);
-  put("journal", "replicas", '\2' + tools::header_of(study, {0, 10}));
   const tools::EnsembleState state("", scene, {});
   put("journal", "replica",
-      '\3' + tools::EnsembleState::record(0, state.layout().row(3, run), state.layout().values(run)));
+      '\2' + tools::to_bytes(tools::EnsembleRecord{
+                 0, tools::ReplicaRecord{state.layout().row(3, run), state.layout().values(run)}}));
 
   const auto rows =
       std::make_shared<Rows<double>>(symmetric_rows<double>(12, 0.5, 1, uniform_displacement(0.05, 3, 0)));

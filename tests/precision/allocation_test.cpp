@@ -41,16 +41,12 @@ template <class P> class Allocations : public InPrecision<P> {
   }
 };
 
-using Counted = testing::Types<Precision<double>, Precision<double_double>
-#ifdef CRADLE_WITH_FLOAT128
-                               ,
-                               Precision<float128>
-#endif
 #ifdef CRADLE_WITH_MPFR
-                               ,
-                               Precision<Mpfr<4>, 50>, Precision<Mpfr<8>, 100>, Precision<Mpfr<56>, 1000>
+using LongMpfr = testing::Types<Precision<Mpfr<8>, 100>, Precision<Mpfr<56>, 1000>>;
+#else
+using LongMpfr = testing::Types<>;
 #endif
-                               >;
+using Counted = Joined<testing::Types<Precision<double>>, WidePrecision, LongMpfr>::Types;
 TYPED_TEST_SUITE(Allocations, Counted, PrecisionName);
 
 // From t = 300 on; before that it warms up.

@@ -205,30 +205,19 @@ TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
 TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
   using B = Ball<TypeParam>;
   Draws<TypeParam> draws;
-  const auto decimal = [](const std::string& text) {
-    const auto e = text.find('e');
-    const auto point = text.find('.');
-    const bool whole = point == text.npos || point > e;
-    const std::string digits =
-        whole ? text.substr(0, e) : text.substr(0, point) + text.substr(point + 1, e - point - 1);
-    int exponent = std::stoi(text.substr(e + 1)) - (whole ? 0 : static_cast<int>(e - point - 1));
-    Rational value(digits), ten(10);
-    for (; exponent > 0; --exponent) value *= ten;
-    for (; exponent < 0; ++exponent) value /= ten;
-    return value;
-  };
   for (int k = 0; k < 500; ++k) {
     const B x = draws.ball();
     const auto text = in_decimals(x);
     const auto doubles = in_doubles(x);
     const Rational low = exact(x.middle()) - exact(x.radius()), high = exact(x.middle()) + exact(x.radius());
-    EXPECT_LE(decimal(text.low), low) << text.low;
-    EXPECT_GE(decimal(text.high), high) << text.high;
+    EXPECT_LE(decimal<Rational>(text.low), low) << text.low;
+    EXPECT_GE(decimal<Rational>(text.high), high) << text.high;
     EXPECT_LE(exact(doubles.low), low);
     EXPECT_GE(exact(doubles.high), high);
     // And not by much.
     if (x.radius() > 0) {
-      EXPECT_LE(decimal(text.high) - decimal(text.low), Rational((high - low) * 2)) << text.low << " " << text.high;
+      EXPECT_LE(decimal<Rational>(text.high) - decimal<Rational>(text.low), Rational((high - low) * 2))
+          << text.low << " " << text.high;
     }
   }
 }

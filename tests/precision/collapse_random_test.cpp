@@ -1,10 +1,10 @@
-// Random systems of two to six particles, with walls and unequal masses, under policy stop. Proves: in every type, none
-// is said to collapse that does not with 60 digits, down to gaps of 1e-3000; the error stated of t_c holds in each
-// case, and is at most a hundred times the true one in half of them. t_c is the last collision before a gap of 1e-6000
-// with 60 digits, where that is no later than the one before 1e-3000 to 45 digits.
+// Random systems of two to six particles, with walls and unequal masses, under policy stop. Proves: in every type, a
+// system is reported to collapse only if it does so with 60 digits, down to gaps of 1e-3000; the stated error of t_c
+// bounds the true error in each case, and is at most a hundred times as large in half of them. t_c is the last
+// collision before a gap of 1e-6000 with 60 digits, if it agrees with the one before 1e-3000 to 45 digits.
 //
-// In double-double it is eight times as much: its operations are bounded by up to eight times as much of epsilon as
-// those that give the nearest number, 4 for 1/2 in a quotient, and hardly ever err by that.
+// In double-double the stated error is eight times as large: the errors of its operations are bounded by up to eight
+// times those of types that round to nearest (4 epsilon instead of 1/2 in a quotient), and rarely reach that.
 #include <gtest/gtest.h>
 
 #include <algorithm>

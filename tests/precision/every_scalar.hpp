@@ -22,41 +22,33 @@ template <class P> void set_precision() {
 #endif
 }
 
+template <class... Lists> struct Joined;
+template <class... P> struct Joined<testing::Types<P...>> { using Types = testing::Types<P...>; };
+template <class... P, class... Q, class... More>
+struct Joined<testing::Types<P...>, testing::Types<Q...>, More...> : Joined<testing::Types<P..., Q...>, More...> {};
+
+// What this build has of them.
+#ifdef CRADLE_WITH_FLOAT128
+using Binary128 = testing::Types<Precision<float128>>;
+#else
+using Binary128 = testing::Types<>;
+#endif
+#ifdef CRADLE_WITH_MPFR
+using Mpfr50 = testing::Types<Precision<Mpfr<4>, 50>>;
+using EveryMpfr =
+    testing::Types<Precision<Mpfr<4>, 20>, Precision<Mpfr<4>, 50>, Precision<Mpfr<16>, 200>, Precision<Mpfr<56>, 1000>>;
+#else
+using Mpfr50 = testing::Types<>;
+using EveryMpfr = testing::Types<>;
+#endif
+
 using EveryPrecision =
-    testing::Types<Precision<double>, Precision<long double>, Precision<double_double>, Precision<bin_float>
-#ifdef CRADLE_WITH_FLOAT128
-                   ,
-                   Precision<float128>
-#endif
-#ifdef CRADLE_WITH_MPFR
-                   ,
-                   Precision<Mpfr<4>, 20>, Precision<Mpfr<4>, 50>, Precision<Mpfr<16>, 200>, Precision<Mpfr<56>, 1000>
-#endif
-                   >;
-
+    Joined<testing::Types<Precision<double>, Precision<long double>, Precision<double_double>, Precision<bin_float>>,
+           Binary128, EveryMpfr>::Types;
 // Types in which the queue's keys are rounded times, one of each kind.
-using WidePrecision = testing::Types<Precision<double_double>
-#ifdef CRADLE_WITH_FLOAT128
-                                     ,
-                                     Precision<float128>
-#endif
-#ifdef CRADLE_WITH_MPFR
-                                     ,
-                                     Precision<Mpfr<4>, 50>
-#endif
-                                     >;
-
+using WidePrecision = Joined<testing::Types<Precision<double_double>>, Binary128, Mpfr50>::Types;
 // One type of each kind of arithmetic, where EveryPrecision would take too long.
-using EachKindOfPrecision = testing::Types<Precision<double>, Precision<long double>, Precision<double_double>
-#ifdef CRADLE_WITH_FLOAT128
-                                           ,
-                                           Precision<float128>
-#endif
-#ifdef CRADLE_WITH_MPFR
-                                           ,
-                                           Precision<Mpfr<4>, 50>
-#endif
-                                           >;
+using EachKindOfPrecision = Joined<testing::Types<Precision<double>, Precision<long double>>, WidePrecision>::Types;
 
 struct PrecisionName {
   template <class P> static std::string GetName(int) {

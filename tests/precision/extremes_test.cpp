@@ -105,12 +105,12 @@ template <class T> Scene<T> three(int third_place) {
 }
 
 // Next to 0, far below epsilon, the second collision finds a gap that no time resolves, at 0 none: with a cut-off the
-// particles part, without one the run says that it is exhausted.
+// particles part, without one the run reports that it is exhausted.
 TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
   using T = typename TypeParam::Scalar;
   for (const T& restitution : {T(0), from_text<T>(TypeParam::digits > 0 ? "1e-100000000" : "1e-300")}) {
     auto parting = gap_run(three<T>(3), Inelastic<T>(restitution, from_text<T>("1e-5")));
-    // Double-double ends at 2^-969: there a gap of 1e-300 is the end of the run, and it says so.
+    // Double-double ends at 2^-969: there a gap of 1e-300 ends the run, and the status reports it.
     const bool underflows = restitution > T(0) && restitution < std::numeric_limits<T>::min();
     EXPECT_EQ(parting.advance(T(1000)), underflows ? Status::exhausted : Status::reached);
     EXPECT_TRUE(underflows || parting.counts().below_cutoff > 0);
@@ -171,8 +171,7 @@ TYPED_TEST(EveryExtreme, ThreeParticlesMeet) {
 // Two rows of a perfect lattice: k pairs are k spacings apart, for k up to the length of a row; they meet at k/(2 u).
 TYPED_TEST(EveryExtreme, LatticesMeetAllAtOnce) {
   using T = typename TypeParam::Scalar;
-  const Scene<T> lattice = std::make_shared<Rows<T>>(
-      symmetric_rows<T>(60, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
+  const Scene<T> lattice = lattice_rows<T>(60);
   auto run = gap_run(lattice, Inelastic<T>(T(1), T(0)));
   for (const int t : {1, 2, 7, 29, 30}) {
     ASSERT_EQ(run.advance(T(t)), Status::reached);

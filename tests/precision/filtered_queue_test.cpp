@@ -75,48 +75,31 @@ TYPED_TEST(FilteredQueue, ManyParticleCollapse) {
                          stop_below(from_text<T>("1e-200")));
 }
 
-template <class T> Scene<T> perfect_lattice() {
-  return std::make_shared<Rows<T>>(
-      symmetric_rows<T>(40, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
-}
-
 // Elastic rows of a perfect lattice: all pairs of a generation meet at one time, exactly representable.
 TYPED_TEST(FilteredQueue, ElasticLattice) {
   using T = typename TypeParam::Scalar;
-  expect_same_collisions(perfect_lattice<T>(), Inelastic<T>(T(1), T(0)), T(100), 20 * 21 / 2);
+  expect_same_collisions(lattice_rows<T>(40), Inelastic<T>(T(1), T(0)), T(100), 20 * 21 / 2);
 }
 
 // Inelastic ones: mirror symmetry makes pairs of equal times, and triple collisions that rounding decides.
 TYPED_TEST(FilteredQueue, InelasticLattice) {
   using T = typename TypeParam::Scalar;
-  expect_same_collisions(perfect_lattice<T>(), Inelastic<T>(T(15) / T(16), from_text<T>("1e-3")), T(30), 100);
+  expect_same_collisions(lattice_rows<T>(40), Inelastic<T>(T(15) / T(16), from_text<T>("1e-3")), T(30), 100);
 }
 
 TYPED_TEST(FilteredQueue, IntegerPlacesAndVelocities) {
   using T = typename TypeParam::Scalar;
   expect_every_choice_right(integers<T>(), Inelastic<T>(T(1), T(0)), T(200), 200);
   expect_every_choice_right(integers<T>(), Inelastic<T>(T(3) / T(4), from_text<T>("1e-3")), T(10), 100);
-  expect_every_choice_right(perfect_lattice<T>(), Inelastic<T>(T(1), T(0)), T(100), 20 * 21 / 2);
-  expect_every_choice_right(perfect_lattice<T>(), Inelastic<T>(T(15) / T(16), from_text<T>("1e-3")), T(30), 100);
+  expect_every_choice_right(lattice_rows<T>(40), Inelastic<T>(T(1), T(0)), T(100), 20 * 21 / 2);
+  expect_every_choice_right(lattice_rows<T>(40), Inelastic<T>(T(15) / T(16), from_text<T>("1e-3")), T(30), 100);
 }
 
 template <class T>
 std::uint64_t expect_index_bits_change_no_bit(const Scene<T>& particles, const Inelastic<T>& law, const T& step,
                                               int steps) {
-  auto run = gap_run(particles, law, {}, T(0), {.least_queue_bits = 3});
-  auto run13 = gap_run(particles, law, {}, T(0), {.least_queue_bits = 13});
-  auto run20 = gap_run(particles, law, {}, T(0), {.least_queue_bits = 20});
-  T t(0);
-  for (int k = 0; k < steps; ++k) {
-    t += step;
-    for (auto* other : {&run, &run13, &run20}) EXPECT_EQ(other->advance(t), Status::reached);
-    for (const auto* other : {&run13, &run20}) {
-      EXPECT_TRUE(same_collisions(run.counts(), other->counts())) << to_double(t);
-      EXPECT_TRUE(run.energy_lost() == other->energy_lost()) << to_double(t);
-      EXPECT_TRUE(identical(configuration_at(run, t), configuration_at(*other, t))) << to_double(t);
-    }
-  }
-  return run20.counts().close_calls;
+  const auto make = [&](int bits) { return gap_run(particles, law, {}, T(0), {.least_queue_bits = bits}); };
+  return test::expect_index_bits_change_no_bit(make, step, steps);
 }
 
 TYPED_TEST(FilteredQueue, IndexBitsChangeNoBit) {
@@ -127,7 +110,7 @@ TYPED_TEST(FilteredQueue, IndexBitsChangeNoBit) {
 
 TYPED_TEST(FilteredQueue, IndexBitsChangeNoBitWhereTimesAreEqual) {
   using T = typename TypeParam::Scalar;
-  EXPECT_GT(expect_index_bits_change_no_bit(perfect_lattice<T>(), Inelastic<T>(T(15) / T(16), T(0)), T(2), 8), 0U);
+  EXPECT_GT(expect_index_bits_change_no_bit(lattice_rows<T>(40), Inelastic<T>(T(15) / T(16), T(0)), T(2), 8), 0U);
   EXPECT_GT(expect_index_bits_change_no_bit(integers<T>(), Inelastic<T>(T(1), T(0)), T(2), 20), 0U);
 }
 

@@ -1,6 +1,6 @@
-// What is infinite or not a number is distinguished from numbers in every scalar type, whatever its numeric_limits say:
-// a run refuses it as a time to advance to, and continues unharmed. (In double-double an infinite time made no
-// collisions and said nothing; in double one that is no number overwrote memory.)
+// In every scalar type, whatever its numeric_limits, a run refuses an infinite or undefined time to advance to, and
+// continues unharmed. (In double-double a run to an infinite time used to make no collisions, without a message; in
+// double an undefined time overwrote memory.)
 #include <gtest/gtest.h>
 
 #include <stdexcept>

@@ -29,16 +29,8 @@ using namespace cradle::test;
 
 template <class P> using EveryScalarRun = InPrecision<P>;
 TYPED_TEST_SUITE(EveryScalarRun, EveryPrecision, PrecisionName);
-// Further on, in one type of each kind: what is quick, and MPFR (the other sizes are the same code).
-using LongRunPrecision = testing::Types<Precision<double>, Precision<long double>, Precision<double_double>
-#ifdef CRADLE_WITH_FLOAT128
-                                        ,
-                                        Precision<float128>
-#endif
-                                        ,
-                                        Precision<Mpfr<4>, 50>>;
 template <class P> using SlowScalarRun = InPrecision<P>;
-TYPED_TEST_SUITE(SlowScalarRun, LongRunPrecision, PrecisionName);
+TYPED_TEST_SUITE(SlowScalarRun, EachKindOfPrecision, PrecisionName);
 template <class P> using EveryScalarCollapse = InPrecision<P>;
 TYPED_TEST_SUITE(EveryScalarCollapse, EveryPrecision, PrecisionName);
 

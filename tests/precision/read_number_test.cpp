@@ -7,8 +7,6 @@
 
 #include <array>
 #include <bit>
-#include <cmath>
-#include <cstdint>
 #include <random>
 #include <string>
 

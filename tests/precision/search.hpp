@@ -101,6 +101,23 @@ template <class T> void expect_same_meetings(const Meetings<T>& found, const Mee
   }
 }
 
+// Of runs that `make` gives with so many index bits in a key. Returns the close calls of the last.
+template <class Make, class T>
+std::uint64_t expect_index_bits_change_no_bit(const Make& make, const T& step, int steps) {
+  auto run = make(3), run13 = make(13), run20 = make(20);
+  T t(0);
+  for (int k = 0; k < steps; ++k) {
+    t += step;
+    for (auto* each : {&run, &run13, &run20}) EXPECT_EQ(each->advance(t), Status::reached);
+    for (const auto* other : {&run13, &run20}) {
+      EXPECT_TRUE(same_collisions(run.counts(), other->counts())) << to_double(t);
+      EXPECT_TRUE(run.energy_lost() == other->energy_lost()) << to_double(t);
+      EXPECT_TRUE(identical(run.configuration(t), other->configuration(t))) << to_double(t);
+    }
+  }
+  return run20.counts().close_calls;
+}
+
 // Particles on integers with a few integer velocities: times are small rationals at first, equal ones abound.
 template <class T> Scene<T> integers() {
   std::vector<T> x, v;

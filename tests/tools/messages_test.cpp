@@ -1,24 +1,14 @@
-// What messages and help name is there: every key of a scene is one of the table of keys, every command one of the
-// program's, and its options are options of that command.
+// Keys, commands and options that messages and help name exist: every key is in the table of keys, every command is one
+// of the program's, and its options are options of that command.
 #include <regex>
 #include <set>
 #include <string>
 
 #include "cradle/tests/tools/program.hpp"
 
-namespace cradle::tests {
-namespace messages_test {
+namespace cradle::tests::messages_test {
 
 using Names = std::set<std::string>;
-
-// All of a pattern's first groups.
-Names matches(const std::string& text, const std::string& pattern) {
-  const std::regex regex(pattern);
-  Names found;
-  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match)
-    found.insert((*match)[1]);
-  return found;
-}
 
 // The texts between quotes in a source of the program, those that follow each other as one.
 std::string texts(const std::string& source) {
@@ -64,5 +54,4 @@ TEST_F(Messages, NameCommandsAndOptionsThatThereAre) {
   }
 }
 
-}  // namespace messages_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::messages_test

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the program as a user does: a shell command in a folder of its own, with exit status and what it printed.
+// Runs the program as a user does: a shell command in a separate folder, with its exit status and its output.
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -10,11 +10,31 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "cradle/tests/places.hpp"
+#include "cradle/tests/texts.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests {
+
+using test::begins;
+using test::has;
+using test::matches;
+
+// The message of the error that `work` throws, with this status.
+template <class Work> std::string refusal(tools::Exit status, const Work& work) {
+  try {
+    work();
+  } catch (const tools::Error& error) {
+    EXPECT_EQ(error.status, status) << error.what();
+    return error.what();
+  }
+  return "nothing was refused";
+}
 
 struct Printed {
   int status;
@@ -37,21 +57,49 @@ class ProgramTest : public testing::Test {
     if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
   }
 
-  // `command` as typed in the test's folder; `cradle` is the program that was built.
-  Printed shell(const std::string& command) const {
-    const std::string line = "cd '" + folder.string() + "' && PATH=\"" + test::build_folder + "/tools:$PATH\" && { " +
-                             command + "\n} >.out 2>.err </dev/null";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder / ".out"), contents(folder / ".err")};
+  // `command` as typed in the test's folder; `cradle` is the program that was built. Another exit status than the
+  // expected one is a failure of the test.
+  Printed shell(const std::string& command, std::optional<int> expected = {}, const char* file = __builtin_FILE(),
+                int line = __builtin_LINE()) const {
+    const std::string whole = "cd '" + folder.string() + "' && PATH=\"" + test::build_folder + "/tools:$PATH\" && { " +
+                              command + "\n} >.out 2>.err </dev/null";
+    const int status = std::system(whole.c_str());
+    Printed printed{WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder / ".out"), contents(folder / ".err")};
+    if (expected && printed.status != *expected)
+      ADD_FAILURE_AT(file, line) << "status " << printed.status << ", not " << *expected << ": " << command << "\n"
+                                 << printed.out << printed.err;
+    return printed;
   }
 
   void write(const std::string& name, const std::string& text) const {
     std::ofstream stream(folder / name, std::ios::binary);
     stream << text;
   }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
+  tools::Result read(const std::string& name) const { return tools::read_result(path(name)); }
+  void expect_same(const std::string& a, const std::string& b) const {
+    ASSERT_FALSE(contents(folder / a).empty()) << a;
+    EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
+  }
 
   std::filesystem::path folder;
 };
+
+inline const tools::Column& column(const tools::Group& group, std::string_view name) {
+  for (const tools::Column& c : group.columns)
+    if (c.name == name) return c;
+  throw std::out_of_range(group.name + "/" + std::string(name));
+}
+inline const tools::Column& column(const tools::Result& result, std::string_view group, std::string_view name) {
+  const tools::Group* found = result.find(group);
+  if (found == nullptr) throw std::out_of_range(std::string(group));
+  return column(*found, name);
+}
+template <class T = double>
+std::vector<T> numbers(const tools::Result& result, std::string_view group, std::string_view name) {
+  return std::get<std::vector<T>>(column(result, group, name).values);
+}
 
 // Runs that are interfered with must not end by themselves, however quick the machine is: this one would make 1e18
 // collisions. It keeps its state ten times a second.

@@ -5,8 +5,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 
-namespace cradle::tests {
-namespace readme_test {
+namespace cradle::tests::readme_test {
 
 class Readme : public ProgramTest {};
 
@@ -28,8 +27,7 @@ TEST_F(Readme, CommandsSucceedAsPrinted) {
   }
   EXPECT_GE(commands, 20);
   for (const auto* made : {"fig2.h5", "fig2.png", "csv/series.csv", "theory.txt", "core.h5", "fig4.h5", "keys.txt"})
-    EXPECT_TRUE(std::filesystem::exists(folder / made)) << made;
+    EXPECT_TRUE(exists(made)) << made;
 }
 
-}  // namespace readme_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::readme_test

@@ -2,7 +2,8 @@
 # completions, and the Python package.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS cradle_options cradle_core cradle_ensemble cradle_precision cradle EXPORT cradle-targets)
+install(TARGETS cradle_options cradle_core cradle_steps cradle_ensemble cradle_precision cradle
+        EXPORT cradle-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(_part core precision)
   install(DIRECTORY ${_part}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cradle/${_part} FILES_MATCHING PATTERN "*.hpp")
 endforeach()

@@ -1,5 +1,5 @@
-# Libraries that Cradle's headers need, as targets: Boost::headers, TBB::tbb and, where it is there, cradle::mpfr. What
-# is required here cradle-config.cmake.in requires of those who use an installation.
+# Libraries that Cradle needs, as targets: Boost::headers, TBB::tbb and, where they are there, cradle::mpfr and, for
+# core/parallel/steps, hwy::hwy (Google Highway). What is required here cradle-config.cmake.in requires of those who use an installation.
 if(POLICY CMP0167)
   cmake_policy(SET CMP0167 NEW)  # Boost's own package config
 endif()
@@ -7,6 +7,14 @@ find_package(Boost 1.74 REQUIRED)
 find_package(TBB 2021 REQUIRED)
 find_package(Threads REQUIRED)
 include(${CMAKE_CURRENT_LIST_DIR}/mpfr.cmake)
+option(CRADLE_HIGHWAY "make collisions as vectors, where Highway is found" ON)
+set(CRADLE_NEEDS_HIGHWAY FALSE)
+if(CRADLE_HIGHWAY)
+  find_package(hwy CONFIG QUIET)
+  if(TARGET hwy::hwy)
+    set(CRADLE_NEEDS_HIGHWAY TRUE)
+  endif()
+endif()
 set(CRADLE_NEEDS_MPFR FALSE)
 if(TARGET cradle::mpfr)
   set(CRADLE_NEEDS_MPFR TRUE)

@@ -6,7 +6,6 @@
 #include "cradle/tools/result/csv.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 
 namespace cradle::tools {
@@ -20,7 +19,7 @@ struct ExportArguments {
 Exit export_result(const ExportArguments& options) {
   if (options.folder.empty() && options.result.empty())
     throw Error({}, "nothing to export to", "", "give --to DIR, --result FILE or both");
-  const bool in_progress = JournalReader::kind(options.file) == JournalOf::run;
+  const bool in_progress = stored_in(options.file) == Stored::journal;
   const Result result =
       in_progress ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   if (!options.result.empty()) {

@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/result/listing.hpp"
 #include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/store/ensemble_journal.hpp"
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/progress.hpp"
@@ -29,14 +29,18 @@ std::string file_of(const std::string& path, std::string_view ending) {
   return path.substr(0, path.size() - (path.ends_with(ending) ? ending.size() : 0));
 }
 
-Exit info_of_journal(const InfoArguments& options) {
-  const JournalContents journal = read_journal_contents(options.file);
+Exit info_of_study(const InfoArguments& options) {
+  JournalReader reader(options.file);
+  const JournalHeader& journal = reader.header();
+  std::vector<std::uint64_t> replicas(journal.points.size());
+  while (const auto record = reader.next<EnsembleRecord>())
+    if (record->point < replicas.size()) replicas[record->point] += record->replicas();
   fmt::print("journal of {} {}: `cradle resume {}` continues from here, as does the command that was interrupted\n",
              journal.kind == "ensemble" ? "an" : "a", journal.kind, file_of(options.file, ".part"));
-  if (journal.torn_bytes > 0) fmt::print("{} bytes at its end are damaged\n", journal.torn_bytes);
-  for (std::size_t k = 0; k < journal.scenes.size(); ++k) {
-    const auto& [group, scene] = journal.scenes[k];
-    fmt::print("{}{}{} replicas finished\n", group, group.empty() ? "" : ": ", journal.replicas[k]);
+  if (reader.torn_bytes() > 0) fmt::print("{} bytes at its end are damaged\n", reader.torn_bytes());
+  for (std::size_t k = 0; k < journal.points.size(); ++k) {
+    const auto& [group, scene] = journal.points[k];
+    fmt::print("{}{}{} replicas finished\n", group, group.empty() ? "" : ": ", replicas[k]);
     if (k == 0 || options.all) fmt::print("{}", listing(parse_scene(scene, options.file), options.all));
   }
   return Exit::done;
@@ -44,14 +48,17 @@ Exit info_of_journal(const InfoArguments& options) {
 
 std::string line(std::string_view name, const std::string& value) { return fmt::format("{:<24}{}\n", name, value); }
 
-// Of one that is there and is this journal's.
-std::string checkpoint_listing(const std::string& path, const RunHeader* journal) {
-  if (!std::filesystem::exists(path)) return line("checkpoint", "none yet: `resume` starts anew");
-  StateReader reader(path);
-  const CheckpointHeader found = read_checkpoint(reader, path);
-  if (journal != nullptr && found.run.number != journal->number) return line("checkpoint", "of a run before");
+std::string checkpoint_listing(const CheckpointHeader& found, const std::string& path) {
   return line("checkpoint", fmt::format("t = {:.10g}, {} collisions, {:.0f} s of computing, {} bytes", found.time,
                                         found.collisions, found.seconds, std::filesystem::file_size(path)));
+}
+
+// Of the one that is there and is this journal's.
+std::string checkpoint_listing(const JournalHeader& journal, const std::string& path) {
+  if (!std::filesystem::exists(path)) return line("checkpoint", "none yet: `resume` starts anew");
+  const StateReader reader(path);
+  if (reader.header().run.identity != journal.identity) return line("checkpoint", "of a run before");
+  return checkpoint_listing(reader.header(), path);
 }
 
 Exit info_of_run(const InfoArguments& options) {
@@ -72,26 +79,24 @@ Exit info_of_run(const InfoArguments& options) {
                                       std::pair("closure speed", now.closure_speed)})
       if (!std::isnan(value)) fmt::print("{}", line(name, fmt::format("{:.6g}", value)));
   }
-  fmt::print("{}", checkpoint_listing(RunFiles::checkpoint_of(file_of(options.file, ".part")), &journal.header));
+  fmt::print("{}", checkpoint_listing(journal.header, RunFiles::checkpoint_of(file_of(options.file, ".part"))));
   if (journal.torn_bytes > 0) fmt::print("{} bytes at its end are not whole\n", journal.torn_bytes);
   fmt::print("{}", listing(result_so_far(std::move(journal), options.file), options.file, options.all));
   return Exit::done;
 }
 
 Exit info_of_checkpoint(const InfoArguments& options) {
-  StateReader reader(options.file);
-  const CheckpointHeader found = read_checkpoint(reader, options.file);
+  const StateReader reader(options.file);
   fmt::print("checkpoint of a run: `cradle resume {}` continues from it\n", file_of(options.file, ".checkpoint"));
-  fmt::print("{}{}", line("cradle_version", found.run.version), checkpoint_listing(options.file, nullptr));
-  fmt::print("{}", listing(scene_of(found.run, options.file), options.all));
+  fmt::print("{}{}", checkpoint_listing(reader.header(), options.file),
+             listing(scene_of(reader.header().run, options.file), options.all));
   return Exit::done;
 }
 
 Exit info(const InfoArguments& options) {
-  const auto kind = JournalReader::kind(options.file);
-  if (kind == JournalOf::replicas) return info_of_journal(options);
-  if (kind == JournalOf::run) return info_of_run(options);
-  if (StateReader::is_state(options.file)) return info_of_checkpoint(options);
+  if (const auto journal = journal_header(options.file))
+    return journal->of_run() ? info_of_run(options) : info_of_study(options);
+  if (stored_in(options.file) == Stored::checkpoint) return info_of_checkpoint(options);
   fmt::print("{}", listing(read_result(options.file, Reading::ends), options.file, options.all));
   return Exit::done;
 }
@@ -99,17 +104,18 @@ Exit info(const InfoArguments& options) {
 // As long as the run continues, its journal is there.
 Exit follow(const InfoArguments& options) {
   using namespace std::chrono_literals;
-  if (!JournalReader::kind(options.file)) return info(options);
+  const auto in_progress = [&] { return stored_in(options.file) == Stored::journal; };
+  if (!in_progress()) return info(options);
   for (;;) {
     fmt::print("{}", ::isatty(STDOUT_FILENO) != 0 ? "\033[H\033[2J" : "");
     try {
       info(options);
     } catch (const Error&) {
-      if (JournalReader::kind(options.file)) throw;  // else the run has ended meanwhile
+      if (in_progress()) throw;  // else the run has ended meanwhile
     }
     std::fflush(stdout);
     std::this_thread::sleep_for(2s);
-    if (JournalReader::kind(options.file)) continue;
+    if (in_progress()) continue;
     fmt::print("{} is gone: the run is over\n", options.file);
     return Exit::done;
   }

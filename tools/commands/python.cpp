@@ -9,35 +9,49 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <vector>
+
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 
-TemporaryFolder::TemporaryFolder() {
-  std::error_code failed;
-  path_ = (std::filesystem::temp_directory_path(failed) / "cradle-XXXXXX").string();
-  if (failed || ::mkdtemp(path_.data()) == nullptr) throw no_room();
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::string TemporaryFolder::write(std::string_view name, std::string_view text) const {
-  const auto file = std::filesystem::path(path_) / name;
-  std::error_code failed;
-  std::filesystem::create_directories(file.parent_path(), failed);
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  if (!stream.flush()) throw no_room();
-  return file.string();
-}
-
-Error TemporaryFolder::no_room() const {
-  return {{path_, 0, ""}, "no temporary files", "", "make room on the disk or set TMPDIR", Exit::io};
-}
-
 namespace {
+
+// A folder that is gone, with its files, when its owner is. Throws Error (Exit::io) where there is no room for it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code failed;
+    path_ = (std::filesystem::temp_directory_path(failed) / "cradle-XXXXXX").string();
+    if (failed || ::mkdtemp(path_.data()) == nullptr) throw no_room();
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+  // Makes folders in the name where they are missing.
+  void write(std::string_view name, std::string_view text) const {
+    const auto file = std::filesystem::path(path_) / name;
+    std::error_code failed;
+    std::filesystem::create_directories(file.parent_path(), failed);
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    if (!stream.flush()) throw no_room();
+  }
+
+ private:
+  Error no_room() const {
+    return {{path_, 0, ""}, "no temporary files", "", "make room on the disk or set TMPDIR", Exit::io};
+  }
+
+  std::string path_;
+};
 
 // Runs a program found on the path and returns its exit status, 127 if there is none.
 int execute(const std::vector<std::string>& words, bool silent) {
@@ -73,17 +87,26 @@ std::string find_python() {
               Exit::io);
 }
 
+// fig2.h5 and fig2.h5.part are reported in fig2.html.
+std::string output_beside(std::filesystem::path file, const char* extension) {
+  if (file.extension() == ".part") file.replace_extension();
+  return file.replace_extension(extension).string();
+}
+
 }  // namespace
 
-Exit run_python(const TemporaryFolder& folder, const std::vector<std::string>& words, const std::string& file,
+Exit run_python(const std::string& command, const PageArguments& arguments, const char* extension,
                 std::string_view what) {
-  std::vector<std::string> command{find_python(), "-B", folder.path() + "/cradle"};
-  command.insert(command.end(), words.begin(), words.end());
+  const auto& [file, wanted] = arguments;
+  if (stored_in(file) == Stored::other) read_result(file, Reading::ends);  // or Python would see it damaged
+  const std::string output = wanted.empty() ? output_beside(file, extension) : wanted;
+  file_behind(output);  // neither a folder nor a device
+  const TemporaryFolder folder;
   for (const EmbeddedFile& part : python_package()) folder.write(part.name, part.text);
   std::error_code unknown;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
   if (!unknown) ::setenv("CRADLE_PROGRAM", self.c_str(), 1);  // what the package calls in its turn
-  const int status = execute(command, false);
+  const int status = execute({find_python(), "-B", folder.path() + "/cradle", command, file, "-o", output}, false);
   if (status != 0 && status != static_cast<int>(Exit::bad_input) && status != static_cast<int>(Exit::io))
     throw Error({file, 0, ""}, fmt::format("{} could not be made", what), fmt::format("status {}", status),
                 "see the message above", Exit::io);

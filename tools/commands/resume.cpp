@@ -4,8 +4,7 @@
 
 #include "cradle/tools/commands/run_command.hpp"
 #include "cradle/tools/commands/study.hpp"
-#include "cradle/tools/store/ensemble_journal.hpp"
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/ensemble_store.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
@@ -23,18 +22,15 @@ Exit resume(const ResumeArguments& options) {
     if (file.ends_with(ending)) file.resize(file.size() - ending.size());
   if (options.until && !plain_decimal(*options.until))
     throw Error({"--until", 0, ""}, "not a number", *options.until, "give a time");
-  if (JournalReader::kind(RunFiles::journal_of(file)) == JournalOf::replicas) {
+  const std::string path = RunFiles::journal_of(file);
+  if (const auto journal = journal_header(path); journal && !journal->of_run()) {
     if (options.until)
       throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
-    return run_study_command(options, [&] {
-      const std::string path = RunFiles::journal_of(file);
-      const JournalContents journal = header_in(JournalReader(path, JournalOf::replicas).header());
-      return StudyPlan{study_in(journal, path), journal.wanted, file};
-    });
+    return run_study_command(options, [&] { return StudyPlan{study_in(*journal, path), journal->wanted, file}; });
   }
-  const FileClaim claim(file);
   Interrupt interrupt;
   note_signals(interrupt);
+  const FileClaim claim(file);
   RunFiles files(file, options.until);
   if (!files.over().empty()) {
     if (!options.quiet) fmt::print("{}\n", files.over());

@@ -44,8 +44,8 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
     tools::notify(
         files.up_to_date()
             ? fmt::format("interrupted: `cradle resume {}` continues from there\n", output)
-            : fmt::format("interrupted: `cradle resume {}` continues from the previous checkpoint, if there is one, "
-                          "else it starts anew\n",
+            : fmt::format("interrupted: `cradle resume {}` continues from the previous checkpoint; without one, run "
+                          "the scene again\n",
                           output));
     if (!options.quiet) fmt::print("{}", text);
     return status_of_signal(interrupt.signal());
@@ -63,9 +63,9 @@ Exit run(const RunArguments& options) {
   const Scene scene = options.read();
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   check_built(scene);
-  const FileClaim claim(output);
   Interrupt interrupt;
   note_signals(interrupt);
+  const FileClaim claim(output);
   RunFiles files(output, scene);
   return run_command(files, output, options, interrupt);
 }

@@ -208,17 +208,8 @@ void EnsembleState::read(const Result& result, const std::string& file) {
       if (stopped.contains(replica)) messages_.emplace(replica, colon == line.npos ? line : line.substr(colon + 2));
     }
   }
-  for (std::size_t k = 0; k < spreads_.size(); ++k) {
-    const Group expected = spread_group(k);
-    const Group& spread = get(result, expected.name, file);
-    Histograms counts(spreads_[k].bins(), spreads_[k].entries());
-    const auto& in_file = get<std::uint64_t>(spread, "counts", file);
-    if (in_file.size() != counts.all_counts().size())
-      throw Error({file, 0, expected.name}, "a damaged ensemble", fmt::format("{} counts", in_file.size()),
-                  "take it from a copy, or run it again", Exit::io);
-    counts.set_all_counts(in_file);
-    spreads_[k].add(counts);
-  }
+  for (std::size_t k = 0; k < spreads_.size(); ++k)
+    take_counts(k, get<std::uint64_t>(get(result, spread_group(k).name, file), "counts", file), file);
 }
 
 }  // namespace cradle::tools

@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "cradle/core/engine/state.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
@@ -32,6 +34,14 @@ struct ReplicaRow {
   RunEnd outcome = RunEnd::reached;
   std::uint64_t collisions = 0, merges = 0;
   std::vector<double> numbers;  // one for each of ReplicaLayout::numbers; NaN: has none
+
+  static auto state(auto& self) {
+    return std::tie(self.index, self.outcome, self.collisions, self.merges, self.numbers);
+  }
+  void loaded() const {
+    require_state(index >> 63 == 0, "a replica beyond the last");  // the tree of replicas ends there
+    require_state(static_cast<std::size_t>(outcome) < outcome_count, "no outcome of a replica");
+  }
 };
 
 struct ReplicaLayout {

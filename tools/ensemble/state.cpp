@@ -110,12 +110,18 @@ void EnsembleState::check_length(std::size_t entries) const {
                 fmt::format("this version records {}: use the program that wrote it", layout_.entries), Exit::io);
 }
 
+namespace {
+
+Error damaged(const std::string& from, const std::string& found) {
+  return {{from, 0, ""}, "a damaged ensemble", found, "take it from a copy, or run it again", Exit::io};
+}
+
+}  // namespace
+
 // A node that comes from a file or another process: nothing in it is believed.
 void EnsembleState::take_node(TreeNode node, const std::string& from) {
   const Moments& m = node.moments;
-  const auto wrong = [&](const std::string& found) {
-    return Error({from, 0, ""}, "a damaged ensemble", found, "take it from a copy, or run it again", Exit::io);
-  };
+  const auto wrong = [&](const std::string& found) { return damaged(from, found); };
   if (node.level > 62 || m.replicas > node.range().count)
     throw wrong(fmt::format("{} replicas in a node of level {}", m.replicas, node.level));
   if (m.replicas > 0) check_length(m.entries());
@@ -129,6 +135,14 @@ void EnsembleState::take_node(TreeNode node, const std::string& from) {
   } catch (const std::invalid_argument& error) {
     throw wrong(error.what());
   }
+}
+
+void EnsembleState::take_counts(std::size_t k, std::vector<std::uint64_t> counts, const std::string& from) {
+  if (k >= spreads_.size() || counts.size() != spreads_[k].all_counts().size())
+    throw damaged(from, fmt::format("{} counts for the spread {}", counts.size(), k));
+  Histograms other(spreads_[k].bins(), spreads_[k].entries());
+  other.set_all_counts(std::move(counts));
+  spreads_[k].add(other);
 }
 
 // The table of replicas and the statistics are of the same ones.
@@ -147,6 +161,45 @@ void EnsembleState::check_replicas(const std::string& file) const {
     throw Error({file, 0, name("replicas")}, "a damaged ensemble",
                 fmt::format("{} replicas listed, statistics of {}", table_.size(), tree_.size()),
                 "take it from a copy, or run it again", Exit::io);
+}
+
+// ---- as records
+
+std::uint64_t EnsembleRecord::replicas() const {
+  if (const auto* rows = std::get_if<RowsRecord>(&what)) return rows->size();
+  return std::holds_alternative<ReplicaRecord>(what) || std::holds_alternative<FailureRecord>(what) ? 1 : 0;
+}
+
+void EnsembleState::put_records(std::uint64_t point, const JournalWriter::Put& put) const {
+  const auto put_one = [&](auto&& what) { put(to_bytes(EnsembleRecord{point, std::forward<decltype(what)>(what)})); };
+  constexpr std::size_t rows_of_a_record = 10000;
+  for (std::size_t first = 0; first < table_.size(); first += rows_of_a_record) {
+    RowsRecord rows;
+    for (std::size_t k = first; k < std::min(first + rows_of_a_record, table_.size()); ++k) {
+      const auto failure = messages_.find(table_[k].index);
+      rows.emplace_back(table_[k], failure == messages_.end() ? "" : failure->second);
+    }
+    put_one(std::move(rows));
+  }
+  for (std::size_t k = 0; k < spreads_.size(); ++k) put_one(SpreadRecord{k, spreads_[k].all_counts()});
+  for (TreeNode& node : tree_.nodes()) put_one(std::move(node));
+}
+
+void EnsembleState::apply(EnsembleRecord&& record) {
+  if (auto* one = std::get_if<ReplicaRecord>(&record.what)) {
+    if (!tree_.contains(one->row.index)) add(one->row, std::move(one->values));
+  } else if (auto* failure = std::get_if<FailureRecord>(&record.what)) {
+    if (!tree_.contains(failure->replica)) fail(failure->replica, std::move(failure->message));
+  } else if (auto* rows = std::get_if<RowsRecord>(&record.what)) {
+    for (auto& [row, message] : *rows) {
+      table_.add(row);
+      if (row.outcome == RunEnd::failed) messages_.emplace(row.index, std::move(message));
+    }
+  } else if (auto* spread = std::get_if<SpreadRecord>(&record.what)) {
+    take_counts(spread->number, std::move(spread->counts), "a journal");
+  } else {
+    take_node(std::get<TreeNode>(std::move(record.what)), "a journal");
+  }
 }
 
 }  // namespace cradle::tools

@@ -9,21 +9,43 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <string_view>
+#include <tuple>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/store/journal.hpp"
-#include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {
 
-/// Bins for the values of a quantity: "series/energy", "profiles/0000/velocity".
-struct SpreadRequest {
-  std::string name;
-  FixedBins bins;
-  bool operator==(const SpreadRequest&) const = default;
+// ---- an ensemble as records, which journals hold and ranks send
+struct ReplicaRecord {
+  ReplicaRow row;
+  std::vector<double> values;
+  static auto state(auto& self) { return std::tie(self.row, self.values); }
+};
+struct FailureRecord {
+  ReplicaIndex replica = 0;
+  std::string message;
+  static auto state(auto& self) { return std::tie(self.replica, self.message); }
+  void loaded() const { require_state(replica >> 63 == 0, "a replica beyond the last"); }
+};
+using RowsRecord =
+    std::vector<std::pair<ReplicaRow, std::string>>;  // with messages, of replicas whose values nodes have
+struct SpreadRecord {
+  std::uint64_t number = 0;  // of the spread
+  std::vector<std::uint64_t> counts;
+  static auto state(auto& self) { return std::tie(self.number, self.counts); }
+};
+struct EnsembleRecord {
+  std::uint64_t point = 0;  // the number of this ensemble among those of a sweep
+  std::variant<ReplicaRecord, FailureRecord, RowsRecord, SpreadRecord, TreeNode> what;
+  static auto state(auto& self) { return std::tie(self.point, self.what); }
+
+  /// Of how many replicas it holds the outcome.
+  std::uint64_t replicas() const;
 };
 
 /// Rows as they come, numbers side by side: some 50 bytes a replica.
@@ -79,17 +101,10 @@ class EnsembleState {
   /// The other's replicas join these; there must be none in common.
   void take(EnsembleState& other);
 
-  // ---- as records; `point` is the number of this ensemble among those of a sweep
-  static std::string record(std::uint64_t point, const ReplicaRow& row, const std::vector<double>& values);
-  static std::string record(std::uint64_t point, ReplicaIndex failed, const std::string& message);
-  /// All there is, for a set that is read from nothing else.
+  /// All there is as records, for a set that is read from nothing else; `point` is the number of this ensemble.
   void put_records(std::uint64_t point, const JournalWriter::Put& put) const;
-  /// The point that a record belongs to comes first in it.
-  static std::uint64_t point(std::string_view record) { return ByteReader(record).integer(); }
-  /// How many replicas a record has.
-  static std::uint64_t replicas_in(std::string_view record);
-  /// A replica that is there already is passed over. Throws Error (Exit::io) for what is no record.
-  void apply(std::string_view record);
+  /// A replica that is there already is passed over. Throws Error (Exit::io) for a record of another ensemble.
+  void apply(EnsembleRecord&& record);
 
   // ---- as groups of a result file
   std::vector<Group> groups() const;
@@ -105,6 +120,7 @@ class EnsembleState {
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
   void check_length(std::size_t entries) const;
   void take_node(TreeNode node, const std::string& from);
+  void take_counts(std::size_t k, std::vector<std::uint64_t> counts, const std::string& from);
   void check_replicas(const std::string& file) const;
   Group quantity_group(const Quantity& quantity, const Moments& total) const;
   Group spread_group(std::size_t k) const;

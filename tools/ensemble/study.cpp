@@ -48,11 +48,10 @@ std::string scene_difference(const Scene& found, const Scene& wanted) {
 }
 
 std::uint64_t Study::identity() const {
-  ByteWriter all;
-  all.put(version).put(kind);
-  for (const Point& point : points) all.put(point.group).put(effective_toml(point.scene));
-  for (const auto& [name, bins] : spreads) all.put(name).put(bins.from).put(bins.to).put(std::uint64_t{bins.bins});
-  return crc64(all.bytes());
+  std::string all = to_bytes(std::string(version)) + to_bytes(kind);
+  for (const Point& point : points) all += to_bytes(std::pair(point.group, effective_toml(point.scene)));
+  for (const SpreadRequest& spread : spreads) all += to_bytes(spread);
+  return crc64(all);
 }
 
 Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads) {
@@ -87,7 +86,7 @@ Study ensemble_in(const Result& result, const std::string& file) {
            {attribute<double>(group.attributes, "from", file), attribute<double>(group.attributes, "to", file),
             attribute<std::uint64_t>(group.attributes, "bins", file)}});
   for (const SpreadRequest& spread : spreads)
-    if (!(spread.bins.from < spread.bins.to) || spread.bins.bins < 1 || spread.bins.bins > 1'000'000)
+    if (!spread.bins_are_possible())
       throw Error({file, 0, under + spread.name}, "no bins", fmt::format("{}", spread.bins.bins), "make the file anew",
                   Exit::io);
   return ensemble_of(scene_in(result.attributes, file), std::move(spreads));

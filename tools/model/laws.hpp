@@ -1,5 +1,5 @@
 // What the program needs to know of each collision law, one row per law. A new law is a class in core/ (its physics),
-// its keys (tools/scene), its row here, and its line in run_in.hpp, where scenes become types.
+// its keys (tools/scene), its row here, and its lines in run_in.hpp, where scenes become types (core/README.md).
 #pragma once
 
 #include <string_view>
@@ -16,8 +16,8 @@ struct LawRow {
   bool merges;                                  // particles stick or pass through each other; else they bounce
   bool needs_events;                            // false: the state at any time follows without collisions
   bool provable;                                // `certify` has its map in balls (tools/certify)
-  void (*predict)(const Scene&, Predictions&);  // the paper's formulas
-  void (*cost_of_rows)(const Scene&, Cost&);    // expected collisions of two equal rows
+  void (*predict)(const Scene&, Predictions&);  // the paper's formulas; null: none
+  void (*cost_of_rows)(const Scene&, Cost&);    // expected collisions of two equal rows; null: not known
   std::string_view misprints;                   // of the paper's formulas for this law
 };
 

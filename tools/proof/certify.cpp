@@ -21,7 +21,6 @@ std::unique_ptr<Certifier> certifier(const Scene& scene, unsigned digits) {
 #ifdef CRADLE_WITH_MPFR
   MpfrPrecision::set_bits(MpfrPrecision::bits_for(digits));
   if (Mpfr<4>::holds(digits)) return certifier_in<Mpfr<4>>(scene, digits);
-  if (Mpfr<8>::holds(digits)) return certifier_in<Mpfr<8>>(scene, digits);
   if (Mpfr<16>::holds(digits)) return certifier_in<Mpfr<16>>(scene, digits);
   if (Mpfr<56>::holds(digits)) return certifier_in<Mpfr<56>>(scene, digits);
 #endif

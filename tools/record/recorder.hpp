@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "cradle/core/engine/status.hpp"
 #include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
@@ -104,12 +105,19 @@ template <Real T> class EventRecorder {
     interval_.push_back(c.interval);
     speed_.push_back(c.closing_speed);
   }
+  /// What the last collision was shows in the engine's counts after it: to be called before the next one.
+  void made(const Counts& now) {
+    if (kind_.size() < left_.size())
+      kind_.push_back(now.merges > before_.merges ? 2 : now.below_cutoff > before_.below_cutoff ? 1 : 0);
+    before_ = now;
+  }
 
   std::size_t rows() const { return left_.size(); }
   /// The rows since it was called last.
   Recorded<T> take() {
     return {events_table(),
-            columns<T>(taken(left_), taken(right_), taken(time_), taken(low_), taken(interval_), taken(speed_)),
+            columns<T>(taken(left_), taken(right_), taken(time_), taken(low_), taken(interval_), taken(speed_),
+                       taken(kind_)),
             {}};
   }
 
@@ -122,7 +130,8 @@ template <Real T> class EventRecorder {
       return T(to_double(time));
   }
 
-  std::vector<std::uint64_t> left_, right_;
+  std::vector<std::uint64_t> left_, right_, kind_;
+  Counts before_;
   std::vector<T> time_, interval_, speed_;
   std::vector<double> low_;
 };

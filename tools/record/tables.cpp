@@ -94,7 +94,8 @@ Group events_table() {
            {"time", "t", "time of the collision, rounded", {}},
            {"time_low", "t", "what time misses: the collision is at time + time_low", {}},
            {"interval", "t", "time since the collision before", {}},
-           {"closing_speed", "l/t", "closing speed before the collision", {}}}};
+           {"closing_speed", "l/t", "closing speed before the collision", {}},
+           {"kind", "1", "0 by the law, 1 below the cut-off or within the contact time, 2 merged", {}, 1, true}}};
 }
 
 Group initial_table() {

@@ -54,7 +54,11 @@ inline Handle text_type(std::size_t bytes, const std::string& path) {
   return type;
 }
 
-/// HDF5 prints a stack of its own messages; ours name the file and what to do.
-inline void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// To be called first. HDF5 prints a stack of its own messages; ours name the file and what to do. At exit it flushes
+/// again what it could not write to a full disk, and crashes.
+inline void silence() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 }  // namespace cradle::tools::hdf5

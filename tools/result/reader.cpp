@@ -1,14 +1,10 @@
 #include "cradle/tools/result/reader.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <new>
 
-#include "cradle/tools/result/guarded.hpp"
 #include "cradle/tools/result/hdf5_values.hpp"
-#include "cradle/tools/result/result_bytes.hpp"
 #include "cradle/tools/result/seal.hpp"
 #include "cradle/tools/support/version.hpp"
 
@@ -80,7 +76,7 @@ class Walk {
   std::uint64_t objects_ = 0;
 };
 
-Result read_hdf5(const Source& source, Seal seal) {
+Result read_hdf5(const Source& source) {
   hdf5::silence();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, source.path + ": no property list");
   // Cluster file systems cannot lock.
@@ -90,11 +86,6 @@ Result read_hdf5(const Source& source, Seal seal) {
     throw Error({source.path, 0, ""}, "not an HDF5 file, or a damaged one", "", "give a result file that cradle wrote",
                 Exit::io);
   const Handle file(id, H5Fclose, source.path + ": could not be opened");
-  // HDF5 ends its files where it has written last. What is behind that was a seal.
-  haddr_t end = 0;
-  check(H5Fget_eoa(file, &end), source.path + ": could not be read");
-  if (seal == Seal::none && source.bytes > end)
-    throw source.wrong("", "damaged", fmt::format("{} bytes behind its end", source.bytes - end));
   Result result;
   result.attributes = hdf5::attributes(source, file, "");
   const auto version = attribute<std::uint64_t>(result.attributes, "format_version", source.path);
@@ -108,15 +99,8 @@ Result read_hdf5(const Source& source, Seal seal) {
 }  // namespace
 
 Result read_result(const std::string& path, Reading reading) {
-  const Seal seal = check_seal(path);
-  const Source source{path, std::filesystem::file_size(path), reading};
-  if (seal == Seal::intact) return read_hdf5(source, seal);
-  constexpr std::uint64_t bytes_a_second = 50'000'000;
-  const auto seconds = static_cast<unsigned>(1 + source.bytes / bytes_a_second);
-  const auto bytes = in_another_process([&] { return to_bytes(read_hdf5(source, seal)); }, seconds);
-  if (!bytes)
-    throw Error({path, 0, ""}, "damaged", "HDF5 fails on it", "take it from a copy, or make it anew", Exit::io);
-  return result_of_bytes(*bytes);
+  check_seal(path);
+  return read_hdf5({path, std::filesystem::file_size(path), reading});
 }
 
 }  // namespace cradle::tools

@@ -1,5 +1,5 @@
-// Result files read back. Nothing in them is believed: names, types, shapes and sizes are checked before anything is
-// done with them, and a file that is not known to be intact (seal.hpp) is read in a process of its own (guarded.hpp).
+// Result files read back. A damaged file is refused by its seal (seal.hpp). Nothing in a file is believed: names,
+// types, shapes and sizes are checked before anything is done with them.
 #pragma once
 
 #include <string>

@@ -1,8 +1,14 @@
 #include "cradle/tools/result/result.hpp"
 
+#include "cradle/core/engine/state.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
+
+void Column::loaded() const {
+  const std::size_t numbers = std::visit([](const auto& v) { return v.size(); }, values);
+  require_state(width > 0 && numbers % width == 0, "rows that are not whole");
+}
 
 const Group* Result::find(std::string_view name) const {
   for (const auto& group : groups)

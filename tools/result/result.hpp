@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -30,6 +31,9 @@ struct Column {
   std::size_t rows() const {
     return std::visit([](const auto& v) { return v.size(); }, values) / width + left_out;
   }
+  /// Of a column that is there as a whole, not as in a file's outline.
+  static auto state(auto& self) { return std::tie(self.name, self.unit, self.description, self.values, self.width); }
+  void loaded() const;
 };
 
 using Attribute = std::pair<std::string, std::variant<std::string, double, std::uint64_t>>;
@@ -39,6 +43,8 @@ struct Group {
   std::string name;
   std::vector<Attribute> attributes;
   std::vector<Column> columns;
+
+  static auto state(auto& self) { return std::tie(self.name, self.attributes, self.columns); }
 };
 
 struct Result {

@@ -1,11 +1,14 @@
 #include "cradle/tools/result/seal.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 #include <vector>
 
 #include "cradle/tools/support/bytes.hpp"
@@ -35,14 +38,10 @@ std::uint64_t checksum(std::ifstream& file, std::uint64_t size, const std::strin
   return crc;
 }
 
-}  // namespace
-
-namespace {
-
 std::string seal_with(std::uint64_t size, std::uint64_t crc) {
   std::string seal(seal_begin);
-  seal += ByteWriter().put(size).bytes();
-  return seal + ByteWriter().put(crc64(seal, crc)).bytes();
+  seal += to_bytes(size);
+  return seal + to_bytes(crc64(seal, crc));
 }
 
 }  // namespace
@@ -55,7 +54,7 @@ std::string seal_of_file(const std::string& path) {
   return seal_with(size, checksum(file, size, path));
 }
 
-Seal check_seal(const std::string& path) {
+void check_seal(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
@@ -65,18 +64,29 @@ Seal check_seal(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw unreadable(path, std::strerror(errno));
   const std::uint64_t size = std::filesystem::file_size(path, error);
-  if (error || size < seal_size) return Seal::none;
-  std::string seal(seal_size, '\0');
-  file.seekg(static_cast<std::streamoff>(size - seal_size));
-  if (!file.read(seal.data(), seal_size)) throw unreadable(path, "it ends early");
-  if (!seal.starts_with(seal_begin)) return Seal::none;
-  ByteReader numbers(std::string_view(seal).substr(seal_begin.size()));
-  const std::uint64_t length = numbers.integer(), crc = numbers.integer();
-  file.seekg(0);
-  if (length != size - seal_size || checksum(file, size - sizeof crc, path) != crc)
-    throw Error({path, 0, ""}, "damaged", "its bytes are not those that were written",
-                "take it from a copy, or make it anew", Exit::io);
-  return Seal::intact;
+  const auto read = [&](std::uint64_t at, std::uint64_t bytes) {
+    std::string part(bytes, '\0');
+    file.seekg(static_cast<std::streamoff>(at));
+    if (!file.read(part.data(), static_cast<std::streamsize>(bytes))) throw unreadable(path, "it ends early");
+    return part;
+  };
+  const auto damaged = [&](const std::string& found) {
+    return Error({path, 0, ""}, "damaged", found, "take it from a copy, or make it anew", Exit::io);
+  };
+  constexpr std::uint64_t superblock = 48;
+  if (error || size < superblock) return;
+  if (const std::string seal = read(size - seal_size, seal_size); seal.starts_with(seal_begin)) {
+    const auto [length, crc] = from_bytes<std::pair<std::uint64_t, std::uint64_t>>(seal.substr(seal_begin.size()));
+    file.seekg(0);
+    if (length != size - seal_size || checksum(file, size - sizeof crc, path) != crc)
+      throw damaged("its bytes are not those that were written");
+    return;
+  }
+  // How long HDF5 says that the file is, in a superblock of version 0 with addresses of 8 bytes.
+  const std::string begin = read(0, superblock);
+  if (!begin.starts_with("\x89HDF") || begin[8] != 0 || begin[13] != sizeof size) return;
+  if (const auto length = from_bytes<std::uint64_t>(begin.substr(40)); length != size)
+    throw damaged(fmt::format("{} bytes, HDF5 wrote {}", size, length));
 }
 
 }  // namespace cradle::tools

@@ -1,8 +1,7 @@
 // What stands behind the last byte of HDF5's in a result file: "CRADLES1", the length of HDF5's part, and the CRC-64 of
 // all that comes before it, eight bytes each. HDF5 passes over it, and drops it when it changes the file (h5py "r+").
-// So a file with a seal is as it was written or known to be damaged before HDF5, which may crash or hang on damaged
-// files, has read it; one without was written by an older version or changed on purpose, ends where HDF5 says that it
-// does, and is read with care (guarded.hpp).
+// So a file with a seal is as it was written, or known to be damaged before HDF5, which may crash or hang on damaged
+// files, has read it. One without was changed on purpose, and must end where HDF5 says that it does.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +18,7 @@ std::string seal_of(std::string_view bytes);
 /// Of a file that HDF5 wrote.
 std::string seal_of_file(const std::string& path);
 
-enum class Seal { none, intact };
 /// Reads the file once. Throws Error (Exit::io) for one that is damaged, cannot be read, or is no file at all.
-Seal check_seal(const std::string& path);
+void check_seal(const std::string& path);
 
 }  // namespace cradle::tools

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <limits>
 #include <map>
 
-#include "cradle/tools/result/guarded.hpp"
 #include "cradle/tools/result/hdf5.hpp"
 #include "cradle/tools/result/seal.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
@@ -152,40 +150,36 @@ std::string file_image(const Result& result) {
 void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string& path) {
   hdf5::silence();
   NewFile whole(path);
-  // HDF5 writes to the disk here, and crashes where that is full.
-  const auto written = in_another_process(
-      [&] {
-        const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_room);
-        check(H5Pset_file_locking(access, false, true), no_room);
-        const Handle file(H5Fcreate(whole.name().c_str(), H5F_ACC_TRUNC, properties(H5P_FILE_CREATE), access), H5Fclose,
-                          no_room);
-        struct Open {
-          std::vector<Handle> columns;
-          std::uint64_t rows = 0;
-        };
-        std::map<std::string, Open> open;
-        write_groups(file, ends, [&](hid_t group, const Group& table) {
-          Open& here = open[table.name];
-          for (const Column& column : table.columns) {
-            here.columns.push_back(make_column(group, column, column.rows(), Placed::at_once));
-            write_attribute(here.columns.back(), {"unit", column.unit});
-            write_attribute(here.columns.back(), {"description", column.description});
-          }
-        });
-        pieces([&](const Group& piece) {
-          Open& here = open.at(piece.name);
-          if (piece.columns.empty()) return;
-          for (std::size_t k = 0; k < piece.columns.size(); ++k)
-            write_rows(here.columns.at(k), piece.columns[k], here.rows);
-          here.rows += piece.columns.front().rows();
-        });
-        open.clear();
-        check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
-        return std::string();
-      },
-      std::numeric_limits<unsigned>::max() - 1);
-  if (!written)
-    throw Error({path, 0, ""}, "could not be written", "HDF5 fails on it", "make room on its disk", Exit::io);
+  try {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_room);
+    check(H5Pset_file_locking(access, false, true), no_room);
+    const Handle file(H5Fcreate(whole.name().c_str(), H5F_ACC_TRUNC, properties(H5P_FILE_CREATE), access), H5Fclose,
+                      no_room);
+    struct Open {
+      std::vector<Handle> columns;
+      std::uint64_t rows = 0;
+    };
+    std::map<std::string, Open> open;
+    write_groups(file, ends, [&](hid_t group, const Group& table) {
+      Open& here = open[table.name];
+      for (const Column& column : table.columns) {
+        here.columns.push_back(make_column(group, column, column.rows(), Placed::at_once));
+        write_attribute(here.columns.back(), {"unit", column.unit});
+        write_attribute(here.columns.back(), {"description", column.description});
+      }
+    });
+    pieces([&](const Group& piece) {
+      Open& here = open.at(piece.name);
+      if (piece.columns.empty()) return;
+      for (std::size_t k = 0; k < piece.columns.size(); ++k)
+        write_rows(here.columns.at(k), piece.columns[k], here.rows);
+      here.rows += piece.columns.front().rows();
+    });
+    open.clear();
+    check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
+  } catch (const Error& error) {
+    throw Error({path, 0, ""}, "could not be written", error.what(), "make room on its disk", Exit::io);
+  }
   whole.append(seal_of_file(whole.name()));
   whole.put_in_place();
 }

@@ -1,5 +1,4 @@
-// A result as the bytes of an HDF5 file, and on the disk. HDF5 builds the file in memory and never touches the disk: on
-// a full one it would crash at exit, flushing again what it could not write.
+// A result as the bytes of an HDF5 file, which HDF5 builds in memory, and on the disk.
 #pragma once
 
 #include <functional>

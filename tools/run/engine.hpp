@@ -2,8 +2,11 @@
 // is compiled once per scalar type, not once per engine. It costs a virtual call per sample, none per collision.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,7 +15,9 @@
 #include "cradle/core/engine/state.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "cradle/tools/store/state_file.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
+#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/store/checkpoint.hpp"
 
 namespace cradle::tools {
 
@@ -59,7 +64,7 @@ template <Real T> class Engine {
 
 // What takes a run through time slabs in segments; nothing for runs that cannot be cut.
 struct NoSegments {
-  explicit NoSegments(const Workers&) {}
+  NoSegments(const Workers&, const Segmentation&) {}
 };
 template <class Run> struct SegmentsFor { using Type = NoSegments; };
 template <Real T, class Law, class Masses>
@@ -74,7 +79,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
  public:
   template <class... Arguments>
   explicit EngineOf(const Workers& workers, Arguments&&... arguments)
-      : run_(std::forward<Arguments>(arguments)...), segments_(workers) {}
+      : run_(std::forward<Arguments>(arguments)...), segments_(workers, {.steps = fastest_steps()}) {}
 
   bool makes_collisions() const override { return has_chain; }
   Status advance(const T& until, const Observer<T>& observer) override {
@@ -124,5 +129,18 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   Run run_;
   RunSegments segments_;
 };
+
+/// Digits that rounding leaves in the energy at the end, about. C collisions of N particles round a speed by eps each
+/// time, by eps sqrt(1 + C/N) in all, and the energy by twice that: of what they are then where closing speeds are
+/// held, of what they were at the start where velocities are.
+template <Real T> double energy_digits(const Engine<T>& engine, const Scene& scene, double at_start, double at_end) {
+  const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
+  const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
+  const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene.run.digits);
+  double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
+  const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
+  if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
+  return std::max(0., held - std::log10(error));
+}
 
 }  // namespace cradle::tools

@@ -11,6 +11,7 @@
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/core/laws/one_of.hpp"
 #include "cradle/tools/model/initial_state.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/engine.hpp"
@@ -38,39 +39,43 @@ template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& opti
   return policy;
 }
 
+// Laws whose particles merge or pass through each other, and those whose particles bounce.
+template <Real T> using MergingLaw = OneOf<Wet<T>, InelasticMerging<T>>;
+template <Real T> using BouncingLaw = OneOf<Inelastic<T>, SpeedDependent<T>, ContactTime<T>>;
+
+template <Real T> MergingLaw<T> merging_law(const Scene& scene) {
+  if (scene.law.type == LawType::wet) return Wet<T>(number<T>(scene.law.loss));
+  if (scene.law.type == LawType::sticky) return InelasticMerging<T>(Inelastic<T>(T(0)), std::numeric_limits<T>::max());
+  return InelasticMerging<T>(Inelastic<T>(number<T>(scene.law.restitution)), number<T>(scene.run.merge_speed));
+}
+
+template <Real T> BouncingLaw<T> bouncing_law(const Scene& scene) {
+  const T restitution = number<T>(scene.law.restitution), cutoff = number<T>(scene.law.cutoff);
+  if (scene.law.cutoff_exponent) return SpeedDependent<T>(restitution, cutoff, number<T>(*scene.law.cutoff_exponent));
+  const Inelastic<T> law(restitution, cutoff);
+  if (scene.run.collapse != scene::CollapsePolicy::contact_time) return law;
+  return ContactTime<T>(law, number<T>(scene.run.contact_time));
+}
+
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
   const T start = number<T>(scene.run.start);
-  const auto simulation = [&]<class Law, class Chain>(const Law& law, std::type_identity<Chain>) {
-    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
-  };
-  const std::type_identity<ClusterChain<T>> clusters;
-  if (scene.law.type == LawType::wet) return simulation(Wet<T>(number<T>(scene.law.loss)), clusters);
   if (!law_row(scene).needs_events && !observed)  // without an observer no collisions need be made
     return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, particles, start, policy);
-  if (scene.law.type == LawType::sticky || scene.run.collapse == scene::CollapsePolicy::merge) {
-    const bool sticky = scene.law.type == LawType::sticky;
-    const InelasticMerging<T> law(Inelastic<T>(sticky ? T(0) : number<T>(scene.law.restitution)),
-                                  sticky ? std::numeric_limits<T>::max() : number<T>(scene.run.merge_speed));
-    return simulation(law, clusters);
-  }
-  // Few runs remember collisions or have a restitution that depends on the speed: these do without a loop of their own
-  // for identical masses, whose bits are the same.
-  const auto bouncing = [&](const auto& any) -> std::unique_ptr<Engine<T>> {
-    if (scene.run.coordinates == Coordinates::absolute) return simulation(any, std::type_identity<PositionChain<T>>{});
-    if (to_be_watched(*particles)) return simulation(any, std::type_identity<GapChain<T, WatchedMasses<T>>>{});
-    return simulation(any, std::type_identity<GapChain<T, IndividualMasses<T>>>{});
+  const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
+    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
   };
-  if (scene.law.cutoff_exponent)
-    return bouncing(SpeedDependent<T>(number<T>(scene.law.restitution), number<T>(scene.law.cutoff),
-                                      number<T>(*scene.law.cutoff_exponent)));
-  const Inelastic<T> law(number<T>(scene.law.restitution), number<T>(scene.law.cutoff));
-  const bool remembers = scene.run.collapse == scene::CollapsePolicy::contact_time;
-  if (!remembers && scene.run.coordinates == Coordinates::gaps && particles->identical_masses())
-    return simulation(law, std::type_identity<GapChain<T>>{});
-  if (remembers) return bouncing(ContactTime<T>(law, number<T>(scene.run.contact_time)));
-  return bouncing(law);
+  if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
+  const BouncingLaw<T> law = bouncing_law<T>(scene);
+  if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
+  if (to_be_watched(*particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
+  // Only the law of most runs has engines of its own, one of them for identical masses, whose bits are the same.
+  const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};
+  const auto* inelastic = law.template as<Inelastic<T>>();
+  if (inelastic == nullptr) return on(individual, law);
+  if (particles->identical_masses()) return on(std::type_identity<GapChain<T>>{}, *inelastic);
+  return on(individual, *inelastic);
 }
 
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {

@@ -13,28 +13,27 @@
 
 #include <fmt/format.h>
 
-#include "cradle/core/observe/guards.hpp"
 #include "cradle/tools/record/columns.hpp"
 #include "cradle/tools/record/recorder.hpp"
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/run/run_guards.hpp"
+#include "cradle/tools/run/run_sample.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 
 namespace cradle::tools {
 
 template <Real T> class SceneRun {
-  static constexpr std::size_t most_rows = 1 << 14;                // that wait for a keeper
-  static constexpr std::uint64_t collisions_between_guards = 256;  // of each particle; half as many before the end
-  static constexpr std::uint64_t most_guarded = 1 << 22;           // particles: beyond, a check would double the memory
+  static constexpr std::size_t most_rows = 1 << 14;  // that wait for a keeper
 
  public:
   SceneRun(const Scene& scene, std::shared_ptr<const cradle::Particles<T>> particles, Engine<T>& engine,
            const RunOptions& options, Progress& progress)
       : scene_(scene), options_(options), particles_(std::move(particles)), energy_(particles_->kinetic_energy()),
         engine_(engine), progress_(progress), plan_(schedule<T>(scene)), series_(scene),
-        collision_before_(number<T>(scene.run.start)) {
+        guards_(scene, *particles_, engine) {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
   }
 
@@ -63,7 +62,8 @@ template <Real T> class SceneRun {
     }
     const T end = status == Status::reached ? plan_.stops.back() : engine_.last_collision_time();
     const bool can_continue = status == Status::reached || status == Status::interrupted;
-    if (options_.store != nullptr && can_continue) keep(end, true);
+    if (options_.store != nullptr && can_continue)
+      keep(end, status == Status::reached ? RunIs::over : RunIs::interrupted);
     if (!can_continue || (options_.store == nullptr && status == Status::interrupted)) record_end(end);
     return finish(status, end);
   }
@@ -71,7 +71,7 @@ template <Real T> class SceneRun {
   // Beside the engine's state: what of the plan is done, and what observers have gathered.
   static auto state(auto& self) {
     return std::tie(self.inspected_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
-                    self.guarded_at_, self.collision_before_);
+                    self.guards_);
   }
 
   void loaded() const { require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone"); }
@@ -80,45 +80,45 @@ template <Real T> class SceneRun {
   // ---- what is kept during the run
 
   void load(StateReader& from) {
-    if (from.text() != shape() || from.text() != precision_name(scene_.run))
-      throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
-                  Exit::io);
     try {
+      std::pair<std::string, std::string> kind;
+      cradle::load(from, kind);
+      if (kind != std::pair(shape(), precision_name(scene_.run)))
+        throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
+                    Exit::io);
       engine_.load(from);
       cradle::load(from, *this);
     } catch (const std::invalid_argument& error) {
       throw Error(std::string("the checkpoint cannot be extended: ") + error.what(), Exit::io);
     }
     from.end();
-    // A state that is well formed may still be of no run, and would run for ever.
-    const auto [guarded_at, last] = std::pair(guarded_at_, engine_.last_collision_time());
-    if (static_cast<std::uint64_t>(engine_.collided_particles()) <= most_guarded)
-      inspect_all(inspected_ && last < *inspected_ ? *inspected_ : last);
-    guarded_at_ = guarded_at;
+    const T last = engine_.last_collision_time();
+    guards_.check_loaded(inspected_ && last < *inspected_ ? *inspected_ : last);
     progress_.continue_from(to_double(engine_.last_collision_time()), engine_.counts().collisions);
   }
   std::string shape() const { return engine_.shape() + state_shape<SceneRun>() + std::string(exact_part<T>); }
 
   // Rows that have been recorded go to the keeper, and now and then the state, which then follows from nothing else.
-  void keep(const T& time, bool state_too) {
+  void keep(const T& time, RunIs run_is = RunIs::in_progress) {
     put_rows();
-    RunStatus now = status_;
+    RunStatus now = guards_.status();
     now.time = to_double(time);
     now.collisions = engine_.counts().collisions;
     options_.store->keep(
         now,
         [this](StateWriter& to) {
-          to.put(shape());
-          to.put(precision_name(scene_.run));
+          cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
           engine_.save(to);
           cradle::save(to, *this);
         },
-        state_too);
+        run_is);
   }
   void put_rows() {
     put(series_.take());
     if (has_clouds(scene_)) put(heaviest_.take());
-    if (scene_.output.events) put(events_.take());
+    if (!scene_.output.events) return;
+    events_.made(engine_.counts());
+    put(events_.take());
   }
   // Decimals only where somebody keeps them: ensembles and proofs have no use for them.
   void put(Recorded<T>&& rows) {
@@ -137,7 +137,7 @@ template <Real T> class SceneRun {
     for (;;) {
       const Status status = engine_.advance(until, observer_);
       if (status != Status::interrupted || stopped()) return status;
-      keep(engine_.last_collision_time(), false);
+      keep(engine_.last_collision_time());
     }
   }
 
@@ -150,7 +150,7 @@ template <Real T> class SceneRun {
     std::optional<Configuration<T>> now;
     std::optional<Profile> seen;
     if (snapshot || profiled || masses || zone) now = engine_.configuration(time);
-    if (now) require_held(*now);
+    if (now) guards_.require_held(*now);
     try {
       if (profiled) seen = profile_at(*now, time);
       if (zone) zone_->add(*now, *particles_, T(time - number<T>(scene_.run.start)), [this] { return stopped(); });
@@ -161,46 +161,23 @@ template <Real T> class SceneRun {
     if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
     if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
     if (masses) put(masses_table(*now, particles_->least_mass(), numbered("masses", masses_)));
-    guard(time);
+    guards_.check(time, !(time < plan_.stops.back()));
     inspected_ = time;
     if (options_.observer != nullptr) notify_observer(time, false);
     if (options_.store == nullptr) return true;
     options_.store->check_clock();
-    if (options_.store->due() || series_.rows() >= most_rows) keep(time, false);
+    if (options_.store->due())
+      keep(time);
+    else if (series_.rows() >= most_rows)
+      put_rows();
     return true;
   }
-  // Checks all particles once in so many collisions of each, a hundredth of what these take, by the count of collisions
-  // and not by the clock, so that a run that stops here does so always. Throws Error (Exit::lost).
-  void guard(const T& time) {
-    const std::uint64_t collisions = engine_.counts().collisions;
-    const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
-    const std::uint64_t between = collisions_between_guards / (time < plan_.stops.back() ? 1 : 2);
-    const bool put_off = guarded_at_ > collisions && time < plan_.stops.back();
-    const bool due = guarded_at_ > collisions ? collision_before_ < engine_.last_collision_time()  // the end is checked
-                                              : collisions >= guarded_at_ + between * active;
-    if (!put_off && due && active <= most_guarded) inspect_all(time);
-  }
-  void inspect_all(const T& time) {
-    const std::uint64_t collisions = engine_.counts().collisions;
-    const Account<T>& account = engine_.account();
-    const Configuration<T> now = engine_.configuration(time);
-    const GuardCheck<T> check =
-        guarded(now, *particles_, collisions, T(energy_ - engine_.energy_lost()), T(time - number<T>(scene_.run.start)),
-                engine_.last_collision_time(), collision_before_, account.order_lost + account.unresolved == 0);
-    if (check.broken) throw Error(guard_message(reported(*check.broken, time)), Exit::lost);
-    // A check visits all particles that have merged, too: the next one, but for that at the end, is put off by as many.
-    const auto merged = static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size();
-    guarded_at_ = collisions + collisions_between_guards * merged;
-    collision_before_ = engine_.last_collision_time();
-    status_.gap_min = to_double(check.gap_min);
-    status_.closure_gap = to_double(check.closure_gap);
-    status_.closure_speed = to_double(check.closure_speed);
+  void record_collision(const Collision<T>& c) {
+    events_.made(engine_.counts());
+    if (options_.store != nullptr && events_.rows() >= most_rows) put(events_.take());
+    events_(c);
   }
 
-  void record_collision(const Collision<T>& c) {
-    events_(c);
-    if (options_.store != nullptr && events_.rows() >= most_rows) put(events_.take());
-  }
   Profile profile_at(const Configuration<T>& now, const T& time) const {
     const auto& wanted = scene_.output.profiles;
     const T elapsed = time - number<T>(scene_.run.start);
@@ -215,23 +192,12 @@ template <Real T> class SceneRun {
                   to_text(time), "give it, or remove output.profiles", Exit::lost);
     return profile(now, *particles_, elapsed, range, wanted.bins, [this] { return stopped(); });
   }
-  // What follows from a number beyond the type's range is noise. Throws Error (Exit::lost).
-  void require_held(const T& number, const char* what, const T& time) const {
-    if (is_finite(number)) return;
-    throw Error({scene_.name, 0, ""}, fmt::format("{} beyond the range of {}", what, precision_name(scene_.run)),
-                "at t = " + to_text(time), "give an earlier run.until, smaller speeds or a wider run.precision",
-                Exit::lost);
-  }
-  void require_held(const Configuration<T>& now) const {
-    for (const T& x : now.x) require_held(x, "a position", now.time);
-    for (const T& v : now.v) require_held(v, "a velocity", now.time);
-  }
 
   void record_sample(const T& time) {
     const Moment<T> now(engine_, particles_, number<T>(scene_.run.start), time);
-    require_held(now.state.energy, "the energy", time);
+    guards_.require_held(now.state.energy, "the energy", time);
     for (const auto& front : {now.state.front_left, now.state.front_right})
-      if (front) require_held(*front, "a front", time);
+      if (front) guards_.require_held(*front, "a front", time);
     series_.add(now);
     if (!has_clouds(scene_)) return;
     heaviest_.add(now.cloud());
@@ -240,30 +206,7 @@ template <Real T> class SceneRun {
   }
 
   void notify_observer(const T& time, bool at_collision) {
-    const Sample<T> now = sample(engine_, energy_, time);
-    const auto text = [](const std::optional<T>& x) { return x ? to_text(*x) : std::string(); };
-    RunSample at_time{.time = to_double(time),
-                      .time_text = to_text(time),
-                      .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
-                      .requested = at_collision ? std::vector{RequestedTime{Decimal(to_text(time)), true, false, true}}
-                                                : requested_times(scene_, plan_, time),
-                      .of_series = holds(plan_.series, time),
-                      .at_collision = at_collision,
-                      .counts = now.counts,
-                      .energy = to_text(now.energy),
-                      .front_left = text(now.front_left),
-                      .front_right = text(now.front_right),
-                      .particles = {}};
-    if (!at_collision && holds(plan_.snapshots, time)) at_time.particles = sampled(engine_.configuration(time));
-    options_.observer->sample(at_time);
-  }
-  static SampledParticles sampled(const Configuration<T>& c) {
-    const auto texts = [](const std::vector<T>& numbers) {
-      std::vector<std::string> all;
-      for (const T& number : numbers) all.push_back(to_text(number));
-      return all;
-    };
-    return {c.from, c.to, c.index, texts(c.x), texts(c.v), texts(c.m)};
+    options_.observer->sample(run_sample(scene_, plan_, engine_, energy_, time, at_collision));
   }
   // A run that ends early leaves its last state.
   void record_end(const T& time) {
@@ -274,20 +217,6 @@ template <Real T> class SceneRun {
 
   static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
 
-  // Digits that rounding leaves in the energy at the end, about. C collisions of N particles round a speed by eps each
-  // time, by eps sqrt(1 + C/N) in all, and the energy by twice that: of what they are then where closing speeds are
-  // held, of what they were at the start where velocities are.
-  double energy_digits(double energy) const {
-    const auto active = static_cast<double>(std::max<ParticleIndex>(engine_.collided_particles(), 1));
-    const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
-    const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene_.run.digits);
-    double error = 2 * std::sqrt(1 + static_cast<double>(engine_.counts().collisions) / active);
-    const bool velocities = scene_.run.coordinates == Coordinates::absolute || scene_.law.type != LawType::inelastic ||
-                            scene_.run.collapse == scene::CollapsePolicy::merge;
-    if (velocities && energy > 0) error *= std::sqrt(std::max(1., to_double(energy_) / energy));
-    return std::max(0., held - std::log10(error));
-  }
-
   RunOutcome finish(Status status, const T& time) {
     const Counts& counts = engine_.counts();
     RunOutcome end;
@@ -297,7 +226,7 @@ template <Real T> class SceneRun {
     end.merges = counts.merges;
     end.time = to_double(time);
     end.energy = to_double(energy_now(engine_, energy_));
-    end.energy_digits = energy_digits(end.energy);
+    end.energy_digits = energy_digits(engine_, scene_, to_double(energy_), end.energy);
     ReportedAccount account = reported(engine_.account());
     if (const auto particle = engine_.uncertain_at(time); particle && !account.uncertain && status == Status::reached) {
       account.uncertain_end = true;
@@ -361,10 +290,7 @@ template <Real T> class SceneRun {
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Observer<T> observer_;
-  std::uint64_t guarded_at_ =
-      0;  // collisions made, at the last check of all particles, and the time of the last of them
-  T collision_before_;
-  RunStatus status_;      // then
+  RunGuards<T> guards_;
   GrowingTables tables_;  // where there is no keeper
 };
 

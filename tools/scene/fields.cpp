@@ -13,12 +13,13 @@ template <auto... Path> constexpr auto member = +[](Scene& scene) -> auto& { ret
 
 constexpr When always{"", "", "", [](const Scene&) { return true; }};
 
-constexpr std::string_view other_law = "key of another law";
-constexpr When inelastic{other_law, "law.type", "law.type = \"inelastic\"",
-                         [](const Scene& s) { return s.law.type == LawType::inelastic; }};
-constexpr When wet{other_law, "law.type", "law.type = \"wet\"",
-                   [](const Scene& s) { return s.law.type == LawType::wet; }};
+template <LawType... Of> constexpr auto of_law = +[](const Scene& s) { return ((s.law.type == Of) || ...); };
+template <InitialType... Of> constexpr auto begins_as = +[](const Scene& s) { return ((s.initial.type == Of) || ...); };
+template <scene::CollapsePolicy P> constexpr auto at_collapse = +[](const Scene& s) { return s.run.collapse == P; };
 
+constexpr std::string_view other_law = "key of another law";
+constexpr When inelastic{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
+constexpr When wet{other_law, "law.type", "law.type = \"wet\"", of_law<LawType::wet>};
 constexpr When merging{other_law, "law.type", "law.type = \"wet\" or \"sticky\"",
                        [](const Scene& s) { return law_row(s).merges; }};
 constexpr When wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
@@ -34,29 +35,17 @@ constexpr When general_rows{
     other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
 constexpr When in_order{other_state, "initial.type", "initial.type = \"rows\", \"ring\" or \"cold\"",
-                        [](const Scene& s) {
-                          return s.initial.type == InitialType::rows || s.initial.type == InitialType::ring ||
-                                 s.initial.type == InitialType::cold;
-                        }};
-constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"",
-                    [](const Scene& s) { return s.initial.type == InitialType::ring; }};
+                        begins_as<InitialType::rows, InitialType::ring, InitialType::cold>};
 constexpr When on_line{other_state, "initial.type", "initial.type = \"rows\", \"list\" or \"cold\"",
-                       [](const Scene& s) {
-                         return s.initial.type == InitialType::rows || s.initial.type == InitialType::list ||
-                                s.initial.type == InitialType::cold;
-                       }};
-constexpr When list{other_state, "initial.type", "initial.type = \"list\"",
-                    [](const Scene& s) { return s.initial.type == InitialType::list; }};
-
-constexpr When cold{other_state, "initial.type", "initial.type = \"cold\"",
-                    [](const Scene& s) { return s.initial.type == InitialType::cold; }};
+                       begins_as<InitialType::rows, InitialType::list, InitialType::cold>};
+constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"", begins_as<InitialType::ring>};
+constexpr When list{other_state, "initial.type", "initial.type = \"list\"", begins_as<InitialType::list>};
+constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"", begins_as<InitialType::clusters>};
+constexpr When cold{other_state, "initial.type", "initial.type = \"cold\"", begins_as<InitialType::cold>};
 constexpr When one_hot{other_state, "initial.hot", "initial.type = \"cold\" with initial.hot = 1",
                        [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot == 1; }};
 constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" with several hot particles",
                            [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot > 1; }};
-
-constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"",
-                        [](const Scene& s) { return s.initial.type == InitialType::clusters; }};
 
 constexpr std::string_view no_wall = "key of a wall that is not there";
 constexpr When left_wall{no_wall, "walls.left.position", "a left wall",
@@ -76,11 +65,10 @@ constexpr When mpfr{"key of another precision", "run.precision", "run.precision 
 
 constexpr std::string_view other_policy = "key of another collapse policy";
 constexpr When contact_time{other_policy, "run.collapse", "run.collapse = \"contact-time\"",
-                            [](const Scene& s) { return s.run.collapse == scene::CollapsePolicy::contact_time; }};
+                            at_collapse<scene::CollapsePolicy::contact_time>};
 constexpr When merge{other_policy, "run.collapse", "run.collapse = \"merge\"",
-                     [](const Scene& s) { return s.run.collapse == scene::CollapsePolicy::merge; }};
-constexpr When stop{other_policy, "run.collapse", "run.collapse = \"stop\"",
-                    [](const Scene& s) { return s.run.collapse == scene::CollapsePolicy::stop; }};
+                     at_collapse<scene::CollapsePolicy::merge>};
+constexpr When stop{other_policy, "run.collapse", "run.collapse = \"stop\"", at_collapse<scene::CollapsePolicy::stop>};
 
 constexpr std::string_view other_series = "second way to say when the series is sampled";
 constexpr When not_every{other_series, "output.series.every", "a series without every",
@@ -271,8 +259,7 @@ const Field all_fields[] = {
      "decade"},
     {"output.core", output_of<&Output::core>, "", "false", "", &on_line,
      "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
-     "the "
-     "energy beyond that of the sticky gas that began alike"},
+     "the energy beyond that of the sticky gas that began alike"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every collision"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",
      "[0, inf)", &always,

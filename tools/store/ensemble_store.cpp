@@ -4,12 +4,36 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 
+#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/store/ensemble_journal.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
+
+namespace {
+
+std::string plural(std::uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+}  // namespace
+
+Study study_in(const JournalHeader& journal, const std::string& path) {
+  Scene scene = parse_scene(journal.scene, path);
+  scene.name = journal.name;
+  const auto scene_at = [&](const std::string& group) {
+    const auto at = std::find_if(journal.points.begin(), journal.points.end(),
+                                 [&](const auto& point) { return point.first == group; });
+    if (at == journal.points.end())
+      throw Error({path, 0, ""}, "a sweep without one of its points", group, "remove it", Exit::io);
+    return parse_scene(at->second, path);
+  };
+  Study study = journal.kind == "sweep" ? sweep_at(scene, scene_at) : ensemble_of(scene, journal.spreads);
+  if (study.identity() != journal.identity)
+    throw Error({path, 0, ""}, "of other scenes than it names", "", "take it from a copy, or remove it", Exit::io);
+  return study;
+}
 
 EnsembleStore::EnsembleStore(Study study, std::string file)
     : study_(std::move(study)), file_(std::move(file)), part_(file_ + ".part"), identity_(study_.identity()),
@@ -22,9 +46,115 @@ EnsembleStates EnsembleStore::empty_states() const {
   return states;
 }
 
+// ---- what there is: the result, the journal, those of other ranks
+
+void EnsembleStore::check_identity(std::uint64_t identity, const std::vector<std::string>& scenes,
+                                   const std::string& path) const {
+  if (identity == identity_) return;
+  std::string found = scenes.size() == study_.points.size() ? "" : plural(scenes.size(), "ensemble");
+  for (std::size_t k = 0; k < scenes.size() && found.empty(); ++k)
+    found = scene_difference(parse_scene(scenes[k], path), study_.points[k].scene);
+  if (found.empty()) found = "another version of the program, other --spread bins or other listed particles";
+  throw Error({path, 0, ""}, "holds ensembles of something else", found, "give another -o FILE, or remove this one");
+}
+
+void EnsembleStore::load_result() {
+  const Result result = read_result(file_);
+  const auto is = [&](const auto& attribute) { return attribute.first == "identity"; };
+  if (std::none_of(result.attributes.begin(), result.attributes.end(), is))
+    throw Error({file_, 0, ""}, "holds no ensemble", "a single run, or another command's result",
+                "give another -o FILE, or remove this one");
+  std::vector<std::string> scenes;
+  for (const Study::Point& point : study_.points) {
+    const bool alone = point.group.empty();
+    const Group* group = result.find(alone ? "ensemble" : point.group + "/ensemble");
+    if (group == nullptr) break;
+    scenes.push_back(attribute<std::string>(alone ? result.attributes : group->attributes, "scene", file_));
+  }
+  check_identity(attribute<std::uint64_t>(result.attributes, "identity", file_), scenes, file_);
+  for (const auto& state : states_) state->read(result, file_);
+  result_there_ = true;
+}
+
+std::string EnsembleStore::load() {
+  claim_.emplace(file_);
+  if (std::filesystem::exists(file_)) load_result();
+  std::string account;
+  std::uint64_t whole = 0;
+  if (std::filesystem::exists(part_)) {
+    account += read_journal(part_, whole);
+    journal_.emplace(part_, whole);
+  }
+  const std::vector<std::string> others = rank_journals();
+  for (const std::string& path : others) account += read_journal(path, whole);
+  if (!others.empty()) compact();
+  for (const std::string& path : others) ::unlink(path.c_str());
+  return account;
+}
+
+std::string EnsembleStore::read_journal(const std::string& path, std::uint64_t& whole_bytes) {
+  JournalReader reader(path);
+  const JournalHeader& header = reader.header();
+  if (header.of_run())
+    throw Error({path, 0, ""}, "the journal of a run", "", "continue it by `cradle resume`, or give another -o FILE",
+                Exit::io);
+  std::vector<std::string> scenes;
+  for (const auto& [group, scene] : header.points) scenes.push_back(scene);
+  check_identity(header.identity, scenes, path);
+  if (wanted_.count == 0) wanted_ = header.wanted;
+  EnsembleStates states = empty_states();
+  while (auto record = reader.next<EnsembleRecord>()) {
+    if (record->point >= states.size())
+      throw Error({path, 0, ""}, "a record of no ensemble", fmt::format("number {}", record->point), "remove the file",
+                  Exit::io);
+    states[record->point]->apply(std::move(*record));
+  }
+  whole_bytes = reader.whole_bytes();
+  std::string account = fmt::format("{}: {} taken from there", path, plural(replicas_in(states), "replica"));
+  if (reader.torn_bytes() > 0) account += fmt::format("; its end was damaged ({} bytes left out)", reader.torn_bytes());
+  take(states, path);
+  return account + "\n";
+}
+
+void EnsembleStore::take(EnsembleStates& others, const std::string& from) {
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (states_[k]->holds_all_of(*others[k])) continue;
+    result_there_ = false;
+    if (others[k]->holds_all_of(*states_[k]))
+      states_[k] = std::move(others[k]);
+    else if (!states_[k]->holds_any_of(*others[k]))
+      states_[k]->take(*others[k]);
+    else
+      throw Error({from, 0, ""}, "has some replicas in common with other files of this ensemble", "",
+                  "remove those files that do not belong to it", Exit::io);
+  }
+}
+
+std::vector<std::string> EnsembleStore::rank_journals() const {
+  const std::filesystem::path part(part_);
+  const std::string begin = part.filename().string() + ".";
+  const std::filesystem::path folder = part.has_parent_path() ? part.parent_path() : ".";
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() > begin.size() && name.starts_with(begin) &&
+        name.find_first_not_of("0123456789", begin.size()) == name.npos)
+      found.push_back(part_ + name.substr(begin.size() - 1));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 // ---- while replicas are being run
 
-std::string EnsembleStore::journal_header() const { return header_of(study_, wanted_); }
+JournalHeader EnsembleStore::header() const {
+  JournalHeader header{study_.kind, identity_, effective_toml(study_.scene), study_.scene.name};
+  header.wanted = wanted_;
+  header.spreads = study_.spreads;
+  for (const auto& [group, scene] : study_.points) header.points.emplace_back(group, effective_toml(scene));
+  return header;
+}
 
 void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest) {
   wanted_ = wanted;
@@ -35,20 +165,21 @@ void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint6
   if (journal_)
     compact();  // whoever continues from it takes what is wanted now
   else
-    journal_.emplace(part_, JournalOf::replicas, journal_header());
+    journal_.emplace(part_, header());
 }
 
-void EnsembleStore::journal(std::string_view record) {
+void EnsembleStore::journal(const EnsembleRecord& record) {
   if (!journalling_) return;
+  const std::string bytes = to_bytes(record);
   const std::scoped_lock lock(appending_);
-  if (!journal_) journal_.emplace(part_, JournalOf::replicas, journal_header());
-  journal_->append(record);
+  if (!journal_) journal_.emplace(part_, header());
+  journal_->append(bytes);
 }
 
 void EnsembleStore::add(std::size_t point, const ReplicaRow& row, std::vector<double> values) {
   {
     const std::shared_lock lock(changing_);
-    journal(EnsembleState::record(point, row, values));
+    if (journalling_) journal({point, ReplicaRecord{row, values}});
     states_.at(point)->add(row, std::move(values));
   }
   if (journalling_) keep_safe();
@@ -76,7 +207,7 @@ void EnsembleStore::keep_safe() {
 
 void EnsembleStore::fail(std::size_t point, ReplicaIndex replica, const std::string& message) {
   const std::shared_lock lock(changing_);
-  journal(EnsembleState::record(point, replica, message));
+  journal({point, FailureRecord{replica, message}});
   states_.at(point)->fail(replica, message);
 }
 
@@ -85,8 +216,7 @@ void EnsembleStore::sync() {
 }
 
 void EnsembleStore::compact() {
-  JournalWriter anew(part_, JournalOf::replicas, journal_header(),
-                     [this](const JournalWriter::Put& put) { put_records(put); });
+  JournalWriter anew(part_, header(), [this](const JournalWriter::Put& put) { put_records(put); });
   journal_ = std::move(anew);
   largest_ = std::max(largest_, 4 * journal_->bytes());
 }
@@ -95,7 +225,10 @@ void EnsembleStore::put_records(const JournalWriter::Put& put) const {
   for (std::size_t k = 0; k < states_.size(); ++k) states_[k]->put_records(k, put);
 }
 
-void EnsembleStore::apply(std::string_view record) { states_.at(EnsembleState::point(record))->apply(record); }
+void EnsembleStore::apply(std::string_view bytes) {
+  auto record = from_bytes<EnsembleRecord>(std::string(bytes));
+  states_.at(record.point)->apply(std::move(record));
+}
 
 // ---- the result
 

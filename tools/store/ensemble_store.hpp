@@ -24,6 +24,9 @@
 
 namespace cradle::tools {
 
+/// What a journal of replicas is of. Throws Error (Exit::io) naming the journal.
+Study study_in(const JournalHeader& journal, const std::string& path);
+
 class EnsembleStore {
  public:
   /// Reads no files yet. Throws Error for a scene that no ensemble can be made of.
@@ -67,9 +70,9 @@ class EnsembleStore {
   std::string read_journal(const std::string& path, std::uint64_t& whole_bytes);
   void take(EnsembleStates& others, const std::string& from);
   void check_identity(std::uint64_t identity, const std::vector<std::string>& scenes, const std::string& path) const;
-  std::string journal_header() const;
+  JournalHeader header() const;
   std::vector<std::string> rank_journals() const;
-  void journal(std::string_view record);
+  void journal(const EnsembleRecord& record);
   void keep_safe();
   void compact();
 
@@ -80,7 +83,7 @@ class EnsembleStore {
   EnsembleStates states_;
   bool result_there_ = false;
 
-  std::optional<FileClaim> claim_;  // of FILE: two programs that begin together have no journal yet to meet at
+  std::optional<FileClaim> claim_;  // of FILE and all journals
   bool journalling_ = false;
   std::optional<JournalWriter> journal_;
   std::mutex appending_;        // to the journal

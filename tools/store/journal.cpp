@@ -1,14 +1,13 @@
 #include "cradle/tools/store/journal.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <stdexcept>
 
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/errors.hpp"
@@ -18,27 +17,26 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> begins{"CRADLEJ3", "CRADLER2"};  // by JournalOf
-constexpr std::array<std::string_view, 3> begins_of_version_1{"CRADLEJ1", "CRADLEJ2", "CRADLER1"};
+constexpr std::uint64_t format = 4;  // of journals and checkpoints: the last letter of how they begin
 constexpr std::size_t begin_size = 8;
-
-std::string_view begin_of(JournalOf kind) { return begins[static_cast<std::size_t>(kind)]; }
 constexpr std::uint64_t frame = 16;  // bytes of a record beside itself
 
 [[noreturn]] void fail_journal(const std::string& path, const char* what) {
   throw Error({path, 0, ""}, what, std::strerror(errno), "check the folder and the space on its disk", Exit::io);
 }
 
-std::string_view as_bytes(const std::uint64_t& number) {
+std::string_view bytes_of(const std::uint64_t& number) {
   return {reinterpret_cast<const char*>(&number), sizeof number};
 }
 
-std::uint64_t checksum(std::uint64_t length, std::string_view record) { return crc64(record, crc64(as_bytes(length))); }
+std::uint64_t checksum(const std::uint64_t& length, std::string_view record) {
+  return crc64(record, crc64(bytes_of(length)));
+}
 
 // Length, record, checksum of both; returns how many bytes that is.
 std::uint64_t write_record(int file, std::string_view record, const std::string& path) {
   const std::uint64_t length = record.size(), check = checksum(length, record);
-  write_all(file, {as_bytes(length), record, as_bytes(check)}, path);
+  write_all(file, {bytes_of(length), record, bytes_of(check)}, path);
   return length + frame;
 }
 
@@ -46,34 +44,48 @@ std::uint64_t write_record(int file, std::string_view record, const std::string&
 
 // ---- reading
 
-std::optional<JournalOf> JournalReader::kind(const std::string& path) {
+Stored stored_in(const std::string& path) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return {};  // a FIFO would make us wait for ever
+  if (!std::filesystem::is_regular_file(path, none)) return Stored::other;  // a FIFO would make us wait for ever
   std::ifstream file(path, std::ios::binary);
   std::string begin(begin_size, '\0');
-  if (!file.read(begin.data(), begin_size)) return {};
-  if (std::find(begins_of_version_1.begin(), begins_of_version_1.end(), begin) != begins_of_version_1.end())
-    throw of_version(path, 1);
-  const auto found = std::find(begins.begin(), begins.end(), begin);
-  if (found == begins.end()) return {};
-  return static_cast<JournalOf>(found - begins.begin());
+  if (!file.read(begin.data(), begin_size)) return Stored::other;
+  for (const Stored kind : {Stored::journal, Stored::checkpoint})
+    if (begin == begin_of(kind)) return kind;
+  const auto digit = static_cast<std::uint64_t>(begin.back() - '0');
+  // Of formats before, R was the journal of a run.
+  const bool ours = begin.starts_with("CRADLEJ") || begin.starts_with("CRADLER") || begin.starts_with("CRADLEC");
+  if (ours && digit < 10) throw of_version(path, digit, format);
+  return Stored::other;
 }
 
-JournalReader::JournalReader(const std::string& path, JournalOf kind) : path_(path) {
-  const auto found = JournalReader::kind(path);
-  if (found && found != kind)
-    throw Error({path, 0, ""}, "another kind of journal", *found == JournalOf::run ? "of a run" : "of an ensemble",
-                "continue it by `cradle resume`, or give another -o FILE", Exit::io);
-  if (found) file_.open(path, std::ios::binary);
-  if (found && !file_) fail_journal(path, "the journal could not be read");
-  if (found) {
+void check_program(const std::string& found, const std::string& path) {
+  if (found != version)
+    throw Error({path, 0, ""}, "of another version of the program", fmt::format("{}, here {}", found, version),
+                "continue with that one, or remove the file: its scene then starts anew", Exit::io);
+}
+
+JournalReader::JournalReader(const std::string& path) : path_(path) {
+  std::string record;
+  if (stored_in(path) == Stored::journal) {
+    file_.open(path, std::ios::binary);
+    if (!file_) fail_journal(path, "the journal could not be read");
     size_ = std::filesystem::file_size(path);
     file_.seekg(begin_size);
     whole_ = begin_size;
   }
-  if (!found || !next(header_))
+  if (!file_.is_open() || !next(record))
     throw Error({path, 0, ""}, "not a journal of this version of the program, or its beginning is damaged", "",
                 "take it from a copy, or remove it", Exit::io);
+  try {
+    SavedState from(std::move(record));
+    std::string program;
+    load(from, program);
+    check_program(program, path);
+    load(from, header_);
+  } catch (const std::invalid_argument& error) {
+    throw Error(path + ": " + error.what(), Exit::io);
+  }
 }
 
 bool JournalReader::next(std::string& record) {
@@ -90,45 +102,42 @@ bool JournalReader::next(std::string& record) {
   return true;
 }
 
+std::optional<JournalHeader> journal_header(const std::string& path) {
+  if (stored_in(path) != Stored::journal) return {};
+  return JournalReader(path).header();
+}
+
 // ---- writing
 
-JournalWriter::JournalWriter(const std::string& path, JournalOf kind, std::string_view header,
+JournalWriter::JournalWriter(const std::string& path, const JournalHeader& header,
                              const std::function<void(const Put&)>& records, Sync sync)
     : path_(path) {
   NewFile file(path);
-  claim(file.descriptor());
   const auto put = [&](std::string_view record) { bytes_ += write_record(file.descriptor(), record, path); };
-  file.write({begin_of(kind)});
+  file.write({begin_of(Stored::journal)});
   bytes_ = begin_size;
-  put(header);
+  put(to_bytes(std::string(version)) + to_bytes(header));
   if (records) records(put);
   file_ = file.put_in_place_open(sync);
 }
 
-JournalWriter::JournalWriter(const std::string& path)
+JournalWriter::JournalWriter(const std::string& path, std::uint64_t whole_bytes)
     : path_(path), file_(::open(file_behind(path).c_str(), O_WRONLY | O_CLOEXEC)) {
   if (file_ < 0) fail_journal(path, "the journal could not be opened");
-  claim(file_);
+  cut(whole_bytes);
 }
 
-void JournalWriter::continue_after(std::uint64_t whole_bytes) {
-  if (::ftruncate(file_, static_cast<off_t>(whole_bytes)) != 0 || ::lseek(file_, 0, SEEK_END) < 0)
+void JournalWriter::cut(std::uint64_t bytes) {
+  if (::ftruncate(file_, static_cast<off_t>(bytes)) != 0 || ::lseek(file_, 0, SEEK_END) < 0)
     fail_journal(path_, "the journal could not be continued");
-  bytes_ = whole_bytes;
-}
-
-// Two programs on one journal would spoil it. File systems that cannot lock are taken at their word.
-void JournalWriter::claim(int file) const {
-  if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw Error({path_, 0, ""}, "another program is writing this journal", "", "wait for it, or give another -o FILE",
-                Exit::io);
+  bytes_ = bytes;
 }
 
 void JournalWriter::append(std::string_view record) {
   try {
     bytes_ += write_record(file_, record, path_);
   } catch (const Error&) {
-    continue_after(bytes_);  // what comes after half a record could not be read
+    cut(bytes_);  // what comes after half a record could not be read
     throw;
   }
 }

@@ -1,6 +1,9 @@
-// A file to which records are appended during the work, so that none is lost when the program or the machine stops at
-// any moment: every record carries its length and a checksum. After a kill the last one may be torn; a reader stops
-// there and says how much it left out, and whoever continues to write cuts it off. The first record is the header.
+// A file to which records are appended during the work, of a run or of the replicas of a study, so that none is lost
+// when the program or the machine stops at any moment: every record carries its length and a checksum. After a kill the
+// last one may be torn; a reader stops there and reports how much it left out, and whoever continues to write cuts it
+// off. The first record is the header. Only the version of the program that wrote a journal reads it.
+//
+// It has one writer because the result beside it has one (FileClaim).
 #pragma once
 
 #include <cstdint>
@@ -9,34 +12,91 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
 
+#include "cradle/core/ensemble/histogram.hpp"
+#include "cradle/core/ensemble/tree.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
+#include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {
 
-/// What its records are of: the replicas of an ensemble, or one run.
-enum class JournalOf { replicas, run };
+/// Bins for the values of a quantity: "series/energy", "profiles/0000/velocity".
+struct SpreadRequest {
+  std::string name;
+  FixedBins bins;
+
+  bool bins_are_possible() const { return bins.from < bins.to && bins.bins >= 1 && bins.bins <= 1'000'000; }
+  static auto state(auto& self) { return std::tie(self.name, self.bins); }
+  void loaded() const { require_state(bins_are_possible(), "no bins"); }
+  bool operator==(const SpreadRequest&) const = default;
+};
+
+/// What the records are of.
+struct JournalHeader {
+  std::string kind;            // "run", "ensemble" or "sweep"
+  std::uint64_t identity = 0;  // of a run drawn anew, of a study its own
+  std::string scene, name;     // effective, as TOML
+  // Of a run:
+  double every_seconds = 60;  // between checkpoints
+  bool extends = false;       // a run that was over, from its result and its checkpoint
+  // Of a study:
+  ReplicaRange wanted = {};  // of each ensemble
+  std::vector<SpreadRequest> spreads = {};
+  std::vector<std::pair<std::string, std::string>> points = {};  // ensembles: their groups in the result, their scenes
+
+  bool of_run() const { return kind == "run"; }
+  static auto state(auto& self) {
+    return std::tie(self.kind, self.identity, self.scene, self.name, self.every_seconds, self.extends, self.wanted,
+                    self.spreads, self.points);
+  }
+  void loaded() const {
+    constexpr std::uint64_t most = std::uint64_t{1} << 53;
+    require_state(wanted.first <= most && wanted.count <= most, "too many replicas");
+  }
+};
+
+/// What a file is by how it begins. Throws Error (Exit::io) for a journal or a checkpoint of another format.
+enum class Stored { other, journal, checkpoint };
+Stored stored_in(const std::string& path);
+/// How files of that kind begin.
+constexpr std::string_view begin_of(Stored kind) { return kind == Stored::journal ? "CRADLEJ4" : "CRADLEC4"; }
+
+/// Throws Error (Exit::io) unless this version of the program wrote the file.
+void check_program(const std::string& found, const std::string& path);
 
 /// Reads record after record. Throws Error (Exit::io) for what is no such journal.
 class JournalReader {
  public:
-  JournalReader(const std::string& path, JournalOf kind);
+  explicit JournalReader(const std::string& path);
 
-  const std::string& header() const { return header_; }
+  const JournalHeader& header() const { return header_; }
   /// False at the end, or at the first record that is not whole.
   bool next(std::string& record);
+  template <class Record> std::optional<Record> next() {
+    std::string record;
+    if (!next(record)) return {};
+    try {
+      return from_bytes<Record>(std::move(record));
+    } catch (const Error& error) {
+      throw Error(path_ + ": " + error.what(), Exit::io);
+    }
+  }
 
   std::uint64_t whole_bytes() const { return whole_; }         // up to where records were read
-  std::uint64_t torn_bytes() const { return size_ - whole_; }  // what is left when next() has said false
-
-  /// What a file is a journal of, by how it begins; nothing for other files. Throws Error for one of version 1.
-  static std::optional<JournalOf> kind(const std::string& path);
+  std::uint64_t torn_bytes() const { return size_ - whole_; }  // what is left when next() has returned false
 
  private:
-  std::string path_, header_;
+  std::string path_;
+  JournalHeader header_;
   std::ifstream file_;
   std::uint64_t size_ = 0, whole_ = 0;
 };
+
+/// The header of a journal; nothing for other files. Throws Error (Exit::io) as JournalReader does.
+std::optional<JournalHeader> journal_header(const std::string& path);
 
 /// Appends records. All functions throw Error (Exit::io). One thread at a time may append; another may sync meanwhile.
 class JournalWriter {
@@ -45,12 +105,10 @@ class JournalWriter {
 
   /// A new journal in place of what is there. It appears under its name only when it is whole: with the header, and
   /// the records that `records` puts, on the disk if that is to be waited for.
-  JournalWriter(const std::string& path, JournalOf kind, std::string_view header,
+  JournalWriter(const std::string& path, const JournalHeader& header,
                 const std::function<void(const Put&)>& records = {}, Sync sync = Sync::yes);
-  /// The journal that is there: nobody else may write it from now on.
-  explicit JournalWriter(const std::string& path);
-  /// Cuts off what is behind the first `whole_bytes` and continues there.
-  void continue_after(std::uint64_t whole_bytes);
+  /// The journal that is there, without what is behind the first `whole_bytes`.
+  JournalWriter(const std::string& path, std::uint64_t whole_bytes);
 
   /// The record is the system's when this returns: it survives the end of the program; that of the machine, only after
   /// a sync. One that could not be written is not there in part either.
@@ -59,7 +117,7 @@ class JournalWriter {
   std::uint64_t bytes() const { return bytes_; }
 
  private:
-  void claim(int file) const;
+  void cut(std::uint64_t bytes);
 
   std::string path_;
   Descriptor file_;

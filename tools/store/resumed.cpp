@@ -11,7 +11,6 @@
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/checksum.hpp"
-#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 
@@ -25,8 +24,8 @@ bool exists(const std::string& path) {
 // Where the journal ends that has so many records; nothing where it has fewer of them whole.
 std::optional<std::uint64_t> end_of_records(const std::string& path, std::uint64_t records, std::uint64_t& check,
                                             const JournalWriter::Put& put = {}) {
-  JournalReader reader(path, JournalOf::run);
-  check = crc64(reader.header());
+  JournalReader reader(path);
+  check = 0;
   std::string record;
   for (std::uint64_t k = 0; k < records; ++k) {
     if (!reader.next(record)) return {};
@@ -86,21 +85,6 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
 
 }  // namespace
 
-CheckpointHeader read_checkpoint(StateReader& reader, const std::string& path) {
-  if (const std::uint64_t format = reader.integer(); format != CheckpointHeader::format)
-    throw Error({path, 0, ""}, "a checkpoint of another format",
-                fmt::format("{}, here {}", format, CheckpointHeader::format),
-                "continue with the version of cradle that wrote it, or remove it: the run then starts anew", Exit::io);
-  CheckpointHeader header;
-  header.run = RunHeader::of(reader.text());
-  header.records = reader.integer();
-  header.check = reader.integer();
-  reader.get(&header.seconds, sizeof header.seconds);
-  reader.get(&header.time, sizeof header.time);
-  header.collisions = reader.integer();
-  return header;
-}
-
 RunFiles::RunFiles(std::string file, const std::optional<std::string>& until) : file_(std::move(file)) {
   if (exists(journal_of(file_)))
     resume(until);
@@ -113,58 +97,40 @@ RunFiles::RunFiles(std::string file, const std::optional<std::string>& until) : 
 
 void RunFiles::resume(const std::optional<std::string>& until) {
   const std::string path = journal_of(file_), state = checkpoint_of(file_);
-  header_ = RunHeader::of(JournalReader(path, JournalOf::run).header());
-  if (header_.version != version)
-    throw Error({path, 0, ""}, "a run of another version", fmt::format("{}, here {}", header_.version, version),
-                "continue with that one, or remove the file: the run then starts anew", Exit::io);
+  header_ = JournalReader(path).header();
   scene_ = scene_of(header_, path);
-  CheckpointHeader found;
-  if (exists(state)) {
-    state_ = std::make_unique<StateReader>(state);
-    found = read_checkpoint(*state_, state);
-    if (found.run.number != header_.number) state_.reset();  // of a run before
-  }
-  const std::uint64_t before = header_.first_stands_for - 1;
-  records_ = state_ ? found.records : 0;
-  if (state_ && records_ < header_.first_stands_for && header_.first_stands_for > 1)
-    throw Error({state, 0, ""}, "older than the journal", "", "take both from a copy, or remove them", Exit::io);
-  if (!state_ && header_.first_stands_for > 1)
-    throw Error({state, 0, ""}, "missing", "", "take it from a copy, or remove the journal", Exit::io);
+  if (exists(state)) state_ = std::make_unique<StateReader>(state);
+  if (state_ && state_->header().run.identity != header_.identity) state_.reset();  // of a run before
+  // An extension without a checkpoint of its own begins again.
+  if (!state_ && header_.extends) return resume_from_result(until ? *until : scene_.run.until.text);
+  const CheckpointHeader found = state_ ? state_->header() : CheckpointHeader();
   const bool later = until && Decimal(*until) != scene_.run.until;
   if (later && state_ && !(found.time < planned_times(scene_).until))
     throw Error({file_, 0, ""}, "not written yet", "the run has reached its end",
                 fmt::format("finish it first: `cradle resume {}`", file_));
   if (later && begins_again(scene_)) {
     state_.reset();
-    records_ = 0;
-    header_.first_stands_for = 1;
-    ++header_.number;  // the checkpoint does not belong to it
+    ++header_.identity;  // the checkpoint does not belong to it
   }
   if (later) {
     scene_ = extended(scene_, *until, path);
     scene_.name = header_.name;
     header_.scene = effective_toml(scene_);
   }
-  const std::uint64_t there = records_ - std::min(records_, before);
-  const auto torn = [&] {
-    return Error({path, 0, ""}, "damaged before its checkpoint", fmt::format("fewer than {} records", there),
-                 "take it from a copy, or remove it: the run then starts anew", Exit::io);
-  };
-  const auto check = [&] {
-    if (state_ && records_ > header_.first_stands_for && check_ != found.check) throw torn();
+  records_ = state_ ? found.records : 0;
+  std::uint64_t end = 0;
+  const auto read = [&](const JournalWriter::Put& put) {
+    const auto there = end_of_records(path, records_, check_, put);
+    if (!there || (state_ && check_ != found.check))
+      throw Error({path, 0, ""}, "damaged before its checkpoint", fmt::format("not the {} records", records_),
+                  "take it from a copy, or remove it: the run then starts anew", Exit::io);
+    end = *there;
   };
   if (later) {
-    JournalWriter anew(path, JournalOf::run, header_.bytes(), [&](const JournalWriter::Put& put) {
-      if (!end_of_records(path, there, check_, put)) throw torn();
-      check();
-    });
-    journal_ = std::move(anew);
+    journal_.emplace(path, header_, read);
   } else {
-    const auto end = end_of_records(path, there, check_);
-    if (!end) throw torn();
-    check();
-    journal_.emplace(path);
-    journal_->continue_after(*end);
+    read({});
+    journal_.emplace(path, end);
   }
   if (state_) from(found);
 }
@@ -180,48 +146,33 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
   if (ensemble && until)
     throw Error({"--until", 0, ""}, "an ensemble has no later end", *until, "give it a file of its own");
   const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
-  const std::string state = checkpoint_of(file_);
   if (!until || Decimal(*until) == scene_.run.until || outcome != end_row(RunEnd::reached).text) {
     over_ =
         fmt::format("{}: nothing to do, the run is over: {}, run.until = {}", file_, outcome, scene_.run.until.text);
     over_status_ = status_of_text(outcome);
     return;
   }
-  if (!exists(state)) throw Error({state, 0, ""}, "missing", "", "run the scene with a later run.until", Exit::io);
-  state_ = std::make_unique<StateReader>(state);
-  const CheckpointHeader found = read_checkpoint(*state_, state);
-  if (found.run.version != version || found.run.scene != effective_toml(scene_) ||
-      found.time != planned_times(scene_).until)
-    throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
-                "run the scene with a later run.until", Exit::io);
-  if (begins_again(scene_)) {
-    state_.reset();
-  } else {
-    std::uint64_t numbers = 0;
-    for (const Group& table : result.groups)
-      for (const Column& column : table.columns) numbers += column.rows() * column.width;
-    if (numbers > most_in_memory)
-      throw Error({file_, 0, ""}, "too large to be extended", fmt::format("{} numbers", numbers),
+  header_ = {"run", drawn_number(), "", scene_.name};
+  header_.extends = true;
+  // A run that was over before it had anything to lose has left no checkpoint, and begins again.
+  if (const std::string state = checkpoint_of(file_); exists(state)) {
+    state_ = std::make_unique<StateReader>(state);
+    const CheckpointHeader& found = state_->header();
+    header_.every_seconds = found.run.every_seconds;
+    if (found.run.scene != effective_toml(scene_) || found.time != planned_times(scene_).until)
+      throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
                   "run the scene with a later run.until", Exit::io);
-    result = read_result(file_);
+    if (begins_again(scene_)) state_.reset();
   }
-  const std::string name = scene_.name;
+  if (const std::uint64_t numbers = numbers_in(result.groups); state_ && numbers > most_in_memory)
+    throw Error({file_, 0, ""}, "too large to be extended", fmt::format("{} numbers", numbers),
+                "run the scene with a later run.until", Exit::io);
   scene_ = extended(scene_, *until, file_);
-  scene_.name = name;
-  header_ = {std::string(version),
-             effective_toml(scene_),
-             name,
-             found.run.every_seconds,
-             found.run.number + (state_ ? 0 : 1),  // its own, which the checkpoint does not belong to
-             state_ ? std::max<std::uint64_t>(found.records, 2) : 1};
-  if (!state_) {
-    journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(), nullptr, Sync::no);
-    return;
-  }
-  records_ = header_.first_stands_for;
-  journal_.emplace(journal_of(file_), JournalOf::run, header_.bytes(),
-                   [&](const JournalWriter::Put& put) { put(record_of(recorded(std::move(result.groups), scene_))); });
-  from(found);
+  scene_.name = header_.name;
+  header_.scene = effective_toml(scene_);
+  if (!state_) return;
+  for (Group& rows : recorded(read_result(file_).groups, scene_)) waiting_.add(std::move(rows));
+  from(state_->header());
 }
 
 void RunFiles::from(const CheckpointHeader& found) {

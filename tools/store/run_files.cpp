@@ -16,63 +16,69 @@ namespace cradle::tools {
 namespace {
 
 constexpr std::uint64_t collisions_between_checks = 1 << 13;  // at the clock
-constexpr double status_seconds = 2;
-constexpr double worth_keeping = 60;  // seconds of computing that nobody throws away unasked
+constexpr std::chrono::seconds between_statuses(2);
+constexpr double worth_keeping = 60;                            // seconds of computing that are not thrown away
+constexpr std::uint64_t most_waiting = std::uint64_t{1} << 22;  // numbers in memory that the journal has not
 
-std::uint64_t drawn_number() {
+}  // namespace
+
+std::uint64_t RunFiles::drawn_number() {
   std::random_device source;
   return std::uint64_t{source()} << 32 | source();
 }
 
-}  // namespace
-
 RunFiles::RunFiles(std::string file, const Scene& scene) : file_(std::move(file)), scene_(scene) {
   const std::string path = journal_of(file_);
-  if (JournalReader::kind(path) == JournalOf::run) {
-    const RunJournal before = read_run_journal(path, Reading::ends);
-    if (!before.statuses.empty() && before.statuses.back().seconds > worth_keeping)
-      throw Error(
-          {path, 0, ""}, "a run that is not finished",
-          fmt::format("t = {:.6g}, {:.0f} s of computing", before.statuses.back().time, before.statuses.back().seconds),
-          fmt::format("continue with `cradle resume {}`, or remove it, or give another -o FILE", file_));
-  } else if (JournalReader::kind(path)) {
-    throw Error({path, 0, ""}, "replicas of an ensemble that is not finished", "",
+  const auto refuse = [&](const char* what, const std::string& found) {
+    throw Error({path, 0, ""}, what, found,
                 fmt::format("continue with `cradle resume {}`, or remove it, or give another -o FILE", file_));
+  };
+  if (const auto header = journal_header(path); header && !header->of_run()) {
+    refuse("replicas of an ensemble that is not finished", "");
+  } else if (header) {
+    const auto statuses = read_run_journal(path, Reading::ends).statuses;
+    if (!statuses.empty() && statuses.back().seconds > worth_keeping)
+      refuse("a run that is not finished",
+             fmt::format("t = {:.6g}, {:.0f} s of computing", statuses.back().time, statuses.back().seconds));
   }
-  header_ = {std::string(version), effective_toml(scene), scene.name, scene.output.checkpoint.every_seconds.value,
-             drawn_number()};
-  journal_.emplace(path, JournalOf::run, header_.bytes(), nullptr, Sync::no);
+  ::unlink(path.c_str());  // of a run that this one takes the place of
+  header_ = {"run", drawn_number(), effective_toml(scene), scene.name, scene.output.checkpoint.every_seconds.value};
 }
 
 // ---- during the run
 
-double RunFiles::seconds() const {
-  return seconds_before_ + std::chrono::duration<double>(Clock::now() - started_).count();
-}
-
-void RunFiles::complain(const Error& error) {
-  if (!std::exchange(complained_, true))
-    tools::notify(fmt::format("{}; what could not be written is kept in memory\n", error.what()));
-}
-
-void RunFiles::append(std::string_view record) {
-  unwritten_.emplace_back(record);
+// Does what may fail on a full disk, which is reported once.
+bool RunFiles::saved(const std::function<void()>& what) {
   try {
-    for (; !unwritten_.empty(); unwritten_.pop_front()) {
-      journal_->append(unwritten_.front());
-      check_ = crc64(unwritten_.front());
-      ++records_;
-    }
-    complained_ = false;
+    what();
+    return true;
   } catch (const Error& error) {
-    complain(error);
+    if (!std::exchange(complained_, true))
+      tools::notify(fmt::format("{}; what could not be written is kept in memory\n", error.what()));
+    return false;
   }
+}
+
+void RunFiles::append(const RunRecord& record) {
+  const std::string bytes = to_bytes(record);
+  journal_->append(bytes);
+  check_ = crc64(bytes);
+  ++records_;
+}
+
+void RunFiles::write_waiting() {
+  if (!journal_) journal_.emplace(journal_of(file_), header_, nullptr, Sync::no);
+  if (waiting_.tables().empty()) return;
+  append(waiting_.tables());
+  waiting_ = GrowingTables();
 }
 
 void RunFiles::add(Group&& rows) {
   const bool none =
       std::all_of(rows.columns.begin(), rows.columns.end(), [](const Column& c) { return c.rows() == 0; });
-  if (!none || rows.columns.empty() || !rows.attributes.empty()) append(record_of({rows}));
+  if (none && !rows.columns.empty() && rows.attributes.empty()) return;
+  waiting_.add(std::move(rows));
+  if (!complained_ && numbers_in(waiting_.tables()) > most_waiting) saved([this] { write_waiting(); });
 }
 
 void RunFiles::count(std::uint64_t collisions) {
@@ -81,46 +87,37 @@ void RunFiles::count(std::uint64_t collisions) {
   check_clock();
 }
 
+bool RunFiles::checkpoint_due(Clock::time_point now) const {
+  return header_.every_seconds > 0 && std::chrono::duration<double>(now - saved_).count() > header_.every_seconds;
+}
+
 void RunFiles::check_clock() {
   if (due_) return;
   const Clock::time_point now = Clock::now();
-  const auto passed = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
-  const double every = header_.every_seconds;
-  due_ = passed(reported_) > status_seconds || (every > 0 && passed(saved_) > every);
+  due_ = now - reported_ > between_statuses || checkpoint_due(now);
 }
 
-void RunFiles::keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) {
+void RunFiles::keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs run_is) {
   state_.reset();  // has been loaded
   due_ = false;
+  if (run_is == RunIs::over && !journal_ && seconds_before_ == 0) return;  // nothing to lose
   reported_ = Clock::now();
   RunStatus now = status;
-  now.seconds = seconds();
-  append(record_of(now));
-  const double every = header_.every_seconds;
-  if (!state_too && !(every > 0 && std::chrono::duration<double>(reported_ - saved_).count() > every)) return;
+  now.seconds = seconds_before_ + std::chrono::duration<double>(reported_ - started_).count();
+  const bool written = saved([&] {
+    write_waiting();
+    append(now);
+  });
+  if (run_is == RunIs::in_progress && !checkpoint_due(reported_)) return;
   saved_ = reported_;
-  up_to_date_ = false;
-  if (!unwritten_.empty()) return;
-  try {
-    write_checkpoint(now, save);
-    up_to_date_ = saved_here_ = true;
-  } catch (const Error& error) {
-    complain(error);
-  }
-}
-
-void RunFiles::write_checkpoint(const RunStatus& status, const std::function<void(StateWriter&)>& save) {
-  journal_->sync();
-  StateWriter writer(checkpoint_of(file_));
-  writer.put(CheckpointHeader::format);
-  writer.put(header_.bytes());
-  writer.put(records_);
-  writer.put(check_);
-  writer.put(&status.seconds, sizeof status.seconds);
-  writer.put(&status.time, sizeof status.time);
-  writer.put(status.collisions);
-  save(writer);
-  writer.finish();
+  up_to_date_ =
+      written && saved([&] {
+        journal_->sync();
+        StateWriter writer(checkpoint_of(file_), {header_, records_, check_, now.seconds, now.time, now.collisions});
+        save(writer);
+        writer.finish();
+      });
+  saved_here_ = saved_here_ || up_to_date_;
 }
 
 // ---- the end
@@ -128,27 +125,27 @@ void RunFiles::write_checkpoint(const RunStatus& status, const std::function<voi
 void RunFiles::finish(Result&& end, RunEnd how) {
   const std::string path = journal_of(file_);
   const auto pieces = [&](const std::function<void(Group &&)>& each) {
-    if (for_each_piece(path, each) != records_ - (header_.first_stands_for - 1))
+    if (journal_ && for_each_piece(path, each) != records_)
       throw Error({path, 0, ""}, "not what was written", "records are missing",
                   "check the disk; `cradle resume` continues from the last checkpoint", Exit::io);
-    for (const std::string& record : unwritten_)
-      for (Group& rows : rows_in(record)) each(std::move(rows));
-    for (const Group& table : end.groups) each(Group(table));
+    for (const std::vector<Group>* more : {&waiting_.tables(), &std::as_const(end.groups)})
+      for (const Group& rows : *more) each(Group(rows));
   };
-  Result ends{end.attributes, {}};
-  GrowingTables outline(Reading::ends);
-  pieces([&](Group&& rows) { outline.add(std::move(rows)); });
-  ends.groups = std::move(outline).in_order();
-  std::uint64_t numbers = 0;
-  for (const Group& table : ends.groups)
-    for (const Column& column : table.columns) numbers += column.rows() * column.width;
-  if (numbers > most_in_memory) {
-    write_in_pieces(
-        ends, [&](const auto& put) { pieces([&](Group&& rows) { put(rows); }); }, file_);
-  } else {
-    GrowingTables tables;
+  const auto gathered = [&](Reading reading) {
+    GrowingTables tables(reading);
     pieces([&](Group&& rows) { tables.add(std::move(rows)); });
-    write_or_keep({end.attributes, std::move(tables).in_order()}, file_);
+    return Result{end.attributes, std::move(tables).in_order()};
+  };
+  // A number takes eight bytes of the journal or more: few runs need be read twice.
+  const std::uint64_t most =
+      (journal_ ? journal_->bytes() / 8 : 0) + numbers_in(waiting_.tables()) + numbers_in(end.groups);
+  Result whole = gathered(most > most_in_memory ? Reading::ends : Reading::everything);
+  if (numbers_in(whole.groups) > most_in_memory) {
+    write_in_pieces(
+        whole, [&](const auto& put) { pieces([&](Group&& rows) { put(rows); }); }, file_);
+  } else {
+    if (most > most_in_memory) whole = gathered(Reading::everything);
+    write_or_keep(whole, file_);
   }
   journal_.reset();
   ::unlink(path.c_str());

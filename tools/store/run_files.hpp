@@ -1,16 +1,18 @@
 // The files of an unfinished run of FILE, from which it continues after any end:
 //
 //   FILE.part        journal: what it has recorded so far, and how far it is (run_journal.hpp)
-//   FILE.checkpoint the state of the run at one moment, and how many records the journal had then
+//   FILE.checkpoint  the state of the run at one moment, and how many records the journal had then
 //
-// On resuming, the journal is cut to those records: what followed is made again, with the same bits. Without a
-// checkpoint the run starts anew. When FILE is there, the journal goes and the last checkpoint stays: a later `--until`
-// continues from it, with a journal whose first record is what FILE holds.
+// The journal begins when there is something to lose: after two seconds or the time between two checkpoints, whichever
+// is less, when the run is interrupted, or when its rows take much memory. A run that is over before has neither file.
+//
+// On resuming, the journal is cut to the records of the checkpoint: what followed is made again, with the same bits.
+// Without a checkpoint the run starts anew. When FILE is there, the journal goes and the last checkpoint stays: a later
+// `--until` continues from both, with a journal whose first record is what FILE holds.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -26,19 +28,6 @@ namespace cradle::tools {
 
 /// Numbers of a result, beyond which it is not held in memory as a whole.
 inline constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;
-
-/// How far a checkpoint is, without the state itself.
-struct CheckpointHeader {
-  static constexpr std::uint64_t format = 1;
-
-  RunHeader run;
-  std::uint64_t records = 0, check = 0;  // of the journal then: how many, and the checksum of the last one
-  double seconds = 0, time = 0;          // of computing; simulated
-  std::uint64_t collisions = 0;
-};
-
-/// Leaves the reader where the state begins. Throws Error (Exit::io).
-CheckpointHeader read_checkpoint(StateReader& reader, const std::string& path);
 
 class RunFiles final : public RunStore {
  public:
@@ -65,7 +54,7 @@ class RunFiles final : public RunStore {
   void count(std::uint64_t collisions) override;
   void check_clock() override;
   bool due() const override { return due_; }
-  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) override;
+  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs run_is) override;
   StateReader* loaded_from() override { return state_.get(); }
 
   /// All that was recorded, with what the run reports at its end, becomes FILE; then the journal goes.
@@ -74,20 +63,21 @@ class RunFiles final : public RunStore {
  private:
   using Clock = std::chrono::steady_clock;
 
+  static std::uint64_t drawn_number();
   void resume(const std::optional<std::string>& until);
   void resume_from_result(const std::optional<std::string>& until);
   void from(const CheckpointHeader& found);
-  void append(std::string_view record);
-  double seconds() const;
-  void write_checkpoint(const RunStatus& status, const std::function<void(StateWriter&)>& save);
-  void complain(const Error& error);
+  bool checkpoint_due(Clock::time_point now) const;
+  bool saved(const std::function<void()>& what);
+  void append(const RunRecord& record);
+  void write_waiting();
 
   std::string file_;
   Scene scene_;
-  RunHeader header_;
+  JournalHeader header_;
   std::optional<JournalWriter> journal_;
   std::uint64_t records_ = 0, check_ = 0;
-  std::deque<std::string> unwritten_;  // records for which there was no room
+  GrowingTables waiting_;  // rows that are not in the journal: it has not begun, or there was no room
   std::unique_ptr<StateReader> state_;
   std::string over_, from_ = "the start";
   Exit over_status_ = Exit::done;

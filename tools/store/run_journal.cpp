@@ -1,54 +1,17 @@
 #include "cradle/tools/store/run_journal.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 #include <type_traits>
 
 #include "cradle/tools/record/tables.hpp"
-#include "cradle/tools/result/result_bytes.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {
-
-namespace {
-
-// Of records, their first number.
-constexpr std::uint64_t rows_kind = 1, status_kind = 2;
-
-}  // namespace
-
-std::string RunHeader::bytes() const {
-  return ByteWriter().put(version).put(scene).put(name).put(every_seconds).put(number).put(first_stands_for).bytes();
-}
-
-RunHeader RunHeader::of(std::string_view bytes) {
-  ByteReader reader(bytes);
-  RunHeader header;
-  header.version = reader.text();
-  header.scene = reader.text();
-  header.name = reader.text();
-  header.every_seconds = reader.number<double>();
-  header.number = reader.integer();
-  header.first_stands_for = reader.integer();
-  return header;
-}
-
-std::string record_of(const std::vector<Group>& rows) {
-  return ByteWriter().put(rows_kind).put(to_bytes(Result{{}, rows})).bytes();
-}
-
-std::vector<Group> rows_in(std::string_view record) {
-  ByteReader bytes(record);
-  return bytes.integer() == rows_kind ? result_of_bytes(bytes.text()).groups : std::vector<Group>();
-}
-
-std::string record_of(const RunStatus& status) {
-  ByteWriter bytes;
-  bytes.put(status_kind).put(status.seconds).put(status.time).put(status.collisions);
-  return bytes.put(status.gap_min).put(status.closure_gap).put(status.closure_speed).bytes();
-}
 
 namespace {
 
@@ -71,31 +34,31 @@ void keep_ends(Column& column) {
 
 void GrowingTables::add(Group&& rows) {
   const auto [at, anew] = by_name_.try_emplace(rows.name, tables_.size());
-  if (anew) {
-    tables_.push_back(Group{rows.name, rows.attributes, {}});
-    for (const Column& column : rows.columns) {
-      tables_.back().columns.push_back(column);
-      std::visit([](auto& values) { values.clear(); }, tables_.back().columns.back().values);
-    }
-  }
-  const auto refuse = [&] {
-    throw Error({{}, 0, rows.name}, "rows of other columns", "", "use the program that wrote them", Exit::io);
-  };
+  if (anew) tables_.emplace_back();
   std::vector<Column>& columns = tables_[at->second].columns;
-  if (columns.size() != rows.columns.size()) refuse();
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const Column &column = columns[k], &more_rows = rows.columns[k];
-    if (column.values.index() != more_rows.values.index() || column.width != more_rows.width ||
-        column.name != more_rows.name || more_rows.left_out != 0)
-      refuse();
-    std::visit(
-        [&]<class Values>(Values& values) {
-          const Values& more = std::get<Values>(rows.columns[k].values);
-          values.insert(values.end(), more.begin(), more.end());
-        },
-        columns[k].values);
-    if (reading_ == Reading::ends) keep_ends(columns[k]);
-  }
+  const auto same = [](const Column& a, const Column& b) {
+    return a.name == b.name && a.values.index() == b.values.index() && a.width == b.width;
+  };
+  if (anew)
+    tables_.back() = std::move(rows);
+  else if (!std::equal(columns.begin(), columns.end(), rows.columns.begin(), rows.columns.end(), same))
+    throw Error({{}, 0, rows.name}, "rows of other columns", "", "use the program that wrote them", Exit::io);
+  else
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      std::visit(
+          [&]<class Values>(Values& values) {
+            auto& more = std::get<Values>(rows.columns[k].values);
+            values.insert(values.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+          },
+          columns[k].values);
+  if (reading_ == Reading::ends) std::for_each(columns.begin(), columns.end(), keep_ends);
+}
+
+std::uint64_t numbers_in(const std::vector<Group>& tables) {
+  std::uint64_t numbers = 0;
+  for (const Group& table : tables)
+    for (const Column& column : table.columns) numbers += column.rows() * column.width;
+  return numbers;
 }
 
 std::vector<Group> GrowingTables::in_order() && {
@@ -115,28 +78,24 @@ std::vector<Group> GrowingTables::in_order() && {
 }
 
 RunJournal read_run_journal(const std::string& path, Reading reading) {
-  JournalReader records(path, JournalOf::run);
-  RunJournal journal;
+  JournalReader records(path);
+  if (!records.header().of_run())
+    throw Error({path, 0, ""}, "replicas that are not finished, no statistics yet", "",
+                fmt::format("`cradle resume {}` continues with them, `cradle info {}` prints how many are finished",
+                            path.substr(0, path.rfind(".part")), path),
+                Exit::io);
+  RunJournal journal{records.header(), {}, {}, 0};
   GrowingTables tables(reading);
-  try {
-    journal.header = RunHeader::of(records.header());
-    for (std::string record; records.next(record);) {
-      ByteReader bytes(record);
-      if (bytes.integer() != status_kind) {
-        for (Group& rows : rows_in(record)) tables.add(std::move(rows));
-        continue;
-      }
-      RunStatus status;
-      status.seconds = bytes.number<double>();
-      status.time = bytes.number<double>();
-      status.collisions = bytes.integer();
-      status.gap_min = bytes.number<double>();
-      status.closure_gap = bytes.number<double>();
-      status.closure_speed = bytes.number<double>();
-      journal.statuses.push_back(status);
+  while (auto record = records.next<RunRecord>()) {
+    if (const auto* status = std::get_if<RunStatus>(&*record)) {
+      journal.statuses.push_back(*status);
+      continue;
     }
-  } catch (const Error& error) {
-    throw Error(path + ": " + error.what(), Exit::io);
+    try {
+      for (Group& rows : std::get<std::vector<Group>>(*record)) tables.add(std::move(rows));
+    } catch (const Error& error) {
+      throw Error(path + ": " + error.what(), Exit::io);
+    }
   }
   journal.torn_bytes = records.torn_bytes();
   journal.tables = std::move(tables).in_order();
@@ -144,14 +103,15 @@ RunJournal read_run_journal(const std::string& path, Reading reading) {
 }
 
 std::uint64_t for_each_piece(const std::string& path, const std::function<void(Group&& rows)>& each) {
-  JournalReader records(path, JournalOf::run);
+  JournalReader records(path);
   std::uint64_t count = 0;
-  for (std::string record; records.next(record); ++count)
-    for (Group& rows : rows_in(record)) each(std::move(rows));
+  for (; auto record = records.next<RunRecord>(); ++count)
+    if (auto* pieces = std::get_if<std::vector<Group>>(&*record))
+      for (Group& rows : *pieces) each(std::move(rows));
   return count;
 }
 
-Scene scene_of(const RunHeader& header, const std::string& path) {
+Scene scene_of(const JournalHeader& header, const std::string& path) {
   Scene scene = parse_scene(header.scene, path);
   scene.name = header.name;
   return scene;

@@ -1,13 +1,14 @@
-// Where a run puts what it records during the run, and now and then its state: a file beside its result
-// (run_files.hpp), or nothing, for runs that are over soon and have no file of their own.
+// Where a run puts what it records, and now and then its state: in files beside its result (run_files.hpp), or nowhere,
+// for replicas and proofs, which have no file of their own.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <tuple>
 
 #include "cradle/tools/result/result.hpp"
-#include "cradle/tools/store/state_file.hpp"
+#include "cradle/tools/store/checkpoint.hpp"
 
 namespace cradle::tools {
 
@@ -20,7 +21,13 @@ struct RunStatus {
   double gap_min = none, closure_gap = none, closure_speed = none;
 
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  static auto state(auto& self) {
+    return std::tie(self.seconds, self.time, self.collisions, self.gap_min, self.closure_gap, self.closure_speed);
+  }
 };
+
+/// What has become of a run whose state is to be kept.
+enum class RunIs { in_progress, interrupted, over };
 
 class RunStore {
  public:
@@ -35,8 +42,8 @@ class RunStore {
   virtual void check_clock() = 0;
   /// Whether `keep` is to be called, with all rows that there are added: it has not been for some time.
   virtual bool due() const = 0;
-  /// Writes down how far the run is and, if it is time or requested, its state.
-  virtual void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) = 0;
+  /// Writes down how far the run is and, if it is time, interrupted or over, its state.
+  virtual void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs now) = 0;
 
   /// What is to be loaded before the run continues; nothing for one that begins.
   virtual StateReader* loaded_from() = 0;

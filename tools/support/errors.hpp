@@ -18,6 +18,7 @@ enum class Exit : int {
   collapse = 3,       // stopped at inelastic collapse (policy `stop`)
   io = 4,             // a file could not be read or written
   lost = 5,           // resolution or order lost, a replica failed, or a proof is undecided
+  processor = 6,      // it lacks instructions that the program is compiled for
   interrupted = 130,  // SIGINT
   terminated = 143,   // SIGTERM, SIGUSR1, SIGHUP
 };

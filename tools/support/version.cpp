@@ -28,10 +28,10 @@ std::string build_description() {
                      CRADLE_BUILD_OPTIONS, types, mpi);
 }
 
-Error of_version(const std::string& path, std::uint64_t found) {
+Error of_version(const std::string& path, std::uint64_t found, std::uint64_t here) {
   return {{path, 0, ""},
-          fmt::format("a file of {} version of cradle", found < format_version ? "an earlier" : "a later"),
-          fmt::format("format {}, here {}", found, format_version),
+          fmt::format("a file of {} version of cradle", found < here ? "an earlier" : "a later"),
+          fmt::format("format {}, here {}", found, here),
           "read it with the version that wrote it, or remove it and run its scene again",
           Exit::io};
 }

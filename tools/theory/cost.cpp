@@ -119,7 +119,7 @@ void sticky_rows(const Scene& scene, Cost& cost) { cost.collisions = std::max(0.
 Cost expected_cost(const Scene& scene) {
   Cost cost;
   cost.particles = particles_at_end(scene);
-  if (equal_rows(scene)) law_row(scene).cost_of_rows(scene, cost);
+  if (const auto of_rows = law_row(scene).cost_of_rows; of_rows && equal_rows(scene)) of_rows(scene, cost);
   const ScalarRow& type = scalar_row(scene.run.precision);
   const std::uint64_t digits = scene.run.digits;
   constexpr double fastest = 2e7;

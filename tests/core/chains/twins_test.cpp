@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/chains/twins.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
 namespace twins_test {
@@ -18,12 +17,6 @@ using namespace cradle::test;
 // With rows of speed 1/2 collapse sets in at t = 2/(1 - (4/pi) atan sqrt eps).
 const Inelastic<double> law(0.98, 1e-5);    // t = 311
 const Inelastic<double> softer(0.9, 1e-3);  // t = 60
-
-// Rows that differ in density and speed, with a heavy particle between them.
-Scene<double> unequal_rows() {
-  return std::make_shared<Rows<double>>(Row<double>{160, 0.75, .5}, Row<double>{240, -0.25, 1.5},
-                                        CentralParticle<double>{20, .125}, rshock_displacement);
-}
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size()) return INFINITY;
@@ -50,28 +43,6 @@ void expect_same_collisions(First first, Second second, double step, double end,
   EXPECT_GT(first.counts().collisions, least_collisions);
   EXPECT_EQ(first.chain().account().order_lost, 0U);
   EXPECT_EQ(second.chain().account().unresolved, 0U) << "positions no longer show which collision comes first";
-}
-
-template <class First, class Second>
-void expect_identical(First& first, Second& second, const std::vector<double>& times) {
-  for (const double t : times) {
-    ASSERT_EQ(first.advance(t), Status::reached);
-    ASSERT_EQ(second.advance(t), Status::reached);
-    ASSERT_TRUE(identical(first.counts(), second.counts())) << "t = " << t;
-    ASSERT_EQ(first.energy_lost(), second.energy_lost()) << "t = " << t;
-    ASSERT_TRUE(identical(configuration_at(first, t), configuration_at(second, t))) << "t = " << t;
-    const double local = first.chain().local_time(t);
-    ASSERT_EQ(local, second.chain().local_time(t));
-    if (first.chain().collided_particles() == 0) continue;
-    ASSERT_EQ(first.chain().front_left(local), second.chain().front_left(local)) << "t = " << t;
-    ASSERT_EQ(first.chain().front_right(local), second.chain().front_right(local)) << "t = " << t;
-  }
-}
-
-std::vector<double> times(double step, double end) {
-  std::vector<double> all;
-  for (double t = step; t <= end; t += step) all.push_back(t);
-  return all;
 }
 
 // A particle makes up to 400 collisions. In positions each rounds the place (|x| < 256, so by 2^-46 at most in every
@@ -112,7 +83,7 @@ TEST(Twins, StreamedAndHeldRowsHaveTheSameBits) {
   auto streamed = gap_run(particles, softer);
   auto held = gap_run(particles, softer, {}, 0., {.hold_all = true});
   // Beyond the collapse, and beyond the ends of the rows.
-  expect_identical(streamed, held, times(2.5, 250));
+  for (double t = 2.5; t <= 250; t += 2.5) expect_identical(streamed, held, t, CloseCalls::the_same);
   EXPECT_EQ(streamed.chain().collided_particles(), 200);
   EXPECT_GT(streamed.counts().below_cutoff, 0U);
 }
@@ -121,47 +92,25 @@ TEST(Twins, RowsAndTheSameParticlesInAListHaveTheSameBits) {
   const auto rows = rshock<double>(200);
   auto streamed = gap_run(rows, softer);
   auto listed = gap_run(as_list(*rows), softer);
-  expect_identical(streamed, listed, times(2.5, 100));
+  for (double t = 2.5; t <= 100; t += 2.5) expect_identical(streamed, listed, t, CloseCalls::the_same);
 }
 
 TEST(Twins, StreamedAndHeldUnequalRowsHaveTheSameBits) {
   const auto particles = unequal_rows();
   auto streamed = mass_run(particles, law);
   auto held = mass_run(particles, law, {}, 0., {.hold_all = true});
-  expect_identical(streamed, held, times(12.5, 500));
+  for (double t = 12.5; t <= 500; t += 12.5) expect_identical(streamed, held, t, CloseCalls::the_same);
   EXPECT_GT(streamed.chain().collided_particles(), 300);
 }
 
 TEST(Twins, OutputCadenceDoesNotChangeABit) {
-  const auto particles = rshock<double>(200);
-  const double end = 100;
-  auto once = gap_run(particles, softer);
-  ASSERT_EQ(once.advance(end), Status::reached);
-  for (const int outputs : {10, 10000}) {
-    auto often = gap_run(particles, softer);
-    for (int k = 1; k <= outputs; ++k) {
-      const double t = end * k / outputs;
-      ASSERT_EQ(often.advance(t), Status::reached);
-      if (k % 100 == 0) configuration_at(often, t);
-    }
-    EXPECT_TRUE(identical(configuration_at(once, end), configuration_at(often, end))) << outputs;
-    EXPECT_TRUE(same_collisions(once.counts(), often.counts())) << outputs;
-    EXPECT_EQ(once.counts().origin_moves, often.counts().origin_moves) << outputs;
-    EXPECT_EQ(once.energy_lost(), often.energy_lost()) << outputs;
-  }
+  expect_no_influence_of_cadence([] { return gap_run(rshock<double>(200), softer); }, 100);
 }
 
 TEST(Twins, OutputAtTheVeryTimeOfACollisionDoesNotChangeABit) {
-  const auto particles = rmix<double>(32);
   const Inelastic<double> soft(0.9375, 0);
-  std::vector<double> collision_times;
-  auto once = gap_run(particles, soft);
-  once.advance(100, [&](const Collision<double>& c) { collision_times.push_back(c.time.value()); });
-  ASSERT_GT(collision_times.size(), 100U);
-  auto often = gap_run(particles, soft);
-  for (const double t : collision_times) ASSERT_EQ(often.advance(t), Status::reached);
-  often.advance(100);
-  EXPECT_TRUE(identical(configuration_at(once, 100.), configuration_at(often, 100.)));
+  const auto particles = rmix<double>(32);
+  expect_no_influence_of_output_at_collisions(gap_run(particles, soft), gap_run(particles, soft), 100, 101);
 }
 
 // Rows displaced by a few 2^-28, so that collisions all along the line are nearly simultaneous, and keys too wide to
@@ -171,28 +120,16 @@ TEST(Twins, OutputBetweenNearlySimultaneousCollisionsDoesNotChangeABit) {
     for (ParticleIndex seed = 0; seed < 20; ++seed) {
       const Scene<double> particles = std::make_shared<Rows<double>>(symmetric_rows<double>(
           count, 0.5, 1, [seed](ParticleIndex particle) { return bits_of(particle + 1000 * seed, 0, 0xF) - 8; }));
-      const double end = 0.75 * static_cast<double>(count);
-      std::vector<double> collision_times;
-      auto once = gap_run(particles, law, {}, 0., {.least_queue_bits = 18});
-      once.advance(end, [&](const Collision<double>& c) { collision_times.push_back(c.time.value()); });
-      auto often = gap_run(particles, law, {}, 0., {.least_queue_bits = 18});
-      for (const double t : collision_times) ASSERT_EQ(often.advance(t), Status::reached);
-      often.advance(end);
-      EXPECT_TRUE(identical(configuration_at(once, end), configuration_at(often, end)))
-          << count << " particles, seed " << seed;
+      SCOPED_TRACE(seed);
+      const auto make = [&] { return gap_run(particles, law, {}, 0., {.least_queue_bits = 18}); };
+      expect_no_influence_of_output_at_collisions(make(), make(), 0.75 * static_cast<double>(count), 0);
     }
   }
 }
 
 TEST(Twins, ObserverDoesNotChangeABit) {
   const auto particles = rshock<double>(400);
-  auto plain = gap_run(particles, law);
-  auto observed = gap_run(particles, law);
-  std::uint64_t seen = 0;
-  observed.advance(200, [&](const Collision<double>& c) { seen += c.closing_speed > 0; });
-  plain.advance(200);
-  EXPECT_EQ(seen, observed.counts().collisions);
-  expect_identical(plain, observed, {200});
+  expect_no_influence_of_an_observer(gap_run(particles, law), gap_run(particles, law), 200);
 }
 
 TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {

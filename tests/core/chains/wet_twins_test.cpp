@@ -9,8 +9,7 @@
 #include <map>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/chains/twins.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 #include "cradle/tests/core/slow_ring.hpp"
 
@@ -26,12 +25,6 @@ WetRun<double> wet_run(const Scene<double>& particles, double loss, Options opti
           options.least_queue_bits};
 }
 
-// Rows that differ in density and speed, with a heavy particle between them.
-Scene<double> unequal_rows() {
-  return std::make_shared<Rows<double>>(Row<double>{160, 0.75, .5}, Row<double>{240, -0.25, 1.5},
-                                        CentralParticle<double>{20, .125}, rshock_displacement);
-}
-
 // Both from the first collision on, while rows come in, and after both are used up.
 struct Case {
   const char* name;
@@ -42,19 +35,6 @@ std::vector<Case> cases() {
   return {{"passes first", rshock<double>(400), 0.005, 2.5, 400},
           {"merges from the start", rshock<double>(400), 0.05, 2.5, 400},
           {"unequal rows", unequal_rows(), 0.02, 12.5, 800}};
-}
-
-void expect_identical(WetRun<double>& first, WetRun<double>& second, double t) {
-  ASSERT_EQ(first.advance(t), Status::reached);
-  ASSERT_EQ(second.advance(t), Status::reached);
-  ASSERT_TRUE(same_collisions(first.counts(), second.counts())) << "t = " << t;
-  ASSERT_EQ(first.counts().origin_moves, second.counts().origin_moves) << "t = " << t;
-  ASSERT_EQ(first.energy_lost(), second.energy_lost()) << "t = " << t;
-  ASSERT_EQ(first.collided_particles(), second.collided_particles()) << "t = " << t;
-  ASSERT_TRUE(identical(first.configuration(t), second.configuration(t))) << "t = " << t;
-  if (first.collided_particles() == 0) return;
-  ASSERT_EQ(first.front_left(t), second.front_left(t)) << "t = " << t;
-  ASSERT_EQ(first.front_right(t), second.front_right(t)) << "t = " << t;
 }
 
 TEST(WetTwins, StreamedAndHeldRowsHaveTheSameBits) {
@@ -101,14 +81,9 @@ TEST(WetTwins, NeitherCadenceNorIndexBitsMatterAmongSimultaneousCollisions) {
       return particle < 50 ? of_left(particle) : -of_left(99 - particle);
     };
     const Scene<double> particles = std::make_shared<Rows<double>>(symmetric_rows<double>(100, 0.5, 1, displacement));
-    std::vector<double> collision_times;
-    auto once = wet_run(particles, 0.01);
-    once.advance(60, [&](const Collision<double>& c) { collision_times.push_back(c.time.value()); });
+    SCOPED_TRACE(seed);
     auto often = wet_run(particles, 0.01, {.least_queue_bits = 16});
-    for (const double t : collision_times) ASSERT_EQ(often.advance(t), Status::reached);
-    often.advance(60);
-    EXPECT_TRUE(identical(once.configuration(60), often.configuration(60))) << "seed " << seed;
-    EXPECT_EQ(once.energy_lost(), often.energy_lost()) << "seed " << seed;
+    expect_no_influence_of_output_at_collisions(wet_run(particles, 0.01), often, 60, 1);
     close_calls += often.counts().close_calls;
   }
   EXPECT_GT(close_calls, 0U);
@@ -117,37 +92,18 @@ TEST(WetTwins, NeitherCadenceNorIndexBitsMatterAmongSimultaneousCollisions) {
 TEST(WetTwins, OutputCadenceDoesNotChangeABit) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    auto once = wet_run(c.particles, c.loss);
-    ASSERT_EQ(once.advance(c.end), Status::reached);
-    for (const int outputs : {10, 10000}) {
-      auto often = wet_run(c.particles, c.loss);
-      for (int k = 1; k <= outputs; ++k) {
-        const double t = c.end * k / outputs;
-        ASSERT_EQ(often.advance(t), Status::reached);
-        if (k % 100 == 0) often.configuration(t);
-      }
-      expect_identical(once, often, c.end);
-    }
+    expect_no_influence_of_cadence([&] { return wet_run(c.particles, c.loss); }, c.end);
   }
 }
 
 TEST(WetTwins, OutputAtTheVeryTimeOfACollisionDoesNotChangeABit) {
   const auto particles = rshock<double>(100);
-  std::vector<double> collision_times;
-  auto once = wet_run(particles, 0.01), often = wet_run(particles, 0.01);
-  once.advance(100, [&](const Collision<double>& c) { collision_times.push_back(c.time.value()); });
-  ASSERT_GT(collision_times.size(), 300U);
-  for (const double t : collision_times) ASSERT_EQ(often.advance(t), Status::reached);
-  expect_identical(once, often, 100);
+  expect_no_influence_of_output_at_collisions(wet_run(particles, 0.01), wet_run(particles, 0.01), 100, 301);
 }
 
 TEST(WetTwins, ObserverDoesNotChangeABit) {
   const auto particles = rshock<double>(400);
-  auto plain = wet_run(particles, 0.01), observed = wet_run(particles, 0.01);
-  std::uint64_t seen = 0;
-  observed.advance(200, [&](const Collision<double>& c) { seen += c.closing_speed > 0; });
-  expect_identical(plain, observed, 200);
-  EXPECT_EQ(seen, observed.counts().collisions);
+  expect_no_influence_of_an_observer(wet_run(particles, 0.01), wet_run(particles, 0.01), 200);
 }
 
 // Whom each particle met, in order. Collisions that have no particle in common commute, and particles pass each other:

@@ -1,8 +1,8 @@
 // What a run does about inelastic collapse, on three particles whose collapse time t_c is known in closed form
 // (McNamara and Young, Phys. Fluids A 4, 496 (1992)). Proves: policy stop settles t_c to 15 digits from collisions that
 // a plain clock can still distinguish, two thirds of them where the collapse is slow, or follows the collapse down to
-// any gap asked for; without a policy, and in absolute positions, the run ends by itself, says why, and keeps account
-// of what it could not resolve.
+// any requested gap; without a policy, and in absolute positions, the run ends by itself, reports the reason, and
+// counts what it could not resolve.
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/fixtures.hpp"

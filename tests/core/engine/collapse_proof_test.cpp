@@ -1,8 +1,8 @@
-// When a run says that it collapses. Proves, on three particles, on four in the checkerboard pattern and on two and a
-// wall, on either side of the greatest restitution that collapses, 7 - 4 sqrt 3 or 3 - 2 sqrt 2: above it none is
-// reported, below it that of two gaps is, with t_c by the closed form and an error that holds; the ratio's too. A law
-// with a cut-off and particles that others reach in time have none. A run that no longer advances ends, by a rule that
-// knows no exponents.
+// When a run reports a collapse. The systems are three particles, four in the checkerboard pattern, and two and a wall;
+// the greatest restitution that collapses is 7 - 4 sqrt 3 or 3 - 2 sqrt 2. Proves: above it no collapse is reported;
+// below it the collapse of two gaps is reported, with t_c and the ratio by the closed form and bounds that hold for
+// their errors. No collapse is reported for a law with a cut-off or for particles that others reach in time. A run that
+// no longer advances ends, by a rule that does not depend on exponents.
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

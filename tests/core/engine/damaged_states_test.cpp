@@ -15,6 +15,7 @@
 #include "cradle/core/engine/state.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/texts.hpp"
 
 namespace damaged_states_test {
 
@@ -27,97 +28,92 @@ template <class Run> class Contradicted {
  public:
   explicit Contradicted(std::function<Run()> make) : make_(std::move(make)) {}
 
-  // What loading says of the state at t = 3 after a change of it.
-  std::string by(const std::function<void(Run&)>& change) const {
+  void loads() const {
+    EXPECT_EQ(after([](Run&) {}), "nothing was refused");
+  }
+  // Loading refuses the state at t = 3 after a change of it.
+  void cannot_be(const std::string& what, const std::function<void(Run&)>& change) const {
+    EXPECT_EQ(after(change), "a state that cannot be (" + what + "): take the file from a copy");
+  }
+
+ private:
+  std::string after(const std::function<void(Run&)>& change) const {
     Run run = make_();
     run.advance(3);
     change(run);
     SavedState state = SavedState::of(run);
     Run later = make_();
-    try {
-      load(state, later);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "loaded";
+    return test::message_of([&] { load(state, later); });
   }
-
- private:
   std::function<Run()> make_;
 };
-std::string cannot_be(const std::string& what) {
-  return "a state that cannot be (" + what + "): take the file from a copy";
-}
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
 template <class Chain, class Law> using Made = Simulation<double, Law, Chain>;
+template <class Chain> Contradicted<Made<Chain, Dry>> dry(const std::shared_ptr<const Particles<double>>& particles) {
+  return Contradicted<Made<Chain, Dry>>([=] { return Made<Chain, Dry>(Dry(0.9, 1e-4), Chain(particles, 0.)); });
+}
 template <std::size_t k, class X> auto& field(X& x) { return std::get<k>(X::state(x)); }
 
 template <class Chain> void expect_gaps_refused(const std::shared_ptr<const Particles<double>>& particles) {
   using Run = Made<Chain, Dry>;
-  const Contradicted<Run> loading([=] { return Run(Dry(0.9, 1e-4), Chain(particles, 0.)); });
+  const auto loading = dry<Chain>(particles);
   const auto gap = [](Run& run, std::ptrdiff_t from_first) -> Gap<double>& {
     Chain& chain = field<0>(run);
     return field<0>(chain).gaps[static_cast<Slot>(static_cast<std::ptrdiff_t>(chain.first()) + from_first)];
   };
-  EXPECT_EQ(loading.by([](Run&) {}), "loaded");
+  loading.loads();
   for (const double wrong : {infinity, -infinity, nan, 1e200})
-    EXPECT_EQ(loading.by([&](Run& run) { gap(run, 1).closing = wrong; }), cannot_be("gaps")) << wrong;
+    loading.cannot_be("gaps", [&](Run& run) { gap(run, 1).closing = wrong; });
   for (const double wrong : {infinity, nan}) {
-    EXPECT_EQ(loading.by([&](Run& run) { gap(run, 1).gap = wrong; }), cannot_be("gaps"));
-    EXPECT_EQ(loading.by([&](Run& run) { gap(run, 1).time = wrong; }), cannot_be("gaps"));
-    EXPECT_EQ(loading.by([&](Run& run) { field<1>(field<0>(field<0>(run)).gaps)[field<0>(run).first()] = wrong; }),
-              cannot_be("gaps"))
-        << "its lag";
+    loading.cannot_be("gaps", [&](Run& run) { gap(run, 1).gap = wrong; });
+    loading.cannot_be("gaps", [&](Run& run) { gap(run, 1).time = wrong; });
+    loading.cannot_be(
+        "gaps", [&](Run& run) { field<1>(field<0>(field<0>(run)).gaps)[field<0>(run).first()] = wrong; });  // its lag
   }
-  EXPECT_EQ(loading.by([&](Run& run) { gap(run, 1).closing = 1, gap(run, 1).due = nan; }), cannot_be("gaps"));
-  EXPECT_EQ(loading.by([&](Run& run) { gap(run, 1).closing = -1, gap(run, 1).due = 4; }), cannot_be("gaps"))
-      << "a collision of a gap that opens";
-  EXPECT_EQ(loading.by([&](Run& run) { gap(run, -1).closing = infinity; }), cannot_be("gaps")) << "beyond the ends";
+  loading.cannot_be("gaps", [&](Run& run) { gap(run, 1).closing = 1, gap(run, 1).due = nan; });
+  loading.cannot_be(
+      "gaps", [&](Run& run) { gap(run, 1).closing = -1, gap(run, 1).due = 4; });  // a collision of a gap that opens
+  loading.cannot_be("gaps", [&](Run& run) { gap(run, -1).closing = infinity; });  // beyond the ends
 }
 
 TEST(DamagedStates, GapsThatNoRunHasAreRefused) {
   expect_gaps_refused<GapChain<double>>(uniform_rows(60));
   expect_gaps_refused<GapChain<double>>(gaussian_ring(20, 20));
-  const Contradicted<Made<GapChain<double>, Dry>> on_ring(
-      [] { return Made<GapChain<double>, Dry>(Dry(0.9, 1e-4), GapChain<double>(gaussian_ring(20, 20), 0.)); });
+  const auto on_ring = dry<GapChain<double>>(gaussian_ring(20, 20));
   for (const ParticleIndex wrong :
        {std::numeric_limits<ParticleIndex>::max(), std::numeric_limits<ParticleIndex>::min()})
-    EXPECT_EQ(on_ring.by([&](auto& run) { field<2>(field<0>(field<0>(run))) = wrong; }), cannot_be("particles"));
+    on_ring.cannot_be("particles", [&](auto& run) { field<2>(field<0>(field<0>(run))) = wrong; });
   using Heavy = GapChain<double, IndividualMasses<double>>;
   expect_gaps_refused<Heavy>(uniform_rows(60));
-  const Contradicted<Made<Heavy, Dry>> loading(
-      [] { return Made<Heavy, Dry>(Dry(0.9, 1e-4), Heavy(uniform_rows(60), 0.)); });
-  EXPECT_EQ(loading.by([](auto& run) { field<0>(field<0>(run)).masses.set(field<0>(run).first(), 0); }),
-            cannot_be("gaps"));
+  const auto loading = dry<Heavy>(uniform_rows(60));
+  loading.cannot_be("gaps", [](auto& run) { field<0>(field<0>(run)).masses.set(field<0>(run).first(), 0); });
 }
 
 TEST(DamagedStates, FrontsThatNoRunHasAreRefused) {
   using Run = Made<GapChain<double>, Dry>;
   const auto range = [](Run& run) -> HeldRange& { return field<1>(field<0>(run)); };
-  const Contradicted<Run> on_ring([] { return Run(Dry(0.9, 1e-4), GapChain<double>(gaussian_ring(20, 20), 0.)); });
-  EXPECT_EQ(on_ring.by([&](Run& run) { field<3>(range(run)) = 0; }), cannot_be("seam"));
-  const Contradicted<Run> on_line([] { return Run(Dry(0.9, 1e-4), GapChain<double>(uniform_rows(60), 0.)); });
-  EXPECT_EQ(on_line.by([&](Run& run) { field<0>(range(run)) = HeldRange::Extent::nowhere; }), cannot_be("slots"))
-      << "fronts without collisions";
+  const auto on_ring = dry<GapChain<double>>(gaussian_ring(20, 20));
+  on_ring.cannot_be("seam", [&](Run& run) { field<3>(range(run)) = 0; });
+  const auto on_line = dry<GapChain<double>>(uniform_rows(60));
+  on_line.cannot_be("slots",
+                    [&](Run& run) { field<0>(range(run)) = HeldRange::Extent::nowhere; });  // fronts without collisions
   using Positions = Made<PositionChain<double>, Dry>;
-  const Contradicted<Positions> positions(
-      [] { return Positions(Dry(0.9, 1e-4), PositionChain<double>(uniform_rows(60), 0.)); });
-  EXPECT_EQ(positions.by([](Positions& run) { field<6>(field<0>(run)) = 0; }), cannot_be("fronts"));
+  const auto positions = dry<PositionChain<double>>(uniform_rows(60));
+  positions.cannot_be("fronts", [](Positions& run) { field<6>(field<0>(run)) = 0; });
 }
 
 TEST(DamagedStates, PositionsThatNoRunHasAreRefused) {
   using Run = Made<PositionChain<double>, Dry>;
-  const Contradicted<Run> loading([] { return Run(Dry(0.9, 1e-4), PositionChain<double>(uniform_rows(60), 0.)); });
-  EXPECT_EQ(loading.by([](Run&) {}), "loaded");
+  const auto loading = dry<PositionChain<double>>(uniform_rows(60));
+  loading.loads();
   for (const double wrong : {infinity, nan}) {
-    EXPECT_EQ(loading.by([&](Run& run) { field<0>(field<0>(run))[5].x = wrong; }), cannot_be("numbers"));
-    EXPECT_EQ(loading.by([&](Run& run) { field<2>(field<0>(run))[5] = wrong; }), cannot_be("numbers"));
-    EXPECT_EQ(loading.by([&](Run& run) { field<4>(field<0>(run)) = wrong; }), cannot_be("numbers")) << "the origin";
+    loading.cannot_be("numbers", [&](Run& run) { field<0>(field<0>(run))[5].x = wrong; });
+    loading.cannot_be("numbers", [&](Run& run) { field<2>(field<0>(run))[5] = wrong; });
+    loading.cannot_be("numbers", [&](Run& run) { field<4>(field<0>(run)) = wrong; });  // the origin
   }
-  EXPECT_EQ(loading.by([](Run& run) { field<1>(field<0>(run))[5] = nan; }), cannot_be("numbers")) << "a collision";
-  EXPECT_EQ(loading.by([](Run& run) { field<2>(field<0>(run)).back() = 1; }), cannot_be("numbers"))
-      << "a gap beyond the end closes";
+  loading.cannot_be("numbers", [](Run& run) { field<1>(field<0>(run))[5] = nan; });    // a collision
+  loading.cannot_be("numbers", [](Run& run) { field<2>(field<0>(run)).back() = 1; });  // a gap beyond the end closes
 }
 
 template <class Make> void expect_cells_refused(const Make& make, bool on_ring) {
@@ -125,22 +121,20 @@ template <class Make> void expect_cells_refused(const Make& make, bool on_ring) 
   using Run = Made<Chain, Wet<double>>;
   const Contradicted<Run> loading(make);
   const auto cell = [](Run& run, Slot s) -> Cell<double>& { return field<0>(field<0>(run)).gaps[s]; };
-  EXPECT_EQ(loading.by([](Run&) {}), "loaded");
+  loading.loads();
   for (const double wrong : {infinity, nan, 1e200})
-    EXPECT_EQ(loading.by([&](Run& run) { cell(run, field<0>(run).first()).velocity = wrong; }), cannot_be("numbers"));
+    loading.cannot_be("numbers", [&](Run& run) { cell(run, field<0>(run).first()).velocity = wrong; });
   for (const double wrong : {infinity, 1e200})
-    EXPECT_EQ(loading.by([&](Run& run) { cell(run, field<0>(run).first()).mass = wrong; }), cannot_be("numbers"));
-  EXPECT_EQ(loading.by([&](Run& run) { cell(run, field<0>(run).first()).gap = nan; }), cannot_be("numbers"));
+    loading.cannot_be("numbers", [&](Run& run) { cell(run, field<0>(run).first()).mass = wrong; });
+  loading.cannot_be("numbers", [&](Run& run) { cell(run, field<0>(run).first()).gap = nan; });
   if (on_ring) return;
-  EXPECT_EQ(loading.by([&](Run& run) { cell(run, field<0>(run).last()).due = 4; }), cannot_be("numbers"))
-      << "the last one meets what runs away";
+  loading.cannot_be("numbers",
+                    [&](Run& run) { cell(run, field<0>(run).last()).due = 4; });  // the last one meets what runs away
   for (const bool left : {true, false})
-    EXPECT_EQ(loading.by([&](Run& run) {
+    loading.cannot_be("ends", [&](Run& run) {
       const Chain& chain = field<0>(run);
       cell(run, left ? chain.first() - 1 : chain.right(chain.last())).velocity = left ? 1 : -1;
-    }),
-              cannot_be("ends"))
-        << "what is beyond the ends comes back";
+    });  // what is beyond the ends comes back
 }
 
 TEST(DamagedStates, CellsThatNoRunHasAreRefused) {
@@ -152,24 +146,25 @@ TEST(DamagedStates, CellsThatNoRunHasAreRefused) {
 TEST(DamagedStates, ClustersThatNoGasHasAreRefused) {
   const Contradicted<StickyGas<double>> loading([] { return StickyGas<double>(gaussian_ring(20, 20), 0.); });
   const auto lump = [](StickyGas<double> & gas) -> auto& { return field<2>(gas).front(); };
-  EXPECT_EQ(loading.by([](StickyGas<double>&) {}), "loaded");
+  loading.loads();
   for (const double wrong : {infinity, nan}) {
-    EXPECT_EQ(loading.by([&](auto& gas) { lump(gas).mass = wrong; }), cannot_be("clusters"));
-    EXPECT_EQ(loading.by([&](auto& gas) { lump(gas).momentum = wrong; }), cannot_be("clusters"));
+    loading.cannot_be("clusters", [&](auto& gas) { lump(gas).mass = wrong; });
+    loading.cannot_be("clusters", [&](auto& gas) { lump(gas).momentum = wrong; });
   }
-  EXPECT_EQ(loading.by([&](auto& gas) { lump(gas).heaviest = 20; }), cannot_be("clusters"));
-  EXPECT_EQ(loading.by([&](auto& gas) { --lump(gas).count; }), cannot_be("clusters")) << "or none at all";
-  EXPECT_EQ(loading.by([&](auto& gas) { ++lump(gas).count; }), cannot_be("clusters"));
+  loading.cannot_be("clusters", [&](auto& gas) { lump(gas).heaviest = 20; });
+  loading.cannot_be("clusters", [&](auto& gas) { --lump(gas).count; });  // or none at all
+  loading.cannot_be("clusters", [&](auto& gas) { ++lump(gas).count; });
 }
 
 TEST(DamagedStates, ReviewsThatNeverComeAreRefused) {
   using Run = Made<GapChain<double>, Dry>;
-  const Contradicted<Run> loading([] { return Run(Dry(0.9, 1e-4), GapChain<double>(gaussian_ring(20, 20), 0.)); });
-  EXPECT_EQ(loading.by([](Run& run) { field<3>(run).next_review = std::uint64_t{1} << 60; }), cannot_be("pacing"));
-  EXPECT_EQ(loading.by([](Run& run) { field<3>(run).next_poll = std::uint64_t{1} << 60; }), cannot_be("pacing"));
-  EXPECT_EQ(loading.by([](Run& run) { field<3>(run).most_collisions = std::uint64_t{1} << 60; }), cannot_be("pacing"));
-  EXPECT_EQ(loading.by([](Run& run) { field<2>(run).collisions = std::uint64_t{1} << 61; }), cannot_be("pacing"))
-      << "times a number of epochs they are no integer";
+  const auto loading = dry<GapChain<double>>(gaussian_ring(20, 20));
+  loading.cannot_be("pacing", [](Run& run) { field<3>(run).next_review = std::uint64_t{1} << 60; });
+  loading.cannot_be("pacing", [](Run& run) { field<3>(run).next_poll = std::uint64_t{1} << 60; });
+  loading.cannot_be("pacing", [](Run& run) { field<3>(run).most_collisions = std::uint64_t{1} << 60; });
+  loading.cannot_be("pacing", [](Run& run) {
+    field<2>(run).collisions = std::uint64_t{1} << 61;
+  });  // times a number of epochs they are no integer
 }
 
 // A run continues from what loading cannot detect: found by fuzzing, collisions by which times overflow. They have an

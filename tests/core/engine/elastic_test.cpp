@@ -75,8 +75,7 @@ TEST(Elastic, PerturbedRowsPassThroughEachOther) {
 
 // Rows on a lattice: at every multiple of l/(2 u0) one more layer meets. Collisions at such a time count as made.
 TEST(Elastic, LatticeRowsMakeTriangularNumbersOfCollisions) {
-  const auto particles = std::make_shared<Rows<double>>(
-      symmetric_rows<double>(400, 0.5, 1, [](ParticleIndex) { return std::int64_t{0}; }));
+  const auto particles = lattice_rows(400);
   const auto expect_triangular = [](auto run) {
     for (std::uint64_t layers = 1; layers <= 200; ++layers) {
       run.advance(static_cast<double>(layers) - 0.5);

@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
 
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/tests/core/fixtures.hpp"
@@ -26,30 +25,27 @@ using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
-struct Row {
+struct Front {
   double restitution;
   const char *reach, *turnover;  // max(x_n - x_0), and when
   std::uint64_t collisions;      // of the tracer until then
   std::uint64_t simultaneous;    // triple collisions of the run until then, decided by the tie rule
   ParticleIndex particles;
 
-  friend void PrintTo(const Row& r, std::ostream* out) { *out << "eps=" << r.restitution; }
+  friend void PrintTo(const Front& r, std::ostream* out) { *out << "eps=" << r.restitution; }
 };
 
-class Fronts : public testing::TestWithParam<Row> {
+class Fronts : public testing::TestWithParam<Front> {
  protected:
-  Scene<double> lattice() const {
-    return std::make_shared<Rows<double>>(
-        symmetric_rows<double>(GetParam().particles, 0.5, 1, [](ParticleIndex) { return std::int64_t{0}; }));
-  }
+  Scene<double> lattice() const { return lattice_rows(GetParam().particles); }
   Inelastic<double> law() const { return Inelastic(GetParam().restitution); }
   // The recursion for the very restitution that the run has, not the decimal it stands for.
   theory::InelasticShock<Wide> shock() const { return {Wide(GetParam().restitution)}; }
   static double tolerance(std::uint64_t n, double t) { return 3 * static_cast<double>(n + 1) * (t + 1) * u; }
 };
 INSTANTIATE_TEST_SUITE_P(Restitutions, Fronts,
-                         testing::Values(Row{.999, "386.447771021476687", "1999.10445795704663", 1386, 0, 5000},
-                                         Row{.99, "38.7830812554337329", "200.433837489132534", 139, 0, 500}));
+                         testing::Values(Front{.999, "386.447771021476687", "1999.10445795704663", 1386, 0, 5000},
+                                         Front{.99, "38.7830812554337329", "200.433837489132534", 139, 0, 500}));
 
 template <class Run> void expect_front(const Run& run, double t, const Wide& exact, double tolerance) {
   const double local = run.chain().local_time(t);

@@ -41,11 +41,6 @@ Scene<double> alternating_masses(double ratio) {
   return list(std::move(x), std::move(v), std::move(m));
 }
 
-Scene<double> unequal_rows() {
-  return std::make_shared<Rows<double>>(Row<double>{160, 0.75, .5}, Row<double>{240, -0.25, 1.5},
-                                        CentralParticle<double>{20, .125}, rshock_displacement);
-}
-
 std::vector<Case> cases() {
   return {{"rows", rshock<double>(400), Inelastic(0.98, 1e-5), {1, 50, 250, 310}, 3},
           {"rows beyond their collapse", rshock<double>(200), Inelastic(0.9, 1e-3), {10, 60, 80, 100}, 2},

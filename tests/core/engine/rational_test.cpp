@@ -1,10 +1,8 @@
 // The engine in exact rational arithmetic, where every identity holds with ==, as oracle of the engine in double.
 // Proves: momentum, energy = ledger and closure exactly; gaps and absolute positions are the same dynamics exactly;
 // collapse obeys its closed forms exactly; double makes the same collisions in the same order and is off by rounding
-// only (bounds as derived in properties_test.cpp); and the engine asks nothing of a scalar that a rational lacks.
+// only (bounds as derived in properties_test.cpp); and the engine requires nothing of a scalar that a rational lacks.
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"

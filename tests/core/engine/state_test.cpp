@@ -6,19 +6,17 @@
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/engine/state.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/ring.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/saved.hpp"
+#include "cradle/tests/texts.hpp"
 
 namespace state_test {
 
 using namespace cradle;
+using test::gaussian_ring;
+using test::uniform_rows;
 
 template <class X> X there_and_back(const X& x) {
   SavedState state = SavedState::of(x);
@@ -61,57 +59,36 @@ TEST(State, ListsLongerThanTheFileAreRefusedBeforeTheyAreMade) {
   EXPECT_LT(values.capacity(), 1000U);
 }
 
-template <class Run> void expect_same_from_anywhere(const std::function<Run()>& make) {
-  for (double cut = 0; cut < 40; cut += 3.7) {
-    Run whole = make();
-    whole.advance(cut);
-    SavedState state = SavedState::of(whole);
-    const SavedState then = state;
-    Run later = make();
-    load(state, later);
-    EXPECT_EQ(state.left(), 0U);
-    EXPECT_TRUE(SavedState::of(later) == then) << cut;
-    whole.advance(40);
-    later.advance(40);
-    const SavedState wanted = SavedState::of(whole);
-    EXPECT_TRUE(SavedState::of(later) == wanted) << cut;
+template <class Make> void expect_same(const Make& make) {
+  test::expect_same_from_anywhere(make, 0, 3.7, 40, [](const auto& later, const auto& whole) {
     EXPECT_EQ(later.energy_lost(), whole.energy_lost());
     EXPECT_EQ(later.last_collision_time(), whole.last_collision_time());
-  }
-}
-
-std::shared_ptr<const Particles<double>> rows(ParticleIndex count) {
-  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));
-}
-std::shared_ptr<const Particles<double>> ring(ParticleIndex count) {
-  return std::make_shared<Ring<double>>(count, 20., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
+  });
 }
 template <class Law, class Chain>
 void expect_same(const Law& law, const std::shared_ptr<const Particles<double>>& particles) {
-  expect_same_from_anywhere<Simulation<double, Law, Chain>>(
-      [&] { return Simulation<double, Law, Chain>(law, Chain(particles, 0.)); });
+  expect_same([&] { return Simulation<double, Law, Chain>(law, Chain(particles, 0.)); });
 }
 
 using Dry = Inelastic<double>;
 
 TEST(State, RunsContinueWithTheSameBits) {
-  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), rows(60));
-  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), ring(20));
-  expect_same<Dry, GapChain<double, IndividualMasses<double>>>(Dry(0.9, 1e-4), rows(60));
+  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), uniform_rows(60));
+  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), gaussian_ring(20, 20));
+  expect_same<Dry, GapChain<double, IndividualMasses<double>>>(Dry(0.9, 1e-4), uniform_rows(60));
   expect_same<ContactTime<double>, GapChain<double, IndividualMasses<double>>>(ContactTime<double>(Dry(0.9, 0.), 1e-3),
-                                                                               rows(60));
-  expect_same<Dry, PositionChain<double>>(Dry(0.9, 1e-4), rows(60));
-  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), rows(60));
-  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), ring(20));
-  expect_same_from_anywhere<StickyGas<double>>([] { return StickyGas<double>(rows(60), 0.); });
-  expect_same<Dry, GapChain<double>>(Dry(0.95, 1e-2), rows(1200));  // in epochs
+                                                                               uniform_rows(60));
+  expect_same<Dry, PositionChain<double>>(Dry(0.9, 1e-4), uniform_rows(60));
+  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), uniform_rows(60));
+  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), gaussian_ring(20, 20));
+  expect_same([] { return StickyGas<double>(uniform_rows(60), 0.); });
+  expect_same<Dry, GapChain<double>>(Dry(0.95, 1e-2), uniform_rows(1200));  // in epochs
 }
 
 // After a collision by which cells are laid out anew, fewer than before, nothing points beyond them.
 TEST(State, OfCellsLaidOutAnewIsTaken) {
   using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
-  const auto particles =
-      std::make_shared<Ring<double>>(60, 60., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
+  const auto particles = gaussian_ring(60, 60);
   const auto make = [&] { return Run(Sticky<double>(), ClusterChain<double>(particles, 0.)); };
   Run run = make();
   for (double time = 0; time <= 300; time += 5) {
@@ -125,7 +102,7 @@ TEST(State, OfCellsLaidOutAnewIsTaken) {
 // Every byte of a state changed: it is refused, or a run that can continue.
 TEST(State, WhatDoesNotFitTogetherIsRefused) {
   using Run = Simulation<double, Wet<double>, ClusterChain<double>>;
-  const auto make = [] { return Run(Wet<double>(0.01), ClusterChain<double>(ring(12), 0.)); };
+  const auto make = [] { return Run(Wet<double>(0.01), ClusterChain<double>(gaussian_ring(12, 20), 0.)); };
   Run run = make();
   run.advance(3);
   const std::string bytes = SavedState::of(run).bytes();
@@ -135,11 +112,7 @@ TEST(State, WhatDoesNotFitTogetherIsRefused) {
     changed[at] = static_cast<char>(changed[at] ^ 0x40);
     SavedState state(changed);
     Run later = make();
-    try {
-      load(state, later);
-    } catch (const std::invalid_argument&) {
-      ++refused;
-    }
+    refused += test::message_of([&] { load(state, later); }) != "nothing was refused";
   }
   EXPECT_GT(refused, 200) << "lengths, links, numbers of particles";
   for (std::size_t size = 0; size < bytes.size(); size += 7) {

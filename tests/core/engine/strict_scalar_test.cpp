@@ -1,6 +1,6 @@
-// The whole engine on a scalar that converts to and from nothing in silence (strict_real.hpp). Proves: core/ speaks of
-// the scalar only through the concept Real; the general code, written for types whose queue keys are rounded times,
-// makes the same collisions as the code for double and leaves the same bits.
+// The whole engine on a scalar without implicit conversions (strict_real.hpp). Proves: core/ uses the scalar only
+// through the concept Real; the general code, written for types whose queue keys are rounded times, makes the same
+// collisions as the code for double and gives the same bits.
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"

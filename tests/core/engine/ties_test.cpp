@@ -70,7 +70,7 @@ TEST(Ties, WidthOfTheIndexDoesNotChangeABitWhereParticlesPassAndMerge) {
   }
 }
 
-// Against the plainest way: before each collision all gaps are looked through.
+// Against the plainest way: all gaps are searched before each collision.
 template <class T> void expect_each_the_first(ParticleIndex n, const T& restitution, int bits) {
   const auto scene = lattice<T>(n, 5);
   auto run = gap_run<T>(scene, Inelastic<T>(restitution), {}, T(0), {.least_queue_bits = bits});

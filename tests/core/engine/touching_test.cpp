@@ -1,8 +1,8 @@
-// Restitution 0 leaves particles together, gap 0 and closing speed 0, until another one hits them. Proves: what then
-// happens at one time and place is what the exact system does, collision by collision, as long as double holds its
-// closing speeds; where it does not, and collisions come within rounding of each other, no order is called lost; local
-// times that a late collision leaves ahead of the origin lose nothing when it moves; what is later than rounding is
-// still counted.
+// Restitution 0 leaves particles together, gap 0 and closing speed 0, until another one hits them. Proves: the
+// collisions that follow at one time and place are those of the exact system, as long as double holds its closing
+// speeds; where it does not, and collisions come within rounding of each other, no order is reported as lost; local
+// times that a late collision leaves ahead of the origin lose nothing when it moves; collisions that are later than
+// rounding explains are still counted.
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/fixtures.hpp"

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <bit>
 #include <chrono>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>

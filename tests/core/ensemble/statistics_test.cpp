@@ -9,7 +9,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -181,7 +180,7 @@ TEST(Statistics, VectorsOfAnotherLengthAreRefusedAndChangeNothing) {
   EXPECT_EQ(tree.total(), statistics_of({0, 1, 2}));
 }
 
-// Vectors so long that the writing thread puts nodes together nearly all the time: whoever reads meanwhile sees every
+// Vectors so long that the writing thread puts nodes together nearly all the time: a concurrent reader sees every
 // replica whose add() has returned, and one replica is never taken twice.
 TEST(Statistics, NoReplicaIsOutOfSightWhileOthersAreAdded) {
   constexpr ReplicaIndex n = 64;

@@ -1,8 +1,7 @@
 // Walls: against exact rationals collision by collision, in both coordinates, streamed, in segments and from a saved
-// state; what they give, what thermal ones make of a gas, and what is refused.
+// state; the energy that they give, a gas between thermal ones, and walls that are refused.
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -12,6 +11,7 @@
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tests/core/rational.hpp"
+#include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
 namespace walls_test {
@@ -27,7 +27,6 @@ std::shared_ptr<const Particles<T>> walled(const Scene<T>& particles, std::optio
 template <class T> Wall<T> thermal(const T& position, double temperature) {
   return {.position = position, .temperature = temperature, .seed = 5, .replica = 2};
 }
-template <class T> T half(int halves) { return T(halves) / T(2); }
 
 // The plainest gas between walls there is: positions and velocities, all pairs compared before every collision.
 template <class T> struct PlainGas {
@@ -184,8 +183,8 @@ TEST(Walls, InelasticParticlesAtAWallLoseWhatTheLedgerSays) {
   EXPECT_FALSE(check.broken);
 }
 
-template <class Chain> void expect_same_piecewise(const Scene<double>& particles, const Inelastic<double>& law) {
-  Simulation<double, Inelastic<double>, Chain> once(law, Chain(particles, 0.)), often(law, Chain(particles, 0.));
+template <class Run> void expect_same_piecewise(Run once) {
+  Run often = once;
   once.advance(60);
   for (double t = 0; t <= 60; t += 0.37) often.advance(t);
   often.advance(60);
@@ -196,8 +195,8 @@ template <class Chain> void expect_same_piecewise(const Scene<double>& particles
 
 TEST(Walls, GiveTheSameAtAnyCadence) {
   const auto particles = walled<double>(rmix<double>(40), thermal(-1., 0.5), Wall<double>{41., -.02});
-  expect_same_piecewise<GapChain<double>>(particles, Inelastic<double>(0.97, 1e-4));
-  expect_same_piecewise<PositionChain<double>>(particles, Inelastic<double>(0.97, 1e-4));
+  expect_same_piecewise(gap_run<double>(particles, Inelastic<double>(0.97, 1e-4)));
+  expect_same_piecewise(position_run<double>(particles, Inelastic<double>(0.97, 1e-4)));
 }
 
 TEST(Walls, RowsAreStreamedTowardsAnEndWithoutOne) {
@@ -243,26 +242,14 @@ TEST(Walls, SegmentsReportWhatWallsGave) {
   }
 }
 
-template <class Run> void expect_same_from_a_state(const std::function<Run()>& make) {
-  for (double cut = 0.5; cut < 30; cut += 6.1) {
-    Run whole = make();
-    whole.advance(cut);
-    SavedState state = SavedState::of(whole);
-    Run later = make();
-    load(state, later);
-    whole.advance(30);
-    later.advance(30);
-    const SavedState wanted = SavedState::of(whole);
-    EXPECT_TRUE(SavedState::of(later) == wanted) << cut;
-    EXPECT_EQ(given_by_walls(later), given_by_walls(whole));
-  }
-}
-
 TEST(Walls, RunsContinueFromASavedState) {
   const auto particles = walled<double>(rmix<double>(30), thermal(-1., 0.5), Wall<double>{31., -0.02, .9});
   const Inelastic<double> law(0.97, 1e-4);
-  expect_same_from_a_state<GapRun<double>>([&] { return gap_run<double>(particles, law); });
-  expect_same_from_a_state<PositionRun<double>>([&] { return position_run<double>(particles, law); });
+  const auto check = [](const auto& later, const auto& whole) {
+    EXPECT_EQ(given_by_walls(later), given_by_walls(whole));
+  };
+  expect_same_from_anywhere([&] { return gap_run<double>(particles, law); }, 0.5, 6.1, 30, check);
+  expect_same_from_anywhere([&] { return position_run<double>(particles, law); }, 0.5, 6.1, 30, check);
 }
 
 // Particles that leave a wall of temperature 1 do so with the density v exp(-v^2/2): mean sqrt(pi/2), mean square 2.
@@ -288,14 +275,16 @@ TEST(Walls, AGasTakesOnTheirTemperature) {
   constexpr ParticleIndex n = 20;
   std::vector<double> x, v, m;
   for (ParticleIndex i = 0; i < n; ++i) x.push_back(double(i) + 0.5), v.push_back(0), m.push_back(i % 2 ? 2.5 : 1);
-  const auto particles = walled<double>(list<double>(x, v, m), thermal(0., 3), thermal(double(n), 3));
-  auto run = mass_run<double>(particles, Inelastic<double>(1));
+  const auto make = [&] {
+    const auto particles = walled<double>(list<double>(x, v, m), thermal(0., 3), thermal(double(n), 3));
+    return mass_run<double>(particles, Inelastic<double>(1));
+  };
   // Nothing moves until something comes from a wall: a first push.
+  auto run = make();
   EXPECT_EQ(run.advance(10), Status::reached);
   EXPECT_EQ(run.counts().collisions, 0U);
   v[0] = -1;
-  auto moving = mass_run<double>(walled<double>(list<double>(x, v, m), thermal(0., 3), thermal(double(n), 3)),
-                                 Inelastic<double>(1));
+  auto moving = make();
   double sum = 0, squares = 0;
   constexpr int blocks = 40;
   for (int block = 0; block < blocks + 4; ++block) {

@@ -1,5 +1,5 @@
-// Guards are silent on every run that is right, up to very many collisions, and each one speaks where its own thing is
-// wrong by far less than what is to be seen in a result.
+// Guards are silent on every correct run, up to very many collisions, and each one reports an error of its own quantity
+// that is far smaller than what a result shows.
 #include <cmath>
 #include <limits>
 #include <memory>

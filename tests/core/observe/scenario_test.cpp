@@ -96,7 +96,7 @@ TEST(Scenario, OfARunAsCountedByHand) {
                           }),
               Status::reached);
     const auto now = cloud(run.configuration(t));
-    if (known) {  // between two looks the pair meets once at the most, mostly
+    if (known) {  // between two samples the pair mostly meets once at most
       const bool kept =
           std::minmax(now.left->index, now.right->index) == std::minmax(before.left->index, before.right->index);
       passes += kept && now.left->index == before.right->index;

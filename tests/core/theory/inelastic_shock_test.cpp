@@ -257,7 +257,7 @@ TEST(StickyEnergy, EndsWithTheRows) {
 }
 
 TEST(InelasticShock, HasTheScalesOfItsUnits) {
-  // lengths x 2, times x 5, masses x 3: powers of two where equality is asked for
+  // lengths x 2, times x 5, masses x 3: powers of two where equality is required
   InelasticShock<double> unit{0.99};
   unit.particles = 200;
   InelasticShock<double> scaled{0.99, 0.5 * 4 / 8, 4, 2, 200};

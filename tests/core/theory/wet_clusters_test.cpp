@@ -45,6 +45,12 @@ WetZone<double> paper_zone(double loss = 0.05) { return WetZone<double>(WetShock
 ClusterRules in_the_zone(const WetZone<double>& zone, Meeting meeting) {
   return {1, zone.shock().loss, meeting, zone.half_width(), zone.shock().speed};
 }
+const double edge = paper_zone().half_width();
+auto in_the_papers_zone(Meeting meeting, const ClusterStart& first, const ClusterStart& second,
+                        double tolerance = 1e-10) {
+  const auto zone = paper_zone();
+  return motion(ZoneForce(zone), in_the_zone(zone, meeting), first, second, tolerance);
+}
 
 // ---- (17) at constant mass: parabolas ----
 
@@ -172,7 +178,6 @@ TEST(WetClusters, SignForceHasTheExponentsOfItsAdiabaticInvariant) {
 TEST(WetClusters, ConstantMassKeepsItsEnergyInTheZone) {
   const auto zone = paper_zone();
   const ZoneForce force(zone);
-  const double edge = zone.half_width();
   const auto potential = [&](double x) {
     const double inside = std::min(std::abs(x), edge);
     const double work = boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
@@ -193,9 +198,7 @@ TEST(WetClusters, ConstantMassKeepsItsEnergyInTheZone) {
 }
 
 TEST(WetClusters, OscillateOnTheirSidesWithGrowingAmplitudeThenAroundTheCentre) {
-  const auto zone = paper_zone();
-  const double edge = zone.half_width();
-  auto run = motion(ZoneForce(zone), in_the_zone(zone, Meeting::pass), {-1.2 * edge, 0, 0.5}, {1.2 * edge, 0, 0.5});
+  auto run = in_the_papers_zone(Meeting::pass, {-1.2 * edge, 0, 0.5}, {1.2 * edge, 0, 0.5});
   int turns = 0;
   double before = 0, amplitude = 0;
   for (double t = 0.25; t < 1e5; t += 0.25) {
@@ -224,9 +227,7 @@ TEST(WetClusters, OscillateOnTheirSidesWithGrowingAmplitudeThenAroundTheCentre) 
 }
 
 TEST(WetClusters, ClusterAtRestOnTheEdgeStaysThere) {
-  const auto zone = paper_zone();
-  const double edge = zone.half_width();
-  auto run = motion(ZoneForce(zone), in_the_zone(zone, Meeting::energy), {-edge, 0, 0.5}, {edge, 0, 0.5});
+  auto run = in_the_papers_zone(Meeting::energy, {-edge, 0, 0.5}, {edge, 0, 0.5});
   run.advance(1e6);
   EXPECT_EQ(run.first().x, -edge) << "both sides push it there";
   EXPECT_EQ(run.second()->x, edge);
@@ -302,9 +303,7 @@ TEST(ClusterMeeting, SampleAtTheMeetingIsTheStateAfterIt) {
 }
 
 TEST(ClusterMeeting, WetRuleSticksClustersThatJustGetOverTheBarrier) {
-  const auto zone = paper_zone();
-  const double edge = zone.half_width();
-  auto run = motion(ZoneForce(zone), in_the_zone(zone, Meeting::energy), {-1.2 * edge, 0, 0.5}, {1.2 * edge, 0, 0.5});
+  auto run = in_the_papers_zone(Meeting::energy, {-1.2 * edge, 0, 0.5}, {1.2 * edge, 0, 0.5});
   run.advance(1e5);
   ASSERT_EQ(run.meetings().size(), 1U);
   EXPECT_LT(run.meetings()[0].relative_energy, 0.05);
@@ -315,10 +314,8 @@ TEST(ClusterMeeting, WetRuleSticksClustersThatJustGetOverTheBarrier) {
 // ---- determinism ----
 
 TEST(WetClusters, SamplesChangeNothing) {
-  const auto zone = paper_zone();
-  const double edge = zone.half_width();
   const auto start = [&] {
-    return motion(ZoneForce(zone), in_the_zone(zone, Meeting::pass), {-0.8 * edge, 0.05, 0.45}, {0.9 * edge, 0, 0.55});
+    return in_the_papers_zone(Meeting::pass, {-0.8 * edge, 0.05, 0.45}, {0.9 * edge, 0, 0.55});
   };
   auto often = start(), once = start();
   for (int k = 1; k <= 50000; ++k) often.advance(k * 0.1);
@@ -333,11 +330,8 @@ TEST(WetClusters, SamplesChangeNothing) {
 }
 
 TEST(WetClusters, MirrorImageIsTheSame) {
-  const auto zone = paper_zone();
-  const double edge = zone.half_width();
-  auto run = motion(ZoneForce(zone), in_the_zone(zone, Meeting::energy), {-2 * edge, 0.3, 0.2}, {1.5 * edge, 0, 0.8});
-  auto mirror =
-      motion(ZoneForce(zone), in_the_zone(zone, Meeting::energy), {2 * edge, -0.3, 0.2}, {-1.5 * edge, 0, 0.8});
+  auto run = in_the_papers_zone(Meeting::energy, {-2 * edge, 0.3, 0.2}, {1.5 * edge, 0, 0.8});
+  auto mirror = in_the_papers_zone(Meeting::energy, {2 * edge, -0.3, 0.2}, {-1.5 * edge, 0, 0.8});
   for (int k = 1; k <= 500; ++k) {
     run.advance(k * 0.5);
     mirror.advance(k * 0.5);

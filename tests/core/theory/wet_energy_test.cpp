@@ -1,7 +1,8 @@
 // Energy of the wet shock before anything sticks.
 // Proves: the recursion over all pairs makes the collisions of an independent event-driven N-particle run (NB: counts
 // that double, binary128 and 100 digits agree in), with the front as its first row and the elastic gas as its limit;
-// the series follows from its continuous form, in exact rationals; and it gives the run's energy to what is left out.
+// the series follows from its continuous form, in exact rationals; and it gives the run's energy up to the terms that
+// it leaves out.
 #include "cradle/core/theory/wet_energy.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>

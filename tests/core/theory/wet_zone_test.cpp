@@ -1,7 +1,7 @@
 // The linear model of the late wet shock, equations (9) to (15).
-// Proves: both widths agree at k = sqrt 6 only and are what (11) and the slowing down say of the profiles; the momentum
-// handed to a heavy cluster is what the wet law takes; the force is (14) and (15) in the corrected form, to full
-// precision where the printed differences cancel.
+// Proves: both widths agree at k = sqrt 6 only and follow from the profiles by (11) and by the slowing down; the
+// momentum handed to a heavy cluster is the momentum lost by the wet law; the force is (14) and (15) in the corrected
+// form, to full precision where the printed differences cancel.
 #include "cradle/core/theory/wet_zone.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The first hour: `cradle` alone says what to try, and that works; `new` writes scenes that are those they come from;
+// The first hour: `cradle` alone suggests commands, and they work; `new` writes a scene equal to the bundled one;
 // completion and the manual page have every command, option and key; reports and citations from the command line.
 
 #include <algorithm>
@@ -9,8 +9,7 @@
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/fields.hpp"
 
-namespace cradle::tests {
-namespace first_hour_test {
+namespace cradle::tests::first_hour_test {
 
 class FirstHour : public ProgramTest {
  protected:
@@ -30,8 +29,7 @@ class FirstHour : public ProgramTest {
 };
 
 TEST_F(FirstHour, ProgramAloneSaysWhatToTryAndItWorks) {
-  const Printed alone = shell("cradle");
-  EXPECT_EQ(alone.status, 2);
+  const Printed alone = shell("cradle", 2);
   EXPECT_EQ(alone.err, "cradle: no command: give one, see `cradle --help`\n");
   std::istringstream lines(alone.out);
   std::vector<std::string> tried;
@@ -43,53 +41,48 @@ TEST_F(FirstHour, ProgramAloneSaysWhatToTryAndItWorks) {
     if (run.err.find("no Python with") != std::string::npos) continue;  // all but pictures and reports goes without
     EXPECT_EQ(run.status, 0) << command << "\n" << run.err;
   }
-  for (const auto* made : {"fig2.h5", "shock.toml"}) EXPECT_TRUE(std::filesystem::exists(folder / made)) << made;
+  for (const auto* made : {"fig2.h5", "shock.toml"}) EXPECT_TRUE(exists(made)) << made;
 }
 
 TEST_F(FirstHour, NewScenesAreThoseTheyComeFrom) {
   for (const auto& scene : tools::bundled_scenes()) {
     const std::string name(scene.name);
-    ASSERT_EQ(shell("rm -f copy.toml; cradle new copy.toml --from " + name).status, 0) << name;
-    const Printed difference = shell("cradle check " + name + " > a; cradle check copy.toml > b; diff a b");
-    EXPECT_EQ(difference.status, 0) << name << "\n" << difference.out;
+    shell("rm -f copy.toml; cradle new copy.toml --from " + name, 0);
+    shell("cradle check " + name + " > a; cradle check copy.toml > b; diff a b", 0);
   }
 }
 
 TEST_F(FirstHour, NewSceneListsEveryKeyThatItCouldUse) {
-  const Printed made = shell("cradle new");
-  ASSERT_EQ(made.status, 0) << made.err;
+  const Printed made = shell("cradle new", 0);
   EXPECT_EQ(made.out, "wrote shock.toml: change it, then `cradle run shock.toml`\n");
   const std::string text = contents(folder / "shock.toml");
-  tools::Scene scene = tools::read_scene((folder / "shock.toml").string(), {});
+  tools::Scene scene = tools::read_scene(path("shock.toml"), {});
   for (const tools::Field& field : tools::scene_fields()) {
     if (!field.when->holds(scene)) continue;
     const std::string printed = "# " + std::string(field.doc) + " (" + facts(field) + ")\n";
-    EXPECT_NE(text.find(printed), std::string::npos) << field.key;
+    EXPECT_TRUE(has(text, printed)) << field.key;
   }
-  EXPECT_EQ(shell("cradle run shock.toml --quiet").status, 0);
+  shell("cradle run shock.toml --quiet", 0);
 }
 
 TEST_F(FirstHour, NewReplacesNothing) {
   write("mine.toml", "mine");
-  const Printed again = shell("cradle new mine.toml");
-  EXPECT_EQ(again.status, 4);
+  const Printed again = shell("cradle new mine.toml", 4);
   EXPECT_EQ(again.err, "cradle: mine.toml: the file is there already: choose another name\n");
   EXPECT_EQ(contents(folder / "mine.toml"), "mine");
-  EXPECT_EQ(shell("cradle new other.toml --from no_such_scene").status, 4);
-  EXPECT_FALSE(std::filesystem::exists(folder / "other.toml"));
+  shell("cradle new other.toml --from no_such_scene", 4);
+  EXPECT_FALSE(exists("other.toml"));
 }
 
 TEST_F(FirstHour, ManualPageHasEveryCommandOptionAndKey) {
-  const Printed page = shell("cradle manual");
-  ASSERT_EQ(page.status, 0) << page.err;
-  EXPECT_TRUE(page.out.starts_with(".TH CRADLE 1 "));
+  const Printed page = shell("cradle manual", 0);
+  EXPECT_TRUE(begins(page.out, ".TH CRADLE 1 "));
   EXPECT_GE(commands().size(), 19U);
-  for (const std::string& command : commands())
-    EXPECT_NE(page.out.find(".SS cradle " + command), page.out.npos) << command;
+  for (const std::string& command : commands()) EXPECT_TRUE(has(page.out, ".SS cradle " + command)) << command;
   for (const auto* option : {"\\-\\-replicas N", "\\-o, \\-\\-output", "\\-\\-vary", "\\-\\-rtol"})
-    EXPECT_NE(page.out.find(option), page.out.npos) << option;
+    EXPECT_TRUE(has(page.out, option));
   for (const tools::Field& field : tools::scene_fields())
-    EXPECT_NE(page.out.find("\n.B " + std::string(field.key) + "\n"), page.out.npos) << field.key;
+    EXPECT_TRUE(has(page.out, "\n.B " + std::string(field.key) + "\n")) << field.key;
   if (!there("groff")) GTEST_SKIP() << "no groff: how the page is set was not checked";
   const Printed set = shell("cradle manual | groff -man -ww -Tutf8 > page.txt");
   EXPECT_EQ(set.err, "");
@@ -111,22 +104,20 @@ TEST_F(FirstHour, BashCompletesCommandsOptionsScenesAndKeys) {
   for (const auto& [words, completed] : cases)
     EXPECT_EQ(shell(std::string("bash complete.sh ") + words).out, std::string(completed) + "\n") << words;
   for (const std::string& command : commands())
-    EXPECT_NE((" " + shell("bash complete.sh cradle ''").out).find(" " + command), std::string::npos) << command;
+    EXPECT_TRUE(has(" " + shell("bash complete.sh cradle ''").out, " " + command)) << command;
 }
 
 TEST_F(FirstHour, CompletionsAreScriptsOfTheirShells) {
   for (const auto& [shell_name, check] :
        {std::pair{"bash", "bash -n"}, {"zsh", "zsh -n"}, {"fish", "fish --no-execute"}}) {
-    const Printed script = shell(std::string("cradle completion ") + shell_name + " > script");
-    EXPECT_EQ(script.status, 0) << script.err;
+    const Printed script = shell(std::string("cradle completion ") + shell_name + " > script", 0);
     if (!there(shell_name)) continue;
     const Printed read = shell(std::string(check) + " script");
     EXPECT_EQ(read.status, 0) << shell_name << "\n" << read.err;
   }
   const Printed words = shell("cradle completion words -- run fig2 --th");
-  EXPECT_TRUE(words.out.starts_with("--threads\tthreads to use at most")) << words.out;
-  const Printed other = shell("cradle completion csh");
-  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(begins(words.out, "--threads\tthreads to use at most"));
+  const Printed other = shell("cradle completion csh", 2);
   EXPECT_EQ(other.err, "cradle: no such shell (found csh): give bash, zsh or fish\n");
 }
 
@@ -135,30 +126,26 @@ TEST_F(FirstHour, ReportOfWhatIsNoResultIsOneMessage) {
                 .status,
             0);
   for (const auto* name : {"junk.h5", "cut.h5", "no.h5", "nothing.h5"}) {
-    const Printed report = shell(std::string("cradle report ") + name);
-    EXPECT_EQ(report.status, 4) << name;
-    EXPECT_NE(report.err.find(name), std::string::npos) << report.err;
+    const Printed report = shell(std::string("cradle report ") + name, 4);
+    EXPECT_TRUE(has(report.err, name));
     EXPECT_EQ(std::count(report.err.begin(), report.err.end(), '\n'), 1) << report.err;
   }
 }
 
 TEST_F(FirstHour, WithoutPythonPicturesAndReportsSayWhatIsMissing) {
-  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5").status, 0);
+  shell("cradle run fig5 --quiet -o it.h5", 0);
   for (const auto* command : {"plot", "report"}) {
-    const Printed run = shell(std::string("CRADLE_PYTHON=$PWD/none cradle ") + command + " it.h5");
-    EXPECT_EQ(run.status, 4);
-    EXPECT_NE(run.err.find("no Python with h5py and matplotlib"), std::string::npos) << run.err;
+    const Printed run = shell(std::string("CRADLE_PYTHON=$PWD/none cradle ") + command + " it.h5", 4);
+    EXPECT_TRUE(has(run.err, "no Python with h5py and matplotlib"));
   }
 }
 
 TEST_F(FirstHour, ExportWritesWhatIsThereAsAResult) {
-  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5").status, 0);
+  shell("cradle run fig5 --quiet -o it.h5", 0);
   EXPECT_EQ(shell("cradle export it.h5 --result copy.h5").out, "copy.h5\n");
-  EXPECT_EQ(shell("cradle diff it.h5 copy.h5").status, 0);
-  const Printed nothing = shell("cradle export it.h5");
-  EXPECT_EQ(nothing.status, 2);
+  shell("cradle diff it.h5 copy.h5", 0);
+  const Printed nothing = shell("cradle export it.h5", 2);
   EXPECT_EQ(nothing.err, "cradle: nothing to export to: give --to DIR, --result FILE or both\n");
 }
 
-}  // namespace first_hour_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::first_hour_test

@@ -2,12 +2,10 @@
 // Small scenes to make ensembles of, and what their files hold.
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/store/ensemble_store.hpp"
 
@@ -84,22 +82,13 @@ class Ensembles : public ProgramTest {
     write("collapse.toml", collapse);
   }
 
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-  Result result(const std::string& name) const { return read_result(path(name)); }
+  Result result(const std::string& name) const { return read(name); }
   Scene scene(const std::string& name) const { return tools::read_scene(path(name)); }
-  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
 
-  void run(const std::string& command, int status = 0) const {
-    const Printed printed = shell("cradle " + command);
-    ASSERT_EQ(printed.status, status) << command << "\n" << printed.err;
-  }
-  void expect_same(const std::string& a, const std::string& b) const {
-    ASSERT_FALSE(contents(folder / a).empty()) << a;
-    EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
-  }
+  void run(const std::string& command, int status = 0) const { shell("cradle " + command, status); }
 
-  // One more than the largest number of a replica in the journals of an ensemble that was asked for without end: so
-  // many hold them all, and one that is missing.
+  // One more than the largest number of a replica in the journals of an ensemble without end: an ensemble of so many
+  // replicas contains all of them and one that is missing.
   std::string enough_for(const std::string& file) const {
     // Of copies: reading the journals of ranks takes them in.
     std::filesystem::create_directory(folder / "copies");
@@ -112,12 +101,6 @@ class Ensembles : public ProgramTest {
     return std::to_string(missing.back().first + 1);
   }
 
-  static const Column& column(const Result& result, std::string_view group, std::string_view name) {
-    if (const auto* found = result.find(group))
-      for (const Column& c : found->columns)
-        if (c.name == name) return c;
-    throw std::out_of_range(std::string(group).append("/").append(name));
-  }
   static std::vector<double> numbers(const Result& result, std::string_view group, std::string_view name) {
     return std::visit(
         [](const auto& v) -> std::vector<double> {

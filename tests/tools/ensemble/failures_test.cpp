@@ -1,11 +1,10 @@
-// Replicas that cannot be trusted show: in the status, the messages, the file (of an ensemble, of a point of a sweep,
-// in the table of points) and the report; and the command that is given for one of them makes exactly that replica.
+// Replicas that cannot be trusted are reported: in the status, the messages, the file (of an ensemble, of a point of a
+// sweep, in the table of points) and the report; and the printed command for one of them repeats exactly that replica.
 #include <regex>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 
-namespace cradle::tests {
-namespace failures_test {
+namespace cradle::tests::failures_test {
 
 // Absolute coordinates do not resolve a core that restitution 0 leaves.
 constexpr const char* coarse = R"(
@@ -30,9 +29,9 @@ class Failures : public Ensembles {
  protected:
   Failures() { write("coarse.toml", coarse); }
 
-  // What the file says of a point whose replicas lost the order, and that the command for the first one makes it.
+  // The file lists the replicas of a point that lost the order, and the command for the first one repeats it.
   void expect_shown(const std::string& file, const std::string& group, const Printed& made) const {
-    const Result result = this->result(file);
+    const Result result = this->read(file);
     const auto below = [&](const char* name) { return group + name; };
     const auto outcomes = numbers(result, below("replicas"), "outcome");
     std::vector<double> lost;
@@ -43,15 +42,14 @@ class Failures : public Ensembles {
     EXPECT_EQ(numbers(result, below("replicas/failed"), "index"), lost);
     const auto first = static_cast<std::size_t>(lost.front());
     const auto& messages = attribute<std::string>(result.find(below("replicas/failed"))->attributes, "messages", file);
-    EXPECT_EQ(messages.rfind("replica " + std::to_string(first) + ": order of collisions lost", 0), 0U) << messages;
+    EXPECT_TRUE(begins(messages, "replica " + std::to_string(first) + ": order of collisions lost"));
 
     std::smatch command;
     ASSERT_TRUE(std::regex_search(made.err, command, std::regex("the first of them again, alone: ([^\n]*)")))
         << made.err;
-    const Printed alone = shell(command[1]);
-    EXPECT_EQ(alone.status, 5) << command[1] << "\n" << alone.err;
-    EXPECT_NE(alone.err.find("order of collisions lost"), std::string::npos) << alone.err;
-    const Result replica = this->result("replica.h5");
+    const Printed alone = shell(command[1], 5);
+    EXPECT_TRUE(has(alone.err, "order of collisions lost"));
+    const Result replica = read("replica.h5");
     EXPECT_EQ(numbers(replica, "series", "collisions").back(), numbers(result, below("replicas"), "collisions")[first]);
     EXPECT_EQ(numbers(replica, "series", "energy").back(), numbers(result, below("replicas"), "energy")[first]);
   }
@@ -59,11 +57,11 @@ class Failures : public Ensembles {
 
 TEST_F(Failures, OfASweepShowAndCanBeMadeAgain) {
   const Printed made = shell(
-      "cradle sweep coarse.toml --seed 1 --point law.restitution=0.5 --point law.restitution=0 --replicas 8 -o s.h5");
-  EXPECT_EQ(made.status, 5);
-  EXPECT_NE(made.err.find("points/0001: replica "), std::string::npos) << made.err;
+      "cradle sweep coarse.toml --seed 1 --point law.restitution=0.5 --point law.restitution=0 --replicas 8 -o s.h5",
+      5);
+  EXPECT_TRUE(has(made.err, "points/0001: replica "));
   expect_shown("s.h5", "points/0001/", made);
-  const Result sweep = result("s.h5");
+  const Result sweep = read("s.h5");
   EXPECT_EQ(sweep.find("points/0000/replicas/failed"), nullptr);
   const auto failed = numbers(sweep, "sweep", "failed");
   EXPECT_EQ(failed[0], 0);
@@ -78,8 +76,7 @@ TEST_F(Failures, OfASweepShowAndCanBeMadeAgain) {
 }
 
 TEST_F(Failures, OfAnEnsembleShowAndCanBeMadeAgain) {
-  const Printed made = shell("cradle ensemble coarse.toml --set law.restitution=0 --replicas 8 -o 'an ensemble.h5'");
-  EXPECT_EQ(made.status, 5);
+  const Printed made = shell("cradle ensemble coarse.toml --set law.restitution=0 --replicas 8 -o 'an ensemble.h5'", 5);
   expect_shown("an ensemble.h5", "", made);
 }
 
@@ -87,7 +84,7 @@ TEST_F(Failures, ManyAreCountedAndFoundInTheFile) {
   const Printed made =
       shell("cradle ensemble coarse.toml --set law.restitution=0 --set initial.perturbation=0.3 --replicas 40 -o e.h5");
   EXPECT_EQ(made.status, 5);
-  EXPECT_NE(made.err.find(" more: see /replicas/failed in e.h5\n"), std::string::npos) << made.err;
+  EXPECT_TRUE(has(made.err, " more: see /replicas/failed in e.h5\n"));
 }
 
 // U6 of a list: no replica differs from another.
@@ -106,11 +103,10 @@ TEST_F(Failures, ReplicasThatAreAllTheSameAreSaid) {
             "nothing is random in points/0000: all 2 replicas are the same run; give initial.perturbation, or "
             "--replicas 1\n");
   for (const char* scene : {"classics/domino --set run.until=3", "fig9 --set run.until=1", "fig5"})
-    EXPECT_EQ(said(std::string("ensemble ") + scene + " --replicas 2").rfind("nothing is random in ", 0), 0U) << scene;
+    EXPECT_TRUE(begins(said(std::string("ensemble ") + scene + " --replicas 2"), "nothing is random in ")) << scene;
   for (const char* scene : {"cooling --set initial.particles=9", "classics/heat_wall --set initial.perturbation=0",
                             "classics/blast --set output.profiles.range=[-8,8] --set initial.particles=40"})
     EXPECT_EQ(said(std::string("ensemble ") + scene + " --set run.until=1 --replicas 2"), "") << scene;
 }
 
-}  // namespace failures_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::failures_test

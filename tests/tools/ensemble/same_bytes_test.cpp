@@ -4,8 +4,7 @@
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 
-namespace cradle::tests {
-namespace same_bytes_test {
+namespace cradle::tests::same_bytes_test {
 
 TEST_F(Ensembles, SameBytesOnAnyNumberOfThreads) {
   run("ensemble shock.toml --replicas 60 --threads 1 -o one.h5");
@@ -20,11 +19,10 @@ TEST_F(Ensembles, MoreReplicasAreAddedToAFinishedFile) {
   run("ensemble shock.toml --replicas 60 -o whole.h5");
   run("ensemble shock.toml --replicas 13 -o grown.h5");
   const Printed more = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5");
-  EXPECT_NE(more.out.find("47 of them now"), std::string::npos) << more.out;
+  EXPECT_TRUE(has(more.out, "47 of them now"));
   expect_same("whole.h5", "grown.h5");
-  const Printed nothing = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5");
-  EXPECT_EQ(nothing.status, 0);
-  EXPECT_NE(nothing.out.find("nothing to do"), std::string::npos) << nothing.out;
+  const Printed nothing = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5", 0);
+  EXPECT_TRUE(has(nothing.out, "nothing to do"));
   expect_same("whole.h5", "grown.h5");
   EXPECT_FALSE(exists("grown.h5.part"));
 }
@@ -42,34 +40,30 @@ TEST_F(Ensembles, SplitAndMergedInAnyOrder) {
   // A gap filled later.
   run("ensemble shock.toml --replicas 60 -o ca.h5");
   expect_same("whole.h5", "ca.h5");
-  const Printed overlap = shell("cradle merge a.h5 ca.h5 -o d.h5");
-  EXPECT_EQ(overlap.status, 2);
-  EXPECT_NE(overlap.err.find("ca.h5: has replicas that another of the files has too"), std::string::npos)
-      << overlap.err;
+  const Printed overlap = shell("cradle merge a.h5 ca.h5 -o d.h5", 2);
+  EXPECT_TRUE(has(overlap.err, "ca.h5: has replicas that another of the files has too"));
   EXPECT_FALSE(exists("d.h5"));
 }
 
 TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
   for (int kill = 0; kill < 3; ++kill) {
-    EXPECT_EQ(shell(until_journalled("killed.h5", "KILL")).status, 137);
+    shell(until_journalled("killed.h5", "KILL"), 137);
     ASSERT_TRUE(exists("killed.h5.part"));
     EXPECT_FALSE(exists("killed.h5"));
   }
   const std::string all = enough_for("killed.h5");
   run("ensemble shock.toml --replicas " + all + " -o whole.h5");
-  const Printed go_on = shell("cradle ensemble shock.toml --replicas " + all + " --threads 2 -o killed.h5");
-  EXPECT_EQ(go_on.status, 0) << go_on.err;
-  EXPECT_NE(go_on.err.find("killed.h5.part: "), std::string::npos) << "says what it took from there: " << go_on.err;
-  EXPECT_EQ(go_on.out.find(all + " of them now"), std::string::npos) << "not all of them again: " << go_on.out;
+  const Printed go_on = shell("cradle ensemble shock.toml --replicas " + all + " --threads 2 -o killed.h5", 0);
+  EXPECT_TRUE(has(go_on.err, "killed.h5.part: ")) << "says what it took from there";
+  EXPECT_FALSE(has(go_on.out, all + " of them now")) << "not all of them again";
   expect_same("whole.h5", "killed.h5");
   EXPECT_FALSE(exists("killed.h5.part"));
 }
 
 TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {
   for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143), std::pair("USR1", 143)}) {
-    const Printed stopped = shell(until_journalled("stopped.h5", signal));
-    EXPECT_EQ(stopped.status, status) << stopped.err;
-    EXPECT_NE(stopped.err.find("stopped.h5.part"), std::string::npos) << stopped.err;
+    const Printed stopped = shell(until_journalled("stopped.h5", signal), status);
+    EXPECT_TRUE(has(stopped.err, "stopped.h5.part"));
     EXPECT_FALSE(exists("stopped.h5"));
   }
   const std::string all = " --replicas " + enough_for("stopped.h5");
@@ -80,22 +74,21 @@ TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {
 
 TEST_F(Ensembles, DamagedJournalLosesOnlyWhatIsDamaged) {
   run("ensemble shock.toml --replicas 200 -o whole.h5");
-  EXPECT_EQ(shell(until_journalled("damaged.h5", "KILL")).status, 137);
+  shell(until_journalled("damaged.h5", "KILL"), 137);
   const std::string journal = contents(folder / "damaged.h5.part");
   for (const bool torn : {true, false}) {
     std::string damaged = journal.substr(0, 200000);
     if (!torn) damaged[100000] = static_cast<char>(damaged[100000] ^ 1);
     write("damaged.h5.part", damaged);
-    const Printed go_on = shell("cradle ensemble shock.toml --replicas 200 -o damaged.h5");
-    EXPECT_EQ(go_on.status, 0) << go_on.err;
-    EXPECT_NE(go_on.err.find("its end was damaged"), std::string::npos) << go_on.err;
+    const Printed go_on = shell("cradle ensemble shock.toml --replicas 200 -o damaged.h5", 0);
+    EXPECT_TRUE(has(go_on.err, "its end was damaged"));
     expect_same("whole.h5", "damaged.h5");
     std::filesystem::remove(folder / "damaged.h5");
   }
 }
 
 TEST_F(Ensembles, JournalLeftBehindAFinishedFileAddsNothing) {
-  EXPECT_EQ(shell(until_journalled("a.h5", "KILL")).status, 137);
+  shell(until_journalled("a.h5", "KILL"), 137);
   const std::string all = " --replicas " + enough_for("a.h5");
   // Killed between writing the file and removing the journal.
   run("ensemble shock.toml -o finished.h5" + all);
@@ -109,13 +102,13 @@ TEST_F(Ensembles, JournalLeftBehindAFinishedFileAddsNothing) {
 
 TEST_F(Ensembles, JournalsOfRanksThatAreGoneAreTaken) {
   // As a killed MPI job leaves them: one for each rank.
-  EXPECT_EQ(shell(until_journalled("a.h5", "KILL")).status, 137);
-  EXPECT_EQ(shell(until_journalled("b.h5", "KILL", " --first " + enough_for("a.h5"))).status, 137);
+  shell(until_journalled("a.h5", "KILL"), 137);
+  shell(until_journalled("b.h5", "KILL", " --first " + enough_for("a.h5")), 137);
   std::filesystem::rename(folder / "b.h5.part", folder / "a.h5.part.3");
   const std::string all = " --replicas " + enough_for("a.h5");
   run("ensemble shock.toml -o whole.h5" + all);
   const Printed go_on = shell("cradle ensemble shock.toml -o a.h5" + all);
-  EXPECT_NE(go_on.err.find("a.h5.part.3: "), std::string::npos) << go_on.err;
+  EXPECT_TRUE(has(go_on.err, "a.h5.part.3: "));
   expect_same("whole.h5", "a.h5");
   EXPECT_FALSE(exists("a.h5.part.3"));
 }
@@ -126,7 +119,7 @@ TEST_F(Ensembles, OneProgramAtATimeWritesAFile) {
             "0.01; done; "
             "cradle ensemble shock.toml --replicas 10 -o a.h5; status=$?; kill $pid; wait $pid; exit $status");
   EXPECT_EQ(both.status, 4);
-  EXPECT_NE(both.err.find("another program"), std::string::npos) << both.err;
+  EXPECT_TRUE(has(both.err, "another program"));
 }
 
 TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
@@ -160,5 +153,4 @@ TEST_F(Ensembles, WideTypesOnSeveralThreads) {
   }
 }
 
-}  // namespace same_bytes_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::same_bytes_test

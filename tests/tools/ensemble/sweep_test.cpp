@@ -4,10 +4,8 @@
 #include <cmath>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/reader.hpp"
 
-namespace cradle::tests {
-namespace sweep_test {
+namespace cradle::tests::sweep_test {
 
 using namespace cradle::tools;
 
@@ -57,88 +55,67 @@ TEST(SweepPoints, RefuseWhatTheyCannotRead) {
 // Found by fuzzing: with a million for a thousand, many keys of so many values each were written out before they were
 // counted.
 TEST(SweepPoints, AreCountedBeforeMemoryForThemIsTaken) {
-  const auto refused = [](const Sweep& sweep) -> std::string {
-    try {
-      sweep_points(sweep, 1000);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "taken";
-  };
+  const auto refused = [](const Sweep& sweep) { return refusal(Exit::bad_input, [&] { sweep_points(sweep, 1000); }); };
   for (const bool cuts : {false, true}) {
     const std::string message = refused(of(std::vector<std::string>(9, "law.loss=1:2:1000"), cuts));
-    EXPECT_NE(message.find(cuts ? "too many points (found 2e+03)" : "too many points (found 1e+06)"), message.npos)
-        << "the first two of them: " << message;
+    EXPECT_TRUE(has(message, cuts ? "too many points (found 2e+03)" : "too many points (found 1e+06)"))
+        << "the first two of them";
   }
   std::vector<std::string> of_one_value(8, "law.type=wet");  // in each of the points
   of_one_value.emplace_back("law.loss=1:2:1000");
-  EXPECT_NE(refused(of(of_one_value)).find("too many values (found 9e+03 in all points)"), std::string::npos);
+  EXPECT_TRUE(has(refused(of(of_one_value)), "too many values (found 9e+03 in all points)"));
   EXPECT_EQ(sweep_points(of({"law.loss=1:2:3", "initial.seed=1:3:3"}), 9).size(), 9U);
   EXPECT_THROW(sweep_points(of({"law.loss=1:2:3", "initial.seed=1:3:3"}), 8), Error);
 }
 
 class SweepCommand : public ProgramTest {};
 
-const std::vector<double>& column(const Group& group, std::string_view name) {
-  for (const auto& c : group.columns)
-    if (c.name == name) return std::get<std::vector<double>>(c.values);
-  throw std::runtime_error("no column " + std::string(name));
-}
-
 TEST_F(SweepCommand, TableIsTheMeanOfTheRuns) {
   const std::string scene = "fig7 --set initial.particles=200 --set run.until=60 --set output.zone.from=20 "
                             "--set output.series.points=3 ";
-  ASSERT_EQ(shell("cradle sweep " + scene + "--vary law.loss=0.01,0.02 --replicas 3 --quiet -o sweep.h5").status, 0);
-  const Result result = read_result((folder / "sweep.h5").string());
-  const Group* table = result.find("sweep");
-  ASSERT_NE(table, nullptr);
-  EXPECT_EQ(column(*table, "law.loss"), (std::vector<double>{0.01, 0.02}));
-  EXPECT_EQ(column(*table, "replicas"), (std::vector<double>{3, 3}));
+  shell("cradle sweep " + scene + "--vary law.loss=0.01,0.02 --replicas 3 --quiet -o sweep.h5", 0);
+  const Result result = read("sweep.h5");
+  EXPECT_EQ(numbers(result, "sweep", "law.loss"), (std::vector<double>{0.01, 0.02}));
+  EXPECT_EQ(numbers(result, "sweep", "replicas"), (std::vector<double>{3, 3}));
   double sum = 0, squares = 0;
   for (const int replica : {0, 1, 2}) {
     const std::string number = std::to_string(replica);
-    ASSERT_EQ(
-        shell("cradle run " + scene + "--set law.loss=0.02 --set initial.replica=" + number + " --quiet -o one.h5")
-            .status,
-        0);
-    const Result one = read_result((folder / "one.h5").string());
-    const double energy = column(*one.find("series"), "energy").back();
+    shell("cradle run " + scene + "--set law.loss=0.02 --set initial.replica=" + number + " --quiet -o one.h5", 0);
+    const Result one = read("one.h5");
+    const double energy = numbers(one, "series", "energy").back();
     sum += energy;
     squares += energy * energy;
   }
   // Rounding of sums of energies of order 25.
-  EXPECT_NEAR(column(*table, "energy")[1], sum / 3, 1e-13);
-  EXPECT_NEAR(column(*table, "energy_error")[1], std::sqrt((squares - sum * sum / 3) / 6), 1e-6);
+  EXPECT_NEAR(numbers(result, "sweep", "energy")[1], sum / 3, 1e-13);
+  EXPECT_NEAR(numbers(result, "sweep", "energy_error")[1], std::sqrt((squares - sum * sum / 3) / 6), 1e-6);
   // The points are ensembles; the same command finds nothing left to do, another sweep is refused.
   EXPECT_NE(result.find("points/0001/replicas"), nullptr);
-  const auto before = contents((folder / "sweep.h5").string());
-  EXPECT_EQ(shell("cradle sweep " + scene + "--vary law.loss=0.01,0.02 --replicas 3 --quiet -o sweep.h5").status, 0);
-  EXPECT_EQ(contents((folder / "sweep.h5").string()), before);
-  EXPECT_EQ(shell("cradle sweep " + scene + "--vary law.loss=0.01,0.03 --replicas 3 --quiet -o sweep.h5").status, 2);
-  EXPECT_EQ(shell("cradle sweep " + scene + "--vary law.los=0.01,0.03 --quiet -o other.h5").status, 2);
+  const auto before = contents(path("sweep.h5"));
+  shell("cradle sweep " + scene + "--vary law.loss=0.01,0.02 --replicas 3 --quiet -o sweep.h5", 0);
+  EXPECT_EQ(contents(path("sweep.h5")), before);
+  shell("cradle sweep " + scene + "--vary law.loss=0.01,0.03 --replicas 3 --quiet -o sweep.h5", 2);
+  shell("cradle sweep " + scene + "--vary law.los=0.01,0.03 --quiet -o other.h5", 2);
 }
 
 TEST_F(SweepCommand, SplitAndMergedIsTheSameFile) {
   const std::string sweep =
       "cradle sweep fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
       "--vary law.loss=0.01,0.02,0.03 --quiet ";
-  ASSERT_EQ(shell(sweep + "--replicas 7 -o whole.h5").status, 0);
-  ASSERT_EQ(shell(sweep + "--replicas 3 -o a.h5").status, 0);
-  ASSERT_EQ(shell(sweep + "--first 3 --replicas 4 -o b.h5").status, 0);
+  shell(sweep + "--replicas 7 -o whole.h5", 0);
+  shell(sweep + "--replicas 3 -o a.h5", 0);
+  shell(sweep + "--first 3 --replicas 4 -o b.h5", 0);
   for (const auto* files : {"a.h5 b.h5", "b.h5 a.h5"}) {
-    const Printed merged = shell(std::string("cradle merge ") + files + " -o ab.h5");
-    ASSERT_EQ(merged.status, 0) << merged.err;
-    EXPECT_TRUE(contents(folder / "whole.h5") == contents(folder / "ab.h5")) << files;
+    shell(std::string("cradle merge ") + files + " -o ab.h5", 0);
+    expect_same("whole.h5", "ab.h5");
   }
-  ASSERT_EQ(shell(sweep + "--replicas 7 -o a.h5").status, 0);
-  EXPECT_TRUE(contents(folder / "whole.h5") == contents(folder / "a.h5")) << "continued";
+  shell(sweep + "--replicas 7 -o a.h5", 0);
+  expect_same("whole.h5", "a.h5");  // continued
   EXPECT_EQ(shell("cradle merge whole.h5 b.h5 -o c.h5").status, 2) << "replicas in common";
-  ASSERT_EQ(shell("cradle ensemble fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
-                  "--first 7 --replicas 2 --quiet -o e.h5")
-                .status,
-            0);
+  shell("cradle ensemble fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
+        "--first 7 --replicas 2 --quiet -o e.h5",
+        0);
   EXPECT_EQ(shell("cradle merge whole.h5 e.h5 -o c.h5").status, 2) << "an ensemble is no sweep";
 }
 
-}  // namespace sweep_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::sweep_test

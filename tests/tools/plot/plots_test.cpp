@@ -7,8 +7,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 
-namespace cradle::tests {
-namespace plots_test {
+namespace cradle::tests::plots_test {
 
 struct Kind {
   const char* name;
@@ -27,8 +26,7 @@ class Pictures : public ProgramTest, public testing::WithParamInterface<Kind> {
     for (const auto& other : GetParam().others) names.push_back(name + "-" + other + extension);
     std::string printed;
     for (const auto& file : names) printed += file + "\n";
-    const Printed plot = shell("env -u DISPLAY -u WAYLAND_DISPLAY cradle plot it.h5 -o " + names.front());
-    EXPECT_EQ(plot.status, 0);
+    const Printed plot = shell("env -u DISPLAY -u WAYLAND_DISPLAY cradle plot it.h5 -o " + names.front(), 0);
     EXPECT_EQ(plot.out, printed);
     EXPECT_EQ(plot.err, "");
     return names;
@@ -139,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
 class Plots : public ProgramTest {};
 
 TEST_F(Plots, WhatCannotBeDrawnIsOneMessage) {
-  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5 && echo junk > junk.h5 && head -c 3000 it.h5 > cut.h5").status, 0);
+  shell("cradle run fig5 --quiet -o it.h5 && echo junk > junk.h5 && head -c 3000 it.h5 > cut.h5", 0);
   struct Case {
     const char* arguments;
     int status;
@@ -148,29 +146,27 @@ TEST_F(Plots, WhatCannotBeDrawnIsOneMessage) {
   for (const Case& wrong :
        {Case{"it.h5 -o it.gif", 2, ".gif"}, Case{"it.h5 -o no/such/it.png", 4, "no/such/it.png"},
         Case{"junk.h5", 4, "junk.h5"}, Case{"cut.h5", 4, "cut.h5"}, Case{"nothing.h5", 4, "nothing.h5"}}) {
-    const Printed plot = shell(std::string("cradle plot ") + wrong.arguments);
-    EXPECT_EQ(plot.status, wrong.status) << wrong.arguments;
-    EXPECT_NE(plot.err.find(wrong.names), std::string::npos) << plot.err;
+    const Printed plot = shell(std::string("cradle plot ") + wrong.arguments, wrong.status);
+    EXPECT_TRUE(has(plot.err, wrong.names));
     EXPECT_EQ(std::count(plot.err.begin(), plot.err.end(), '\n'), 1) << plot.err;
   }
 }
 
 TEST_F(Plots, AreMadeWhereNobodyReadsTheirNames) {
-  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5").status, 0);
+  shell("cradle run fig5 --quiet -o it.h5", 0);
   // The reader has closed its end before anything is written.
   const Printed plot =
       shell("mkfifo gone; (cat gone; cradle plot it.h5; echo $? >status) | (exec <&-; echo >gone); cat status");
   EXPECT_EQ(plot.out, "0\n");
   EXPECT_EQ(plot.err, "");
-  EXPECT_TRUE(std::filesystem::exists(folder / "it.png"));
+  EXPECT_TRUE(exists("it.png"));
 }
 
 TEST_F(Plots, LeaveNoFilesBehind) {
-  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5 && mkdir temporary").status, 0);
-  EXPECT_EQ(shell("TMPDIR=$PWD/temporary cradle plot it.h5").status, 0);
+  shell("cradle run fig5 --quiet -o it.h5 && mkdir temporary", 0);
+  shell("TMPDIR=$PWD/temporary cradle plot it.h5", 0);
   EXPECT_EQ(shell("ls temporary").out, "");
-  EXPECT_EQ(shell("TMPDIR=$PWD/nowhere cradle plot it.h5").status, 4);
+  shell("TMPDIR=$PWD/nowhere cradle plot it.h5", 4);
 }
 
-}  // namespace plots_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::plots_test

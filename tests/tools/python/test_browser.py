@@ -14,7 +14,7 @@ BRIGHTNESS = """(() => {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 })()"""
 
-FILTER = "getComputedStyle(document.querySelector('figure > svg')).filter"
+FILTER = "getComputedStyle(document.querySelector('figure > img')).filter"
 
 
 @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
@@ -52,7 +52,7 @@ class Reader(unittest.TestCase):
     def test_every_picture_is_there(self):
         self.load(small.shock)
         sizes = self.browser.evaluate(
-            "Array.from(document.querySelectorAll('figure > svg'), p => p.getBoundingClientRect().height)")
+            "Array.from(document.querySelectorAll('figure > img'), p => p.getBoundingClientRect().height)")
         self.assertEqual(len(sizes), len(cradle.plot.names(small.shock())))
         self.assertGreater(min(sizes), 200)
 

@@ -2,6 +2,7 @@
 import os
 import shutil
 import subprocess
+import time
 import unittest
 
 import h5py
@@ -122,16 +123,23 @@ class OnTheWay(unittest.TestCase):
             self.assertIn("in progress", file.read())
 
     def test_journals_of_replicas_and_checkpoints_are_named(self):
-        for name, magic, wrong in (("a.h5.part", b"CRADLEJ3", "resume a.h5"),
-                                   ("a.h5.checkpoint", b"CRADLEC2", "checkpoint")):
-            with open(name, "wb") as file:
-                file.write(magic + bytes(100))
+        running = subprocess.Popen([program.find(), "ensemble", "fig2", "--replicas", "1000000000", "-o", "a.h5"],
+                                   stderr=subprocess.DEVNULL)
+        while not os.path.exists("a.h5.part") and running.poll() is None:
+            time.sleep(0.01)
+        running.terminate()
+        running.wait()
+        for name, begin, wrong in (("a.h5.part", None, "resume a.h5"), ("a.h5.checkpoint", b"CRADLEC4", "checkpoint"),
+                                   ("b.h5.part", b"CRADLER2", "found format 2, here 4")):
+            if begin:
+                with open(name, "wb") as file:
+                    file.write(begin + bytes(100))
             with self.assertRaisesRegex(cradle.Error, wrong):
                 cradle.open(name)
 
     def test_half_written_journals(self):
         with open("half.h5.part", "wb") as file:
-            file.write(b"CRADLER2" + bytes(5))
+            file.write(b"CRADLEJ4" + bytes(5))
         with self.assertRaises(cradle.Error) as raised:
             cradle.open("half.h5.part")
         self.assertEqual(raised.exception.status, 4)

@@ -16,38 +16,29 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
-import tomllib
-import types
 import unittest
+import zlib
 from fractions import Fraction
 
-SOURCES = pathlib.Path(__file__).resolve().parents[3] / "tools" / "python"
-sys.path[:0] = [str(SOURCES), os.path.dirname(__file__)]
-import browser  # noqa: E402, beside this file
+import h5py
+import numpy as np
 
-try:
-    import h5py
-    import numpy as np
-    from cradle import microscope
-    MISSING = ""
-except ImportError as error:
-    MISSING = f"no {error.name} (Debian: python3-h5py)"
-PROGRAM = os.environ.get("CRADLE_PROGRAM")
+import browser
+import cradle
+from cradle import microscope
+from cradle.program import find
+from cradle.scene import scene_text
+
+SOURCES = pathlib.Path(microscope.__file__).parent
 HUNDREDTH = 0.01  # of a pixel
 
 
 class Microscope(browser.Browser):
     """The browser, with the hands that a person has."""
 
-    def __init__(self, width=1100, height=760):
-        super().__init__(width, height)
-
-    def run(self, script):
-        """The value of an expression, awaited."""
-        return self.evaluate(script)
+    run = browser.Browser.evaluate
 
     def open(self, path, dark=False):
         self.dark(dark)
@@ -74,6 +65,9 @@ class Microscope(browser.Browser):
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
+    def wheel(self, x, y, turned, **more):
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=turned, **more)
+
     def click(self, x, y):
         for kind in ("mousePressed", "mouseReleased"):
             self.mouse(kind, x, y, button="left", clickCount=1)
@@ -83,9 +77,13 @@ class Microscope(browser.Browser):
         self.call("Input.dispatchKeyEvent", type="keyDown", key=key, code=code or "", **text, **more)
         self.call("Input.dispatchKeyEvent", type="keyUp", key=key, code=code or "", **more)
 
-    def touch(self, kind, *points):
-        self.call("Input.dispatchTouchEvent", type=kind,
-                  touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
+    def touch(self, *steps):
+        """Fingers down at the first of these lists of places, moved to the others, and up."""
+        self.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
+        for kind, points in zip(("touchStart", *["touchMove"] * (len(steps) - 1), "touchEnd"), (*steps, ())):
+            self.call("Input.dispatchTouchEvent", type=kind,
+                      touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
+        self.call("Emulation.setTouchEmulationEnabled", enabled=False)
 
     def picture(self, name):
         folder = os.environ.get("CRADLE_MICROSCOPE_PICTURES")
@@ -120,15 +118,13 @@ def rational_collapse(least_gap=Fraction(1, 10**290)):
             return start, collisions
 
 
-def write_result(path, scene, start, left, right, moments, intervals, speeds, outcome="reached the end", **collapse):
+def write_result(path, scene, start, left, right, intervals, speeds, outcome="reached the end", **collapse):
     """A result file with events and the initial state alone; start: positions and velocities."""
     with h5py.File(path, "w") as file:
-        file.attrs.update({"scene": json.dumps(scene), "name": scene["title"], "outcome": outcome})
-        for name, column in (("left", left), ("right", right)):
+        file.attrs.update({"scene": scene_text(scene), "name": scene["title"], "outcome": outcome})
+        for name, column in (("left", left), ("right", right), ("kind", np.zeros(len(left)))):
             file[f"events/{name}"] = np.asarray(column, np.uint64)
-        file["events/time"], file["events/interval"] = np.asarray(moments), np.asarray(intervals)
-        file["events/time_low"] = np.zeros(len(moments))
-        file["events/closing_speed"] = np.asarray(speeds)
+        file["events/interval"], file["events/closing_speed"] = np.asarray(intervals), np.asarray(speeds)
         x, v = (np.asarray(column, float) for column in start)
         for name, column in (("index", np.arange(len(x), dtype=np.uint64)), ("x", x), ("v", v), ("m", np.ones(len(x))),
                              ("gap", np.append(np.diff(x), np.nan))):
@@ -136,7 +132,7 @@ def write_result(path, scene, start, left, right, moments, intervals, speeds, ou
         file["initial"].attrs["circumference"] = 0.0
         if collapse:
             file.create_group("collapse").attrs.update(collapse)
-    return types.SimpleNamespace(file=h5py.File(path, "r"), scene=scene)
+    return cradle.Result(str(path), h5py.File(path, "r"))
 
 
 def collapse_result(folder, collisions):
@@ -145,8 +141,8 @@ def collapse_result(folder, collisions):
     times = [collision[1] for collision in collisions]
     return write_result(folder / "collapse3.h5", scene, ([0, 1, 3], [1, 0, -1]),
                         [c[0] for c in collisions], [c[0] + 1 for c in collisions],
-                        [float(t) for t in times], [float(b - a) for a, b in zip([0] + times, times)],
-                        [float(c[2]) for c in collisions], "inelastic collapse", time=12 / 7)
+                        [float(b - a) for a, b in zip([0] + times, times)], [float(c[2]) for c in collisions],
+                        "inelastic collapse", time=12 / 7)
 
 
 def crossing_rows(half, restitution="1"):
@@ -169,17 +165,23 @@ def crossing_rows(half, restitution="1"):
 
 def rows_result(folder, half):
     scene, start, moments, places, left = crossing_rows(half)
-    result = write_result(folder / f"rows{half}.h5", scene, start, left, left + 1, moments,
+    result = write_result(folder / f"rows{half}.h5", scene, start, left, left + 1,
                           np.diff(moments, prepend=0.0), np.ones(len(moments)))
     return result, moments, places, left
+
+
+def unpack(packed):
+    """The array of which `microscope.pack` made a text."""
+    kind = np.dtype("<" + packed["type"])
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["deflate"])), np.uint8)
+    return planes.reshape(kind.itemsize, packed["length"]).T.copy().view(kind).ravel()
 
 
 def write_page(folder, result, name):
     """The smallest page with a microscope in it; (its path, the data)."""
     data = microscope.data(result)
-    sources = SOURCES / "cradle"
-    scripts = "\n".join((sources / script).read_text("utf-8") for script in microscope.SCRIPTS)
-    styles = "\n".join((sources / style).read_text("utf-8") for style in microscope.STYLES)
+    scripts = "\n".join((SOURCES / script).read_text("utf-8") for script in microscope.SCRIPTS)
+    styles = (SOURCES / "microscope.css").read_text("utf-8")
     path = folder / f"{name}.html"
     path.write_text("<!doctype html><meta charset=utf-8><meta name=color-scheme content='light dark'><title>microscope"
                     f"</title><style>{styles} body{{margin:12px}}</style><div id=here></div><script>{scripts}</script>"
@@ -187,49 +189,47 @@ def write_page(folder, result, name):
     return path, data
 
 
-@unittest.skipIf(MISSING, MISSING)
 class Data(unittest.TestCase):
     """What goes into a page, without a browser."""
 
     def test_arrays_come_back_bit_by_bit(self):
         for array in (np.array([1e-300, -0.1, 3.0, 0.0]), np.arange(70000, dtype=np.uint32), np.zeros(0, np.uint16)):
-            back = microscope.unpack(microscope.pack(array))
+            back = unpack(microscope.pack(array))
             self.assertEqual(back.dtype, array.dtype)
             self.assertEqual(back.tobytes(), array.tobytes())
 
     def test_rounded_mantissas_are_within_half_a_unit(self):
         array = np.random.default_rng(1).random(1000) * 10.0 ** np.arange(-250, 250, 0.5)
-        back = microscope.unpack(microscope.pack(array, 24))
+        back = unpack(microscope.pack(array, 24))
         self.assertLessEqual(np.max(np.abs(back / array - 1)), 2.0 ** -25)
         self.assertFalse(np.array_equal(back, array))
 
     def test_nothing_to_show_is_none(self):
-        with tempfile.TemporaryDirectory() as folder, h5py.File(pathlib.Path(folder) / "empty.h5", "w") as file:
-            scene = {"law": {"type": "inelastic", "restitution": 0.5}, "initial": {"type": "list", "x": [0], "v": [0]}}
-            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+        with h5py.File("empty.h5", "w") as file:
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
+            file.attrs["scene"] = '[law]\ntype = "inelastic"\nrestitution = 0.5\n[initial]\ntype = "list"\nx = [0]\n'
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
             file.create_group("snapshots")
-            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
             file.attrs["kind"] = "ensemble"
-            self.assertIsNone(microscope.data(types.SimpleNamespace(file=file, scene=scene)))
+            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
 
     def test_same_result_same_bytes(self):
         with tempfile.TemporaryDirectory() as folder:
             result, *_ = rows_result(pathlib.Path(folder), 30)
-            with result.file:
+            with result:
                 self.assertEqual(json.dumps(microscope.data(result)), json.dumps(microscope.data(result)))
 
 
-@unittest.skipIf(MISSING, MISSING)
 @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
 class InBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp())
         cls.start, cls.collisions = rational_collapse()
-        with collapse_result(cls.folder, cls.collisions).file as file:
-            scene = json.loads(file.attrs["scene"])
-            cls.page, cls.data = write_page(cls.folder, types.SimpleNamespace(file=file, scene=scene), "collapse3")
-        cls.browser = Microscope()
+        with collapse_result(cls.folder, cls.collisions) as result:
+            cls.page, cls.data = write_page(cls.folder, result, "collapse3")
+        cls.browser = Microscope(height=760)
 
     @classmethod
     def tearDownClass(cls):
@@ -249,17 +249,26 @@ class InBrowser(unittest.TestCase):
         for address in self.browser.requests:
             self.assertTrue(address.startswith(("file:", "about:", "blob:", "data:")), address)
 
+    def m(self, expression):
+        """Of the page's handle on the microscope."""
+        return self.browser.run("cradleMicroscopeTest." + expression)
+
     def view(self):
-        return self.browser.run("cradleMicroscopeTest.view()")
+        return self.m("view()")
 
     def position(self, particle, collision):
-        return self.browser.run(f"cradleMicroscopeTest.position({particle}, {collision})")
+        return self.m(f"position({particle}, {collision})")
 
     def middle(self):
         """Of the picture, in pixels of the page, and the corner of the canvas."""
         corner = self.browser.run("(r => [r.left, r.top])(document.querySelector('canvas').getBoundingClientRect())")
         box = self.view()["box"]
         return corner[0] + box["left"] + box["width"] / 2, corner[1] + box["top"] + box["height"] / 2, corner, box
+
+    def clicked(self):
+        x, y, *corner = self.middle()
+        self.browser.click(x, y)
+        return x, y, *corner
 
     # Where things are, exactly
 
@@ -300,14 +309,14 @@ class InBrowser(unittest.TestCase):
             if not 0 <= moment <= last:
                 continue
             y = self.exact_place(view, particle, moment)[1]
-            drawn = self.browser.run(f"cradleMicroscopeTest.height({particle}, {column})")
+            drawn = self.m(f"height({particle}, {column})")
             self.assertAlmostEqual(drawn, y, delta=HUNDREDTH + 1e-9 * abs(y))
 
     def test_drawn_positions_are_exact_at_any_depth(self):
         for depth, name in (("1", "1"), ("1e-10", ""), ("1e-100", "1e-100"), ("1e-200", ""), ("1e-287", ""),
                             ("1e-290", "1e-290")):
             with self.subTest(depth=depth):
-                view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{depth: {depth}}})")
+                view = self.m(f"zoomTo({{depth: {depth}}})")
                 self.assertEqual(view["X"], float(depth))
                 self.assertTrue(view["exact"])
                 self.assert_exact(view, 1 if depth == "1e-290" else 3)
@@ -320,14 +329,13 @@ class InBrowser(unittest.TestCase):
     def test_what_doubles_do_not_hold_is_left_out_and_reported(self):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
         self.collisions = rational_collapse(Fraction(1, 10**700))[1]
-        with collapse_result(self.folder, self.collisions).file as file:
-            scene = json.loads(file.attrs["scene"])
-            page, data = write_page(self.folder, types.SimpleNamespace(file=file, scene=scene), "deeper")
+        with collapse_result(self.folder, self.collisions) as result:
+            page, data = write_page(self.folder, result, "deeper")
         self.assertLess(data["collisions"], data["total"])
         self.assertGreater(data["collisions"], 325)
         self.collisions = self.collisions[:data["collisions"]]
         self.browser.open(page)
-        self.browser.run("cradleMicroscopeTest.actions.deepest()")
+        self.m("actions.deepest()")
         self.browser.until("cradleMicroscopeTest.readout()"
                            f".endsWith('the first {data['collisions']} collisions are here')")
         self.assertEqual(self.view()["anchor"]["e"], data["collisions"] - 1)
@@ -337,7 +345,7 @@ class InBrowser(unittest.TestCase):
         for event in (0, 1, 2, 57, 144, 245, 320, len(self.collisions) - 1):
             left, _, _, places, after = self.collisions[event]
             for a in (0, 1):
-                found = self.browser.run(f"cradleMicroscopeTest.gap({a}, {a + 1}, {event})")
+                found = self.m(f"gap({a}, {a + 1}, {event})")
                 exact, w = places[a + 1] - places[a], after[a] - after[a + 1]
                 self.assertLessEqual(abs(Fraction(found["gap"]) - exact), exact * Fraction(1, 10**11))
                 self.assertLessEqual(abs(Fraction(found["w"]) - w), abs(w) * Fraction(1, 10**11))
@@ -345,13 +353,12 @@ class InBrowser(unittest.TestCase):
 
     def test_the_wheel_goes_down_and_stays_exact(self):
         """Hundreds of turns over the place of the collapse, the pointer at rest; the anchor has to move with it."""
-        x, y, corner, box = self.middle()
-        self.browser.click(x, y)
+        x, y, corner, box = self.clicked()
         deepest, target = 1.0, self.browser.run("""(() => { const m = cradleMicroscopeTest, c = m.camera(),
             last = c.chart.collisions.length - 1, s = microscopeScales(c.view, m.view().box);
             return [s.x(c.chart.tau[last]), s.y(c.chart.xi[last], c.chart.tau[last])]; })()""")
         for turn in range(700):
-            self.browser.mouse("mouseWheel", corner[0] + target[0], corner[1] + target[1], deltaX=0, deltaY=-300)
+            self.browser.wheel(corner[0] + target[0], corner[1] + target[1], -300)
             view = self.view()
             deepest = min(deepest, view["X"])
             if turn % 50 == 49 or view["X"] < 1e-280:
@@ -363,7 +370,7 @@ class InBrowser(unittest.TestCase):
         # And out again: to the whole run.
         for _ in range(3000):
             at = f"{{x: {box['left'] + box['width'] / 2}, y: {y - corner[1]}}}"
-            self.browser.run(f"cradleMicroscopeTest.zoom(1 / 3, {at})")
+            self.m(f"zoom(1 / 3, {at})")
             if self.view()["X"] > 1:
                 break
         self.assert_exact(self.view(), 1)
@@ -371,27 +378,26 @@ class InBrowser(unittest.TestCase):
     # What hands do
 
     def test_time_and_space_zoom_apart(self):
-        x, y, corner, box = self.middle()
-        self.browser.click(x, y)
+        x, y, corner, box = self.clicked()
         before = self.view()
-        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120, modifiers=8)  # shift
+        self.browser.wheel(x, y, -120, modifiers=8)  # shift
         middle = self.view()
         self.assertLess(middle["T"], 0.9 * before["T"])
         self.assertEqual(middle["X"], before["X"])
-        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120, modifiers=1)  # alt
+        self.browser.wheel(x, y, -120, modifiers=1)  # alt
         after = self.view()
         self.assertEqual(after["T"], middle["T"])
         self.assertLess(after["X"], 0.9 * middle["X"])
-        self.browser.mouse("mouseWheel", x, corner[1] + box["top"] + box["height"] + 15, deltaX=0, deltaY=120)
+        self.browser.wheel(x, corner[1] + box["top"] + box["height"] + 15, 120)
         self.assertEqual(self.view()["X"], after["X"])
         self.assertGreater(self.view()["T"], after["T"])
-        self.browser.mouse("mouseWheel", corner[0] + 20, y, deltaX=0, deltaY=120)
+        self.browser.wheel(corner[0] + 20, y, 120)
         self.assertGreater(self.view()["X"], after["X"])
 
     def test_a_page_scrolls_past(self):
         x, y, _, _ = self.middle()
         before = self.view()
-        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120)
+        self.browser.wheel(x, y, -120)
         self.assertEqual(self.view(), before)
 
     def test_dragging_moves_what_is_under_the_pointer(self):
@@ -405,55 +411,34 @@ class InBrowser(unittest.TestCase):
         self.assertAlmostEqual(after["y"] - before["y"], -21, delta=HUNDREDTH)
 
     def test_keys(self):
-        x, y, _, _ = self.middle()
-        self.browser.click(x, y)
+        self.clicked()
         home = self.view()
-        self.browser.key("n")
-        self.assertEqual(self.view()["anchor"]["e"], 1)
-        self.browser.key("n")
-        self.assertEqual(self.view()["anchor"]["e"], 2)
-        self.browser.key("p")
-        self.assertEqual(self.view()["anchor"]["e"], 1)
-        self.browser.key("d")
-        self.assertEqual(self.view()["anchor"]["e"], len(self.collisions) - 1)
+        for key, event in (("n", 1), ("n", 2), ("p", 1), ("d", len(self.collisions) - 1)):
+            self.browser.key(key)
+            self.assertEqual(self.view()["anchor"]["e"], event)
         self.assertLess(self.view()["X"], 1e-285)
         self.browser.key("0")
         self.assertEqual(self.view(), home)
-        self.browser.key("ArrowRight", "ArrowRight")
-        self.assertGreater(self.view()["tau"], home["tau"])
-        self.browser.key("ArrowUp", "ArrowUp")
-        self.assertGreater(self.view()["xi"], home["xi"])
-        self.browser.key("+", "NumpadAdd")
-        self.assertLess(self.view()["T"], home["T"])
-        colours = "cradleMicroscopeTest.state.quantity"
-        self.assertEqual(self.browser.run(colours), "speed")
+        for key, code, what, sign in (("ArrowRight", "ArrowRight", "tau", 1), ("ArrowUp", "ArrowUp", "xi", 1),
+                                      ("+", "NumpadAdd", "T", -1)):
+            self.browser.key(key, code)
+            self.assertGreater(sign * self.view()[what], sign * home[what])
+        self.assertEqual(self.m("state.quantity"), "speed")
         self.browser.key("c")
-        self.assertEqual(self.browser.run(colours), "lost")
+        self.assertEqual(self.m("state.quantity"), "lost")
 
     def test_two_fingers_zoom_along_the_axis_they_part(self):
-        x, y, _, _ = self.middle()
-        self.browser.click(x, y)
-        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
+        x, y, *_ = self.clicked()
         before = self.view()
-        self.browser.touch("touchStart", (x - 60, y), (x + 60, y))
-        for step in range(1, 7):
-            self.browser.touch("touchMove", (x - 60 - 10 * step, y), (x + 60 + 10 * step, y))
-        self.browser.touch("touchEnd")
-        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+        self.browser.touch(*([(x - 60 - 10 * step, y), (x + 60 + 10 * step, y)] for step in range(7)))
         after = self.view()
         self.assertAlmostEqual(after["T"] / before["T"], 0.5, delta=0.02)
         self.assertEqual(after["X"], before["X"])
 
     def test_one_finger_pans(self):
-        x, y, _, _ = self.middle()
-        self.browser.click(x, y)
-        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
+        x, y, *_ = self.clicked()
         before = self.position(0, 0)
-        self.browser.touch("touchStart", (x, y))
-        for step in (20, 40, 60):
-            self.browser.touch("touchMove", (x + step, y + step))
-        self.browser.touch("touchEnd")
-        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+        self.browser.touch(*([(x + step, y + step)] for step in (0, 20, 40, 60)))
         after = self.position(0, 0)
         self.assertGreater(after["x"], before["x"] + 30)
         self.assertGreater(after["y"], before["y"] + 30)
@@ -467,35 +452,34 @@ class InBrowser(unittest.TestCase):
         self.assert_exact(view)
 
     def test_play_flies_into_the_collapse(self):
-        x, y, _, _ = self.middle()
-        self.browser.click(x, y)
+        x, y, *_ = self.clicked()
         self.browser.key(" ", "Space")
         self.browser.until("cradleMicroscopeTest.view().X < 1e-30")
         self.browser.key(" ", "Space")
-        self.assertFalse(self.browser.run("cradleMicroscopeTest.state.playing"))
+        self.assertFalse(self.m("state.playing"))
         still = self.view()
         self.assert_exact(still, 2)
         time.sleep(0.3)
         self.assertEqual(self.view(), still)
 
     def test_readout(self):
-        self.browser.run("cradleMicroscopeTest.zoomTo({event: 245, depth: 1e-220})")
+        self.m("zoomTo({event: 245, depth: 1e-220})")
         _, _, corner, box = self.middle()
         place = self.position(1, 245)
         self.browser.mouse("mouseMoved", corner[0] + place["x"] + 2, corner[1] + place["y"])
         self.browser.until("cradleMicroscopeTest.readout().startsWith('collision 246, particles 1 and 2')")
-        said = self.browser.run("cradleMicroscopeTest.readout()")
+        said = self.m("readout()")
         mantissa, exponent = f"{float(self.collisions[245][2]):.5e}".split("e-")
         raised = "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in exponent)
         self.assertIn(f"closing speed {mantissa.rstrip('0')}×10⁻{raised} l/t", said)
         # Between two lines: their gap there, by fractions.
         view = self.view()
         column = box["left"] + 0.2 * box["width"]
-        heights = [self.browser.run(f"cradleMicroscopeTest.height({particle}, {column})") for particle in (0, 1)]
+        heights = [self.m(f"height({particle}, {column})") for particle in (0, 1)]
         self.browser.mouse("mouseMoved", corner[0] + column, corner[1] + sum(heights) / 2)
         self.browser.until("cradleMicroscopeTest.readout().startsWith('particles 0 and 1: gap')")
         gap = (heights[0] - heights[1]) / box["height"] * view["X"]
-        said = self.browser.run("cradleMicroscopeTest.readout()").split("gap ")[1].split(" l")[0]
+        said = self.m("readout()").split("gap ")[1].split(" l")[0]
         number, power = said.split("×10")
         spoken = float(number) * 10.0 ** int(power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
         self.assertAlmostEqual(spoken / gap, 1, delta=0.01)
@@ -515,7 +499,7 @@ class InBrowser(unittest.TestCase):
         while max(self.pixel(3, 3)) >= 60:
             time.sleep(0.05)
         # A dot of a collision stands out in both.
-        view = self.browser.run("cradleMicroscopeTest.zoomTo({event: 100, depth: 1e-88})")
+        view = self.m("zoomTo({event: 100, depth: 1e-88})")
         dot = self.position(0, 100) or self.position(1, 100)
         colour = self.pixel(dot["x"], dot["y"])
         self.assertGreater(max(colour) - min(colour), 40)
@@ -533,12 +517,11 @@ class InBrowser(unittest.TestCase):
 
     def test_a_million_collisions(self):
         result, moments, places, left = rows_result(self.folder, 1000)
-        with result.file:
+        with result:
             begun = time.monotonic()
             page, data = write_page(self.folder, result, "million")
             took = time.monotonic() - begun
         self.assertEqual(data["collisions"], 1_000_000)
-        self.assertIsNone(data["speed"])  # the law gives them again
         self.assertLess(page.stat().st_size, 15e6)
         self.browser.open(page)
         self.assertFalse(self.view()["exact"])
@@ -557,7 +540,7 @@ class InBrowser(unittest.TestCase):
         self.assertLess(colourful(1000, 900), 15)  # nobody
         # Near by, collisions are where the straight lines cross.
         for event in (12345, 500_000, 777_777):
-            view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: 4, time: 6}})")
+            view = self.m(f"zoomTo({{event: {event}, depth: 4, time: 6}})")
             self.assertTrue(view["exact"])
             box, seen = view["box"], 0
             for other in np.flatnonzero((np.abs(moments - moments[event]) < 3) & (np.abs(places - places[event]) < 2)):
@@ -575,7 +558,7 @@ class InBrowser(unittest.TestCase):
 
     def report_speed(self, page, took):
         print(f"\ndata and page {took:.1f} s, {page.stat().st_size / 1e6:.1f} MB")
-        self.browser.run("cradleMicroscopeTest.actions.home()")
+        self.m("actions.home()")
         for name, act in (("moving the whole", "m.pan(n % 40 < 20 ? -6 : 6, 0)"),
                           ("zooming in", "m.zoom(1.02, {x: 500, y: 230})"), ("moving there", "m.pan(-6, 1)")):
             print(name, self.browser.run("""new Promise(done => { const m = cradleMicroscopeTest, spent = [];
@@ -589,16 +572,13 @@ class InBrowser(unittest.TestCase):
     # With the program
 
     def program_result(self, name, scene, **keys):
-        """The result of a run of the program, with its effective scene."""
-        if not PROGRAM:
-            self.skipTest("no program (CRADLE_PROGRAM)")
-        path = self.folder / f"{name}.h5"
+        """The result of a run of the program."""
+        path = str(self.folder / f"{name}.h5")
         sets = [f"--set={key}={value}" for key, value in keys.items()]
-        subprocess.run([PROGRAM, "run", scene, "--quiet", "-o", str(path), *sets], check=False,
-                       stdout=subprocess.DEVNULL)
-        file = h5py.File(path, "r")
-        self.addCleanup(file.close)
-        return types.SimpleNamespace(file=file, scene=tomllib.loads(file.attrs["scene"]))
+        subprocess.run([find(), "run", scene, "--quiet", "-o", path, *sets], check=False, stdout=subprocess.DEVNULL)
+        result = cradle.open(path)
+        self.addCleanup(result.close)
+        return result
 
     def assert_gaps_of_snapshots(self, result, bound):
         """The gaps right after the collision before a snapshot, flown until then, are the snapshot's."""
@@ -716,9 +696,9 @@ class InBrowser(unittest.TestCase):
         for depth in (1e-3, 1e-9):
             event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.9 * count} && x > -12 &&
                 x < {math.log10(depth / 20)}))(cradleMicroscopeTest.world().depth)""")
-            view = self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}}})")
+            view = self.m(f"zoomTo({{event: {event}, depth: {depth}}})")
             span = 0.06 * view["T"]
-            self.browser.run(f"cradleMicroscopeTest.zoomTo({{event: {event}, depth: {depth}, time: {span}}})")
+            self.m(f"zoomTo({{event: {event}, depth: {depth}, time: {span}}})")
             self.assertEqual(self.view()["exact"], depth < 1e-6)  # where positions serve, they do
             self.browser.picture(f"core-{depth:.0e}".replace("-0", "-"))
 

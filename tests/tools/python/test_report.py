@@ -10,7 +10,6 @@ import cradle
 import small
 from cradle import program
 from cradle.page.elements import enclosed, measured, number
-from cradle.page.svg import inline
 
 VOID = {"meta", "link", "br", "img", "hr", "path", "use"}
 
@@ -159,10 +158,3 @@ class Elements(unittest.TestCase):
         self.assertEqual(shown, "1.23457 ± 1.0 × 10<sup>−7</sup>")
         self.assertEqual(enclosed("2.5e+00", "2.5e+00"), ("2.5", 2))
         self.assertEqual(enclosed("-1e-300", "1e-300")[1], 0)
-
-    def test_pictures_have_names_of_their_own(self):
-        svg = '<?xml?><svg><defs><style type="text/css">*{}</style><path id="a"/></defs><use xlink:href="#a"/>' \
-              '<g clip-path="url(#a)"/></svg>'
-        text = inline(svg, "p3-", 'a "picture"')
-        self.assertEqual(text, '<svg role="img" aria-label="a &quot;picture&quot;"><defs><path id="p3-a"/></defs>'
-                               '<use xlink:href="#p3-a"/><g clip-path="url(#p3-a)"/></svg>')

@@ -53,6 +53,16 @@ class Run(unittest.TestCase):
     def test_events_are_every_collision(self):
         self.assertEqual(len(self.result.events.time), int(self.result.series.collisions[-1]))
 
+    def test_kinds_of_collisions_follow_from_the_policy_and_add_up_to_the_counts(self):
+        for keys, speed, kind, count in (({"law.cutoff": 0.3}, 0.3, 1, "collisions_below_cutoff"),
+                                         ({"run.collapse": "merge", "run.merge_speed": 0.1}, 0.1, 2, "merges")):
+            keys = small.SHOCK | {"law.restitution": 0.9, "output.events": True} | keys
+            with cradle.run("fig2", set=keys, output="kinds.h5") as result:
+                found = result.events.kind == kind
+                np.testing.assert_array_equal(found, result.events.closing_speed < speed)
+                self.assertEqual(found.sum(), result.series[count][-1])
+                self.assertTrue(0 < found.sum() < len(found))
+
     def test_scene_is_a_dict_and_a_text(self):
         self.assertEqual(self.result.scene["initial"]["particles"], 200)
         self.assertIn("[law]", self.result.scene_text)

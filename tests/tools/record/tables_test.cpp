@@ -6,8 +6,7 @@
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/run/run.hpp"
 
-namespace cradle::tools {
-namespace tables_test {
+namespace cradle::tools::tables_test {
 
 const std::string rows = "[initial]\ntype = 'rows'\nparticles = 60\nperturbation = 0.05\n[run]\nuntil = 40\n"
                          "[output]\nprofiles = { times = [20], bins = 7, range = [-5, 5] }\nseries.points = 5\n";
@@ -74,5 +73,4 @@ TEST(RunTables, AreFilledWithAsManyNumbersAsTheyHave) {
   EXPECT_EQ(table.columns[1].values, Numbers(std::vector<std::uint64_t>{2}));
 }
 
-}  // namespace tables_test
-}  // namespace cradle::tools
+}  // namespace cradle::tools::tables_test

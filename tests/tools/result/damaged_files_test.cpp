@@ -6,8 +6,7 @@
 
 #include "cradle/tests/tools/result/result_files.hpp"
 
-namespace cradle::tests {
-namespace damaged_files_test {
+namespace cradle::tests::damaged_files_test {
 
 struct Damage {
   const char* what;
@@ -122,13 +121,13 @@ TEST_F(DamagedFiles, AreRefusedByName) {
     for (const auto* command : {"info a.h5", "export a.h5 --to deep/csv", "plot a.h5", "merge a.h5 -o b.h5"}) {
       const Printed refused = shell(std::string("timeout 300 cradle ") + command);
       EXPECT_EQ(refused.status, 4) << command << ", " << what << ": " << refused.err;
-      EXPECT_EQ(refused.err.rfind(std::string("cradle: ") + message, 0), 0U) << what << ": " << refused.err;
+      EXPECT_TRUE(begins(refused.err, std::string("cradle: ") + message)) << what;
     }
-    EXPECT_FALSE(std::filesystem::exists(folder / "deep") || std::filesystem::exists(folder / "b.h5")) << what;
+    EXPECT_FALSE(exists("deep") || exists("b.h5")) << what;
   }
 }
 
-// Format 1 had other names for particles and collisions: results, journals of runs and of ensembles, checkpoints.
+// Results, journals of runs and of ensembles, checkpoints. Format 1 had other names for particles and collisions.
 TEST_F(DamagedFiles, OfAnEarlierFormatAreRefusedInOneWay) {
   tools::Result result = small_result();
   result.attributes[0].second = std::uint64_t{1};
@@ -148,11 +147,10 @@ TEST_F(DamagedFiles, OfAnEarlierFormatAreRefusedInOneWay) {
            {"resume ensemble.h5", "ensemble.h5.part"},
            {"ensemble fig2 --replicas 2 -o ensemble.h5", "ensemble.h5.part"},
            {"info run.h5.checkpoint", "run.h5.checkpoint"}}) {
-    const Printed refused = shell("cradle " + command);
-    EXPECT_EQ(refused.status, 4) << command << ": " << refused.err;
-    EXPECT_EQ(refused.err, "cradle: " + file +
-                               ": a file of an earlier version of cradle (found format 1, here 2): "
-                               "read it with the version that wrote it, or remove it and run its scene again\n")
+    const std::string formats = file == "a.h5" ? "1, here 2" : file == "ensemble.h5.part" ? "2, here 4" : "1, here 4";
+    const Printed refused = shell("cradle " + command, 4);
+    EXPECT_EQ(refused.err, "cradle: " + file + ": a file of an earlier version of cradle (found format " + formats +
+                               "): read it with the version that wrote it, or remove it and run its scene again\n")
         << command;
   }
 }
@@ -161,13 +159,12 @@ TEST_F(DamagedFiles, EmptySeriesAreListed) {
   tools::Result result = small_result();
   for (auto& column : result.groups[0].columns) column.values = std::vector<double>{};
   write("a.h5", tools::file_image(result));
-  EXPECT_EQ(shell("cradle info a.h5").status, 0);
+  shell("cradle info a.h5", 0);
   // One column of several.
   result = small_result();
   result.groups[0].columns[1].values = std::vector<double>{};
   write("a.h5", tools::file_image(result));
-  EXPECT_EQ(shell("cradle info a.h5").status, 0);
+  shell("cradle info a.h5", 0);
 }
 
-}  // namespace damaged_files_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::damaged_files_test

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/seal.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/version.hpp"

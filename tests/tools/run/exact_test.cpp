@@ -1,46 +1,26 @@
 // The decimals below /exact, for each type that is wider than double: they are all digits of the numbers whose doubles
 // stand in the tables, and these are known to the digits of the type.
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
 
-#include <boost/multiprecision/cpp_int.hpp>
-#include <gtest/gtest.h>
-
 #include "cradle/precision/text.hpp"
+#include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run.hpp"
 
-namespace exact_test {
+namespace cradle::tests::exact_test {
 
 using namespace cradle::tools;
-using Rational = boost::multiprecision::cpp_rational;
+using test::decimal;
+using test::Rational;
 using Texts = std::vector<std::string>;
-
-// A decimal as it stands.
-Rational exactly(const std::string& text) {
-  const auto e = text.find('e'), dot = text.find('.');
-  std::string digits = text.substr(0, e);
-  int power = e == text.npos ? 0 : std::stoi(text.substr(e + 1));
-  if (dot < digits.size()) {
-    power -= static_cast<int>(digits.size() - dot - 1);
-    digits.erase(dot, 1);
-  }
-  const bool negative = digits.front() == '-';
-  digits.erase(0, digits.find_first_not_of("-+0"));  // a leading 0 would be octal
-  const Rational whole(boost::multiprecision::cpp_int(digits.empty() ? "0" : digits)),
-      tens(pow(boost::multiprecision::cpp_int(10), static_cast<unsigned>(std::abs(power))));
-  return (negative ? -1 : 1) * (power < 0 ? Rational(whole / tens) : Rational(whole * tens));
-}
 
 // Of the type's number, which may be a tie between doubles, the decimal is off by a little.
 bool rounds_to(const std::string& text, double value) {
   const double size = std::abs(value), ulp = std::nextafter(size, 1e300) - size;
-  return abs(Rational(exactly(text) - Rational(value))) <= Rational(ulp) * Rational(513, 1024);
+  return abs(Rational(decimal<Rational>(text) - Rational(value))) <= Rational(ulp) * Rational(513, 1024);
 }
 
 const std::map<std::string, int>& digits_of_types() {
@@ -49,7 +29,7 @@ const std::map<std::string, int>& digits_of_types() {
   return types;
 }
 
-class Exact : public cradle::tests::ProgramTest {
+class Exact : public ProgramTest {
  protected:
   // Nothing where this build has not that type.
   std::vector<Result> run(const std::string& scene, const std::string& precision) {
@@ -62,9 +42,8 @@ class Exact : public cradle::tests::ProgramTest {
       return {};
     }
     write("scene.toml", text);
-    const auto ran = shell("cradle run scene.toml --quiet -o a.h5");
-    EXPECT_EQ(ran.status, 0) << ran.err;
-    return {read_result((folder / "a.h5").string())};
+    shell("cradle run scene.toml --quiet -o a.h5", 0);
+    return {read("a.h5")};
   }
 };
 
@@ -92,13 +71,11 @@ TEST_P(ExactIn, DoublesAreTheDecimalsRounded) {
       std::size_t more = 0;  // than the double says
       for (const Column& column : exact.columns) {
         SCOPED_TRACE(exact.name + "/" + column.name);
-        const auto twin = std::find_if(rounded->columns.begin(), rounded->columns.end(),
-                                       [&](const Column& other) { return other.name == column.name; });
-        ASSERT_NE(twin, rounded->columns.end());
-        EXPECT_EQ(column.unit, twin->unit);
-        EXPECT_EQ(column.width, twin->width);
+        const Column& twin = tests::column(*rounded, column.name);
+        EXPECT_EQ(column.unit, twin.unit);
+        EXPECT_EQ(column.width, twin.width);
         const auto& texts = std::get<Texts>(column.values);
-        const auto& doubles = std::get<std::vector<double>>(twin->values);
+        const auto& doubles = std::get<std::vector<double>>(twin.values);
         ASSERT_EQ(texts.size(), doubles.size());
         for (std::size_t k = 0; k < texts.size(); ++k) {
           if (texts[k] == "nan") {
@@ -106,7 +83,7 @@ TEST_P(ExactIn, DoublesAreTheDecimalsRounded) {
             continue;
           }
           EXPECT_TRUE(rounds_to(texts[k], doubles[k])) << texts[k] << " " << doubles[k];
-          more += texts[k] != cradle::to_text(doubles[k]);
+          more += texts[k] != to_text(doubles[k]);
         }
       }
       EXPECT_GT(more, 0U) << exact.name;
@@ -131,18 +108,10 @@ TEST_P(ExactIn, DecimalsHaveTheDigitsOfTheType) {
           GetParam());
   if (results.empty()) return;
   const auto near = [&](const char* group, const char* name, std::size_t row, const Rational& expected) {
-    SCOPED_TRACE(std::string(group) + "/" + name);
-    const Group* table = results[0].find(group);
-    ASSERT_NE(table, nullptr);
-    for (const Column& column : table->columns) {
-      if (column.name != name) continue;
-      const Rational off = exactly(std::get<Texts>(column.values).at(row)) - expected;
-      EXPECT_LT(abs(off), Rational(1, pow(boost::multiprecision::cpp_int(10),
-                                          static_cast<unsigned>(digits_of_types().at(GetParam())))))
-          << std::get<Texts>(column.values).at(row);
-      return;
-    }
-    ADD_FAILURE() << "no such column";
+    const std::string text = numbers<std::string>(results[0], group, name).at(row);
+    EXPECT_LT(abs(Rational(decimal<Rational>(text) - expected)),
+              decimal<Rational>("1e-" + std::to_string(digits_of_types().at(GetParam()))))
+        << group << "/" << name << ": " << text;
   };
   const Rational left(-295, 1000), right(195, 1000), met(10, 7), place(3, 7);
   near("exact/series", "time", 1, 5);
@@ -169,4 +138,4 @@ TEST_F(Exact, DoublesNeedNone) {
   for (const Group& group : results[0].groups) EXPECT_FALSE(group.name.starts_with("exact")) << group.name;
 }
 
-}  // namespace exact_test
+}  // namespace cradle::tests::exact_test

@@ -5,8 +5,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 
-namespace cradle::tests {
-namespace run_threads_test {
+namespace cradle::tests::run_threads_test {
 
 class RunThreads : public ProgramTest {
  protected:
@@ -23,7 +22,7 @@ TEST_F(RunThreads, NeverChangeAResult) {
       for (const std::string threads : {"1", "2", "3", "8"}) {
         const std::string file = scene.substr(0, 4) + precision + threads + ".h5";
         const std::string run = "cradle run " + scene + " --quiet --set run.precision=" + precision;
-        ASSERT_EQ(shell(run + " --threads " + threads + " -o " + file).status, 0);
+        shell(run + " --threads " + threads + " -o " + file, 0);
         if (first.empty()) first = contents(folder / file);
         EXPECT_EQ(contents(folder / file), first) << file;
       }
@@ -32,16 +31,13 @@ TEST_F(RunThreads, NeverChangeAResult) {
 
 TEST_F(RunThreads, AreWhatCheckPrintsBeforehand) {
   const auto printed = [&](const std::string& scene) { return shell("cradle check --threads 2 " + scene).out; };
-  EXPECT_NE(printed("fig2").find("threads: 2, about 1.8 times as fast as one once all particles are active\n"),
-            std::string::npos);
-  EXPECT_NE(printed("fig11").find("threads: one does the work (particles that merge)\n"), std::string::npos);
-  EXPECT_NE(printed("ring.toml").find("threads: 2, about 1.8 times"), std::string::npos);
-  EXPECT_NE(printed("fig2 --set initial.particles=200").find("(few particles)"), std::string::npos);
-  EXPECT_NE(printed("fig2 --set run.coordinates=absolute").find("(absolute coordinates)"), std::string::npos);
-  EXPECT_NE(printed("fig2 --set output.events=true").find("(every collision is recorded, in order)"),
-            std::string::npos);
-  EXPECT_NE(printed("collapse3").find("(a collapse to be found)"), std::string::npos);
+  EXPECT_TRUE(has(printed("fig2"), "threads: 2, about 1.8 times as fast as one once all particles are active\n"));
+  EXPECT_TRUE(has(printed("fig11"), "threads: one does the work (particles that merge)\n"));
+  EXPECT_TRUE(has(printed("ring.toml"), "threads: 2, about 1.8 times"));
+  EXPECT_TRUE(has(printed("fig2 --set initial.particles=200"), "(few particles)"));
+  EXPECT_TRUE(has(printed("fig2 --set run.coordinates=absolute"), "(absolute coordinates)"));
+  EXPECT_TRUE(has(printed("fig2 --set output.events=true"), "(every collision is recorded, in order)"));
+  EXPECT_TRUE(has(printed("collapse3"), "(a collapse to be found)"));
 }
 
-}  // namespace run_threads_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::run_threads_test

@@ -1,14 +1,12 @@
 // Decimal literals: canonical form, exact order against rational arithmetic done by hand, integers.
 #include "cradle/tools/scene/decimal.hpp"
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-namespace cradle::tools {
-namespace decimal_test {
+namespace cradle::tools::decimal_test {
 
 TEST(Decimal, CanonicalForm) {
   EXPECT_EQ(canonical_decimal("+1_000"), "1000");
@@ -84,5 +82,4 @@ TEST(Decimal, NearestDouble) {
   EXPECT_EQ(Decimal("4.9406564584124654e-324").value, std::numeric_limits<double>::denorm_min());
 }
 
-}  // namespace decimal_test
-}  // namespace cradle::tools
+}  // namespace cradle::tools::decimal_test

@@ -3,10 +3,12 @@
 
 #include <sstream>
 
-#include <gtest/gtest.h>
+#include "cradle/tests/tools/program.hpp"
 
-namespace cradle::tools {
-namespace list_file_test {
+namespace cradle::tools::list_file_test {
+
+using test::begins;
+using tests::refusal;
 
 ListedParticles parse(const std::string& text, Precision precision = Precision::double_) {
   std::istringstream csv(text);
@@ -16,13 +18,7 @@ ListedParticles parse(const std::string& text, Precision precision = Precision::
 }
 
 std::string message(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status, Exit::bad_input);
-    return error.what();
-  }
-  return "no error";
+  return refusal(Exit::bad_input, [&] { parse(text); });
 }
 
 TEST(ListFile, AcceptsWhatEditorsWrite) {
@@ -43,10 +39,10 @@ TEST(ListFile, AcceptsWhatEditorsWrite) {
 TEST(ListFile, RefusesWithTheLine) {
   EXPECT_EQ(message(""),
             "b.csv: no particles (found an empty file): give a line x,v or x,v,m and then one line per particle");
-  EXPECT_TRUE(message("x,v\n\n").starts_with("b.csv: no particles (found only the names of the columns)"));
+  EXPECT_TRUE(begins(message("x,v\n\n"), "b.csv: no particles (found only the names of the columns)"));
   EXPECT_EQ(message("0,1\n"),
             "b.csv:1: the columns are not named (found \"0,1\"): begin the file with a line x,v or x,v,m");
-  EXPECT_TRUE(message("v,x\n").starts_with("b.csv:1:"));
+  EXPECT_TRUE(begins(message("v,x\n"), "b.csv:1:"));
   EXPECT_EQ(message("x,v\n0,1,2\n"), "b.csv:2: wrong number of columns (found 3): give 2 as in the first line");
   EXPECT_EQ(message("x,v,m\n0,1\n"), "b.csv:2: wrong number of columns (found 2): give 3 as in the first line");
   EXPECT_EQ(message("x,v\n0,nan\n"), "b.csv:2: v: not finite (found \"nan\"): give a decimal number");
@@ -58,7 +54,7 @@ TEST(ListFile, RefusesWithTheLine) {
 
 TEST(ListFile, OrderIsDecidedExactly) {
   const std::string zeros(40, '0');
-  EXPECT_EQ(message("x,v\n1,0\n1." + zeros + "1,0\n"), "no error");
+  parse("x,v\n1,0\n1." + zeros + "1,0\n");
   EXPECT_EQ(message("x,v\n1,0\n\n1." + zeros + ",0\n"), "b.csv:4: x: coincident particles (found 1." + zeros +
                                                             " after 1): give the particles in order of increasing x");
   EXPECT_EQ(message("x,v\n-1,0\n-1e1,0\n"),
@@ -81,8 +77,8 @@ TEST(ListFile, NumbersAreSuchThatThePrecisionHoldsThem) {
   EXPECT_EQ(message("x,v\n0,1\n1,1e400\n"),
             "b.csv:3: v: too large for the precision (found 1e400 with \"double\"): give a smaller number or another "
             "run.precision");
-  EXPECT_TRUE(message("x,v\n-1e309,1\n").starts_with("b.csv:2: x: too large for the precision (found -1e309"));
-  EXPECT_TRUE(message("x,v,m\n0,1,1e-400\n").starts_with("b.csv:2: m: too small for the precision (found 1e-400"));
+  EXPECT_TRUE(begins(message("x,v\n-1e309,1\n"), "b.csv:2: x: too large for the precision (found -1e309"));
+  EXPECT_TRUE(begins(message("x,v,m\n0,1,1e-400\n"), "b.csv:2: m: too small for the precision (found 1e-400"));
   EXPECT_EQ(parse("x,v\n0,1e400\n", Precision::float128).v[0], "1e400");
   EXPECT_EQ(parse("x,v,m\n0,1e99999,1e-99999\n", Precision::mpfr).m[0], "1e-99999");
   EXPECT_THROW(parse("x,v\n0,1e99999\n", Precision::long_double), Error);
@@ -94,15 +90,8 @@ TEST(ListFile, ParticlesOfAScene) {
   ASSERT_EQ(particles.x.size(), 2U);
   EXPECT_EQ(particles.x[1], "1e-500");
   EXPECT_TRUE(particles.m.empty());
-  try {
-    parse_scene(head + "initial.file = 'absent.csv'", "nowhere/s.toml");
-    FAIL() << "the file does not exist";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status, Exit::io);
-    EXPECT_TRUE(
-        std::string(error.what()).starts_with("nowhere/absent.csv: the list of particles cannot be read (found "));
-  }
+  EXPECT_TRUE(begins(refusal(Exit::io, [&] { parse_scene(head + "initial.file = 'absent.csv'", "nowhere/s.toml"); }),
+                     "nowhere/absent.csv: the list of particles cannot be read (found "));
 }
 
-}  // namespace list_file_test
-}  // namespace cradle::tools
+}  // namespace cradle::tools::list_file_test

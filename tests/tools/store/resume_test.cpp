@@ -1,6 +1,7 @@
 // Runs that are stopped anywhere and resumed end in the bytes of an uninterrupted run: law x scalar type x coordinates
 // x initial state x policy x threads x where it is cut.
 #include <csignal>
+#include <fstream>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -18,7 +19,7 @@ namespace resume_test {
 using namespace cradle::tools;
 using cradle::tests::contents;
 
-// Hands on to the files, and stops the run at a given point.
+// Passes all to the files, begins their journal at the first sample, and stops the run at a given point.
 class Stopping final : public RunStore {
  public:
   struct At {
@@ -35,9 +36,10 @@ class Stopping final : public RunStore {
     files_.check_clock();
     if (++checks_ >= at_.checks) interrupt_.note(SIGTERM);
   }
-  bool due() const override { return files_.due(); }
-  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, bool state_too) override {
-    files_.keep(status, save, state_too);
+  bool due() const override { return files_.due() || (checks_ == 1 && !begun_); }
+  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs now) override {
+    begun_ = true;
+    files_.keep(status, save, now);
   }
   StateReader* loaded_from() override { return files_.loaded_from(); }
 
@@ -46,6 +48,7 @@ class Stopping final : public RunStore {
   Interrupt& interrupt_;
   At at_;
   std::uint64_t checks_ = 0;
+  bool begun_ = false;
 };
 
 struct Case {
@@ -212,6 +215,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 // ---- extended
 
+// A checkpoint at every sample, on any machine.
+constexpr const char* from_the_start = "output.checkpoint.every_seconds=1e-9";
+
 TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
   const std::string inelastic = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n";
   const char* every[] = {"every = 0.7", "points = 21", "points = 60, spacing = 'log'", "times = [1, 2, 9]"};
@@ -242,9 +248,52 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
   }
 }
 
+// A run that was over before it had anything to lose has left no checkpoint: it is run again, to a later end.
+TEST_F(Resuming, WithoutACheckpointALaterEndIsRunFromTheStart) {
+  const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {"output.checkpoint.every_seconds=0"});
+  begin("a.h5", scene, {}, 1);
+  std::filesystem::remove(file("a.h5.checkpoint"));  // of a machine so slow that the run took two seconds
+  EXPECT_EQ(RunFiles(file("a.h5"), "120").resumed_from(), "the start");
+  ASSERT_EQ(resume("a.h5", "120", {}, 1).end, RunEnd::reached);
+  begin("alone.h5", scene_in(read_result(file("a.h5")).attributes, ""), {}, 1);
+  EXPECT_TRUE(contents(file("alone.h5")) == contents(file("a.h5"))) << "other bytes";
+}
+
+// An extension whose journal has no checkpoint yet begins again from the result and its checkpoint.
+TEST_F(Resuming, AnExtensionStoppedBeforeItsFirstCheckpointBeginsAgain) {
+  const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {from_the_start});
+  begin("a.h5", scene, {}, 1);
+  const std::string checkpoint = contents(file("a.h5.checkpoint"));
+  ASSERT_EQ(resume("a.h5", "120", {.checks = 2}, 1).end, RunEnd::interrupted);
+  { std::ofstream(file("a.h5.checkpoint"), std::ios::binary) << checkpoint; }  // as a kill before it was written
+  EXPECT_NE(RunFiles(file("a.h5"), std::nullopt).resumed_from(), "the start");
+  ASSERT_EQ(resume("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);
+  begin("alone.h5", scene_in(read_result(file("a.h5")).attributes, ""), {}, 1);
+  EXPECT_TRUE(contents(file("alone.h5")) == contents(file("a.h5"))) << "other bytes";
+}
+
+// Whether there is a journal, and from when on, changes nothing in the result.
+TEST_F(Resuming, ARunThatHasNothingToLoseWritesItsFileAlone) {
+  for (const char* every : {"0", "1e-9"}) {
+    const Scene scene =
+        parse_scene(dry(rows, ""), "scene.toml", {std::string("output.checkpoint.every_seconds=") + every});
+    const std::string name = std::string("a") + every + ".h5";
+    RunFiles files(file(name.c_str()), scene);
+    Interrupt interrupt;
+    RunOutcome end = run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &files});
+    EXPECT_EQ(std::filesystem::exists(file((name + ".part").c_str())), files.up_to_date());
+    if (*every == '1') {
+      EXPECT_TRUE(files.up_to_date());
+    }
+    files.finish(std::move(end.result), end.end);
+    EXPECT_FALSE(std::filesystem::exists(file((name + ".part").c_str())));
+  }
+  EXPECT_TRUE(contents(file("a0.h5")) == contents(file("a1e-9.h5"))) << "other bytes";
+}
+
 // A run whose result could not be written is finished before it is extended: its last sample belongs to its end.
 TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
-  const Scene scene = parse_scene(dry(rows, ""), "scene.toml");
+  const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {from_the_start});
   {
     RunFiles files(file("a.h5"), scene);
     Interrupt interrupt;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/result/small_files.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/store/run_files.hpp"
@@ -31,17 +32,19 @@ class Files : public ProgramTest {
   void kill_a_run() const {
     for (double until = 1300;; until *= 2) {
       const std::string long_run = run + "--set run.until=" + std::to_string(until) + " -o ";
-      ASSERT_EQ(shell("rm -f a.h5*; " + long_run +
-                      "a.h5 & pid=$!; until [ -e a.h5.checkpoint ]; do :; done; "
-                      "kill -9 $pid; wait $pid; [ -e a.h5.checkpoint ]")
-                    .status,
-                0);
+      shell("rm -f a.h5*; " + long_run +
+            "a.h5 & pid=$!; until [ -e a.h5.checkpoint ] || [ -e a.h5 ]; do :; done; kill -9 $pid; wait $pid");
       if (exists("a.h5") || !exists("a.h5.part")) continue;
       ASSERT_EQ(shell(long_run + "whole.h5").status, 0);
       return;
     }
   }
 };
+
+JournalHeader header() {
+  const Scene scene = parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 10\n", "s.toml");
+  return {"run", 7, effective_toml(scene), "s"};
+}
 
 TEST_F(Files, ARunInProgressCanBeInspected) {
   const Printed inspected =
@@ -64,6 +67,16 @@ TEST_F(Files, FollowingARunEndsWithIt) {
             "rm a.h5.part; wait $follower; status=$?; cat printed; (exit $status)");
   EXPECT_EQ(followed.status, 0) << followed.err;
   EXPECT_NE(followed.out.find("a.h5.part is gone: the run is over"), std::string::npos) << followed.out;
+}
+
+// What is beside FILE belongs to no run that is killed before it has written anything.
+TEST_F(Files, ANewRunTakesTheJournalOfTheOneBeforeAway) {
+  { JournalWriter journal(path("a.h5.part"), header()); }
+  { const RunFiles files(path("a.h5"), parse_scene(header().scene, "s.toml")); }
+  EXPECT_FALSE(exists("a.h5.part"));
+  const Printed none = shell("cradle resume a.h5");
+  EXPECT_EQ(none.status, 4);
+  EXPECT_NE(none.err.find("nothing to continue from"), std::string::npos) << none.err;
 }
 
 TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
@@ -101,33 +114,41 @@ TEST_F(Files, WithoutItsCheckpointARunStartsAnewAndWithADamagedOneItSaysSo) {
   EXPECT_TRUE(contents(folder / "a.h5") == contents(folder / "whole.h5"));
 }
 
-RunHeader header(const std::string& version) {
-  const Scene scene = parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 10\n", "s.toml");
-  return {version, effective_toml(scene), "s", 60, 7};
-}
-
 TEST_F(Files, OtherVersionsAreRefusedByName) {
-  { JournalWriter journal(path("a.h5.part"), JournalOf::run, header("0.0.9").bytes()); }
-  const Printed old = shell("cradle resume a.h5");
-  EXPECT_EQ(old.status, 4);
-  EXPECT_NE(old.err.find("a run of another version (found 0.0.9, here " + std::string(version) + ")"),
-            std::string::npos)
-      << old.err;
+  { JournalWriter journal(path("a.h5.part"), header()); }
+  std::string bytes = contents(folder / "a.h5.part");
+  const std::string here = version, other(here.size(), '9');
+  const std::size_t begin = begin_of(Stored::journal).size() + sizeof(std::uint64_t);  // and the record's length
+  ASSERT_EQ(bytes.substr(begin + sizeof(std::uint64_t), here.size()), here);
+  bytes.replace(begin + sizeof(std::uint64_t), here.size(), other);
+  const std::uint64_t check =
+      crc64(std::string_view(bytes).substr(begin - 8, bytes.size() - begin));  // of length and record
+  std::memcpy(bytes.data() + bytes.size() - sizeof check, &check, sizeof check);
+  write("a.h5.part", bytes);
+  for (const char* command : {"resume a.h5", "info a.h5.part", "ensemble fig2 --replicas 2 -o a.h5"}) {
+    const Printed refused = shell(std::string("cradle ") + command);
+    EXPECT_EQ(refused.status, 4) << command;
+    EXPECT_EQ(refused.err.rfind("cradle: a.h5.part: of another version of the program (found " + other + ", here " +
+                                    here + "): continue with that one",
+                                0),
+              0U)
+        << refused.err;
+  }
   write("b.h5.part", "CRADLEJ1 of long ago, replicas");
   const Printed earlier = shell("cradle resume b.h5");
   EXPECT_EQ(earlier.status, 4);
   EXPECT_EQ(
-      earlier.err.rfind("cradle: b.h5.part: a file of an earlier version of cradle (found format 1, here 2): ", 0), 0U)
+      earlier.err.rfind("cradle: b.h5.part: a file of an earlier version of cradle (found format 1, here 4): ", 0), 0U)
       << earlier.err;
 }
 
 TEST_F(Files, ALongRunThatIsNotFinishedIsNotThrownAway) {
   {
-    JournalWriter journal(path("a.h5.part"), JournalOf::run, header(std::string(version)).bytes());
+    JournalWriter journal(path("a.h5.part"), header());
     RunStatus status;
     status.seconds = 3600;
     status.time = 5;
-    journal.append(record_of(status));
+    journal.append(to_bytes(RunRecord(status)));
   }
   const std::string before = contents(folder / "a.h5.part");
   const Printed anew = shell(run + "-o a.h5");
@@ -144,16 +165,16 @@ TEST_F(Files, ALongRunThatIsNotFinishedIsNotThrownAway) {
 // but the run that continues from it cannot be.
 TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {
   ASSERT_EQ(shell("cradle run cooling --quiet --set law.type=inelastic --set law.restitution=0.99 --set "
-                  "law.cutoff=0.01 --set initial.particles=100 --set run.until=50 -o a.h5")
+                  "law.cutoff=0.01 --set initial.particles=100 --set run.until=50 "
+                  "--set output.checkpoint.every_seconds=1e-9 -o a.h5")
                 .status,
             0);
   std::string state = contents(folder / "a.h5.checkpoint");
   // The middle of the file is in the list of gaps: of four numbers each, the closing speed is the last.
   StateReader reader(path("a.h5.checkpoint"));
-  read_checkpoint(reader, path("a.h5.checkpoint"));
-  reader.text(), reader.text();
+  std::pair<std::string, std::string> shape_and_precision;
   std::uint64_t slots = 0;
-  reader.get(&slots, sizeof slots);
+  cradle::load(reader, shape_and_precision), cradle::load(reader, slots);
   const std::size_t cells = state.size() - sizeof(std::uint64_t) - reader.left();
   const std::size_t at = cells + 32 * (slots / 2) + 24;
   double closing = 0;
@@ -168,7 +189,7 @@ TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {
   EXPECT_EQ(stopped.status, 5) << stopped.out;
   EXPECT_NE(stopped.err.find("stopped by the guard of"), std::string::npos) << stopped.err;
   EXPECT_TRUE(contents(folder / "a.h5.checkpoint") == state) << "the one from before stays";
-  EXPECT_TRUE(exists("a.h5.part"));
+  EXPECT_TRUE(exists("a.h5"));
 }
 
 // More numbers than are held in memory go to the file piece by piece.
@@ -196,19 +217,22 @@ TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   const Result outline{whole.attributes, std::move(ends).in_order()};
   whole.groups = std::move(all).in_order();
   EXPECT_EQ(std::get<std::vector<double>>(outline.find("series")->columns[0].values), (std::vector<double>{0, 4949}));
-  write_in_pieces(
-      outline,
-      [&](const auto& put) {
-        for (const Group& piece : pieces) put(piece);
-      },
-      path("pieces.h5"));
+  const auto write = [&](const char* name) {
+    write_in_pieces(
+        outline,
+        [&](const auto& put) {
+          for (const Group& piece : pieces) put(piece);
+        },
+        path(name));
+  };
+  write("pieces.h5");
   std::stable_sort(pieces.begin(), pieces.end(), [](const Group& a, const Group& b) { return a.name > b.name; });
-  write_in_pieces(
-      outline,
-      [&](const auto& put) {
-        for (const Group& piece : pieces) put(piece);
-      },
-      path("otherwise.h5"));
+  write("otherwise.h5");
+  {
+    const SmallFiles full;
+    EXPECT_THROW(write("full.h5"), Error);
+  }
+  EXPECT_FALSE(exists("full.h5"));
   EXPECT_TRUE(contents(folder / "pieces.h5") == contents(folder / "otherwise.h5")) << "bytes follow the clock";
   write_result(whole, path("whole.h5"));
   const Result one = read_result(path("pieces.h5")), other = read_result(path("whole.h5"));

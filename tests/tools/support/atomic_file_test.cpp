@@ -1,5 +1,5 @@
-// Writing files: what stood at a name is there until all of what is new is, whatever goes wrong; one writer at a time;
-// links followed; nothing that is not ours touched.
+// Writing files: the old file stays until the new one is complete, whatever goes wrong; one program at a time writes a
+// file; links are followed; no other file is touched.
 
 #include "cradle/tools/support/atomic_file.hpp"
 
@@ -16,8 +16,7 @@
 #include "cradle/tests/tools/result/small_files.hpp"
 #include "cradle/tools/support/errors.hpp"
 
-namespace cradle::tests {
-namespace atomic_file_test {
+namespace cradle::tests::atomic_file_test {
 
 namespace fs = std::filesystem;
 using tools::FileClaim;
@@ -25,20 +24,10 @@ using tools::replace_file;
 
 class AtomicFile : public ProgramTest {
  protected:
-  std::string path(const std::string& name) const { return (folder / name).string(); }
   std::size_t files() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
-  // The message of the Error (Exit::io) that `what` throws.
-  template <class F> static std::string refusal(F what) {
-    try {
-      what();
-    } catch (const tools::Error& error) {
-      EXPECT_EQ(error.status, tools::Exit::io);
-      return error.what();
-    }
-    return "nothing was refused";
-  }
+  template <class Work> static std::string refusal(const Work& work) { return tests::refusal(tools::Exit::io, work); }
 };
 
 TEST_F(AtomicFile, ReplacesAllOrNothing) {
@@ -85,7 +74,7 @@ TEST_F(AtomicFile, FollowsLinks) {
   EXPECT_EQ(contents(folder / "there/nothing"), "made");
   // Two names of one file have one writer.
   const FileClaim claim(path("link"));
-  EXPECT_NE(refusal([&] { FileClaim{path("there/target")}; }).find("another program"), std::string::npos);
+  EXPECT_TRUE(has(refusal([&] { FileClaim{path("there/target")}; }), "another program"));
   fs::create_symlink("round", folder / "round");
   EXPECT_EQ(refusal([&] { replace_file(path("round"), ""); }),
             path("round") + ": cannot be written (found links that lead nowhere): give another -o FILE");
@@ -108,14 +97,14 @@ TEST_F(AtomicFile, RefusesWhatIsNoFile) {
   // Only asked about: were it not refused, root would lose it.
   EXPECT_EQ(refusal([] { tools::file_behind("/dev/null"); }),
             "/dev/null: cannot be written (found a device): give another -o FILE");
-  EXPECT_NE(refusal([&] { FileClaim{path("no/such/folder")}; }).find("No such file or directory"), std::string::npos);
+  EXPECT_TRUE(has(refusal([&] { FileClaim{path("no/such/folder")}; }), "No such file or directory"));
 }
 
 TEST_F(AtomicFile, HasOneWriterAtATime) {
   std::optional<FileClaim> first(path("a"));
   const std::string message = refusal([&] { FileClaim{path("a")}; });
-  EXPECT_EQ(message.rfind(path("a") + ": another program is writing this file (found process ", 0), 0U) << message;
-  EXPECT_NE(message.find(std::to_string(::getpid())), std::string::npos) << message;
+  EXPECT_TRUE(begins(message, path("a") + ": another program is writing this file (found process "));
+  EXPECT_TRUE(has(message, std::to_string(::getpid())));
   const FileClaim other(path("b"));
   first.reset();
   const FileClaim second(path("a"));
@@ -145,5 +134,4 @@ TEST_F(AtomicFile, ClaimLeavesNothingBehindAndOutlivesNoCrash) {
   EXPECT_EQ(files(), 0U);
 }
 
-}  // namespace atomic_file_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::atomic_file_test

@@ -1,4 +1,4 @@
-// Numbers and text as bytes come back as they were; the checksum against Boost's, bit by bit.
+// Values as bytes come back as they were; the checksum against Boost's, bit by bit.
 
 #include "cradle/tools/support/bytes.hpp"
 
@@ -7,12 +7,13 @@
 
 #include <limits>
 #include <string>
+#include <tuple>
+#include <variant>
 #include <vector>
 
 #include "cradle/tools/support/checksum.hpp"
 
-namespace cradle::tests {
-namespace bytes_test {
+namespace cradle::tests::bytes_test {
 
 TEST(Checksum, IsTheCrc64OfXz) {
   EXPECT_EQ(tools::crc64("123456789"), 0x995DC9BBDF1939FAU);  // the check value of the catalogue of CRC algorithms
@@ -27,26 +28,36 @@ TEST(Checksum, IsTheCrc64OfXz) {
   }
 }
 
+struct Listed {
+  std::uint64_t number = 0;
+  std::string text;
+  std::vector<double> numbers;
+  std::vector<std::string> texts;
+  std::variant<double, std::string, std::vector<std::uint64_t>> either;
+  static auto state(auto& self) { return std::tie(self.number, self.text, self.numbers, self.texts, self.either); }
+  bool operator==(const Listed&) const = default;
+};
+
 TEST(Bytes, ComeBackAsTheyWere) {
-  const std::vector<double> numbers{1.5, -0.0, 1e-310, std::numeric_limits<double>::infinity()};
-  tools::ByteWriter writer;
-  writer.put(std::uint64_t{7}).put("text").put(numbers).put(std::vector<std::uint64_t>{}).put(2.5);
-  tools::ByteReader reader(writer.bytes());
-  EXPECT_EQ(reader.integer(), 7U);
-  EXPECT_EQ(reader.text(), "text");
-  EXPECT_EQ(reader.numbers<double>(), numbers);
-  EXPECT_TRUE(reader.numbers<std::uint64_t>().empty());
-  EXPECT_EQ(reader.number<double>(), 2.5);
-  EXPECT_TRUE(reader.empty());
-  EXPECT_THROW(reader.integer(), tools::Error);
+  const double inf = std::numeric_limits<double>::infinity();
+  const Listed all{7, "text", {1.5, -0.0, 1e-310, inf}, {"", "two\0three"}, std::string("either")};
+  EXPECT_EQ(tools::from_bytes<Listed>(tools::to_bytes(all)), all);
+  for (const auto& either : {decltype(all.either)(2.5), decltype(all.either)(std::vector<std::uint64_t>{1, 2})}) {
+    Listed other = all;
+    other.either = either;
+    EXPECT_EQ(tools::from_bytes<Listed>(tools::to_bytes(other)), other);
+  }
 }
 
-TEST(Bytes, LengthsThatCannotBeAreRefused) {
-  tools::ByteWriter writer;
-  writer.put(~std::uint64_t{0});
-  EXPECT_THROW(tools::ByteReader(writer.bytes()).numbers<double>(), tools::Error);
-  EXPECT_THROW(tools::ByteReader(writer.bytes()).text(), tools::Error);
+TEST(Bytes, OfSomethingElseAreRefused) {
+  const std::string right = tools::to_bytes(Listed{7, "text", {1.5}, {"a"}, 2.5});
+  for (std::size_t size = 0; size < right.size(); ++size)
+    EXPECT_THROW(tools::from_bytes<Listed>(right.substr(0, size)), tools::Error) << size;
+  EXPECT_THROW(tools::from_bytes<Listed>(right + '\0'), tools::Error) << "more than there is in it";
+  const std::string longest = tools::to_bytes(~std::uint64_t{0}), third = tools::to_bytes(std::uint64_t{3});
+  EXPECT_THROW(tools::from_bytes<std::string>(longest), tools::Error);
+  EXPECT_THROW(tools::from_bytes<std::vector<double>>(longest), tools::Error);
+  EXPECT_THROW(tools::from_bytes<decltype(Listed::either)>(third), tools::Error) << "no such alternative";
 }
 
-}  // namespace bytes_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::bytes_test

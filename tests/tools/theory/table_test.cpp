@@ -2,16 +2,17 @@
 // that meet in their known points, and misprints that fit the law.
 #include "cradle/tools/theory/table.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace cradle::tools {
-namespace table_test {
+#include "cradle/tests/texts.hpp"
+
+namespace cradle::tools::table_test {
+
+using test::has;
 
 std::vector<Prediction> table_of(const std::string& scene, const std::vector<std::string>& overrides = {}) {
   return predictions(read_scene(scene, overrides));
@@ -163,11 +164,10 @@ TEST(StickyPredictions, SayNothingOfOtherStarts) {
 }
 
 TEST(Misprints, FitTheLaw) {
-  EXPECT_NE(misprints(read_scene("fig2")).find("(7)"), std::string::npos);
-  EXPECT_EQ(misprints(read_scene("fig2")).find("(17)"), std::string::npos);
-  EXPECT_NE(misprints(read_scene("fig6")).find("sqrt(2 E_loss/mu)"), std::string::npos);
-  EXPECT_EQ(misprints(read_scene("fig6")).find("(7)"), std::string::npos);
+  EXPECT_TRUE(has(misprints(read_scene("fig2")), "(7)"));
+  EXPECT_FALSE(has(misprints(read_scene("fig2")), "(17)"));
+  EXPECT_TRUE(has(misprints(read_scene("fig6")), "sqrt(2 E_loss/mu)"));
+  EXPECT_FALSE(has(misprints(read_scene("fig6")), "(7)"));
 }
 
-}  // namespace table_test
-}  // namespace cradle::tools
+}  // namespace cradle::tools::table_test

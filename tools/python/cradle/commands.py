@@ -16,111 +16,105 @@ from .scene import scene_text, value_text
 
 Scene = Union[str, os.PathLike, Mapping[str, Any], Result]
 Settings = Union[Mapping[str, Any], None]
-Path = Union[str, os.PathLike, None]
-Progress = Union[bool, Show, None]
 
 
-def run(scene: Scene, set: Settings = None, *, output: Path = None, seed: int | None = None,
-        threads: int | None = None, progress: Progress = None) -> Result:
+def run(scene: Scene, set: Settings = None, **common) -> Result:
     """One run; returns its result, also where it ended at inelastic collapse (`result.status` is 3 then).
 
     scene: a scene file, the name of a bundled scene, nested dicts as result.scene has them, or the text of a scene
         (with line breaks), as result.scene_text.
     set: keys and values instead of what the scene says, `{"law.restitution": 0.9, "run.until": 500}`.
+    Common to all commands, as keywords:
     output: the result file; by default the scene's name with .h5 in the working folder, as the program has it.
+    seed: another one than the scene's.
     threads: at most so many, all processors by default; never changes a result.
     progress: True, False, or a function of the share done and a line of text; by default on terminals and in notebooks.
     Raises Error with the program's message and status; where collisions were lost (5) its `result` is what there is.
     """
-    return compute("run", scene, set, [], output, ".h5", seed, threads, progress)
+    return compute("run", ".h5", scene, set, [], **common)
 
 
-def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 0,
-             spread: Sequence[str] = (), output: Path = None, seed: int | None = None,
-             threads: int | None = None, progress: Progress = None) -> Result:
+def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 0, spread: Sequence[str] = (),
+             **common) -> Result:
     """Replicas first to first + replicas - 1 and their statistics; a file of the same scene is continued.
 
     spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Others as in run().
     Raises Error; where replicas failed (5) its `result` has the others.
     """
     options = ["--replicas", replicas, "--first", first, *(word for text in spread for word in ("--spread", text))]
-    return compute("ensemble", scene, set, options, output, "-ensemble.h5", seed, threads, progress)
+    return compute("ensemble", "-ensemble.h5", scene, set, options, **common)
 
 
 def sweep(scene: Scene, vary: Settings = None, set: Settings = None, *, cuts: bool = False,
-          points: Sequence[Mapping[str, Any]] = (), replicas: int | None = None, first: int = 0,
-          output: Path = None, seed: int | None = None, threads: int | None = None,
-          progress: Progress = None) -> Result:
+          points: Sequence[Mapping[str, Any]] = (), replicas: int | None = None, first: int = 0, **common) -> Result:
     """One ensemble at each of many points; `result.points` are these, `result.sweep` has one row for each.
 
     vary: values of keys, `{"law.loss": [0.005, 0.01], "initial.speed": "0.5:2:4:log"}`, in all combinations, or, with
         cuts, one at a time. points: single ones, `{"law.loss": 0.01, "initial.speed": 1}` each.
-        Without both the sweep is the one of the scene.
+        Without both the sweep is the one of the scene. Others as in run().
     """
-    options: list[Any] = []
-    for key, values in (vary or {}).items():
-        options += ["--vary", f"{key}={listed(values)}"]
-    options += [word for point in points
-                for word in ("--point", " ".join(f"{key}={bare(value)}" for key, value in point.items()))]
-    options += ["--cuts"] * cuts + (["--replicas", replicas] if replicas is not None else []) + ["--first", first]
-    return compute("sweep", scene, set, options, output, "-sweep.h5", seed, threads, progress)
+    options = [word for key, values in (vary or {}).items() for word in ("--vary", f"{key}={bare(values, ',')}")]
+    for point in points:
+        options += ["--point", " ".join(f"{key}={bare(value)}" for key, value in point.items())]
+    options += ["--cuts"] * cuts + option("--replicas", replicas) + ["--first", first]
+    return compute("sweep", "-sweep.h5", scene, set, options, **common)
 
 
-def trust(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), both: bool = False,
-          output: Path = None, seed: int | None = None, threads: int | None = None,
-          progress: Progress = None) -> Result:
+def trust(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), both: bool = False, **common) -> Result:
     """The same run at rising precision; `result.trust` has a table for each, compared with the last.
 
     digits: those to compare, the reference last; by default rising until two runs agree. both: also in positions.
+    Others as in run().
     """
-    options = (["--digits", ",".join(map(str, digits))] if digits else []) + ["--both"] * both
-    return compute("trust", scene, set, options, output, "-trust.h5", seed, threads, progress)
+    options = option("--digits", ",".join(map(str, digits)) or None) + ["--both"] * both
+    return compute("trust", "-trust.h5", scene, set, options, **common)
 
 
 def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), replicas: int | None = None,
-            output: Path = None, seed: int | None = None, threads: int | None = None,
-            progress: Progress = None) -> Result:
+            **common) -> Result:
     """The run with a proof of its collisions; `result.certificate.verdict` is "proved" or "undecided" (status 5).
 
-    digits: of the proof, tried one after the other. replicas: proves so many and writes their statistics.
+    digits: of the proof, tried one after the other. replicas: proves so many and writes their statistics. Others as in
+    run().
     """
-    options = (["--digits", ",".join(map(str, digits))] if digits else [])
-    options += ["--replicas", replicas] if replicas is not None else []
-    return compute("certify", scene, set, options, output, "-certified.h5", seed, threads, progress)
+    options = option("--digits", ",".join(map(str, digits)) or None) + option("--replicas", replicas)
+    return compute("certify", "-certified.h5", scene, set, options, **common)
 
 
 def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
-           progress: Progress = None) -> Result:
+           progress: bool | Show | None = None) -> Result:
     """Continues a run, an ensemble or a sweep that was stopped, or, with `until`, extends it; returns its result."""
     path = os.fspath(path)
-    words = ["resume", path] + (["--until", str(until)] if until is not None else [])
-    return called(words, path, threads, progress)
+    return called(["resume", path, *option("--until", until)], path, threads, progress)
 
 
-def compute(command, scene, set, options, output, ending, seed, threads, progress) -> Result:
+def option(name: str, value: Any) -> list[str]:
+    return [] if value is None else [name, str(value)]
+
+
+def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, seed: int | None = None,
+            threads: int | None = None, progress: bool | Show | None = None) -> Result:
     with scene_file(scene) as (path, name):
         output = os.fspath(output) if output is not None else name + ending
-        words = [command, path, *map(str, options), "-o", output]
+        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed)]
         for key, value in (set or {}).items():
-            words += ["--set", f"{key}={value_text(value) if not isinstance(value, str) else value}"]
-        words += ["--seed", str(seed)] if seed is not None else []
+            words += ["--set", f"{key}={bare(value)}"]
         return called(words, output, threads, progress)
 
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:
-    words = words + (["--threads", str(threads)] if threads is not None else [])
     with shown(progress) as show:
-        call = program.call(words, (DONE, COLLAPSE, LOST), show)
-    said = call.messages.strip().removeprefix("cradle: ")
+        call = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show)
+    said = call.messages.strip().removeprefix("cradle: ") or call.out.strip()
     try:
         result = open(output)
     except Error:
         if call.status == LOST:  # and nothing was written
-            raise Error(said or call.out.strip(), LOST) from None
+            raise Error(said, LOST) from None
         raise
     result.text, result.status = call.out + call.messages, call.status
     if call.status == LOST and words[0] != "certify":
-        raise Error(said or call.out.strip().splitlines()[0], LOST, result)
+        raise Error(said, LOST, result)
     return result
 
 
@@ -144,11 +138,8 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
         yield path, name
 
 
-def bare(value: Any) -> str:
-    """As in --set: texts without quotes."""
-    return value if isinstance(value, str) else value_text(value)
-
-
-def listed(values: Any) -> str:
-    """Of --vary: "0.5:2:4:log" as it stands, a list with commas."""
-    return values if isinstance(values, str) else ",".join(bare(value) for value in values)
+def bare(value: Any, between: str = "") -> str:
+    """As in --set, texts without quotes; of a list for --vary its values with commas `between` them."""
+    if isinstance(value, str):
+        return value
+    return between.join(map(bare, value)) if between else value_text(value)

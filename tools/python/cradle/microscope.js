@@ -15,8 +15,8 @@ function cradleMicroscope(element, data) {
   element.replaceChildren();
   const bar = make("div", "microscope-bar", element), stage = make("div", "microscope-stage", element);
   const canvas = make("canvas", "microscope-canvas", stage), readout = make("div", "microscope-readout", element);
-  make("div", "microscope-help", element, "drag: move · click, then wheel, or + −: zoom (shift: time only, alt: space " +
-       "only; over an axis: that one) · n, p: next, previous collision · d: deepest · 0: all · c: colours · " +
+  make("div", "microscope-help", element, "drag: move · click, then wheel, or + −: zoom (shift: time only, alt: " +
+       "space only; over an axis: that one) · n, p: next, previous collision · d: deepest · 0: all · c: colours · " +
        "space: play");
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
@@ -77,7 +77,7 @@ function cradleMicroscope(element, data) {
         sample.push(value[chart.collisions[i]]);
       }
     } else {
-      const t = (view.anchor.e < 0 ? world.start : world.time[view.anchor.e]) + view.tau;
+      const t = microscopeOrigin(world, view.anchor).t + view.tau;
       const [first, last] = [-0.5, 0.5].map(part => microscopeFirstAfter(world.time, t + part * view.T));
       for (let e = first, skip = Math.ceil((last - first) / 2000); e < last; e += skip) sample.push(value[e]);
     }
@@ -99,10 +99,9 @@ function cradleMicroscope(element, data) {
     pen.font = "12px system-ui, sans-serif";
     pen.fillStyle = colours.paper;
     pen.fillRect(0, 0, canvas.width, canvas.height);
-    const t0 = e < 0 ? world.start : world.time[e], x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e];
     const tilt = Math.abs(view.V + view.lab) * view.T / view.X;  // of the frame against the lab
     const name = e < 0 ? `particle ${number(view.anchor.a)}` : `collision ${e + 1}`;
-    const origin = { t: t0, x: x0, moving: tilt > 0.02 };
+    const origin = { ...microscopeOrigin(world, view.anchor), moving: tilt > 0.02 };
     const labels = microscopeAxes(pen, view, box, colours, origin, name);
     pen.save();
     pen.beginPath();
@@ -166,7 +165,10 @@ function cradleMicroscope(element, data) {
 
   // Where a pointer is: [tau, xi] in the view's frame.
   function placeOf(x, y) {
-    if (x < box.left || x > box.left + box.width || y < box.top || y > box.top + box.height) return null;
+    const inside = x >= box.left && x <= box.left + box.width && y >= box.top && y <= box.top + box.height;
+    return inside ? unbounded(x, y) : null;
+  }
+  function unbounded(x, y) {
     const { view } = camera;
     return [view.tau + view.T * ((x - box.left) / box.width - 0.5),
             view.xi - view.X * ((y - box.top) / box.height - 0.5)];
@@ -252,7 +254,7 @@ function cradleMicroscope(element, data) {
     // Where a particle's world line is drawn at a pixel column.
     height: (particle, x) => {
       const line = camera.chart.byParticle.get(particle - world.first), { view } = camera;
-      const tau = view.tau + view.T * ((x - box.left) / box.width - 0.5);
+      const [tau] = unbounded(x, 0);
       return microscopeScales(view, box).y(microscopeAlong(camera.chart, line, tau), tau);
     },
     gap: (a, b, event) => microscopeRelative(world, a - world.first, b - world.first, event),
@@ -276,7 +278,7 @@ function cradleMicroscope(element, data) {
       choice.addEventListener("change", show);
       await show();
     }
-    microscopeHands(canvas, { zoom, pan, visit, actions, collisionAt, camera: () => camera, state, request,
+    microscopeHands(canvas, { zoom, pan, visit, actions, collisionAt, unbounded, camera: () => camera, state, request,
                               box: () => box, strip: () => strip, deepest: () => stores.strip.deepest });
     new ResizeObserver(layout).observe(stage);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", layout);

@@ -17,11 +17,11 @@ function microscopeCamera(world) {
     low = Math.min(low, world.x0[0]);
     high = Math.max(high, world.x0[world.particles - 1]);
     const anchor = world.n ? { e: 0, a: world.left[0] } : { e: -1, a: Math.floor((world.particles - 1) / 2) };
-    const x = anchor.e < 0 ? world.x0[anchor.a] : world.x[0], lab = microscopeAnchor(world, anchor).lab;
+    const { t, x } = microscopeOrigin(world, anchor), lab = microscopeAnchor(world, anchor).lab;
     limits.T = 1.06 * span;
     limits.X = 1.08 * (high - low) || 1;
-    const tau = (world.start + world.end) / 2 - (anchor.e < 0 ? world.start : world.time[0]);
-    camera.view = { anchor, lab, tau, xi: (low + high) / 2 - x, T: limits.T, X: limits.X, V: -lab };
+    camera.view = { anchor, lab, tau: (world.start + world.end) / 2 - t, xi: (low + high) / 2 - x, T: limits.T,
+                    X: limits.X, V: -lab };
     camera.settle();
   };
 
@@ -160,8 +160,8 @@ function microscopeCamera(world) {
     return best < 0 ? null : { e: chart.collisions[best], tau: chart.tau[best], xi: chart.xi[best] };
   };
   camera.nearestInPositions = () => {
-    const { view } = camera, { e } = view.anchor, t0 = e < 0 ? world.start : world.time[e];
-    const x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e], middle = microscopeFirstAfter(world.time, t0 + view.tau);
+    const { view } = camera, { e } = view.anchor, { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
+    const middle = microscopeFirstAfter(world.time, t0 + view.tau);
     let best = null;
     for (let k = Math.max(0, middle - 3000); k < Math.min(world.n, middle + 3000); ++k) {
       const tau = e < 0 ? world.time[k] - t0 : microscopeBetween(world, e, k), xi = world.x[k] - x0 - view.lab * tau;
@@ -185,19 +185,12 @@ function microscopeCamera(world) {
   // Whether there are far too many collisions for a chart, estimated quickly from positions; false where these do not
   // show it.
   camera.crowded = () => {
-    const { view } = camera, { e } = view.anchor;
-    const t0 = e < 0 ? world.start : world.time[e], x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e];
+    const { view } = camera, { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
     if (!world.n || !world.keepsOrder || world.ring || view.X < 1e-6 * limits.X) return false;
     const row = (place, t) => 0.5 - (place - x0 - (view.lab + view.V) * (t - t0) - view.xi) / view.X;
     const [lowest, highest] = microscopeVisible(world, view, row, 1), { slotTime, begin } = world;
-    const before = (particle, t) => {  // slots of the particle before t
-      let low = begin[particle], high = begin[particle + 1];
-      while (low < high) {
-        const middle = (low + high) >> 1;
-        if (slotTime[middle] < t) low = middle + 1; else high = middle;
-      }
-      return low;
-    };
+    const before = (particle, t) =>  // slots of the particle before t
+      microscopeFirst(begin[particle], begin[particle + 1], slot => slotTime[slot] < t);
     let count = 0;
     for (let particle = lowest; particle <= highest && count < 2 * MICROSCOPE_CHART.collisions; ++particle)
       count += before(particle, t0 + view.tau + view.T / 2) - before(particle, t0 + view.tau - view.T / 2);
@@ -233,15 +226,9 @@ function microscopeBetween(world, i, j) {
 
 // Place of a line at tau.
 function microscopeAlong(chart, line, tau) {
-  let before = line.from, behind = line.to;
-  let low = 0, high = line.points.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (chart.tau[line.points[middle]] <= tau) low = middle + 1; else high = middle;
-  }
-  const point = i => [chart.tau[line.points[i]], chart.xi[line.points[i]]];
-  if (low > 0) before = point(low - 1);
-  if (low < line.points.length) behind = point(low);
+  const { points, from, to } = line, next = microscopeFirst(0, points.length, i => chart.tau[points[i]] <= tau);
+  const point = i => [chart.tau[points[i]], chart.xi[points[i]]];
+  const before = next > 0 ? point(next - 1) : from, behind = next < points.length ? point(next) : to;
   const span = behind[0] - before[0];
   return span > 0 ? before[1] + (behind[1] - before[1]) * ((tau - before[0]) / span) : before[1];
 }

@@ -56,13 +56,8 @@ function microscopeCollisionAt(world, e, tau) {
   const { n, time, interval, start } = world, t = e < 0 ? start : time[e];
   let k = e, at = 0;
   if (Math.abs(tau) > 1e-6 * Math.max(Math.abs(t), Number.MIN_VALUE) || e < 0) {
-    let low = 0, high = n;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if ((time[middle] - t) + (world.low[middle] - (e < 0 ? 0 : world.low[e])) <= tau) low = middle + 1;
-      else high = middle;
-    }
-    return low - 1;
+    const rest = e < 0 ? 0 : world.low[e];
+    return microscopeFirst(0, n, k => (time[k] - t) + (world.low[k] - rest) <= tau) - 1;
   }
   if (tau >= 0) while (k + 1 < n && at + interval[k + 1] <= tau) at += interval[++k];
   else while (k >= 0 && at > tau) at -= interval[k--];

@@ -43,19 +43,19 @@ function microscopeFromPast(world, a, b, e) {
     gap = microscopeAhead(world, world.x0[b] - world.x0[a]);
     w = world.v0[a] - world.v0[b];
   }
-  let path = gap, at = from;
-  const fly = until => {
-    const change = w * microscopeFlight(world, at, until);
-    gap -= change;
+  return microscopeFlown(world, { gap, w, path: from < 0 && !kicks.length && e < 0 ? 0 : gap }, from, kicks, e, 1);
+}
+
+// Gap, closing speed and path at collision e from those at collision `at`, over the kicks between, the last one first;
+// sign: 1 forwards, -1 backwards.
+function microscopeFlown(world, { gap, w, path }, at, kicks, e, sign) {
+  for (const [until, kick] of [...kicks.reverse(), [e, 0]]) {
+    const change = w * (sign > 0 ? microscopeFlight(world, at, until) : microscopeFlight(world, until, at));
+    gap -= sign * change;
     path += Math.abs(change);
+    w += sign * kick;
     at = until;
-  };
-  for (let k = kicks.length - 1; k >= 0; --k) {
-    fly(kicks[k][0]);
-    w += kicks[k][1];
   }
-  if (from < 0 && !kicks.length && e < 0) path = 0;
-  fly(e);
   return { gap, w, path };
 }
 
@@ -80,19 +80,7 @@ function microscopeFromFuture(world, a, b, e) {
       if (isA) { a = heir; i = slot; } else { b = heir; j = slot; }
     }
   }
-  let gap = 0, path = 0;
-  const fly = from => {
-    const change = w * microscopeFlight(world, from, at);
-    gap += change;
-    path += Math.abs(change);
-    at = from;
-  };
-  for (let k = kicks.length - 1; k >= 0; --k) {
-    fly(kicks[k][0]);
-    w -= kicks[k][1];
-  }
-  fly(e);
-  return { gap, w, path };
+  return microscopeFlown(world, { gap: 0, w, path: 0 }, at, kicks, e, -1);
 }
 
 // Place and velocity of a particle right after collision e, in the lab: as good as positions are.

@@ -4,6 +4,7 @@ const MICROSCOPE_KEYS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1
 
 function microscopeHands(canvas, scope) {
   const { zoom, pan, visit, actions, state } = scope, fingers = new Map();
+  const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
   const at = event => {
     const corner = canvas.getBoundingClientRect();
     return { x: event.clientX - corner.left, y: event.clientY - corner.top };
@@ -16,8 +17,7 @@ function microscopeHands(canvas, scope) {
   };
   const inside = ({ x, y }) => {
     const box = scope.box();
-    return { x: Math.min(box.left + box.width, Math.max(box.left, x)),
-             y: Math.min(box.top + box.height, Math.max(box.top, y)) };
+    return { x: clamp(x, box.left, box.left + box.width), y: clamp(y, box.top, box.top + box.height) };
   };
 
   canvas.addEventListener("wheel", event => {
@@ -25,18 +25,17 @@ function microscopeHands(canvas, scope) {
     if (document.activeElement !== canvas && !event.ctrlKey) return;
     event.preventDefault();
     const turned = (event.deltaY || event.deltaX) * (event.deltaMode === 1 ? 30 : event.deltaMode === 2 ? 300 : 1);
-    zoom(Math.exp(-Math.max(-300, Math.min(300, turned)) / 350), inside(at(event)), only(event, at(event)));
+    zoom(Math.exp(-clamp(turned, -300, 300) / 350), inside(at(event)), only(event, at(event)));
   }, { passive: false });
 
   canvas.addEventListener("pointerdown", event => {
     canvas.focus({ preventScroll: true });
     const place = at(event), strip = scope.strip();
     if (strip && place.y > strip.top - 4 && place.x >= strip.left && place.x <= strip.left + strip.width) {
-      const deepest = scope.deepest(), column = Math.min(deepest.length - 1, Math.floor(place.x - strip.left));
-      let k = column;
+      const deepest = scope.deepest();
+      let k = Math.min(deepest.length - 1, Math.floor(place.x - strip.left));
       while (k > 0 && deepest[k] < 0) --k;
-      visit(deepest[k]);
-      return;
+      return visit(deepest[k]);
     }
     try { canvas.setPointerCapture(event.pointerId); } catch { /* a pointer that scripts made */ }
     fingers.set(event.pointerId, place);
@@ -49,18 +48,15 @@ function microscopeHands(canvas, scope) {
     if (fingers.size === 1) return pan(place.x - before.x, place.y - before.y);
     if (fingers.size > 2) return;
     // Two fingers: what is under their middle goes with it, and each axis is zoomed as they part along it.
-    const other = [...fingers].find(([id]) => id !== event.pointerId)[1], camera = scope.camera(), box = scope.box();
+    const other = [...fingers].find(([id]) => id !== event.pointerId)[1];
     pan((place.x - before.x) / 2, (place.y - before.y) / 2);
-    const middle = { x: (place.x + other.x) / 2, y: (place.y + other.y) / 2 };
-    const part = (a, b, c) => Math.abs(b - c) < 40 ? 1 : Math.min(4, Math.max(0.25, Math.abs(a - c) / Math.abs(b - c)));
-    const { view } = camera, tau = view.tau + view.T * ((middle.x - box.left) / box.width - 0.5);
-    const xi = view.xi - view.X * ((middle.y - box.top) / box.height - 0.5);
-    camera.zoom(part(place.x, before.x, other.x) || 1, part(place.y, before.y, other.y) || 1, [tau, xi]);
-    scope.pan(0, 0);
+    const part = (a, b, c) => Math.abs(b - c) < 40 ? 1 : clamp(Math.abs(a - c) / Math.abs(b - c), 0.25, 4);
+    scope.camera().zoom(part(place.x, before.x, other.x) || 1, part(place.y, before.y, other.y) || 1,
+                        scope.unbounded((place.x + other.x) / 2, (place.y + other.y) / 2));
+    pan(0, 0);
   });
-  const up = event => fingers.delete(event.pointerId);
-  canvas.addEventListener("pointerup", up);
-  canvas.addEventListener("pointercancel", up);
+  for (const end of ["pointerup", "pointercancel"])
+    canvas.addEventListener(end, event => fingers.delete(event.pointerId));
   canvas.addEventListener("pointerleave", () => { state.pointer = null; scope.request(); });
   canvas.addEventListener("dblclick", event => {
     const collision = scope.collisionAt(at(event), 20);

@@ -13,7 +13,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   lines.fill(0);
   tint.fill(0);
   count.fill(0);
-  const { e } = view.anchor, t0 = e < 0 ? world.start : time[e], x0 = e < 0 ? world.x0[view.anchor.a] : x[e];
+  const { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
   const begins = t0 + view.tau - view.T / 2, speed = view.lab + view.V, perX = height / view.X;
   // Row of a place at a time: x in the view's frame.
   const row = (place, t) => height / 2 - (place - x0 - speed * (t - t0) - view.xi) * perX;
@@ -23,12 +23,8 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   const firstColumn = Math.max(0, Math.ceil((world.start - begins) / perColumn));
   const lastColumn = Math.min(width - 1, Math.floor((world.end - begins) / perColumn));
   for (let particle = lowest; particle <= highest; particle += step) {
-    let slot = begin[particle], next = begin[particle + 1], before = NaN;
     const t1 = begins + firstColumn * perColumn, none = begin[particle], end = begin[particle + 1];
-    while (slot < next) {
-      const middle = (slot + next) >> 1;
-      if (slotTime[middle] <= t1) slot = middle + 1; else next = middle;
-    }
+    let slot = microscopeFirst(none, end, k => slotTime[k] <= t1), before = NaN;
     const gone = world.keepsOrder || end === none ? Infinity : microscopeGoneAt(world, particle);
     for (let column = firstColumn; column <= lastColumn; ++column) {
       const t = begins + column * perColumn;
@@ -111,12 +107,7 @@ function microscopeShown({ count, tint }) {
 
 // First collision after a time.
 function microscopeFirstAfter(time, t) {
-  let low = 0, high = time.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (time[middle] <= t) low = middle + 1; else high = middle;
-  }
-  return low;
+  return microscopeFirst(0, time.length, k => time[k] <= t);
 }
 
 // When a particle merges into another one; infinite where it does not.
@@ -130,20 +121,14 @@ function microscopeGoneAt(world, particle) {
 function microscopeVisible(world, view, row, height) {
   if (!world.keepsOrder || world.ring) return [0, world.particles - 1];
   let lowest = world.particles - 1, highest = 0;
-  const t0 = view.anchor.e < 0 ? world.start : world.time[view.anchor.e];
+  const t0 = microscopeOrigin(world, view.anchor).t;
   for (let k = 0; k <= 24; ++k) {
     const t = Math.min(world.end, Math.max(world.start, t0 + view.tau + view.T * (k / 24 - 0.5)));
     const collision = microscopeFirstAfter(world.time, t) - 1;
     const since = t - (collision < 0 ? world.start : world.time[collision]);
-    const above = edge => {  // how many particles are left of what is shown at this row
-      let low = 0, high = world.particles;
-      while (low < high) {
-        const middle = (low + high) >> 1;
-        const place = microscopePlace(world, middle, collision) + microscopeVelocity(world, middle, collision) * since;
-        if (row(place, t) > edge) low = middle + 1; else high = middle;
-      }
-      return low;
-    };
+    // How many particles are left of what is shown at this row.
+    const above = edge => microscopeFirst(0, world.particles, k => row(
+      microscopePlace(world, k, collision) + microscopeVelocity(world, k, collision) * since, t) > edge);
     lowest = Math.min(lowest, above(1.2 * height));
     highest = Math.max(highest, above(-0.2 * height));
   }
@@ -171,18 +156,11 @@ function microscopeStrip(pen, world, view, box, colours, store) {
   }
   const [least, most] = store.range, y = value => box.top + box.height * (most - value) / (most - least);
   const step = microscopeStep(most - least, 3);
-  pen.strokeStyle = colours.grid;
   pen.fillStyle = colours.text;
-  pen.lineWidth = 1;
-  pen.textAlign = "right";
-  pen.textBaseline = "middle";
   for (let value = Math.ceil(least / step) * step; value <= most; value += step) {
-    const at = Math.round(y(value)) + 0.5;
-    pen.beginPath();
-    pen.moveTo(box.left, at);
-    pen.lineTo(box.left + box.width, at);
-    pen.stroke();
-    pen.fillText(value === 0 ? "1" : microscopePower(Math.round(value)), box.left - 6, at);
+    const at = Math.round(y(value)) + 0.5, label = value === 0 ? "1" : microscopePower(Math.round(value));
+    microscopeStroke(pen, colours.grid, 1, [[[box.left, at], [box.left + box.width, at]]]);
+    microscopeText(pen, "right", "middle", label, box.left - 6, at);
   }
   pen.fillStyle = colours.line;
   for (let column = 0; column < columns; ++column)
@@ -192,13 +170,8 @@ function microscopeStrip(pen, world, view, box, colours, store) {
   // Where the view is: its collision and its span of space.
   const at = box.left + box.width * Math.max(0, view.anchor.e + 0.5) / n;
   const level = Math.min(box.top + box.height, Math.max(box.top, y(Math.log10(view.X))));
-  pen.strokeStyle = colours.accent;
-  pen.beginPath();
-  pen.moveTo(box.left, level);
-  pen.lineTo(box.left + box.width, level);
-  pen.moveTo(at, box.top);
-  pen.lineTo(at, box.top + box.height);
-  pen.stroke();
+  microscopeStroke(pen, colours.accent, 1, [[[box.left, level], [box.left + box.width, level]],
+                                            [[at, box.top], [at, box.top + box.height]]]);
   pen.fillStyle = colours.accent;
   pen.beginPath();
   pen.arc(at, level, 3.5, 0, 7);
@@ -206,8 +179,6 @@ function microscopeStrip(pen, world, view, box, colours, store) {
   pen.strokeStyle = colours.frame;
   pen.strokeRect(box.left + 0.5, box.top + 0.5, box.width - 1, box.height - 1);
   pen.fillStyle = colours.text;
-  pen.textAlign = "center";
-  pen.textBaseline = "top";
-  pen.fillText(`gap that closes in a collision, in l, against the number of the collision, 1 to ${n}`,
-               box.left + box.width / 2, box.top + box.height + 5);
+  microscopeText(pen, "center", "top", `gap that closes in a collision, in l, against its number, 1 to ${n}`,
+                 box.left + box.width / 2, box.top + box.height + 5);
 }

@@ -49,6 +49,25 @@ function microscopeTicks(centre, span, count, origin) {
   return { ticks, power: plain ? 0 : power, absolute };
 }
 
+// Text, aligned: where x is (left, center, right) and y (top, middle).
+function microscopeText(pen, align, baseline, text, x, y) {
+  pen.textAlign = align;
+  pen.textBaseline = baseline;
+  pen.fillText(text, x, y);
+}
+
+// Lines through points, [[x, y], ...] each, in a colour.
+function microscopeStroke(pen, colour, width, lines) {
+  pen.strokeStyle = colour;
+  pen.lineWidth = width;
+  pen.beginPath();
+  for (const [first, ...others] of lines) {
+    pen.moveTo(...first);
+    for (const point of others) pen.lineTo(...point);
+  }
+  pen.stroke();
+}
+
 // Segments of the polyline through points, cut at the box [0, width] x [0, height] with some margin, into the path.
 function microscopeSegment(path, x0, y0, x1, y1, box) {
   let from = 0, to = 1;
@@ -142,14 +161,12 @@ function microscopeNames(pen, chart, view, box, colours, number) {
     }
   }
   if (places.length > 14) return;
-  pen.textAlign = "left";
-  pen.textBaseline = "middle";
   for (const [k, [px, py, name]] of places.entries()) {
     if (places.some(([qx, qy], j) => j < k && Math.abs(qx - px) < 30 && Math.abs(qy - py) < 13)) continue;
     pen.fillStyle = colours.plate;
     pen.fillRect(px - 2, py - 7, pen.measureText(name).width + 4, 14);
     pen.fillStyle = colours.text;
-    pen.fillText(name, px, py);
+    microscopeText(pen, "left", "middle", name, px, py);
   }
 }
 
@@ -157,44 +174,26 @@ function microscopeNames(pen, chart, view, box, colours, number) {
 function microscopeAxes(pen, view, box, colours, origin, anchorName) {
   const time = microscopeTicks(view.tau, view.T, Math.max(3, box.width / 110), origin.t);
   const space = microscopeTicks(view.xi, view.X, Math.max(3, box.height / 70), origin.moving ? Infinity : origin.x);
-  const bottom = box.top + box.height;
-  pen.lineWidth = 1;
-  pen.strokeStyle = colours.grid;
-  pen.beginPath();
-  for (const [offset] of time.ticks) {
-    const px = Math.round(box.left + box.width * (offset / view.T + 0.5)) + 0.5;
-    pen.moveTo(px, box.top);
-    pen.lineTo(px, bottom);
-  }
-  for (const [offset] of space.ticks) {
-    const py = Math.round(box.top + box.height * (0.5 - offset / view.X)) + 0.5;
-    pen.moveTo(box.left, py);
-    pen.lineTo(box.left + box.width, py);
-  }
-  pen.stroke();
+  const bottom = box.top + box.height, right = box.left + box.width;
+  const across = offset => box.left + box.width * (offset / view.T + 0.5);
+  const up = offset => box.top + box.height * (0.5 - offset / view.X), between = at => Math.round(at) + 0.5;
+  microscopeStroke(pen, colours.grid, 1, [
+    ...time.ticks.map(([offset]) => between(across(offset))).map(px => [[px, box.top], [px, bottom]]),
+    ...space.ticks.map(([offset]) => between(up(offset))).map(py => [[box.left, py], [right, py]])]);
   return () => {  // the labels, after what is drawn
     pen.strokeStyle = colours.frame;
     pen.strokeRect(box.left + 0.5, box.top + 0.5, box.width - 1, box.height - 1);
     pen.fillStyle = colours.text;
-    pen.textAlign = "center";
-    pen.textBaseline = "top";
-    for (const [offset, label] of time.ticks)
-      pen.fillText(label, box.left + box.width * (offset / view.T + 0.5), bottom + 5);
-    pen.textAlign = "right";
-    pen.textBaseline = "middle";
-    for (const [offset, label] of space.ticks)
-      pen.fillText(label, box.left - 6, box.top + box.height * (0.5 - offset / view.X));
+    for (const [offset, label] of time.ticks) microscopeText(pen, "center", "top", label, across(offset), bottom + 5);
+    for (const [offset, label] of space.ticks) microscopeText(pen, "right", "middle", label, box.left - 6, up(offset));
     const unit = (axis, letter) => axis.power ? `, in ${microscopePower(axis.power)} ${letter}` : `, in ${letter}`;
-    pen.textAlign = "center";
-    pen.textBaseline = "top";
-    pen.fillText((time.absolute ? "time" : `t − t(${anchorName})`) + unit(time, "t"), box.left + box.width / 2,
-                 bottom + 21);
+    microscopeText(pen, "center", "top", (time.absolute ? "time" : `t − t(${anchorName})`) + unit(time, "t"),
+                   box.left + box.width / 2, bottom + 21);
     pen.save();
     pen.translate(10, box.top + box.height / 2);
     pen.rotate(-Math.PI / 2);
-    pen.textBaseline = "middle";
-    pen.fillText((space.absolute ? "position" : `x − x(${anchorName})`) + unit(space, "l") +
-                 (origin.moving ? ", moving with the particles" : ""), 0, 0);
+    microscopeText(pen, "center", "middle", (space.absolute ? "position" : `x − x(${anchorName})`) + unit(space, "l") +
+                   (origin.moving ? ", moving with the particles" : ""), 0, 0);
     pen.restore();
   };
 }
@@ -212,17 +211,10 @@ function microscopeLegend(pen, view, box, colours, range, quantity) {
   };
   plate(right - across - widths[0] - 12, bottom - 9, across + widths[0] + 18, 18);
   plate(right - widths[1] - 12, bottom - up - 9, widths[1] + 18, 18);
-  pen.strokeStyle = pen.fillStyle = colours.text;
-  pen.lineWidth = 1.5;
-  pen.beginPath();
-  pen.moveTo(right, bottom - up);
-  pen.lineTo(right, bottom);
-  pen.lineTo(right - across, bottom);
-  pen.stroke();
-  pen.textAlign = "right";
-  pen.textBaseline = "middle";
-  pen.fillText(labels[0], right - across - 6, bottom);
-  pen.fillText(labels[1], right - 6, bottom - up + 2);
+  pen.fillStyle = colours.text;
+  microscopeStroke(pen, colours.text, 1.5, [[[right, bottom - up], [right, bottom], [right - across, bottom]]]);
+  microscopeText(pen, "right", "middle", labels[0], right - across - 6, bottom);
+  microscopeText(pen, "right", "middle", labels[1], right - 6, bottom - up + 2);
   if (!range) return;
   const width = 120, top = box.top + 12, left = box.left + box.width - width - 14;
   plate(left - 8, top - 6, width + 16, 46);
@@ -231,12 +223,8 @@ function microscopeLegend(pen, view, box, colours, range, quantity) {
     pen.fillRect(left + k, top + 16, 1.5, 7);
   }
   pen.fillStyle = colours.text;
-  pen.textBaseline = "top";
-  pen.textAlign = "center";
-  pen.fillText(quantity, left + width / 2, top - 1);
-  const low = microscopeNumber(10 ** range[0], 1), high = microscopeNumber(10 ** range[1], 1);
-  pen.textAlign = "left";
-  pen.fillText(range[0] < -307 ? microscopePower(Math.round(range[0])) : low, left, top + 26);
-  pen.textAlign = "right";
-  pen.fillText(range[1] < -307 ? microscopePower(Math.round(range[1])) : high, left + width, top + 26);
+  const end = log => log < -307 ? microscopePower(Math.round(log)) : microscopeNumber(10 ** log, 1);
+  microscopeText(pen, "center", "top", quantity, left + width / 2, top - 1);
+  microscopeText(pen, "left", "top", end(range[0]), left, top + 26);
+  microscopeText(pen, "right", "top", end(range[1]), left + width, top + 26);
 }

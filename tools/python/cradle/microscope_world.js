@@ -6,7 +6,8 @@
 // relative precision down to 1e-308.
 
 const microscopeTypes = { f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
-const MICROSCOPE = { bounce: 0, elastic: 1, merge: 2, pass: 3 };
+// What a collision is: by the law, elastic, a merge (as in the result, `kind`), or by the law through each other.
+const MICROSCOPE = { byLaw: 0, elastic: 1, merge: 2, pass: 3 };
 
 // The typed array of {type, length, deflate}: byte planes, deflated, as base64.
 async function microscopeArray(packed) {
@@ -30,11 +31,10 @@ async function microscopeCollisions(data) {
   const n = interval.length, particles = x0.length;
   const world = {
     n, particles, x0, v0, gap0, mass0: mass, left, interval, law: data.law, first: data.first, ring: data.length,
-    start: data.start, total: data.total, digits: data.digits, collapse: data.collapse, name: data.name,
+    start: data.start, total: data.total, digits: data.digits, collapse: data.collapse, speed,
     right: right || left.map(particle => particle + 1 === particles && data.length ? 0 : particle + 1),
-    speed: speed || new Float64Array(n), speedGiven: Boolean(speed), event: event || new Uint8Array(n),
+    event: event || new Uint8Array(n), index: null, valid: null,
     w0: gap0.map((_, particle) => v0[particle] - v0[particle + 1 < particles ? particle + 1 : 0]),
-    index: null, valid: null,
   };
   microscopeReplay(world);
   world.end = data.end === null || n === 0 ? world.time[n - 1] : Math.max(data.end, world.time[n - 1]);
@@ -59,7 +59,7 @@ async function microscopeSnapshot(data, snapshot) {
   const none = () => new Float64Array(0), world = {
     n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0),
     ring: 0, interval: none(), speed: none(), event: new Uint8Array(0), law: data.law,
-    first: snapshot.first, index, valid, start: snapshot.time, total: 0, digits: 9, collapse: null, name: data.name, speedGiven: true,
+    first: snapshot.first, index, valid, start: snapshot.time, total: 0, digits: 9, collapse: false,
   };
   microscopeReplay(world);
   // As far as nine in ten of the world lines are known.
@@ -97,15 +97,14 @@ function microscopeReplay(world) {
     rest -= t - sum;
     time[e] = t;
     low[e] = rest;
-    if (!world.speedGiven) speed[e] = v[a] - v[b];
     const w = speed[e], total = mass[a] + mass[b], ofRight = mass[b] / total;
     let out = 0;
-    if (law.type === "wet") {
+    if (event[e] === MICROSCOPE.elastic) out = -w;
+    else if (event[e] !== MICROSCOPE.merge && law.type !== "wet") out = -law.restitution * w;
+    else if (event[e] !== MICROSCOPE.merge) {
       const critical = Math.sqrt(2 * law.loss * total / (mass[a] * mass[b]));
-      event[e] = w > critical ? MICROSCOPE.pass : MICROSCOPE.merge;
-      if (w > critical) out = Math.sqrt((w - critical) * (w + critical));
-    } else if (event[e] !== MICROSCOPE.merge) {
-      out = event[e] === MICROSCOPE.elastic ? -w : -law.restitution * w;
+      event[e] = MICROSCOPE.pass;
+      out = Math.sqrt(Math.max(0, (w - critical) * (w + critical)));
     }
     after[e] = out;  // velocity of the particle that came from the left, minus the other's
     kickLeft[e] = (w - out) * ofRight;
@@ -155,14 +154,23 @@ function microscopeFlight(world, i, j) {
   return sum;
 }
 
-// The slot of the first collision of a particle after collision e.
-function microscopeSlotAfter(world, particle, e) {
-  let low = world.begin[particle], high = world.begin[particle + 1];
+// The first of low .. high - 1 that is not `before`, as all from there on are; high where all are.
+function microscopeFirst(low, high, before) {
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (world.list[middle] <= e) low = middle + 1; else high = middle;
+    if (before(middle)) low = middle + 1; else high = middle;
   }
   return low;
+}
+
+// The slot of the first collision of a particle after collision e.
+function microscopeSlotAfter({ begin, list }, particle, e) {
+  return microscopeFirst(begin[particle], begin[particle + 1], slot => list[slot] <= e);
+}
+
+// Time and place of an anchor in the lab.
+function microscopeOrigin(world, { e, a }) {
+  return e < 0 ? { t: world.start, x: world.x0[a] } : { t: world.time[e], x: world.x[e] };
 }
 
 // The other particle of a collision, and what a collision adds to a particle's velocity.

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator
 
 from . import program
 from .errors import BAD_FILE, BAD_INPUT, Error
@@ -54,26 +53,23 @@ PICTURES = {
 __all__ = ["names", "save", *PICTURES]
 
 
-def predictions(result: Result, theory: bool = True):
-    """The program's table for the result's scene; empty without the program, with a warning."""
-    from .commands import scene_file
-    from .drawing.reading import Theory
-    if not theory or not result.scene_text:
-        return Theory()
-    try:
-        with scene_file(result) as (path, _):
-            return Theory(text=program.call(["theory", path, "--csv"]).out)
-    except Error as error:
-        if error.status == BAD_FILE:
-            warnings.warn(f"pictures are without predictions: {error}", stacklevel=3)
-        return Theory()  # else the scene has none
-
-
 def drawings(result: Result | str | os.PathLike, theory: bool = True) -> dict:
     """Names and functions of axes=None of all pictures of a result, the main one first."""
     from .drawing.pictures import available
     opened = result if isinstance(result, Result) else open(result)
-    return available(opened, predictions(opened, theory))
+    return available(opened, predictions(opened) if theory else "")
+
+
+def predictions(result: Result) -> str:
+    """The program's table for the result's scene; empty without the program, with a warning."""
+    from .commands import scene_file
+    try:
+        with scene_file(result) as (path, _):
+            return program.call(["theory", path, "--csv"]).out
+    except Error as error:
+        if error.status == BAD_FILE:
+            warnings.warn(f"pictures are without predictions: {error}", stacklevel=3)
+        return ""  # else the scene has none
 
 
 def names(result: Result | str | os.PathLike) -> list[str]:
@@ -86,25 +82,28 @@ def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: 
 
     Returns their paths. Same result, same bytes. Raises Error.
     """
-    opened = result if isinstance(result, Result) else open(result)
-    return list(saved(opened, os.fspath(output), predictions(opened, theory)))
-
-
-def saved(result: Result, output: str, table) -> Iterator[str]:
-    base, extension = os.path.splitext(output)
+    base, extension = os.path.splitext(os.fspath(output))
     if extension.lower() not in (".png", ".pdf", ".svg"):
         raise Error(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg", BAD_INPUT)
-    from .drawing.pictures import make
-    return make(result, base, extension, table)
+    from .drawing.pictures import write_file
+    opened = result if isinstance(result, Result) else open(result)
+    paths = []
+    for name, draw in drawings(opened, theory).items():
+        paths.append(f"{base}-{name}{extension}" if paths else base + extension)
+        write_file(draw(), paths[-1])
+    if not paths:
+        raise Error(f"{opened.path} holds nothing to draw (no series, snapshots or profiles): "
+                    "give the file of a completed run", BAD_FILE)
+    return paths
 
 
 def draw(name: str, result: Result | str | os.PathLike, axes=None, theory: bool = True):
     """The picture of that name; see the module. Returns the matplotlib figure."""
-    available = drawings(result, theory)
-    if name not in available:
-        raise Error(f"no {name} picture of this result (found {', '.join(available) or 'none'}): "
+    found = drawings(result, theory)
+    if name not in found:
+        raise Error(f"no {name} picture of this result (found {', '.join(found) or 'none'}): "
                     "choose one of these, or the file of another run", BAD_INPUT)
-    return available[name](axes)
+    return found[name](axes)
 
 
 def _function(name: str, text: str):

@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import contextlib
 import os
-import selectors
 import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -50,32 +50,34 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     the program, which writes its checkpoint, and then the caller.
     """
     command = [find(), *map(str, arguments)]
-    ours, theirs = (None, None) if show is None else socket.socketpair()  # progress (tools/support/progress.hpp)
-    extra = {} if theirs is None else {"pass_fds": [theirs.fileno()],
-                                       "env": os.environ | {"CRADLE_PROGRESS_FD": str(theirs.fileno())}}
+    ours, theirs = socket.socketpair()  # for its progress (tools/support/progress.hpp)
+    extra = {"pass_fds": [theirs.fileno()], "env": os.environ | {"CRADLE_PROGRESS_FD": str(theirs.fileno())}}
     child = None
-    try:
-        # A session of its own: else a terminal's Ctrl-C would reach it twice, and the second ends it at once.
-        with interrupts_later():
-            child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                     start_new_session=True, **extra)
-        out, messages = listen(child, ours, show)
-    except BaseException as error:  # Ctrl-C, first of all
-        if child is not None:
-            child.send_signal(signal.SIGINT)
-            child.wait()
-        elif isinstance(error, OSError):
-            raise Error(f"{command[0]} cannot be run ({error.strerror}): set CRADLE_PROGRAM to a program of this "
-                        "machine", BAD_FILE) from None
-        raise
-    finally:
-        pipes = () if child is None else (child.stdout, child.stderr)
-        for source in (*pipes, ours, theirs):
-            if source is not None:
-                source.close()
-    status = child.wait()
+    with ours, theirs, tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        try:
+            # A session of its own: else a terminal's Ctrl-C would reach it twice, and the second ends it at once.
+            with interrupts_later():
+                child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
+                                         start_new_session=True, **(extra if show else {}))
+            theirs.close()
+            if show:
+                with ours.makefile(encoding="utf-8", errors="replace") as lines:
+                    for line in lines:
+                        share, text = line.rstrip("\n").split("\t", 1)
+                        show(float(share), text)
+            status = child.wait()
+        except BaseException as error:  # Ctrl-C, first of all
+            if child is not None:
+                child.send_signal(signal.SIGINT)
+                child.wait()
+            elif isinstance(error, OSError):
+                raise Error(f"{command[0]} cannot be run ({error.strerror}): set CRADLE_PROGRAM to a program of this "
+                            "machine", BAD_FILE) from None
+            raise
+        out.seek(0), err.seek(0)
+        printed, messages = (file.read().decode("utf-8", "replace") for file in (out, err))
     if status in accepted:
-        return Call(out, messages, status)
+        return Call(printed, messages, status)
     said = messages.strip().removeprefix("cradle: ")
     raise Error(said or f"{' '.join(command[:2])} ended without a message (status {status}): "
                 "run it in a terminal to see more", status if status >= 0 else 128 - status)
@@ -96,26 +98,3 @@ def interrupts_later():
         signal.signal(signal.SIGINT, before)
     if came and callable(before):
         before(*came[0])
-
-
-def listen(child: subprocess.Popen, progress: socket.socket | None, show) -> tuple[str, str]:
-    """Standard output and error until both have ended; lines of progress go to show(share, text)."""
-    texts = {child.stdout: bytearray(), child.stderr: bytearray()}
-    lines = b""
-    with selectors.DefaultSelector() as waiting:
-        for source in (*texts, *([progress] if progress is not None else [])):
-            waiting.register(source, selectors.EVENT_READ)
-        while any(source in waiting.get_map() for source in texts):
-            for key, _ in waiting.select():
-                piece = os.read(key.fd, 1 << 16)
-                if not piece:
-                    waiting.unregister(key.fileobj)
-                elif key.fileobj is not progress:
-                    texts[key.fileobj] += piece
-                else:
-                    *whole, lines = (lines + piece).split(b"\n")
-                    for line in whole:
-                        share, text = line.decode("utf-8", "replace").split("\t", 1)
-                        show(float(share), text)
-    out, err = texts.values()
-    return out.decode("utf-8", "replace"), err.decode("utf-8", "replace")

@@ -10,23 +10,16 @@ Show = Callable[[float, str], None]
 WIDTH = 30
 
 
-def in_notebook() -> bool:
-    shell = sys.modules.get("IPython")
-    shell = shell.get_ipython() if shell is not None else None
-    return type(shell).__name__ == "ZMQInteractiveShell"
-
-
 @contextlib.contextmanager
 def shown(progress: bool | Show | None) -> Iterator[Show | None]:
     """What to call with the share done and a line of text; None where nothing is to be shown.
 
     progress: a function of these two; True and False; None shows where there is a terminal or a notebook.
     """
-    if callable(progress):
-        yield progress
-    elif progress is False:
-        yield None
-    elif in_notebook():
+    shell = sys.modules.get("IPython") and sys.modules["IPython"].get_ipython()
+    if callable(progress) or progress is False:
+        yield progress or None
+    elif type(shell).__name__ == "ZMQInteractiveShell":
         yield from notebook()
     elif progress or (sys.stderr is not None and sys.stderr.isatty()):
         yield from terminal()
@@ -36,8 +29,7 @@ def shown(progress: bool | Show | None) -> Iterator[Show | None]:
 
 def terminal() -> Iterator[Show]:
     def show(share: float, text: str) -> None:
-        sys.stderr.write(f"\r\033[K[{'#' * int(share * WIDTH):<{WIDTH}}] {text}")
-        sys.stderr.flush()
+        print(f"\r\033[K[{'#' * int(share * WIDTH):<{WIDTH}}] {text}", end="", file=sys.stderr, flush=True)
         drawn.append(True)
 
     drawn: list[bool] = []
@@ -45,24 +37,18 @@ def terminal() -> Iterator[Show]:
         yield show
     finally:
         if drawn:
-            sys.stderr.write("\r\033[K")
-            sys.stderr.flush()
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
 
 
 def notebook() -> Iterator[Show]:
     from IPython.display import HTML, display
 
-    def bar(share: float, text: str):
-        return HTML(f'<progress max="1" value="{share:.3f}" style="width:20em"></progress> {html.escape(text)}')
-
-    handle = display(bar(0, ""), display_id=True)
-    last: list[str] = [""]
-
     def show(share: float, text: str) -> None:
-        last[0] = text
-        handle.update(bar(share, text))
+        last[0] = html.escape(text)
+        handle.update(HTML(f'<progress max="1" value="{share:.3f}" style="width:20em"></progress> {last[0]}'))
 
+    handle, last = display(HTML(""), display_id=True), [""]
     try:
         yield show
     finally:
-        handle.update(HTML(html.escape(last[0])))
+        handle.update(HTML(last[0]))

@@ -13,12 +13,12 @@ from . import program
 from .errors import BAD_FILE, Error
 from .scene import parse_toml
 from .seal import check_seal, damaged, hdf5_length, read_seal
-from .tables import Column, Table, Tables, reading
+from .tables import Means, Table, Tables, reading
 
 FORMAT = 2
 CHECKED = 64 << 20  # bytes of a file whose checksum is checked without a request: a tenth of a second
-JOURNALS = {b"CRADLER2": "run", b"CRADLEJ3": "replicas", b"CRADLEC2": "checkpoint"}
-EARLIER = (b"CRADLER1", b"CRADLEJ1", b"CRADLEJ2", b"CRADLEC1")  # of format 1
+STORED = {b"CRADLEJ": "journal", b"CRADLER": "journal", b"CRADLEC": "checkpoint"}
+STORED_FORMAT = 4  # the last letter of how these files begin
 
 
 def open(path: str | os.PathLike, check: bool | None = None) -> Result:
@@ -29,55 +29,34 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     Raises Error (status 4) for what is missing, empty, half-written, damaged, or no result of this program.
     """
     path = os.fspath(path)
-    kind = inspect(path)
-    if kind == "run":
-        return so_far(path)
-    if kind == "replicas":
-        raise Error(f"{path}: unfinished replicas, no statistics yet: `cradle resume {without_part(path)}` continues "
-                    f"with them, `cradle info {path}` prints how many are finished", BAD_FILE)
-    if kind == "checkpoint":
-        raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues from "
-                    "it", BAD_FILE)
-    try:
-        whole = os.path.getsize(path) <= CHECKED if check is None else check
-        sealed = bool(check_seal(path) if whole else read_seal(path))
-        if not sealed and (length := hdf5_length(path)) not in (None, os.path.getsize(path)):
-            raise damaged(path, f"{os.path.getsize(path)} bytes, HDF5 wrote {length}")
-    except OSError as error:
-        raise unreadable(path, error) from None
-    return Result(path, open_file(path), sealed)
-
-
-def inspect(path: str) -> str:
-    """What a file begins with: "run", "replicas", "checkpoint", or "result" for HDF5. Raises Error for others."""
     try:
         with builtins_open(path, "rb") as file:
             head = file.read(8)
+        stored = STORED.get(head[:7]) if head[7:].isdigit() else None
+        if stored and int(head[7:]) != STORED_FORMAT:
+            raise other_format(path, int(head[7:]), STORED_FORMAT)
+        if stored == "journal":
+            return so_far(path)
+        if stored:
+            raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues "
+                        "from it", BAD_FILE)
+        if head != b"\x89HDF\r\n\x1a\n":
+            raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
+                        "give a file written by `cradle run`", BAD_FILE)
+        size = os.path.getsize(path)
+        sealed = bool(check_seal(path) if check or check is None and size <= CHECKED else read_seal(path))
+        if not sealed and (length := hdf5_length(path)) not in (None, size):
+            raise damaged(path, f"{size} bytes, HDF5 wrote {length}")
     except OSError as error:
-        raise unreadable(path, error) from None
-    if head in JOURNALS:
-        return JOURNALS[head]
-    if head in EARLIER:
-        raise other_format(path, 1)
-    if head == b"\x89HDF\r\n\x1a\n":
-        return "result"
-    raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
-                "give a file written by `cradle run`", BAD_FILE)
+        raise Error(f"{path}: not a file that can be read ({error.strerror or error}): "
+                    "give a file written by `cradle run`", BAD_FILE) from None
+    return Result(path, open_file(path), sealed)
 
 
-def other_format(path: str, version: int) -> Error:
-    return Error(f"{path}: a file of {'an earlier' if version < FORMAT else 'a later'} version of cradle (found format "
-                 f"{version}, here {FORMAT}): read it with the version that wrote it, or remove it and run its scene "
+def other_format(path: str, found: int, here: int = FORMAT) -> Error:
+    return Error(f"{path}: a file of {'an earlier' if found < here else 'a later'} version of cradle (found format "
+                 f"{found}, here {here}): read it with the version that wrote it, or remove it and run its scene "
                  "again", BAD_FILE)
-
-
-def unreadable(path: str, error: OSError) -> Error:
-    return Error(f"{path}: not a file that can be read ({error.strerror or error}): "
-                 "give a file written by `cradle run`", BAD_FILE)
-
-
-def without_part(path: str) -> str:
-    return path[:-5] if path.endswith(".part") else path
 
 
 def open_file(path: str) -> h5py.File:
@@ -99,8 +78,6 @@ def open_file(path: str) -> h5py.File:
 
 def opened(path: str) -> h5py.File:
     """Without locks, which some cluster file systems do not have; but as the caller has it open already, if so."""
-    if h5py.version.version_tuple < (3, 5):
-        return h5py.File(path, "r")
     try:
         return h5py.File(path, "r", locking=False)
     except OSError as error:
@@ -118,6 +95,14 @@ def so_far(path: str) -> Result:
     return result
 
 
+def part(kind, text: str, *names: str) -> cached_property:
+    """A property of a result: the first of these groups that is there, as a table of this kind."""
+    def read(result: Result):
+        return kind(result._group(*names), f"{result.path}: {names[0]}")
+    read.__doc__ = text
+    return cached_property(read)
+
+
 class Result:
     """A run, an ensemble, a sweep, or one point of a sweep. Use it in `with`, or close() it.
 
@@ -132,15 +117,14 @@ class Result:
         self.path, self.file, self.sealed, self.in_progress, self.label = path, root, sealed, in_progress, label
         self.text, self.status = "", 0
 
+    def close(self, *_) -> None:
+        if isinstance(self.file, h5py.File):
+            self.file.close()
+
     def __enter__(self) -> Result:
         return self
 
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def close(self) -> None:
-        if isinstance(self.file, h5py.File):
-            self.file.close()
+    __exit__ = close
 
     def _group(self, *names: str) -> h5py.Group | None:
         """The first that is there."""
@@ -149,9 +133,6 @@ class Result:
             if isinstance(found, h5py.Group):
                 return found
         return None
-
-    def _table(self, *names: str) -> Table:
-        return Table(self._group(*names), f"{self.path}: {names[0]}")
 
     # ---- what was run
 
@@ -178,52 +159,53 @@ class Result:
         """The same as nested dicts, `result.scene["law"]["restitution"]`; numbers as floats."""
         return reading(self.path, lambda: parse_toml(self.scene_text))
 
+    def word(self, table: str, key: str) -> str:
+        """A value of the scene, "" where it has none."""
+        return str(self.scene.get(table, {}).get(key, ""))
+
+    def setting(self, table: str, key: str, default: float | None = None) -> Any:
+        """A number of the scene (numbers may be quoted; keys may be dotted), or the default."""
+        value = self.scene.get(table, {})
+        for part in key.split("."):
+            value = value.get(part) if isinstance(value, dict) else None
+        try:
+            return float(default if value is None else value)
+        except (TypeError, ValueError):
+            return default
+
+    @property
+    def law(self) -> str:
+        return self.word("law", "type")
+
     @property
     def outcome(self) -> str:
         return "in progress" if self.in_progress else str(self.attributes.get("outcome", ""))
 
     # ---- what came out
 
-    @cached_property
-    def series(self) -> Table:
-        """Columns of shape (samples,): `time`, `energy`, `collisions`, `front_right`, ...; `heaviest` is a table
-        inside.
-
-        In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`, `.min`, `.max`.
-        """
-        return self._table("series", "ensemble/series")
-
-    @cached_property
-    def snapshots(self) -> Tables:
-        """Particles at times: `x`, `v`, `m`, `index` of shape (particles,), `gap`, `closing_speed` of shape (particles
-        - 1,)."""
-        return Tables(self._group("snapshots"), f"{self.path}: snapshots")
-
-    @cached_property
-    def profiles(self) -> Tables:
-        """Averages over bins at times: `x`, `velocity`, `density`, ... of shape (bins,); of an ensemble tables."""
-        return Tables(self._group("profiles", "ensemble/profiles"), f"{self.path}: profiles")
-
-    @cached_property
-    def masses(self) -> Tables:
-        """Distributions of cluster masses at times."""
-        return Tables(self._group("masses"), f"{self.path}: masses")
-
-    @cached_property
-    def events(self) -> Table:
-        """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`), `interval`,
-        `closing_speed`."""
-        return self._table("events")
-
-    @cached_property
-    def replicas(self) -> Table:
-        """One row per replica: `index`, `outcome`, `collisions`, `merges`, `energy`, ..."""
-        return self._table("replicas")
-
-    @cached_property
-    def sweep(self) -> Table:
-        """One row per point: the keys that vary, then every number with `_error` and `_replicas`."""
-        return self._table("sweep")
+    series: Table = part(Table, """Columns of shape (samples,): `time`, `energy`, `collisions`, `front_right`, ...;
+        `heaviest` is a table inside. In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`,
+        `.min`, `.max`.""", "series", "ensemble/series")
+    means: Table = part(Means, "The same; of an ensemble the means, as a run has them.", "series", "ensemble/series")
+    snapshots: Tables = part(Tables, """Particles at times: `x`, `v`, `m`, `index` of shape (particles,), `gap`,
+        `closing_speed` of shape (particles - 1,).""", "snapshots")
+    profiles: Tables = part(Tables, """Averages over bins at times: `x`, `velocity`, `density`, ... of shape (bins,); of
+        an ensemble tables.""", "profiles", "ensemble/profiles")
+    mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "The same; of an ensemble the means.",
+                                 "profiles", "ensemble/profiles")
+    masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
+    events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
+        `interval`, `closing_speed`, `kind`.""", "events")
+    replicas: Table = part(Table, "One row per replica: `index`, `outcome`, `collisions`, `energy`, ...", "replicas")
+    sweep: Table = part(Table, """One row per point: the keys that vary, then every number with `_error` and
+        `_replicas`.""", "sweep")
+    trust: Tables = part(Tables, """One table per precision of a comparison: attributes `precision`,
+        `collisions_right_until`, ...""", "trust")
+    certificate: Table = part(Table, """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`,
+        `gap`, `widest`, ...""", "certificate")
+    exact: Table = part(Table, """Decimal texts: all digits of a run in a type wider than double,
+        `result.exact.series.energy.mpmath()`, and what a proof knows, `result.exact.series.energy_low.fractions()`.""",
+                        "exact")
 
     @cached_property
     def points(self) -> list[Result]:
@@ -236,29 +218,13 @@ class Result:
                        str(labels.get(f"label_{name}", name))) for name in sorted(groups)]
 
     @cached_property
-    def trust(self) -> Tables:
-        """One table per precision of a comparison: attributes `precision`, `collisions_right_until`, ..."""
-        return Tables(self._group("trust"), f"{self.path}: trust")
-
-    @cached_property
-    def certificate(self) -> Table:
-        """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`, `gap`, `widest`, ..."""
-        return self._table("certificate")
-
-    @cached_property
     def collapse(self) -> dict[str, Any]:
         """`time`, `uncertainty`, `gap`, ... where the run ended at inelastic collapse; else empty."""
-        return self._table("collapse").attributes
-
-    @cached_property
-    def exact(self) -> Table:
-        """Decimal texts: all digits of a run in a type wider than double, `result.exact.series.energy.mpmath()`, and
-        what a proof knows, `result.exact.series.energy_low.fractions()`."""
-        return self._table("exact")
+        return self.table("collapse").attributes
 
     def table(self, name: str) -> Table:
         """Any group by its path, `"zone"`, `"scenario"`, `"meetings"`; empty where there is none."""
-        return self._table(name)
+        return Table(self._group(name), f"{self.path}: {name}")
 
     def enclosure(self, name: str) -> tuple[list, list]:
         """Lower and upper bounds of a quantity of the series, proved, as two lists of Fractions.

@@ -48,31 +48,22 @@ def check_seal(path: str) -> bool:
     if seal is None:
         return False
     length, checksum = seal
+    flags, header = b"\0\x04", bytes([2, 0, 0x21, 1, 0x08, 0, 0, 0])  # CRC-64; one filter, LZMA2, 64 KiB
     checker = lzma.LZMADecompressor(lzma.FORMAT_XZ)
     try:
-        checker.decompress(stream_header() + block_header())
+        checker.decompress(b"\xfd7zXZ\0" + flags + struct.pack("<I", zlib.crc32(flags))
+                           + header + struct.pack("<I", zlib.crc32(header)))
         with open(path, "rb") as file:
             left = length + 16  # the CRC is of all before it: the seal's magic and length too
-            first = True
             while left:
                 piece = file.read(min(CHUNK, left))
                 if not piece:
                     raise damaged(path, "its end too early")
+                first = left == length + 16
                 checker.decompress(bytes([1 if first else 2]) + struct.pack(">H", len(piece) - 1) + piece)
                 left -= len(piece)
-                first = False
         packed = length + 16 + 3 * -(-(length + 16) // CHUNK) + 1  # chunks, their headers, the end
         checker.decompress(b"\0" + bytes(-packed % 4) + struct.pack("<Q", checksum))
     except lzma.LZMAError:
         raise damaged(path, "another checksum than it was sealed with") from None
     return True
-
-
-def stream_header() -> bytes:
-    flags = b"\0\x04"  # CRC-64
-    return b"\xfd7zXZ\0" + flags + struct.pack("<I", zlib.crc32(flags))
-
-
-def block_header() -> bytes:
-    header = bytes([2, 0, 0x21, 1, 0x08, 0, 0, 0])  # 12 bytes with the CRC: one filter, LZMA2, a dictionary of 64 KiB
-    return header + struct.pack("<I", zlib.crc32(header))

@@ -77,16 +77,11 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
         return values
 
     def __getitem__(self, index):
-        if "values" in self.__dict__:
+        rows = isinstance(index, slice) and (index.step or 1) > 0
+        if "values" in self.__dict__ or not (rows or isinstance(index, (int, np.integer))):
             return self.values[index]
-        if isinstance(index, slice) or np.ndim(index) == 0 and not isinstance(index, tuple) and index is not None:
-            if isinstance(index, slice) and index.step is not None and index.step < 0:
-                return self.values[index]
-            if not isinstance(index, slice):
-                row = range(self.shape[0])[index]  # IndexError as lists have it
-                return reading(self._place, lambda: self._texts(self._dataset[row])[()])
-            return reading(self._place, lambda: self._texts(self._dataset[index]))
-        return self.values[index]
+        wanted = index if rows else range(self.shape[0])[index]  # IndexError as lists have it
+        return reading(self._place, lambda: self._texts(self._dataset[wanted])[()])
 
     def __array__(self, dtype=None, copy=None):
         return np.array(self.values, dtype=dtype) if dtype is not None or copy else self.values
@@ -134,10 +129,9 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
 
 
 class Table(Mapping):
-    """A group: its columns and inner tables by name, `table["energy"]` or `table.energy`, and its attributes.
+    """A group: columns, inner tables and attributes by name, `table["energy"]` or `table.energy`.
 
-    Iterates over names; `table.columns` are those of the columns only. A group of which each member is a table of its
-    own number (snapshots) is a Tables.
+    Iterates over the names of columns and tables; `table.columns` are those of the columns only.
     """
 
     def __init__(self, group: h5py.Group | None, place: str):
@@ -158,12 +152,15 @@ class Table(Mapping):
     def columns(self) -> list[str]:
         return [name for name in self._names if isinstance(self[name], Column)]
 
-    def __getitem__(self, name: str) -> "Column | Table":
+    def __getitem__(self, name: str) -> Any:
         if name not in self._names:
-            raise KeyError(f"{name}: not in {self._place}, which has {', '.join(self._names) or 'nothing'}")
+            if name in self.attributes:
+                return self.attributes[name]
+            raise KeyError(f"{name}: not in {self._place}, which has "
+                           f"{', '.join((*self._names, *self.attributes)) or 'nothing'}")
         if name not in self._seen:
             item, place = reading(self._place, lambda: self._group[name]), f"{self._place}/{name}"
-            self._seen[name] = (Column if isinstance(item, h5py.Dataset) else Table)(item, place)
+            self._seen[name] = Column(item, place) if isinstance(item, h5py.Dataset) else type(self)(item, place)
         return self._seen[name]
 
     def __getattr__(self, name: str):
@@ -171,11 +168,8 @@ class Table(Mapping):
             raise AttributeError(name)
         try:
             return self[name]
-        except KeyError:
-            if name in self.attributes:
-                return self.attributes[name]
-            raise AttributeError(f"{name}: not in {self._place}, which has "
-                                 f"{', '.join((*self._names, *self.attributes)) or 'nothing'}") from None
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -213,13 +207,21 @@ class Table(Mapping):
         return "\n".join(lines)
 
 
+class Means(Table):
+    """The same of an ensemble with the mean of each quantity as its column, as a run has it."""
+
+    def __getitem__(self, name: str) -> Any:
+        item = super().__getitem__(name)
+        return item["mean"] if isinstance(item, Table) and "mean" in item else item
+
+
 class Tables(Sequence):
     """Tables in order, of snapshots, profiles, masses in that of time: `tables[0]`, `tables.times`, `tables.at(t)`."""
 
-    def __init__(self, group: h5py.Group | None, place: str):
-        names = () if group is None else reading(place, lambda: sorted(group))
+    def __init__(self, group: h5py.Group | None, place: str, kind: type[Table] = Table):
+        names = () if group is None else reading(place, lambda: sorted(group, key=lambda name: (len(name), name)))
         self._place = place
-        self._tables = [Table(reading(place, lambda name=name: group[name]), f"{place}/{name}") for name in names]
+        self._tables = [kind(reading(place, lambda name=name: group[name]), f"{place}/{name}") for name in names]
 
     @cached_property
     def times(self) -> np.ndarray:

@@ -1,1 +1,1 @@
-"""How the pictures are drawn: a module for each kind, from the arrays of reading.py, in the looks of style.py."""
+"""How the pictures are drawn: a module for each kind, from a Result of the package, in the looks of style.py."""

@@ -2,7 +2,7 @@
 particles meet in it. Of a run, or of a sweep of cut-offs and of what replaces them."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked, subplots
+from .style import BLUE, GREY, ORANGE, lettered, plt, shades, stacked, subplots
 
 MANY = 20         # snapshots that make a picture in space and time
 PATHS = 80        # of particles in it
@@ -19,7 +19,7 @@ def pictures(result, _theory, units):
         if len(with_rates(points, since, units)) > 1:
             found.append(("rates", lambda axes=None: draw_rates(points, since, units, axes)))
         return found
-    if result.points or result.statistics or not has_core(result) or not np.isfinite(onset(result)):
+    if result.points or result.replicas or not has_core(result) or not np.isfinite(onset(result)):
         return []
     found = [("beyond", lambda axes=None: draw_run(result, units, axes))]
     dense = [s for s in result.snapshots if s["time"] >= onset(result) and len(core_of(s)[0]) > 2]
@@ -31,17 +31,17 @@ def pictures(result, _theory, units):
 
 
 def has_core(result):
-    return np.isfinite(result.series.get("core_width", ())).sum() > 2
+    return np.isfinite(result.means.get("core_width", ())).sum() > 2
 
 
 def slowest(result):
     """The closing speed below which a collision loses nothing (or all: merge_speed); 0 where there is none."""
-    merging = result.text("run", "collapse") == "merge"
+    merging = result.word("run", "collapse") == "merge"
     return result.setting("run", "merge_speed", 0.0) if merging else result.setting("law", "cutoff", 0.0)
 
 
 def label_of(result):
-    policy = result.text("run", "collapse")
+    policy = result.word("run", "collapse")
     if policy == "contact-time":
         return rf"contact time {result.setting('run', 'contact_time'):.4g}"
     return rf"merge below {slowest(result):.4g}" if policy == "merge" else rf"$\delta=${slowest(result):.4g}"
@@ -49,30 +49,24 @@ def label_of(result):
 
 def onset(result):
     """The first of the samples up to the narrowest core in which half of the mass is in less than NARROW."""
-    width = result.series["core_width"]
+    width = result.means["core_width"]
     if not np.isfinite(width).any():
         return np.inf
     narrowest = int(np.nanargmin(width))
     wide = np.flatnonzero(~(width[:narrowest + 1] < NARROW * result.setting("initial", "spacing", 1.0)))
     first = wide[-1] + 1 if len(wide) else 0
-    return result.series["time"][first] if first <= narrowest else np.inf
-
-
-def used_up(result, units):
-    """When the sticky gas has the last particle of equal rows."""
-    return result.setting("initial", "particles", np.nan) * units.t
+    return result.means["time"][first] if first <= narrowest else np.inf
 
 
 def excess(result, kind="mean"):
     """Of the energy over that of the sticky gas, in units of the energy at the start."""
-    start = result.series["energy"][0] + result.series["energy_lost"][0]
-    values = result.statistics.get("sticky_excess", {}).get(kind) if kind != "mean" else None
-    return (result.series["sticky_excess"] if values is None else values) / start
+    start = result.means["energy"][0] + result.means["energy_lost"][0]
+    return (result.means["sticky_excess"] if kind == "mean" else result.series["sticky_excess"][kind]) / start
 
 
 def rate(result, name):
     """Per unit of time, between samples; and the times in their middle."""
-    time, counts = result.series["time"], np.asarray(result.series[name], float)
+    time, counts = result.means["time"], np.asarray(result.means[name], float)
     apart = np.diff(time) > 0
     return ((time[1:] + time[:-1]) / 2)[apart], np.diff(counts)[apart] / np.diff(time)[apart]
 
@@ -82,7 +76,8 @@ def rates(result, since, units):
     after a time until the rows end."""
     time, every = rate(result, "collisions")
     elastic = rate(result, "collisions_below_cutoff")[1]
-    late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up(result, units))
+    used_up = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
+    late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up)
     return [(np.mean(values[late]) * units.t, np.std(values[late]) * units.t) if late.any() else (np.nan, np.nan)
             for values in (every - elastic, elastic)]
 
@@ -95,22 +90,14 @@ def most_frequent(result, cutoff):
 
 
 def draw_excess(ax, result, since, units, colour, label=None, line="-"):
-    late = result.series["time"] >= since
-    time = result.series["time"][late] / units.t
+    late = result.means["time"] >= since
+    time = result.means["time"][late] / units.t
     ax.plot(time, excess(result)[late], line, color=colour, label=label)
-    if result.statistics:
+    if result.replicas:
         ax.fill_between(time, excess(result, "min")[late], excess(result, "max")[late], color=colour, alpha=0.2, lw=0)
     ax.set_yscale("symlog", linthresh=1e-5)
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)
     ax.set_ylabel(r"$(E-E_\mathrm{sticky})\,/\,E_0$")
-
-
-def per_time(units):
-    return units.label("collisions per unit of time", r"collisions per $l/2u_0$")
-
-
-def length_label(units, name):
-    return units.label(name, name + r"$\,/\,l$")
 
 
 def positive(ax, time, values, **how):
@@ -124,7 +111,7 @@ def positive(ax, time, values, **how):
 # ---- a run
 
 def draw_run(result, units, axes=None):
-    series, scale = result.series, slowest(result)
+    series, scale = result.means, slowest(result)
     late = series["time"] >= onset(result)
     time = series["time"][late] / units.t
     figure, axes = stacked(axes, 4, width=5.8, height=2.1, sharex=True)
@@ -141,8 +128,8 @@ def draw_run(result, units, axes=None):
     for values, colour, label in ((elastic, ORANGE, "elastic"), (every - elastic, BLUE, "dissipative")):
         positive(axes[3], middle[shown] / units.t, values[shown] * units.t, color=colour, label=label)
     axes[1].set_ylabel("core")
-    axes[2].set_ylabel(length_label(units, "core"))
-    axes[3].set(ylabel=per_time(units), xlabel=units.time_label())
+    axes[2].set_ylabel(units.label("core", r"core$\,/\,l$"))
+    axes[3].set(ylabel=units.rate_label(), xlabel=units.time_label())
     for ax in axes[1:]:
         if ax.get_lines():
             ax.legend(loc="best")
@@ -163,7 +150,7 @@ def core_of(snapshot):
 
 
 def draw_distributions(snapshots, scale, units, axes=None):
-    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4), layout="constrained")
+    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4))
     chosen = snapshots[::max(1, len(snapshots) // 6)]
     for snapshot, colour in zip(chosen, shades(len(chosen))):
         particles, gap = core_of(snapshot)
@@ -180,8 +167,7 @@ def draw_distributions(snapshots, scale, units, axes=None):
     right.set(xscale="log", yscale="log", ylim=(1e-5, 10), xlabel=r"gap $g\,/\,\langle g\rangle$")
     left.legend(loc="best")
     right.legend(loc="best")
-    for letter, ax in zip("ab", (left, right)):
-        panel_letter(ax, letter)
+    lettered((left, right))
     return figure
 
 
@@ -190,7 +176,7 @@ def draw_spacetime(snapshots, units, axes=None):
     particles keep their order."""
     core, _ = core_of(snapshots[-1])
     particles = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
-    figure, ax = subplots(axes, figsize=(5.8, 4.6), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.8, 4.6))
     time = np.array([s["time"] for s in snapshots]) / units.t
     middle = int(snapshots[-1]["index"][core[len(core) // 2]])
     places = []
@@ -209,26 +195,27 @@ def draw_spacetime(snapshots, units, axes=None):
 
 def draw_points(points, since, units, axes=None):
     figure, axes = stacked(axes, 3, width=7.2, height=2.7, sharex=True)
-    replaced = [p for p in points if p.text("run", "collapse") in ("merge", "contact-time")]
+    replaced = [p for p in points if p.word("run", "collapse") in ("merge", "contact-time")]
     others = [p for p in points if p not in replaced]
     how = [(p, colour, "-") for p, colour in zip(others, shades(len(others)))]
     warm = plt.get_cmap("autumn")(np.linspace(0, 0.8, len(replaced)))
     how += [(p, colour, "--") for p, colour in zip(replaced, warm)]
     for point, colour, line in how:
-        late = point.series["time"] >= since
-        time = point.series["time"][late] / units.t
+        late = point.means["time"] >= since
+        time = point.means["time"][late] / units.t
         draw_excess(axes[0], point, since, units, colour, label_of(point), line)
         if slowest(point):
-            positive(axes[1], time, point.series["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
-        positive(axes[2], time, point.series["core_width"][late] / units.x, color=colour, ls=line)
+            positive(axes[1], time, point.means["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
+        positive(axes[2], time, point.means["core_width"][late] / units.x, color=colour, ls=line)
     axes[1].set_ylabel("velocity range\n/ cut-off or merging speed")
-    axes[2].set(ylabel=length_label(units, "length with half of the mass"), xlabel=units.time_label())
+    length = "length with half of the mass"
+    axes[2].set(ylabel=units.label(length, length + r"$\,/\,l$"), xlabel=units.time_label())
     axes[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1))
     return figure
 
 
 def with_rates(points, since, units):
-    return [p for p in points if p.text("run", "collapse") not in ("merge", "contact-time") and slowest(p)
+    return [p for p in points if p.word("run", "collapse") not in ("merge", "contact-time") and slowest(p)
             and np.isfinite(rates(p, since, units)[0][0])]
 
 
@@ -236,12 +223,12 @@ def draw_rates(points, since, units, axes=None):
     points = sorted(with_rates(points, since, units), key=slowest)
     cutoff = np.array([slowest(p) for p in points])
     found = np.array([rates(p, since, units) for p in points])
-    figure, ax = subplots(axes, figsize=(5.2, 4), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.2, 4))
     for k, (name, colour) in enumerate((("dissipative", BLUE), ("elastic", ORANGE))):
         ax.errorbar(cutoff, found[:, k, 0], yerr=found[:, k, 1], fmt="o-", color=colour, capsize=3,
                     label=name + ", and how it varies")
     ax.plot(cutoff, [most_frequent(p, slowest(p)) for p in points], "k:",
             label=r"all that arrives lost at the cut-off, $2u_0^2/(1-\epsilon^2)\delta^2$")
-    ax.set(xscale="log", yscale="log", xlabel=r"cut-off $\delta$", ylabel=per_time(units))
+    ax.set(xscale="log", yscale="log", xlabel=r"cut-off $\delta$", ylabel=units.rate_label())
     ax.legend(loc="best")
     return figure

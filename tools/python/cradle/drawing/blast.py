@@ -8,7 +8,7 @@ AMPLITUDE = 1071 / 152
 
 
 def pictures(result, _theory, _units):
-    if result.text("initial", "type") != "cold" or result.text("initial", "place") == "left":
+    if result.word("initial", "type") != "cold" or result.word("initial", "place") == "left":
         return []
     if result.setting("initial", "hot", 1) < 2 or result.setting("law", "restitution") != 1:
         return []
@@ -31,11 +31,10 @@ def solution(size=400):
 
 def draw(result, axes=None):
     energy, rho = gas(result)
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6), layout="constrained")
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6))
     draw_front(axes[0, 0], result, energy, rho)
     xi, density, velocity, temperature = solution()
-    spread = {round(p["time"], 9): p for p in result.profile_statistics}
-    for profile, colour in zip(result.profiles, shades(len(result.profiles))):
+    for profile, spread, colour in zip(result.mean_profiles, result.profiles, shades(len(result.profiles))):
         time = profile["time"]
         front = np.cbrt(AMPLITUDE * energy * time ** 2 / rho)
         speed = 2 * front / (3 * time)
@@ -45,9 +44,8 @@ def draw(result, axes=None):
                                (axes[1, 1], "temperature", speed ** 2)):
             mean = profile[name] / unit
             ax.plot(place[shown], mean[shown], color=colour, lw=0.9, label=f"$t={power(time)}$")
-            known = spread.get(round(time, 9), {}).get(name, {})
-            if isinstance(known, dict) and "sem" in known:
-                error = known["sem"] / unit
+            if result.replicas:
+                error = spread[name]["sem"] / unit
                 ax.fill_between(place[shown], (mean - error)[shown], (mean + error)[shown], color=colour, alpha=0.2,
                                 lw=0)
     for ax, exact, sign, label, top in ((axes[0, 1], density, 1, r"density $\rho\,/\,\rho_0$", 2.4),
@@ -63,15 +61,15 @@ def draw(result, axes=None):
 
 def draw_front(ax, result, energy, rho):
     """R^3 rho/(E t^2) from both fronts, which is A when the gas has forgotten how it began."""
-    series = result.series
+    series = result.means
     later = series["time"] > 0
     time = series["time"][later]
     front = (series["front_right"][later] - series["front_left"][later]) / 2
     value = front ** 3 * rho / (energy * time ** 2)
     seen = np.isfinite(value) & (value < 4 * AMPLITUDE)
     ax.semilogx(time[seen], value[seen], color=BLUE, lw=1.4, label="outermost particles")
-    if "front_right" in result.statistics:
-        sem = np.hypot(result.statistics["front_right"]["sem"], result.statistics["front_left"]["sem"])[later] / 2
+    if result.replicas:
+        sem = np.hypot(result.series["front_right"]["sem"], result.series["front_left"]["sem"])[later] / 2
         error = 3 * value * sem / front
         ax.fill_between(time[seen], (value - error)[seen], (value + error)[seen], color=BLUE, alpha=0.25, lw=0)
     ax.axhline(AMPLITUDE, color="k", ls="--", label="$A=1071/152$")

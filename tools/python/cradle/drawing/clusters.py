@@ -2,7 +2,7 @@
 swing grows: separation as t^(1/3), speed as t^(-1/3) (section VI). Lines follow a cluster, not a side."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, plt, power, shades, stacked, subplots, thinned
+from .style import BLUE, GREY, ORANGE, beside, plt, power, shades, stacked, subplots, thinned
 
 DECADES, BINS, FIRST = 4.3, 13, 3  # maxima in so many logarithmic bins over the last decades; the fit begins in bin 3
 ENOUGH = 20  # samples of a bin: of fewer the largest says nothing of the swing
@@ -10,19 +10,20 @@ ENOUGH = 20  # samples of a bin: of fewer the largest says nothing of the swing
 
 def pictures(result, _theory, units):
     found = []
-    if "x" in result.heaviest and hold_the_mass(result):
+    heaviest = result.means.get("heaviest", {})
+    if "x" in heaviest and hold_the_mass(result):
         found = [("clusters", lambda axes=None: draw_clusters(result, units, axes))]
-        if np.isfinite(result.heaviest["x"][len(result.heaviest["x"]) * 3 // 4:]).all(axis=1).any():
+        if np.isfinite(heaviest["x"][len(heaviest["x"]) * 3 // 4:]).all(axis=1).any():
             found.append(("scaling", lambda axes=None: draw_scaling(result, units, axes)))  # there still are two
-    elif result.masses and result.text("initial", "type") == "ring":
+    elif result.masses and result.word("initial", "type") == "ring":
         found = [("masses", lambda axes=None: draw_masses_alone(result, units, axes))]
     return found
 
 
 def hold_the_mass(result):
     """Do the two hold most of what has collided, in the end? Before that they are the first particles that stuck."""
-    mass = result.heaviest["mass"].sum(axis=1)
-    cloud = result.series.get("cloud_mass", mass)
+    mass = result.means["heaviest"]["mass"].sum(axis=1)
+    cloud = result.means.get("cloud_mass", mass)
     known = np.isfinite(mass) & (cloud > 0)
     return known.any() and np.median((mass[known] / cloud[known])[-100:]) > 0.5
 
@@ -52,8 +53,9 @@ def with_gaps(time, values, broken):
 
 
 def draw_clusters(result, units, axes=None):
-    tracks, broken = followed(result.heaviest)
-    time = result.series["time"] / units.t
+    force = result.table("force")
+    tracks, broken = followed(result.means["heaviest"])
+    time = result.means["time"] / units.t
     figure, (position, velocity) = stacked(axes, 2, width=6.0, height=3.0, sharex=True)
     position.set_ylabel(units.position_label())
     velocity.set(ylabel=units.velocity_label(), xlabel=units.time_label())
@@ -71,15 +73,14 @@ def draw_clusters(result, units, axes=None):
     share = tracks["mass"] / np.where(time > 0, time, np.nan)[:, None]
     draw_tracks(masses, time, share, broken, 0.7)
     masses.set_ylim(0, 1.15 * largest(share, 0.05))
-    rescaled = room_above(velocity, (0.42, 0.65, 0.56, 0.32) if result.force else (0.10, 0.65, 0.88, 0.32),
+    rescaled = room_above(velocity, (0.42, 0.65, 0.56, 0.32) if force else (0.10, 0.65, 0.88, 0.32),
                           r"$t^{1/3}$", r"$v\,t^{1/3}$")
     swing = tracks["v"] / units.v * np.cbrt(time)[:, None]
     draw_tracks(rescaled, np.cbrt(time), swing, broken, 0.6)
     bound = 1.1 * largest(swing, 0.05)
     rescaled.set_ylim(-bound, bound)
-    if result.force:
-        draw_force(room_above(velocity, (0.10, 0.65, 0.22, 0.32), units.position_label(), r"$F_\Sigma$"), result.force,
-                   units)
+    if force:
+        draw_force(room_above(velocity, (0.10, 0.65, 0.22, 0.32), units.position_label(), r"$F_\Sigma$"), force, units)
     return figure
 
 
@@ -132,8 +133,9 @@ def envelope(time, values, begin=0.0):
 
 
 def draw_scaling(result, units, axes=None):
-    x, v, time = result.heaviest["x"], result.heaviest["v"], result.series["time"] / units.t
-    begin = min(result.meetings.get("time", ()), default=0.0) / units.t  # before, each swings on its own side
+    heaviest, time = result.means["heaviest"], result.means["time"] / units.t
+    x, v = heaviest["x"], heaviest["v"]
+    begin = min(result.table("meetings").get("time", ()), default=0.0) / units.t  # before, each swings on its side
     figure, axes = stacked(axes, 2 + bool(result.masses), height=2.3)
     rows = ((np.abs(x[:, 1] - x[:, 0]) / units.x, 1 / 3, units.label("separation", r"separation$\,/\,l$"), BLUE),
             (np.abs(v[:, 1] - v[:, 0]) / units.v, -1 / 3, units.label("relative speed", r"relative speed$\,/\,2u_0$"),
@@ -168,10 +170,10 @@ def draw_masses(ax, masses, units):
         above = np.cumsum(group["clusters"][::-1].astype(float))[::-1]
         ax.step(group["mass"], above, where="pre", color=colour, label=rf"$t={power(group['time'] / units.t)}$")
     ax.set(xscale="log", yscale="log", xlabel=r"mass $M\,/\,m$", ylabel="clusters heavier than $M$")
-    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    beside(ax)
 
 
 def draw_masses_alone(result, units, axes=None):
-    figure, ax = subplots(axes, figsize=(5.6, 2.9), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.6, 2.9))
     draw_masses(ax, result.masses, units)
     return figure

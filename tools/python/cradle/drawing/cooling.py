@@ -11,7 +11,7 @@ STRETCH = 80  # particles of the last snapshot that are shown of the velocities
 
 
 def pictures(result, theory, _units):
-    if result.text("initial", "type") == "ring" and len(result.series.get("time", ())) > 1:
+    if result.word("initial", "type") == "ring" and len(result.means.get("time", ())) > 1:
         field = [("field", lambda axes=None: draw_field(result, axes))] if result.snapshots else []
         return [("cooling", lambda axes=None: draw_cooling(result, theory, axes))] + field
     return []
@@ -33,7 +33,7 @@ def sticky_law(result, time):
 
 def draw_cooling(result, theory, axes=None):
     particles, speed, spacing = ring_of(result)
-    series = result.series
+    series = result.means
     later = series["time"] * speed / spacing > 0.03  # nothing has met before
     time = series["time"][later]
     energy, law = series["energy"][later] / particles, sticky_law(result, time)

@@ -35,8 +35,8 @@ def first_hits(result):
     before = np.maximum.accumulate(np.concatenate([[0], right[:-1]]))
     first = np.flatnonzero((right > before) & (right % 2 == 0))
     delay = 1 - (heavy + light) / (2 * heavy)
-    late = [(Decimal(float(events["time"][e])) + Decimal(float(events["time_low"][e]))) / step
-            - (int(right[e]) - delay) for e in first]
+    time, low = events["time"].values, events["time_low"].values
+    late = [(Decimal(float(time[e])) + Decimal(float(low[e]))) / step - (int(right[e]) - delay) for e in first]
     return right[first], np.array([float(x) for x in late])
 
 

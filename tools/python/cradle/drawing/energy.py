@@ -1,22 +1,21 @@
 """Fig. 4: energy and number of collisions against time."""
 import numpy as np
 
-from .style import BLUE, GREEN, GREY, ORANGE, panel_letter, subplots
+from .style import BLUE, GREEN, GREY, ORANGE, lettered, subplots
 
 
 def pictures(result, theory, units):
-    if (len(result.series.get("time", ())) > 1 and "energy" in result.series
-            and result.text("initial", "type") != "ring"):  # which has the cooling picture
+    if (len(result.means.get("time", ())) > 1 and "energy" in result.means
+            and result.word("initial", "type") != "ring"):  # which has the cooling picture
         return [("energy", lambda axes=None: draw_energy(result, theory, units, axes))]
     return []
 
 
 def draw_energy(result, theory, units, axes=None):
     """Energy, with equation (7) dotted and the sticky gas dashed; below it the number of collisions."""
-    series = result.series
+    series = result.means
     time = series["time"] / units.t
-    figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), layout="constrained",
-                                       gridspec_kw={"height_ratios": (3, 2)})
+    figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))
     energy = series["energy"] / units.energy
     top.plot(time, energy, color=BLUE, lw=1.6, label="simulation")
     cited = theory.equation("energy").replace("E_loss", r"$E_\mathrm{loss}$")
@@ -37,8 +36,7 @@ def draw_energy(result, theory, units, axes=None):
     top.legend(loc="best")
     draw_collisions(below, series, time)
     below.set_xlabel(units.time_label())
-    for letter, ax in zip("ab", (top, below)):
-        panel_letter(ax, letter)
+    lettered((top, below))
     return figure
 
 

@@ -4,17 +4,19 @@ import numpy as np
 
 from .cooling import ring_of, sticky_law
 from .shock import draw_slope
-from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
+from .style import BLUE, GREY, ORANGE, beside, shades, stacked, thinned
 
 SERIES = (("energy", "energy"), ("collisions", "collisions"), ("merges", "merges"), ("front_right", "right front"),
           ("cloud_width", "width of the cloud"))
 
 
 def pictures(result, theory, units):
+    if not result.replicas:
+        return []
     found = []
-    if len(result.statistics.get("time", ())) > 1:
+    if len(result.series.get("time", ())) > 1:
         found.append(("ensemble", lambda axes=None: draw_series(result, theory, units, axes)))
-    if result.profile_statistics:
+    if result.profiles:
         found.append(("profiles", lambda axes=None: draw_profiles(result, theory, units, axes)))
     if np.isfinite(result.replicas.get("collapse_time", np.array([np.nan]))).any():
         found.append(("collapse", lambda axes=None: draw_collapse(result, units, axes)))
@@ -30,10 +32,10 @@ def band(ax, x, quantity, unit, colour, **line):
 
 
 def draw_series(result, theory, units, axes=None):
-    time = result.statistics["time"] / units.t
+    time = result.series["time"] / units.t
     scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
-    shown = [(name, label) for name, label in SERIES if name in result.statistics
-             and np.ndim(result.statistics[name]["mean"]) == 1 and (result.statistics[name]["max"] > 0).any()]
+    shown = [(name, label) for name, label in SERIES if name in result.series
+             and np.ndim(result.series[name]["mean"]) == 1 and (result.series[name]["max"] > 0).any()]
     figure, axes = stacked(axes, len(shown), height=2.0, sharex=True)
     replicas = len(result.replicas.get("index", ()))
     axes[0].set_title((f"{replicas} replicas; " if replicas else "") + "bands: standard error, extremes", loc="right",
@@ -41,7 +43,7 @@ def draw_series(result, theory, units, axes=None):
     axes[-1].set_xlabel(units.time_label())
     axes[-1].set_xlim(time[0], time[-1])
     for ax, (name, label) in zip(axes, shown):
-        band(ax, time, result.statistics[name], scale.get(name, 1), BLUE, lw=1.2, label="mean")
+        band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2, label="mean")
         ax.set_ylabel(units.energy_label() if name == "energy" else
                       label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else ""))
     predicted = {"energy": ("energy_sticky", "sticky gas"), "front_right": ("front_position", "")}
@@ -53,7 +55,7 @@ def draw_series(result, theory, units, axes=None):
             ax.plot(t[inside] / units.t, value[inside] / scale[name], "k--", lw=1,
                     label=label or theory.equation(quantity))
             ax.legend(loc="best")
-    if result.text("initial", "type") == "ring":
+    if result.word("initial", "type") == "ring":
         show_cooling(axes, result, time)
     return figure
 
@@ -63,7 +65,7 @@ def show_cooling(axes, result, time):
     particles, speed, spacing = ring_of(result)
     later = time * speed / spacing > 0.03
     law = particles * sticky_law(result, time[later])
-    shown = law < 2 * result.statistics["energy"]["max"][0]
+    shown = law < 2 * result.series["energy"]["max"][0]
     axes[0].plot(time[later][shown], law[shown], "k--", lw=1, label="sticky gas")
     axes[0].set_yscale("log")
     axes[0].legend(loc="best")
@@ -71,7 +73,7 @@ def show_cooling(axes, result, time):
 
 
 def draw_profiles(result, theory, units, axes=None):
-    profiles = thinned(result.profile_statistics, 6)
+    profiles = thinned(result.profiles, 6)
     figure, (velocity, density) = stacked(axes, 2, width=6.4, height=2.7, sharex=True)
     name = "mass_density" if result.law in ("wet", "sticky") and "mass_density" in profiles[0] else "density"
     for profile, colour in zip(profiles, shades(len(profiles))):
@@ -79,13 +81,11 @@ def draw_profiles(result, theory, units, axes=None):
         band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=rf"$t={profile['time'] / units.t:.5g}$")
         band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
     draw_slope(velocity, profiles, theory, units)
-    velocity.set_ylabel(units.label(r"mean velocity $\langle v\rangle$",
-                                    r"mean velocity $\langle v\rangle\,/\,2u_0$"))
-    density.set_ylabel(("mass " if name == "mass_density" else "")
-                       + units.label("density", r"density $\rho\,/\,\rho_0$"))
+    velocity.set_ylabel(units.mean_velocity_label())
+    density.set(ylabel=("mass " if name == "mass_density" else "") + units.density_label(),
+                xlabel=units.position_label())
     density.set_ylim(bottom=0)
-    density.set_xlabel(units.position_label())
-    velocity.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    beside(velocity)
     return figure
 
 

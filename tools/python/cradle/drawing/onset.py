@@ -18,7 +18,7 @@ def curves_of(result):
     """(N, collapsed, replicas) by increasing N, for each restitution; of rings that stop at a collapse."""
     found = {}
     for point in result.points:
-        if point.text("initial", "type") != "ring" or point.text("run", "collapse") != "stop":
+        if point.word("initial", "type") != "ring" or point.word("run", "collapse") != "stop":
             continue
         if "collapse_time" not in point.replicas:
             continue
@@ -26,10 +26,6 @@ def curves_of(result):
         found.setdefault(point.setting("law", "restitution"), []).append(
             (point.setting("initial", "particles"), int(known.sum()), len(known)))
     return {eps: sorted(points) for eps, points in sorted(found.items())}
-
-
-def cushion(eps):
-    return np.log(4 / (1 - eps)) / (1 - eps)
 
 
 def free(eps):
@@ -47,13 +43,8 @@ def half(points):
     return at[k - 1] + (at[k] - at[k - 1]) * (0.5 - share[k - 1]) / (share[k] - share[k - 1])
 
 
-def least(points):
-    """The smallest number of which one replica has collapsed."""
-    return min((number for number, hits, _ in points if hits), default=np.nan)
-
-
 def draw(curves, axes=None):
-    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.4, 3.4), layout="constrained")
+    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.4, 3.4))
     for (eps, points), colour in zip(curves.items(), shades(len(curves))):
         number = np.array([n for n, _, _ in points])
         share, low, high = np.array([wilson(hits, count) for _, hits, count in points]).T
@@ -63,9 +54,10 @@ def draw(curves, axes=None):
     left.legend(loc="lower right")
     eps = np.array(list(curves))
     right.loglog(1 - eps, [half(points) for points in curves.values()], "o", ms=5, label="half of the rings")
-    right.loglog(1 - eps, [least(points) for points in curves.values()], "v", ms=4, label="one ring")
+    least = [min((number for number, hits, _ in points if hits), default=np.nan) for points in curves.values()]
+    right.loglog(1 - eps, least, "v", ms=4, label="one ring")
     fine = np.geomspace((1 - eps).min() / 1.5, min((1 - eps).max() * 1.5, 0.95), 100)
-    right.plot(fine, cushion(1 - fine), "k--", lw=1, label=r"$\ln(4/(1-\epsilon))/(1-\epsilon)$")
+    right.plot(fine, np.log(4 / fine) / fine, "k--", lw=1, label=r"$\ln(4/(1-\epsilon))/(1-\epsilon)$")
     right.plot(fine, free(1 - fine), "k:", lw=1, label="free space, exact")
     right.set(xlabel=r"$1-\epsilon$", ylabel="particles $N_c$")
     right.legend(loc="lower left")

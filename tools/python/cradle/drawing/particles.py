@@ -1,13 +1,13 @@
 """Paths of a few particles, and how their gaps or the intervals between their collisions shrink."""
 import numpy as np
 
-from .style import BLUE, ORANGE, RED, panel_letter, shades, subplots
+from .style import BLUE, ORANGE, RED, lettered, shades, subplots
 
 FEW_PARTICLES = 20       # up to here every particle has a path of its own
 
 
 def few(result):
-    return 0 < max((len(s["x"]) for s in result.snapshots), default=0) <= FEW_PARTICLES and not result.profiles
+    return 0 < max((len(s["x"]) for s in result.snapshots), default=0) <= FEW_PARTICLES and not result.mean_profiles
 
 
 def pictures(result, theory, units):
@@ -21,14 +21,14 @@ def draw_particles(result, units, axes=None):
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
     gaps = not shrinking and len(result.snapshots) > 1
     rows = 2 + (shrinking or gaps)
-    figure, axes = subplots(axes, rows, 1, figsize=(5.6, 2.4 * rows + 0.3), layout="constrained")
+    figure, axes = subplots(axes, rows, 1, figsize=(5.6, 2.4 * rows + 0.3))
     paths = {}
     for snapshot in result.snapshots:
         for particle, x in zip(snapshot["index"], snapshot["x"]):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
     for (particle, path), colour in zip(sorted(paths.items()), shades(len(paths))):
         axes[0].plot(*(np.array(path) / (units.t, units.x)).T, "o-", ms=3, color=colour, label=f"particle {particle}")
-    series = result.series
+    series = result.means
     for name, line in (("front_left", ":"), ("front_right", "--")):
         if name in series:
             axes[0].plot(series["time"] / units.t, series[name] / units.x, line, color="k", lw=0.8, zorder=0,
@@ -60,6 +60,5 @@ def draw_particles(result, units, axes=None):
             axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-", ms=3, label=f"gap {pair}")
         axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
         axes[2].legend(loc="best")
-    for letter, ax in zip("abc", axes):
-        panel_letter(ax, letter)
+    lettered(axes)
     return figure

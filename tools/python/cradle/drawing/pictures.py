@@ -7,33 +7,32 @@ import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (beyond, blast, certificate, clusters, cooling, domino, energy, ensemble, onset, particles, scenarios,
-               shock, spacetime, splash, sticky, structure, sweep, trust, walls, zone)
-from .reading import read_result
+from . import (beyond, blast, clusters, cooling, domino, energy, ensemble, onset, particles, proof, scenarios, shock,
+               spacetime, splash, sticky, structure, sweep, walls, zone)
 from .style import Units, style
+from .theory import Theory
 
 CLASSICS = (onset, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
-ALONE = (trust, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
+ALONE = (proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 
 
 def pictures_of(result, theory, units):
     """The main picture first; a proof comes last."""
-    proof = certificate.pictures(result, theory, units)
+    last = proof.certificates(result, units)
     for kind in ALONE:
         if found := kind.pictures(result, theory, units):
-            return found + proof
-    return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + proof
+            return found + last
+    return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + last
 
 
-def available(result, theory):
+def available(result, predictions):
     """Names and functions of the pictures of an opened result, the main one first: each draws on new axes, or on those
-    that it is given, and returns the figure. Raises Error."""
-    contents = read_result(result)
+    that it is given, and returns the figure. predictions: as `cradle theory --csv` prints them. Raises Error."""
     with lacking(result.path):
         return {name: drawing(result.path, name, draw)
-                for name, draw in pictures_of(contents, theory, Units.of(contents))}
+                for name, draw in pictures_of(result, Theory(predictions), Units.of(result))}
 
 
 def drawing(path, name, draw):
@@ -54,32 +53,17 @@ def lacking(path, purpose=""):
                     BAD_FILE) from None
 
 
-def make(result, base, extension, theory):
-    """Writes all pictures of an opened result and yields the name of each; raises Error."""
-    pictures = available(result, theory)
-    if not pictures:
-        raise Error(f"{result.path} holds nothing to draw (no series, snapshots or profiles): "
-                    "give the file of a completed run", BAD_FILE)
-    for number, (name, draw) in enumerate(pictures.items()):
-        path = f"{base}-{name}{extension}" if number else base + extension
-        figure = draw()
-        with lacking(result.path, f" for the {name} picture"):
-            save(figure, path)
-        yield path
-
-
-def save(figure, path):
-    """Written beside its place and renamed, so that no half a picture is left; no time stamps."""
-    extension = os.path.splitext(path)[1][1:].lower()
+def write_file(figure, path):
+    """Written beside its place and renamed, so that no half a picture is left; closes the figure."""
     try:
         with whole(path) as part:
-            write(figure, part, extension)
+            write(figure, part, os.path.splitext(path)[1][1:].lower())
     finally:
         plt.close(figure)
 
 
 def write(figure, file, extension):
-    """As PNG, PDF or SVG, into a file or what can be written like one: same figure, same bytes."""
+    """As PNG, PDF or SVG, into a file or what can be written like one: same figure, same bytes, no time stamps."""
     stamps = {"png": {"Software": None}, "pdf": {"CreationDate": None, "ModDate": None}, "svg": {"Date": None}}
     with style():
         figure.savefig(file, format=extension, metadata=stamps[extension])

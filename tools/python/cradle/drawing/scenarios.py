@@ -38,43 +38,33 @@ def curves(result):
     return {size: sorted(points, key=lambda p: p.setting("law", "loss")) for size, points in sorted(groups.items())}
 
 
-def shares(points, hits_of):
-    """Losses, shares and intervals over points of which hits_of gives (hits, count) with at least ENOUGH replicas."""
-    rows = []
-    for point in points:
-        hits, count = hits_of(point.replicas)
-        if count >= ENOUGH:
-            rows.append((point.setting("law", "loss"), *wilson(hits, count)))
+def estimated(points, name, estimate):
+    """Losses and what estimate makes of a number of the replicas, over points that know it of ENOUGH of them."""
+    known = [(point.setting("law", "loss"), finite(point.replicas[name])) for point in points]
+    rows = [(loss, *estimate(values)) for loss, values in known if len(values) >= ENOUGH]
     return np.array(rows).reshape(-1, 4).T
 
 
-def first_pass(replicas):
-    known = replicas["first_passed"][np.isfinite(replicas["first_passed"])]
-    return known.sum(), len(known)
+def finite(values):
+    values = np.asarray(values, float)
+    return values[np.isfinite(values)]
 
 
-def through(replicas):
-    return (replicas["regime"] == 2).sum(), len(replicas["regime"])
+def mean(values):
+    error = 1.96 * values.std(ddof=1) / np.sqrt(len(values))
+    return values.mean(), values.mean() - error, values.mean() + error
 
 
 def draw_scenarios(result, axes=None):
     figure, axes = stacked(axes, 4, height=2.1, sharex=True)
     groups = curves(result)
     for (size, points), colour, mark in zip(groups.items(), shades(len(groups)), "osD^v<>"):
-        label = f"perturbation {size:g} $l$"
-        for ax, hits_of in ((axes[0], first_pass), (axes[1], through)):
-            loss, share, low, high = shares(points, hits_of)
-            ax.errorbar(loss, share, yerr=[share - low, high - share], fmt=mark + "-", ms=4, lw=0.9, capsize=2,
-                        color=colour, label=label)
-        for ax, name in ((axes[2], "sticks"), (axes[3], "separation_exponent")):
-            loss, mean, sem = [], [], []
-            for point in points:
-                values = point.replicas[name][np.isfinite(point.replicas[name])]
-                if len(values) >= ENOUGH:
-                    loss.append(point.setting("law", "loss"))
-                    mean.append(values.mean())
-                    sem.append(1.96 * values.std(ddof=1) / np.sqrt(len(values)))
-            ax.errorbar(loss, mean, yerr=sem, fmt=mark + "-", ms=4, lw=0.9, capsize=2, color=colour)
+        for ax, name, estimate in ((axes[0], "first_passed", lambda known: wilson(known.sum(), len(known))),
+                                   (axes[1], "regime", lambda known: wilson((known == 2).sum(), len(known))),
+                                   (axes[2], "sticks", mean), (axes[3], "separation_exponent", mean)):
+            loss, value, low, high = estimated(points, name, estimate)
+            ax.errorbar(loss, value, yerr=[value - low, high - value], fmt=mark + "-", ms=4, lw=0.9, capsize=2,
+                        color=colour, label=f"perturbation {size:g} $l$")
     axes[0].set_ylabel("first meeting\nis a pass")
     axes[1].set_ylabel("passing through\nat the end")
     for ax in axes[:2]:
@@ -112,14 +102,13 @@ def draw_regimes(result, axes=None):
 
 
 def known_times(point):
-    times = np.asarray(point.replicas.get("collapse_time", ()), float)
-    return times[np.isfinite(times)]
+    return finite(point.replicas.get("collapse_time", ()))
 
 
 def draw_collapse(result, axes=None):
     """Distributions of t_c over replicas, in units of the time when N_c particles are engaged."""
     points = [point for point in result.points if known_times(point).size]
-    figure, ax = subplots(axes, figsize=(5.2, 3.6), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.2, 3.6))
     for point, colour in zip(points, shades(len(points))):
         restitution, speed = point.setting("law", "restitution"), point.setting("initial", "speed", 0.5)
         spacing = point.setting("initial", "spacing", 1.0)

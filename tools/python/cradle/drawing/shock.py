@@ -5,17 +5,22 @@ Where particles stick, density of particles and density of mass differ; then it 
 import numpy as np
 
 from .structure import core_of
-from .style import GREY, beside, panel_letter, shades, subplots, thinned
+from .style import GREY, beside, lettered, shades, subplots, thinned
 
 BIN_PARTICLES = 25       # bins of mean velocity are merged to hold so many: the two rows alternate, and fewer alias
 
 
 def pictures(result, theory, units):
-    if result.text("initial", "type") == "ring" or (result.law == "sticky" and result.snapshots):
+    if result.word("initial", "type") == "ring" or (result.law == "sticky" and result.snapshots):
         return []  # these have pictures of their own: cooling, sticky
-    if result.profiles or len(result.snapshots) > 1 or (result.snapshots and core_of(result, units) is None):
+    if profiles_of(result) or len(result.snapshots) > 1 or (result.snapshots and core_of(result, units) is None):
         return [("shock", lambda axes=None: draw_shock(result, theory, units, axes))]
     return []
+
+
+def profiles_of(result):
+    """A single bin averages over all: no picture of that."""
+    return [profile for profile in result.mean_profiles if len(profile["x"]) > 1]
 
 
 def averaged(snapshot, bins=50):
@@ -49,18 +54,15 @@ def draw_shock(result, theory, units, axes=None):
     """Velocities of single particles, averaged velocities, density."""
     most = 8 if result.law == "wet" else 7  # a wet shock goes through one stage more
     snapshots = thinned(result.snapshots, most)
-    profiles = result.profiles or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
+    profiles = profiles_of(result) or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
     common = [p for p in profiles if p["time"] in {s["time"] for s in snapshots}]
     profiles = thinned(common if len(common) > 1 else profiles, most)
     times = sorted({group["time"] for group in snapshots + profiles})
     colour = dict(zip(times, shades(len(times))))
     name = {time: rf"$t={time / units.t:.5g}$" for time in times}
-    panels = "abc"[:bool(snapshots) + 2 * bool(profiles)]
-    figure, axes = subplots(axes, len(panels), 1, sharex=True, figsize=(6.4, 2.5 * len(panels) + 0.5),
-                                layout="constrained")
-    axes = list(np.atleast_1d(axes))
-    for letter, ax in zip(panels, axes):
-        panel_letter(ax, letter)
+    panels = bool(snapshots) + 2 * bool(profiles)
+    figure, axes = subplots(axes, panels, 1, sharex=True, figsize=(6.4, 2.5 * panels + 0.5))
+    axes = lettered(np.atleast_1d(axes))
     axes[-1].set_xlabel(units.position_label())
     heavy = result.law == "wet" and all("mass_density" in p for p in profiles)
     density = "mass_density" if heavy else "density"
@@ -79,9 +81,8 @@ def draw_shock(result, theory, units, axes=None):
             axes[1].plot(group["x"] / units.x, group[density] * units.x, drawstyle="steps-mid", lw=1.1,
                          color=colour[group["time"]])
         draw_slope(axes[0], profiles, theory, units)
-        axes[0].set_ylabel(units.label(r"mean velocity $\langle v\rangle$",
-                                       r"mean velocity $\langle v\rangle\,/\,2u_0$"))
-        axes[1].set_ylabel(("mass " if heavy else "") + units.label("density", r"density $\rho\,/\,\rho_0$"))
+        axes[0].set_ylabel(units.mean_velocity_label())
+        axes[1].set_ylabel(("mass " if heavy else "") + units.density_label())
         beside(axes[0])
         filled = np.concatenate([p[density][p[density] > 0] for p in profiles])
         if len(filled) and filled.max() > 30 * np.median(filled):

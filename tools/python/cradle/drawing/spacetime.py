@@ -4,7 +4,7 @@ of."""
 import numpy as np
 
 from .particles import few
-from .style import BLUE, GREY, ORANGE, RED, panel_letter, shades, subplots
+from .style import BLUE, GREY, ORANGE, RED, lettered, shades, subplots
 
 MOST_SINGLE = 40  # of the cradle: more circles could not be distinguished
 
@@ -47,10 +47,9 @@ def draw_spacetime(result, units, axes=None):
     masses = np.concatenate([s["m"] for s in result.snapshots])
     whole = np.allclose(masses, masses.round()) and result.snapshots[0]["m"].sum() <= MOST_SINGLE
     panels = 2 + bool(whole)
-    figure, axes = subplots(axes, panels, 1, figsize=(5.6, 2.4 * panels), layout="constrained",
-                                gridspec_kw={"height_ratios": (3, 2, 1.2) if whole else (3, 1.2)})
-    for letter, ax in zip("abc", axes):
-        panel_letter(ax, letter)
+    figure, axes = subplots(axes, panels, 1, figsize=(5.6, 2.4 * panels),
+                            height_ratios=(3, 2, 1.2) if whole else (3, 1.2))
+    lettered(axes)
     draw_paths(axes[0], result, units, masses.max())
     if whole:
         draw_cradle(axes[1], result.snapshots, units)
@@ -105,11 +104,11 @@ def draw_cradle(ax, snapshots, units):
 
 
 def draw_energy_steps(ax, result, units):
-    if not result.series:
+    if not result.means:
         return
-    time = result.series["time"] / units.t
-    ax.plot(time, result.series["energy"] / units.energy, color=BLUE, drawstyle="steps-post")
+    time = result.means["time"] / units.t
+    ax.plot(time, result.means["energy"] / units.energy, color=BLUE, drawstyle="steps-post")
     for t in result.events.get("time", ()):
         ax.axvline(t / units.t, color=GREY, lw=0.8, ls=":", zorder=0)
     ax.set(xlabel=units.time_label(), ylabel=units.energy_label(), xlim=(time[0], time[-1]))
-    ax.set_ylim(0, 1.1 * (result.series["energy"].max() / units.energy or 1))
+    ax.set_ylim(0, 1.1 * (result.means["energy"].max() / units.energy or 1))

@@ -15,15 +15,15 @@ def pictures(result, _theory, _units):
 
 def is_splash(point):
     initial = point.scene.get("initial", {})
-    one_bin = len(point.profiles) > 2 and all(len(p["x"]) == 1 and p["x"][0] > 0 for p in point.profiles)
+    one_bin = len(point.mean_profiles) > 2 and all(len(p["x"]) == 1 and p["x"][0] > 0 for p in point.mean_profiles)
     return initial.get("type") == "cold" and initial.get("place") == "left" and one_bin
 
 
 def energies(point):
     """Times and M (theta + u^2)/2 of all that is in the one bin, from x = 0 on."""
-    time = np.array([p["time"] for p in point.profiles])
-    width = np.array([2 * p["x"][0] for p in point.profiles])
-    mass, speed, temperature = (np.array([p[name][0] for p in point.profiles])
+    time = np.array([p["time"] for p in point.mean_profiles])
+    width = np.array([2 * p["x"][0] for p in point.mean_profiles])
+    mass, speed, temperature = (np.array([p[name][0] for p in point.mean_profiles])
                                 for name in ("mass_density", "velocity", "temperature"))
     return time, mass * width * (temperature + speed ** 2) / 2
 
@@ -34,8 +34,8 @@ def fit(time, value):
 
 
 def draw(points, axes=None):
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), layout="constrained", sharex="col", width_ratios=(1.6, 1))
-    fronts = [(p.series["time"], p.series["front_right"]) for p in points]
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), sharex="col", width_ratios=(1.6, 1))
+    fronts = [(p.means["time"], p.means["front_right"]) for p in points]
     inside = [energies(p) for p in points]
     for row, (curves, known, label, colour) in enumerate(((fronts, FRONT, "front $R$", BLUE),
                                                           (inside, ENERGY, "energy at $x>0$", ORANGE))):

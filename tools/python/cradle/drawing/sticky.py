@@ -6,7 +6,7 @@ from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
 
 
 def pictures(result, _theory, units):
-    if result.law == "sticky" and result.text("initial", "type") == "rows" and result.snapshots:
+    if result.law == "sticky" and result.word("initial", "type") == "rows" and result.snapshots:
         return [("sticky", lambda axes=None: draw_sticky(result, units, axes))]
     return []
 
@@ -31,7 +31,7 @@ def peak(snapshot):
 
 def draw_sticky(result, units, axes=None):
     (left, u_left), (right, u_right), (core, _) = rows_of(result)
-    snapshots, profiles = thinned(result.snapshots, 5), thinned(result.profiles, 5)
+    snapshots, profiles = thinned(result.snapshots, 5), thinned(result.mean_profiles, 5)
     times = sorted({group["time"] for group in snapshots + profiles})
     colour = dict(zip(times, shades(len(times))))
     name = {time: rf"$t={time / units.t:.5g}$" for time in times}
@@ -86,7 +86,7 @@ def draw_sticky(result, units, axes=None):
                 ylim=(0, 1.15 * high), xlim=velocity.get_xlim())
     density.legend(loc="upper left")
     density.set_title("arrows: delta peak, as high as it is heavy", loc="right", fontsize=8)
-    if "cloud_mass" in result.series:
+    if "cloud_mass" in result.means:
         equal = left == right and u_left == -u_right
         formula = r"$m_0+2t\rho_0u_0$" if equal else r"$m_0+\sqrt{\rho_l\rho_r}\,(u_l-u_r)\,t$"
         draw_mass(mass, result, units, formula if equal or not core else formula + " (asymptotic)", core, growth)
@@ -95,7 +95,7 @@ def draw_sticky(result, units, axes=None):
 
 def draw_mass(ax, result, units, formula, core, growth):
     """Mass of what has stuck together beside the line of the weak solution."""
-    time, cloud = result.series["time"], result.series["cloud_mass"]
+    time, cloud = result.means["time"], result.means["cloud_mass"]
     collided = cloud > 0
     ax.plot(time / units.t, core + growth * time, color=GREY, lw=5, alpha=0.5,
             label=rf"{formula}, ${core:.4g}+{growth * units.t:.4g}\,t$")

@@ -67,7 +67,7 @@ def draw_structure(snapshot, units, axes=None):
         boxes.append((half, low - pad, high + pad, inside))
     reference = rf"x_{{{int(snapshot['index'][particle])}}}"
     own = axes is None
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6), layout="constrained")
+    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6))
     dotted = False
     for k, ax in enumerate(axes.flat):
         half, low, high, inside = boxes[k]

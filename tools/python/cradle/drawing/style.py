@@ -11,7 +11,6 @@ from ..errors import BAD_INPUT, Error
 BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "0.6"  # Okabe and Ito
 PURPLE, SKY = "#CC79A7", "#56B4E9"
 
-
 SETTINGS = {
     "font.family": "DejaVu Sans", "font.size": 9, "axes.labelsize": 9, "legend.fontsize": 7.5,
     "axes.linewidth": 0.7,
@@ -41,7 +40,7 @@ class Units:
     @classmethod
     def of(cls, result):
         spacing, speed = result.setting("initial", "spacing", 1.0), result.setting("initial", "speed", 0.5)
-        equal_rows = result.text("initial", "type") == "rows" and "left" not in result.scene["initial"]
+        equal_rows = result.word("initial", "type") == "rows" and "left" not in result.scene["initial"]
         return cls(spacing, 2 * speed, True) if equal_rows and spacing > 0 and speed > 0 else cls()
 
     @property
@@ -55,23 +54,22 @@ class Units:
     def label(self, plain, scaled):
         return scaled if self.rows else plain
 
-    def time_label(self):
-        return self.label(r"time $t$", r"time $t\,/\,(l/2u_0)$")
+    def named(plain, scaled):
+        return lambda self: self.label(plain, scaled)
 
-    def position_label(self):
-        return self.label(r"position $x$", r"position $x\,/\,l$")
-
-    def velocity_label(self):
-        return self.label(r"velocity $v$", r"velocity $v\,/\,2u_0$")
-
-    def energy_label(self):
-        return self.label(r"energy $E$", r"energy $E\,/\,m(2u_0)^2$")
+    time_label = named(r"time $t$", r"time $t\,/\,(l/2u_0)$")
+    position_label = named(r"position $x$", r"position $x\,/\,l$")
+    velocity_label = named(r"velocity $v$", r"velocity $v\,/\,2u_0$")
+    mean_velocity_label = named(r"mean velocity $\langle v\rangle$", r"mean velocity $\langle v\rangle\,/\,2u_0$")
+    density_label = named("density", r"density $\rho\,/\,\rho_0$")
+    rate_label = named("collisions per unit of time", r"collisions per $l/2u_0$")
+    energy_label = named(r"energy $E$", r"energy $E\,/\,m(2u_0)^2$")
 
 
 def subplots(axes, rows=1, columns=1, squeeze=True, **options):
     """Figure and axes of a picture: new ones as plt.subplots makes them, or the given ones, one for each panel."""
     if axes is None:
-        return plt.subplots(rows, columns, squeeze=squeeze, **options)
+        return plt.subplots(rows, columns, squeeze=squeeze, layout="constrained", **options)
     given = np.array(axes, dtype=object).ravel()
     if given.size != rows * columns:
         raise Error(f"not as many axes as the picture has panels (found {given.size}): "
@@ -83,15 +81,14 @@ def subplots(axes, rows=1, columns=1, squeeze=True, **options):
 
 def stacked(axes, count, width=5.6, height=2.4, **options):
     """A column of panels with their letters."""
-    figure, axes = subplots(axes, count, 1, figsize=(width, height * count + 0.3), layout="constrained", **options)
-    axes = list(np.atleast_1d(axes))
-    for letter, ax in zip("abcdef", axes):
-        panel_letter(ax, letter)
-    return figure, axes
+    figure, axes = subplots(axes, count, 1, figsize=(width, height * count + 0.3), **options)
+    return figure, lettered(np.atleast_1d(axes))
 
 
-def panel_letter(axes, letter):
-    axes.set_title(f"({letter})", loc="left", fontsize=9, fontweight="bold")
+def lettered(axes):
+    for letter, ax in zip("abcdefghi", axes):
+        ax.set_title(f"({letter})", loc="left", fontsize=9, fontweight="bold")
+    return list(axes)
 
 
 def shades(count):
@@ -110,7 +107,7 @@ def power(value, digits=5):
 def thinned(items, most=7):
     """At most so many, evenly chosen, first and last kept."""
     if len(items) <= most:
-        return items
+        return list(items)
     return [items[i] for i in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 

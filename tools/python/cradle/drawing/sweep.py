@@ -4,7 +4,7 @@ import numpy as np
 
 from . import beyond
 from .cooling import ring_of, sticky_law
-from .style import BLUE, GREY, ORANGE, panel_letter, plt, shades, stacked, subplots
+from .style import BLUE, GREY, ORANGE, lettered, plt, shades, stacked, subplots
 from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
@@ -60,7 +60,7 @@ def error_of(result, name):
 # ---- free cooling
 
 def cooling_points(result):
-    return [p for p in result.points if p.text("initial", "type") == "ring" and len(p.series.get("time", ())) > 1]
+    return [p for p in result.points if p.word("initial", "type") == "ring" and len(p.means.get("time", ())) > 1]
 
 
 def label_of(point):
@@ -79,22 +79,22 @@ def draw_cooling(result, axes=None):
     others = [p for p in points if p is not reference]
     for point, colour in list(zip(others, shades(len(others)))) + ([(reference, "k")] if reference else []):
         particles, speed, spacing = ring_of(point)
-        later = point.series["time"] * speed / spacing > 0.03  # nothing has met before
-        time = point.series["time"][later]
-        energy = point.series["energy"][later] / particles
+        later = point.means["time"] * speed / spacing > 0.03  # nothing has met before
+        time = point.means["time"][later]
+        energy = point.means["energy"][later] / particles
         line = "--" if point.law == "inelastic" else "-"
         top.loglog(time, energy, line, color=colour, label=label_of(point), zorder=3 if point is reference else 2)
         if reference is not None:
-            seen = reference.series["time"] > 0
-            known = np.interp(np.log(time), np.log(reference.series["time"][seen]),
-                              np.log(reference.series["energy"][seen] / ring_of(reference)[0]), left=np.nan,
+            seen = reference.means["time"] > 0
+            known = np.interp(np.log(time), np.log(reference.means["time"][seen]),
+                              np.log(reference.means["energy"][seen] / ring_of(reference)[0]), left=np.nan,
                               right=np.nan)
             below.loglog(time, energy / np.exp(known), line, color=colour)
         else:
             below.loglog(time, energy / sticky_law(point, time), line, color=colour)
-    time = points[0].series["time"]
+    time = points[0].means["time"]
     law = sticky_law(points[0], time)
-    shown = law < 2 * max(p.series["energy"].max() / ring_of(p)[0] for p in points)
+    shown = law < 2 * max(p.means["energy"].max() / ring_of(p)[0] for p in points)
     top.plot(time[shown], law[shown], ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
     below.axhline(1, color=GREY, lw=0.8, zorder=0)
     top.set_ylabel(r"energy per particle $E\,/\,N$")
@@ -114,7 +114,7 @@ def draw_widths(result, keys, axes=None):
     spacing = first.setting("initial", "spacing", 1.0)
     error = error_of(result, "zone_width")
     error = np.zeros(len(width)) if error is None else error
-    figure, ax = subplots(axes, figsize=(5.2, 4.2), layout="constrained")
+    figure, ax = subplots(axes, figsize=(5.2, 4.2))
     other = ax.twiny()
     for axes, key, values, fixed, mark, line, colour in ((ax, SPEED, speed, loss, "o", "--", BLUE),
                                                          (other, LOSS, loss, speed, "s", "-", ORANGE)):
@@ -156,8 +156,7 @@ def draw_cuts(result, keys, axes=None):
     names = numbers(result)
     columns = dict(list(keys.items())[:3]) or {"point": np.arange(len(result.sweep[names[0]]))}
     size = (max(5.6, 3 * len(columns)), 1.9 * len(names) + 0.3)
-    figure, axes = subplots(axes, len(names), len(columns), figsize=size, layout="constrained", squeeze=False,
-                            sharex="col", sharey="row")
+    figure, axes = subplots(axes, len(names), len(columns), figsize=size, squeeze=False, sharex="col", sharey="row")
     for column, (key, x) in enumerate(columns.items()):
         cut = np.all([values == commonest(values) for name, values in keys.items() if name != key], axis=0)
         at = np.flatnonzero(cut & np.isfinite(x))
@@ -189,8 +188,7 @@ def draw_map(result, keys, axes=None):
     names, (x_key, y_key) = numbers(result), sorted(keys, key=lambda key: -len(np.unique(keys[key])))
     columns = min(2 if len(names) < 5 else 3, len(names))
     rows = -(-len(names) // columns)
-    figure, axes = subplots(axes, rows, columns, figsize=(3.4 * columns, 2.8 * rows), layout="constrained",
-                            squeeze=False)
+    figure, axes = subplots(axes, rows, columns, figsize=(3.4 * columns, 2.8 * rows), squeeze=False)
     x, y = keys[x_key], keys[y_key]
     for k, ax in enumerate(axes.flat):
         if k >= len(names):
@@ -205,5 +203,5 @@ def draw_map(result, keys, axes=None):
         spread(ax.set_xscale, x, 8)
         spread(ax.set_yscale, y, 8)
         ax.set(xlabel=x_key, ylabel=y_key)
-        panel_letter(ax, "abcdefghi"[k])
+    lettered(axes.flat[:len(names)])
     return figure

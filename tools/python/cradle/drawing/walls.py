@@ -8,13 +8,13 @@ FEW = 12  # snapshots, for quantiles against time to mean something
 
 
 def pictures(result, _theory, _units):
-    if "wall_work" not in result.series or len(result.snapshots) < FEW:
+    if "wall_work" not in result.means or len(result.snapshots) < FEW:
         return []
     return [("walls", lambda axes=None: draw(result, axes))]
 
 
 def draw(result, axes):
-    series, snapshots = result.series, result.snapshots
+    series, snapshots = result.means, result.snapshots
     figure, axes = stacked(axes, 3, height=2.2, sharex=True)
     times = np.array([s["time"] for s in snapshots])
     places = np.array([np.quantile(s["x"], (0.1, 0.5, 0.9)) for s in snapshots])

@@ -3,13 +3,13 @@ over time, beside the linear model of section VI: equations (9) and (10) with 2L
 width is the length over which u+ falls from u0 to u_crit at its steepness; (13) counts the fall to 0."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, stacked
+from .style import BLUE, GREY, ORANGE, beside, stacked
 
 EXCESS = np.sqrt(6.0)  # k = n~/n0, where (12) and (13) agree
 
 
 def pictures(result, _theory, units):
-    return [("zone", lambda axes=None: draw_zone(result, units, axes))] if "x" in result.zone else []
+    return [("zone", lambda axes=None: draw_zone(result, units, axes))] if "x" in result.table("zone") else []
 
 
 def model_width(speed, loss, spacing=1.0):
@@ -18,7 +18,7 @@ def model_width(speed, loss, spacing=1.0):
 
 
 def draw_zone(result, units, axes=None):
-    zone = result.zone
+    zone = result.table("zone")
     speed, loss = result.setting("initial", "speed", 0.5), result.setting("law", "loss", np.nan)
     spacing = result.setting("initial", "spacing", 1.0)
     x = zone["x"] / units.x
@@ -58,8 +58,7 @@ def draw_zone(result, units, axes=None):
     density.set_ylim(bottom=0)
     mass.set_ylabel(units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"))
     mass.set_xlabel(units.position_label())
-    for ax in (velocity, density):
-        ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    beside(velocity), beside(density)
     begin, end = zone["from"] / units.t, zone["until"] / units.t
     velocity.set_title(f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples", loc="right",
                        fontsize=8)

@@ -5,7 +5,7 @@ import os
 from builtins import open as builtins_open  # hidden by ours
 
 from ..files import whole
-from ..result import Result, open, without_part
+from ..result import Result, open
 
 
 def report(result: Result | str | os.PathLike, output: str | os.PathLike | None = None) -> str:
@@ -17,7 +17,7 @@ def report(result: Result | str | os.PathLike, output: str | os.PathLike | None 
     Raises Error where the result cannot be read or the page not be written.
     """
     opened = result if isinstance(result, Result) else open(result)
-    output = os.fspath(output) if output is not None else os.path.splitext(without_part(opened.path))[0] + ".html"
+    output = os.fspath(output or os.path.splitext(opened.path.removesuffix(".part"))[0] + ".html")
     from .page import page  # matplotlib, late
     text = page(opened)
     with whole(output) as part, builtins_open(part, "w", encoding="utf-8", newline="\n") as file:

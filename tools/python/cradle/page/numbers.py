@@ -138,8 +138,7 @@ def proved(result: Result) -> list[tuple[str, str, str]]:
             if not all(np.isfinite(float(bound)) for bound in bounds):
                 continue
             shown, right = enclosed(*bounds)
-            entries.append((label, f'<span class="digits">{shown}</span>',
-                            f"{unit(low.unit)} · {right} digits proved"))
+            entries.append((label, f'<span class="digits">{shown}</span>', f"{unit(low.unit)} · {right} digits proved"))
     return entries
 
 

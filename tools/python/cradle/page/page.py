@@ -11,7 +11,7 @@ import re
 from .. import program
 from ..errors import Error
 from ..plot import PICTURES, drawings
-from ..result import Result, without_part
+from ..result import Result
 from ..seal import read_seal
 from .elements import code, number, preformatted, rows, section, text
 from .numbers import last, numbers, warnings
@@ -80,9 +80,9 @@ def lead(result: Result) -> str:
 
 def pictures(result: Result) -> str:
     found = []
-    for order, (name, draw) in enumerate(drawings(result).items()):
+    for name, draw in drawings(result).items():
         caption = PICTURES.get(name, name)
-        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), order, caption)}\n'
+        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), caption)}\n'
                      f"<figcaption>{text(caption)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
                      "</figure>\n")
     return "".join(found)
@@ -95,7 +95,7 @@ def microscope(result: Result) -> str:
     if data is None:
         return ""
     style, script = ("\n".join(beside(os.path.join("..", name)) for name in names)
-                     for names in (module.STYLES, module.SCRIPTS))
+                     for names in (("microscope.css",), module.SCRIPTS))
     content = json.dumps(data, separators=(",", ":"), sort_keys=True).replace("<", "\\u003c")
     return (f'<style>\n{style}</style>\n<div id="microscope-canvas"></div>\n'
             f'<script type="application/json" id="microscope-data">{content}</script>\n<script>\n{script}\n'
@@ -106,7 +106,7 @@ def microscope(result: Result) -> str:
 def command_of(result: Result) -> list[str]:
     """The words after `cradle` that make this result from the scene beside it."""
     name = str(result.attributes.get("name", "scene"))
-    output = os.path.basename(without_part(result.path))
+    output = os.path.basename(result.path.removesuffix(".part"))
     about = result.attributes
     if result.certificate.attributes:
         words = ["certify", f"{name}.toml"]

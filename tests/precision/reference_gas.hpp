@@ -1,42 +1,20 @@
-// Proofs against a gas that shares nothing with the engine nor the checker: every pair of neighbours is tried for who
-// meets next, there the law acts. Places are kept as where a particle would have been at 0, where rationals stay short.
-// In rationals, exact; where a scene has roots, in 100 digits.
+// A gas that shares no code with the engine or the checker of proofs: the next collision is searched among all pairs of
+// neighbours. The place of a particle is held as the place from which its flight would have started at time 0, which
+// keeps rationals short. In rationals it is exact; scenes with roots take 100 digits.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace cradle::tests {
-
-using test::Rational;
+namespace cradle::test {
 
 enum class GasLaw { inelastic, contact_time, merging, sticky, wet };
-
-// 12.5, -3e-20: without rounding in rationals.
-template <class T> T decimal(const std::string& text) {
-  const auto e = text.find_first_of("eE");
-  std::string digits = text.substr(0, e);
-  long power = e == text.npos ? 0 : std::stol(text.substr(e + 1));
-  const bool negative = digits.starts_with('-');
-  if (negative || digits.starts_with('+')) digits.erase(0, 1);
-  if (const auto point = digits.find('.'); point != digits.npos) {
-    power -= static_cast<long>(digits.size() - point - 1);
-    digits.erase(point, 1);
-  }
-  // Boost reads a leading 0 as octal.
-  digits.erase(0, std::min(digits.find_first_not_of('0'), digits.size() - 1));
-  using Integer = boost::multiprecision::cpp_int;
-  const Integer shift = pow(Integer(10), static_cast<unsigned>(power < 0 ? -power : power));
-  const T size = power < 0 ? T(T(Integer(digits)) / T(shift)) : T(Integer(Integer(digits) * shift));
-  return negative ? T(-size) : size;
-}
 
 // Particles that are together are one; cells stand from left to right, on a ring up to the seam.
 template <class T> struct Gas {
@@ -51,12 +29,33 @@ template <class T> struct Gas {
 
   T time{0};
   std::uint64_t collisions = 0, below_cutoff = 0, merges = 0;
-  bool tied = false;  // three met at one time: what follows is nobody's to say
+  bool tied = false;  // three met at one time: the motion after that is undefined
 
   // All collisions up to a time, or the first `most` of all.
   void advance(const T& until, std::uint64_t most) {
-    while (collisions < most && !tied && step(until)) continue;
+    while (collisions < most && next(until)) continue;
     if (collisions < most) time = until;
+  }
+  // The next collision not after `until`, made; `wrong_side`: as if it were on the other side of the cut-off.
+  std::optional<std::pair<std::int64_t, std::int64_t>> next(const T& until, bool wrong_side = false) {
+    std::optional<T> first;
+    std::vector<std::size_t> together;
+    for (std::size_t k = 0; k < pairs() && !tied; ++k) {
+      const T w = cells[k].v - cells[after(k)].v;
+      if (!(w > 0)) continue;
+      const T due = (cells[after(k)].origin + seam(k) - cells[k].origin) / w;
+      if (!first || due < *first) first = due, together.clear();
+      if (due == *first) together.push_back(k);
+    }
+    if (!first || *first > until) return std::nullopt;
+    time = *first;
+    for (const std::size_t a : together)
+      for (const std::size_t b : together) tied = tied || (a != b && (after(a) == b || after(b) == a));
+    if (tied) return std::nullopt;
+    const std::size_t k = together.front();
+    const std::pair collision{cells[k].particles.front(), cells[after(k)].particles.front()};
+    collide(k, wrong_side);
+    return collision;
   }
   T energy() const {
     T twice(0);
@@ -86,24 +85,7 @@ template <class T> struct Gas {
   std::size_t after(std::size_t k) const { return k + 1 < cells.size() ? k + 1 : 0; }
   T seam(std::size_t k) const { return k + 1 < cells.size() ? T(0) : length; }
 
-  bool step(const T& until) {
-    std::optional<T> first;
-    std::vector<std::size_t> together;
-    for (std::size_t k = 0; k < pairs(); ++k) {
-      const T w = cells[k].v - cells[after(k)].v;
-      if (!(w > 0)) continue;
-      const T due = (cells[after(k)].origin + seam(k) - cells[k].origin) / w;
-      if (!first || due < *first) first = due, together.clear();
-      if (due == *first) together.push_back(k);
-    }
-    if (!first || *first > until) return false;
-    time = *first;
-    for (const std::size_t a : together)
-      for (const std::size_t b : together) tied = tied || (a != b && (after(a) == b || after(b) == a));
-    if (!tied) collide(together.front());
-    return true;
-  }
-  void collide(std::size_t k) {
+  void collide(std::size_t k, bool wrong_side) {
     Cell &l = cells[k], &r = cells[after(k)];
     const T w = l.v - r.v, all = l.m + r.m, reduced = l.m * r.m / all;
     const auto rested = [&](const Cell& cell) { return cell.touched && time - *cell.touched < contact_time; };
@@ -115,7 +97,7 @@ template <class T> struct Gas {
         (law == GasLaw::wet && !(w * w > 2 * loss / reduced)))
       return merge(k, x_l);
     if (law == GasLaw::wet) return pass(k, after_bridge(w, reduced), x_l, x_r);
-    const bool below = memory || (law != GasLaw::merging && w < cutoff);
+    const bool below = memory || (law != GasLaw::merging && (w < cutoff) != wrong_side);
     below_cutoff += below;
     const T impulse = reduced * w * (1 + (below ? T(1) : restitution));
     l.v -= impulse / l.m;
@@ -150,4 +132,4 @@ template <class T> struct Gas {
   }
 };
 
-}  // namespace cradle::tests
+}  // namespace cradle::test

@@ -1,4 +1,4 @@
-#include "cradle/tools/store/state_file.hpp"
+#include "cradle/tools/store/checkpoint.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -6,8 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <filesystem>
-#include <fstream>
+#include <stdexcept>
 
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/version.hpp"
@@ -16,15 +15,17 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::string_view begin = "CRADLEC2", begin_of_version_1 = "CRADLEC1";
+constexpr std::string_view begin = begin_of(Stored::checkpoint);
 
 }  // namespace
 
 // ---- writing
 
-StateWriter::StateWriter(const std::string& path) : file_(path) {
+StateWriter::StateWriter(const std::string& path, const CheckpointHeader& header) : file_(path) {
   buffer_.reserve(buffer_size);
   put(begin.data(), begin.size());
+  save(*this, std::string(version));
+  save(*this, header);
 }
 
 void StateWriter::flush() {
@@ -42,22 +43,13 @@ void StateWriter::finish() {
 
 // ---- reading
 
-bool StateReader::is_state(const std::string& path) {
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return false;
-  std::ifstream file(path, std::ios::binary);
-  std::string found(begin.size(), '\0');
-  if (!file.read(found.data(), static_cast<std::streamsize>(found.size()))) return false;
-  if (found == begin_of_version_1) throw of_version(path, 1);
-  return found == begin;
-}
-
 Error StateReader::damaged(const std::string& what) const {
   return {{path_, 0, ""}, "not a checkpoint, or damaged", what, "remove it: the run then starts anew", Exit::io};
 }
 
 StateReader::StateReader(const std::string& path)
     : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  stored_in(path);  // refuses other formats
   struct stat found {};
   if (file_ < 0 || ::fstat(file_, &found) != 0)
     throw Error({path, 0, ""}, "could not be read", std::strerror(errno), "check its name and rights", Exit::io);
@@ -77,9 +69,16 @@ StateReader::StateReader(const std::string& path)
   if (::lseek(file_, 0, SEEK_SET) != 0) throw damaged("it cannot be read twice");
   after_buffer_ = size - sizeof check;
   fill();
-  if (std::string_view(buffer_).substr(0, begin.size()) == begin_of_version_1) throw of_version(path, 1);
-  if (std::string_view(buffer_).substr(0, begin.size()) != begin) throw damaged("of another kind or version");
+  if (!std::string_view(buffer_).starts_with(begin)) throw damaged("of another kind");
   at_ = begin.size();
+  try {
+    std::string program;
+    load(*this, program);
+    check_program(program, path);
+    load(*this, header_);
+  } catch (const std::invalid_argument& error) {
+    throw damaged(error.what());
+  }
 }
 
 void StateReader::fill() {
@@ -105,14 +104,6 @@ void StateReader::get_slowly(char* data, std::size_t size) {
     data += now;
     size -= now;
   }
-}
-
-std::string StateReader::text() {
-  const std::uint64_t size = integer();
-  if (size > left()) throw damaged("it ends too early");
-  std::string text(size, '\0');
-  get(text.data(), text.size());
-  return text;
 }
 
 void StateReader::end() const {

@@ -1,0 +1,201 @@
+#pragma once
+// How a segment of a chain in gaps uses steps (steps.hpp): it puts its copy into a line of arrays, makes the collisions
+// at cuts, fronts and walls itself, and takes back gaps, counts and losses. Where steps cannot, it is as before, but
+// for what the segment's part has logged: the segment takes its copy anew and goes through its event loop.
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+#include "cradle/core/chains/masses.hpp"
+#include "cradle/core/engine/ledger.hpp"
+#include "cradle/core/engine/status.hpp"
+#include "cradle/core/laws/law.hpp"
+#include "cradle/core/parallel/gap_segment.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
+
+namespace cradle {
+
+// Uses private members of the segment's part. Law: any that bounces.
+template <class Law, class Masses>
+requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<double, Masses>> final
+    : private StepScalars {
+ public:
+  static constexpr bool possible = true;
+  using Part = GapSegment<double, Masses>;
+  using Report = typename Part::Report;
+
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
+  bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
+    if (report.pace.rest > 0) return --report.pace.rest, false;
+    part_ = &part, law_ = &law, report_ = &report;
+    const StepTask task = task_of(stop, most);
+    if (!(task.rounder > 0)) return false;  // a plain sum
+    fill();
+    made_ = {};
+    ledger_ = part.line_.gaps.ledger();
+    StepResult inner;
+    StepPace& pace = report.pace;
+    const bool done = steps.run(line_, task, *this, pace, inner);
+    pace.rest = done ? 0 : pace.next_rest;
+    pace.next_rest = done ? std::max(pace.next_rest / 2, 1) : std::min(2 * pace.next_rest, 64);
+    if (!done) return false;
+    report.counts = made_.counts;
+    report.counts.collisions += inner.collisions;
+    report.counts.below_cutoff += inner.below_cutoff;
+    report.last_collision = std::max(made_.last, inner.last);
+    if (report.counts.collisions >= most) return false;
+    ledger_.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
+    take_back();
+    return true;
+  }
+
+ private:
+  static constexpr bool equal = std::same_as<Masses, IdenticalMasses<double>>;
+
+  struct Made {
+    Counts counts;
+    double last = -StepLine::never;
+  };
+
+  StepTask task_of(double stop, std::uint64_t most) const {
+    const auto& gaps = part_->line_.gaps;
+    StepTask task;
+    if constexpr (std::same_as<Law, Inelastic<double>>) {
+      task.law = law_->soft() ? StepLaw::soft : StepLaw::hard;
+      task.restitution = law_->restitution();
+      task.half_sum = law_->half_sum();
+      task.cutoff = law_->cutoff();
+      task.lost = law_->lost_share();
+      if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
+      task.unequal = !equal;
+    }
+    task.floor = gaps.floor();
+    task.rounder = gaps.ledger().rounder();
+    task.per_fine = gaps.ledger().per_fine();
+    task.stop = stop;
+    task.most = most;
+    return task;
+  }
+
+  void fill() {
+    const auto& gaps = part_->line_.gaps;
+    constexpr Slot first = Part::first();
+    line_.resize(part_->last() + 1 - first);
+    line_.lags = false;
+    for (std::size_t i = 0; i < line_.gaps(); ++i) {
+      const auto& cell = gaps[first + i];
+      line_.gap[i] = cell.gap, line_.closing[i] = cell.closing, line_.time[i] = cell.time, line_.due[i] = cell.due;
+      line_.lag[i] = gaps.lag(first + i);
+      line_.lags |= line_.lag[i] != 0;
+    }
+    if constexpr (!equal)
+      for (std::size_t i = 0; i < line_.gaps(); ++i) {
+        const TwoMasses<double> masses = part_->line_.masses.of_pair(first + i);
+        const bool left_lighter = masses.left < masses.right;
+        const double fraction = (left_lighter ? masses.left : masses.right) / (masses.left + masses.right);
+        line_.fraction[i] = left_lighter ? -fraction : fraction;
+        line_.reduced[i] = masses.reduced();
+      }
+    line_.bound_tiles();
+    set_inner();
+  }
+  void set_inner() {
+    line_.inner_first = static_cast<std::uint32_t>(part_->inner_first_ - Part::first());
+    line_.inner = static_cast<std::uint32_t>(part_->inner_);
+  }
+  void take_back() {
+    auto& gaps = part_->line_.gaps;
+    for (std::size_t i = 0; i < line_.gaps(); ++i) {
+      auto& cell = gaps[Part::first() + i];
+      cell.gap = line_.gap[i], cell.closing = line_.closing[i], cell.time = line_.time[i], cell.due = line_.due[i];
+    }
+    gaps.take_lags(Part::first(), line_.lag, line_.gaps());
+    gaps.set_ledger(ledger_);
+  }
+
+  // ---- the plain loop's collision (GapLine::strike), where all that is not plain is refused
+  bool collide(std::size_t i) override {
+    const double time = line_.due[i], closing = line_.closing[i], since = flown(i, time);
+    if (since <= time * 0x1p-40 || is_negative(since)) return false;
+    const Slot s = Part::first() + i;
+    const Outcome<double> outcome = part_->outcome_at_edge(*law_, s, closing);
+    const auto edge = part_->at_edge(s, time, closing, outcome, *report_);
+    set_inner();
+    if (edge.notice != Notice::none) return false;
+    line_.gap[i] = 0;
+    line_.closing[i] = outcome.closing;
+    line_.time[i] = time;
+    line_.due[i] = StepLine::never;
+    line_.lag[i] = 0;
+    if (i > 0 && !kick(i - 1, outcome.to_left, time)) return false;
+    if (i + 1 < line_.gaps() && !kick(i + 1, outcome.to_right, time)) return false;
+    if (!edge.own) return true;
+    ledger_.add(outcome.energy_lost);
+    ++made_.counts.collisions;
+    made_.counts.below_cutoff += outcome.below_cutoff;
+    made_.last = std::max(made_.last, time);
+    return true;
+  }
+  bool kick(std::size_t i, double gain, double time) {
+    const double since = flown(i, time);
+    if (!(since > 0)) return false;
+    line_.gap[i] -= line_.closing[i] * since;
+    line_.time[i] = time;
+    line_.lag[i] = 0;
+    line_.closing[i] += gain;
+    if (line_.gap[i] < part_->line_.gaps.floor()) return false;
+    line_.due[i] = line_.closing[i] > 0 ? time + line_.gap[i] / line_.closing[i] : StepLine::never;
+    return true;
+  }
+  double flown(std::size_t i, double time) const {
+    const double since = time - line_.time[i];
+    return line_.lags ? since - line_.lag[i] : since;
+  }
+
+  void outcomes(const std::uint32_t* gaps, std::size_t count) override {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Outcome<double> outcome =
+          (*law_)(line_.closing[gaps[k]], part_->line_.masses.of_pair(Part::first() + gaps[k]));
+      line_.after[k] = outcome.closing, line_.to_left[k] = outcome.to_left, line_.to_right[k] = outcome.to_right;
+      ledger_.add(outcome.energy_lost);
+      made_.counts.below_cutoff += outcome.below_cutoff;
+    }
+  }
+
+  void keep() override {
+    kept_ = {made_,
+             ledger_,
+             part_->edges(),
+             report_->left.size(),
+             report_->right.size(),
+             report_->to_left.at_end.size(),
+             report_->to_right.at_end.size()};
+  }
+  void restore() override {
+    made_ = kept_.made, ledger_ = kept_.ledger;
+    part_->set_edges(kept_.edges);
+    report_->left.resize(kept_.left), report_->right.resize(kept_.right);
+    report_->to_left.at_end.resize(kept_.at_left), report_->to_right.at_end.resize(kept_.at_right);
+    set_inner();
+  }
+
+  struct Kept {
+    Made made;
+    Ledger<double> ledger;
+    typename Part::Edges edges;
+    std::size_t left, right, at_left, at_right;  // lengths of logs
+  };
+
+  StepLine line_;
+  Part* part_ = nullptr;
+  const Law* law_ = nullptr;
+  Report* report_ = nullptr;
+  Made made_;  // at edges; by other laws all that is below the cut-off
+  Ledger<double> ledger_;
+  Kept kept_;
+};
+
+}  // namespace cradle

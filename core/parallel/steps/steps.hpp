@@ -1,0 +1,74 @@
+#pragma once
+// Collisions without a queue, in steps of time and as vectors: the plain interface of a compiled unit. It takes a line
+// of gaps (line.hpp), a law and a time, and makes all collisions up to it, or says that it could not: then what it was
+// given is for the event loop (segment.hpp). Without the unit, or where it was built without Highway, there are no
+// steps and the event loop does everything. core/README.md, Steps, has the argument why the result is the same.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "cradle/core/parallel/steps/line.hpp"
+
+namespace cradle {
+
+// What steps leave to scalar code: collisions at cuts, fronts and walls, and laws that are not vectors.
+class StepScalars {
+ public:
+  StepScalars() = default;
+  StepScalars(const StepScalars&) = delete;
+  StepScalars& operator=(const StepScalars&) = delete;
+  virtual ~StepScalars() = default;
+
+  // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order.
+  virtual bool collide(std::size_t gap) = 0;
+  // StepLaw::any: what comes of collisions at so many inner gaps; enters them in counts and ledger.
+  virtual void outcomes(const std::uint32_t* gaps, std::size_t count) = 0;
+  // An undo copy of what all of this has entered anywhere.
+  virtual void keep() = 0;
+  virtual void restore() = 0;
+};
+
+// Of Inelastic (law.hpp), for a restitution from 1/2 on and below it; or by StepScalars::outcomes.
+enum class StepLaw : std::uint8_t { hard, soft, any };
+
+struct StepTask {
+  StepLaw law = StepLaw::any;
+  double restitution = 1, half_sum = 1, cutoff = 0;
+  double lost = 0;  // of w^2; with unequal masses of reduced mass times w^2
+  // Unequal masses: StepLine::fraction is the lighter mass over the sum, negative where the left particle is the
+  // lighter one, StepLine::reduced the reduced mass.
+  bool unequal = false;
+  double floor = 0;                  // a gap below it is for the event loop
+  double rounder = 0, per_fine = 0;  // the ledger's grid
+  double stop = 0;                   // local time up to which collisions are made
+  std::uint64_t most = 0;            // fewer collisions than that
+};
+
+// At inner gaps.
+struct StepResult {
+  std::uint64_t collisions = 0, below_cutoff = 0;
+  double last = -StepLine::never;  // time of the last one
+  double lost = 0, rest = 0;       // for Ledger::add_sums
+};
+
+// How a segment goes: steps of this length (0: unknown), such that about so many passes make one; an undo copy after so
+// many steps. After slabs in which steps did not do, so many are left to the event loop at once.
+struct StepPace {
+  double length = 0, passes = 4;
+  int stretch = 32;
+  int rest = 0, next_rest = 1;
+};
+
+struct Steps {
+  const char* target;  // the vectors for which it is compiled
+  // Makes all collisions of the task, or returns false and leaves anything in the line.
+  bool (*run)(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result);
+};
+
+// Those for the vectors of this processor that are compiled, widest first.
+const std::vector<Steps>& all_steps();
+// The first one if it is faster than the event loop, else null.
+const Steps* fastest_steps();
+
+}  // namespace cradle

@@ -1,0 +1,330 @@
+// Steps (core/parallel/steps). Proves: with steps, on each kind of vectors, runs in segments have the bits of the plain
+// loop: every gap, closing speed, local time and lag, counts, losses and what walls gave; for all laws that bounce, on
+// lines, rows and rings, with equal and unequal masses, on lattices and through collapses. Nearly all collisions of
+// gases are made in steps.
+//
+// The same program is built with errors planted in the vectors (CMakeLists.txt): it must fail with each of them.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <string>
+
+#include "cradle/core/initial/cold.hpp"
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
+#include "cradle/tests/core/segmented.hpp"
+
+namespace steps_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+using Equal = GapChain<double>;
+using Unequal = GapChain<double, IndividualMasses<double>>;
+
+std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+
+template <class Chain> void expect_same_bits(const Chain& a, const Chain& b) {
+  ASSERT_EQ(a.last() - a.first(), b.last() - b.first());
+  const auto &left = a.line().gaps, &right = b.line().gaps;
+  for (Slot k = 0; k <= a.last() - a.first(); ++k) {
+    const Slot s = a.first() + k, r = b.first() + k;
+    ASSERT_EQ(bits(left[s].gap), bits(right[r].gap)) << k;
+    ASSERT_EQ(bits(left[s].closing), bits(right[r].closing)) << k;
+    ASSERT_EQ(bits(left[s].time), bits(right[r].time)) << k;
+    ASSERT_EQ(bits(left[s].due), bits(right[r].due)) << k;
+    ASSERT_EQ(bits(left.lag(s)), bits(right.lag(r))) << k;
+  }
+  for (const End end : {End::left, End::right}) {
+    ASSERT_EQ(a.walls().tally(end).collisions, b.walls().tally(end).collisions);
+    ASSERT_EQ(a.walls().tally(end).given.value(), b.walls().tally(end).given.value());
+  }
+}
+
+// All vectors that this processor has.
+std::vector<const Steps*> targets() {
+  std::vector<const Steps*> all;
+  for (const Steps& steps : all_steps()) all.push_back(&steps);
+  return all;
+}
+
+struct Made {
+  std::uint64_t collisions = 0, in_steps = 0, slabs = 0;
+};
+
+// One run in the plain loop, and one for each way to go in segments, through the same times.
+template <class Chain, class Law>
+Made expect_same(const Scene<double>& scene, const Law& law, const std::vector<double>& times,
+                 const std::vector<SegmentsAs>& ways) {
+  using Run = Simulation<double, Law, Chain>;
+  Made made;
+  std::vector<Run> segmented;
+  std::vector<Segments<Law, Chain>> segments;
+  for (const SegmentsAs& as : ways) {
+    segmented.emplace_back(law, Chain(scene, 0.));
+    segments.emplace_back(threads(as.threads), as.how);
+  }
+  Run plain(law, Chain(scene, 0.));
+  for (const double time : times) {
+    const Status status = plain.advance(time);
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      SCOPED_TRACE(std::string(ways[k].how.steps->target) + ", " + std::to_string(ways[k].how.gaps) + " gaps, " +
+                   std::to_string(ways[k].how.ghosts) + " ghosts, " + std::to_string(ways[k].threads) +
+                   " threads, until " + std::to_string(time));
+      EXPECT_EQ(segmented[k].advance(time, segments[k]), status);
+      expect_same_state(plain, segmented[k], time);
+      expect_same_bits(plain.chain(), segmented[k].chain());
+      if (::testing::Test::HasFailure()) return made;
+    }
+    if (status != Status::reached) break;
+  }
+  for (const auto& one : segments) {
+    made.collisions += one.statistics().collisions;
+    made.in_steps += one.statistics().in_steps;
+    made.slabs += one.statistics().slabs;
+  }
+  return made;
+}
+
+// Every segmentation, and every kind of vectors, each with a segmentation of its own beside the widest.
+std::vector<SegmentsAs> all_ways() {
+  std::vector<SegmentsAs> ways = segmentations();
+  for (SegmentsAs& as : ways) as.how.steps = targets().front();
+  for (std::size_t k = 1; k < targets().size(); ++k) {
+    ways.push_back(segmentations()[k % segmentations().size()]);
+    ways.back().how.steps = targets()[k];
+  }
+  return ways;
+}
+
+template <class Chain>
+void expect_same_by_all_laws(const Scene<double>& scene, const std::vector<double>& times, double least_in_steps) {
+  Made all;
+  const auto check = [&](const char* name, const auto& law) {
+    SCOPED_TRACE(name);
+    const Made made = expect_same<Chain>(scene, law, times, all_ways());
+    all.collisions += made.collisions, all.in_steps += made.in_steps, all.slabs += made.slabs;
+  };
+  check("elastic", Inelastic<double>(1));
+  check("nearly elastic", Inelastic<double>(0.999, 1e-5));
+  check("with a cut-off", Inelastic<double>(0.9, 0.125));
+  check("soft", Inelastic<double>(0.3, 0.5));
+  if constexpr (std::same_as<Chain, Unequal>) check("of the speed", SpeedDependent<double>(0.8, 0.1, 0.6));
+  EXPECT_GT(all.slabs, 100U);
+  EXPECT_GE(static_cast<double>(all.in_steps), least_in_steps * static_cast<double>(all.collisions));
+}
+
+class Steps : public ::testing::Test {
+  void SetUp() override {
+    if (all_steps().empty()) GTEST_SKIP() << "built without Highway";
+  }
+};
+
+TEST_F(Steps, RowsThatAreStreamed) { expect_same_by_all_laws<Equal>(rshock<double>(1400), {490, 495}, 0.5); }
+TEST_F(Steps, GasOnALine) { expect_same_by_all_laws<Equal>(gas<double>(800), {1, 100}, 0.5); }
+TEST_F(Steps, GasOnARing) { expect_same_by_all_laws<Equal>(gas<double>(700, 700.), {10, 50}, 0.5); }
+TEST_F(Steps, UnequalMassesOnALine) { expect_same_by_all_laws<Unequal>(gas<double>(700, 0., true), {10, 100}, 0.5); }
+TEST_F(Steps, UnequalMassesOnARing) { expect_same_by_all_laws<Unequal>(gas<double>(700, 700., true), {10, 60}, 0.5); }
+// Collisions are simultaneous all over the line: for the event loop.
+TEST_F(Steps, LatticesFullOfTies) {
+  const auto nowhere = [](ParticleIndex) { return std::int64_t{0}; };
+  expect_same_by_all_laws<Equal>(std::make_shared<Rows<double>>(symmetric_rows<double>(900, 0.5, 1., nowhere)), {310},
+                                 0);
+}
+TEST_F(Steps, Walls) {
+  const Wall<double> hot{.position = -1, .temperature = 0.4, .seed = 5, .replica = 2};
+  const Wall<double> moving{.position = -1, .speed = 0.1, .restitution = 0.9};
+  const Wall<double> cool{.position = 801, .temperature = 0.1, .seed = 5, .replica = 2};
+  const auto between = [](const Scene<double>& scene, const Wall<double>& left, const Wall<double>& right) {
+    return std::make_shared<Walled<double>>(scene, left, right);
+  };
+  expect_same_by_all_laws<Equal>(between(gas<double>(800), hot, cool), {8, 60}, 0.5);
+  expect_same_by_all_laws<Unequal>(between(gas<double>(800, 0., true), moving, cool), {40}, 0.5);
+}
+
+// ---- the vectors alone, on a line whose ends fly apart, against the plainest loop
+
+struct NoEdges final : StepScalars {
+  int undone = 0;
+  bool collide(std::size_t) override { return false; }
+  void outcomes(const std::uint32_t*, std::size_t) override {}
+  void keep() override {}
+  void restore() override { ++undone; }
+};
+
+// The middle is `dense` times as dense, and cold: a fast particle sends its impulse far through it.
+void fill_with_gas(StepLine& line, std::size_t gaps, double dense, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> speed;
+  line.resize(gaps);
+  double before = speed(random);
+  for (std::size_t i = 0; i < gaps; ++i) {
+    const bool middle = i / 100 == 2;
+    const double next = speed(random) / (middle ? dense / 10 : 1), w = i == 0 || i + 1 == gaps ? -1e6 : before - next;
+    line.gap[i] = (0.5 + static_cast<double>(random() >> 11) * 0x1p-53) / (middle ? dense : 1);
+    line.closing[i] = w, line.time[i] = 0, line.lag[i] = 0;
+    line.due[i] = w > 0 ? line.gap[i] / w : StepLine::never;
+    before = next;
+  }
+  line.bound_tiles();
+  line.inner_first = 1, line.inner = static_cast<std::uint32_t>(gaps - 2);
+}
+
+StepTask elastic_until(double stop) {
+  StepTask task;
+  task.law = StepLaw::hard;
+  task.floor = 1e-300, task.rounder = 3e6, task.per_fine = 1;
+  task.stop = stop, task.most = 1'000'000'000;
+  return task;
+}
+
+// Elastic collisions in the order of their times.
+std::uint64_t plain_loop(StepLine& line, double stop) {
+  for (std::uint64_t made = 0;; ++made) {
+    const auto i = static_cast<std::size_t>(std::min_element(line.due, line.due + line.gaps()) - line.due);
+    const double time = line.due[i], w = line.closing[i];
+    if (!(time <= stop)) return made;
+    for (const std::size_t k : {i - 1, i + 1}) {
+      line.gap[k] -= line.closing[k] * (time - line.time[k]);
+      line.time[k] = time;
+      line.closing[k] += w;
+      line.due[k] = line.closing[k] > 0 ? time + line.gap[k] / line.closing[k] : StepLine::never;
+    }
+    line.gap[i] = 0, line.closing[i] = -w, line.time[i] = time, line.due[i] = StepLine::never;
+  }
+}
+
+// Where impulses run far some of what steps make is out of order: that is found and made again. In a gas hardly ever.
+TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
+  constexpr std::size_t gaps = 500;
+  constexpr double stop = 6;
+  int undone_in_gas = 0, undone_in_core = 0, done = 0;
+  for (const cradle::Steps* steps : targets())
+    for (const double dense : {1., 300.})
+      for (std::uint64_t seed = 1; seed < 20; ++seed) {
+        SCOPED_TRACE(std::string(steps->target) + ", seed " + std::to_string(seed));
+        StepLine plain, line;
+        fill_with_gas(plain, gaps, dense, seed);
+        fill_with_gas(line, gaps, dense, seed);
+        NoEdges scalars;
+        StepResult result;
+        StepPace pace{.length = 0.003};
+        if (!steps->run(line, elastic_until(stop), scalars, pace, result)) {
+          ASSERT_GT(dense, 1) << "a gas is for steps";
+          continue;  // too few collisions in a step to pay
+        }
+        ++done;
+        EXPECT_EQ(result.collisions, plain_loop(plain, stop));
+        for (std::size_t i = 0; i < gaps; ++i) {
+          ASSERT_EQ(bits(line.gap[i]), bits(plain.gap[i])) << i;
+          ASSERT_EQ(bits(line.closing[i]), bits(plain.closing[i])) << i;
+          ASSERT_EQ(bits(line.time[i]), bits(plain.time[i])) << i;
+          ASSERT_EQ(bits(line.due[i]), bits(plain.due[i])) << i;
+        }
+        (dense > 1 ? undone_in_core : undone_in_gas) += scalars.undone;
+      }
+  EXPECT_GT(done, 30 * static_cast<int>(targets().size()));
+  EXPECT_LE(undone_in_gas, 4);
+  EXPECT_GT(undone_in_core, 0) << "steps that fail are part of what is to be shown";
+}
+
+// Of segments as they are chosen, nearly all collisions are made in steps, and cuts hold.
+TEST_F(Steps, MakeNearlyAllCollisionsOfAGas) {
+  for (const cradle::Steps* steps : targets()) {
+    const Made made = expect_same<Equal>(gas<double>(3000), Inelastic<double>(0.999, 1e-5), {60},
+                                         {{{.gaps = 700, .anywhere = true, .steps = steps}, 2}});
+    EXPECT_GT(made.slabs, 4U);
+    EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions)) << steps->target;
+  }
+}
+
+TEST_F(Steps, SlowFigure2ThroughItsCollapse) {
+  const Made made = expect_same<Equal>(rshock<double>(8000), Inelastic<double>(0.999, 1e-5), {6000, 6500, 6550},
+                                       {{{.steps = targets().front()}, 2}});
+  EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions));
+}
+
+// ---- random scenes: seconds here; by hand as many as CRADLE_FUZZ_SECONDS says, from the scene CRADLE_FUZZ_SEED on
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : random_(seed) {}
+  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
+  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+  template <class T> T one_of(std::initializer_list<T> all) { return all.begin()[below(all.size())]; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+Scene<double> random_scene(Dice& dice, bool unequal, double& duration) {
+  const auto n = static_cast<ParticleIndex>(20 + 2 * dice.below(dice.one_of<std::size_t>({30, 200, 800})));
+  duration = dice.one_of({1., 20., 60.}) * dice.uniform();
+  if (!unequal && dice.below(4) == 0) {
+    duration += static_cast<double>(n) * 0.2;
+    return std::make_shared<Rows<double>>(
+        symmetric_rows<double>(n, 0.5, 1., uniform_displacement(dice.one_of({0.4, 0.05, 1e-6}), dice.below(1000), 0)));
+  }
+  const bool ring = dice.below(3) == 0, lattice = dice.below(8) == 0;
+  const double still = dice.one_of({0., 0., 0.7}), heavy = dice.one_of({1.0001, 3., 50.});
+  std::vector<double> x, v, m;
+  for (ParticleIndex i = 0; i < n; ++i) {
+    x.push_back(static_cast<double>(i) + (lattice ? 0 : 0.5 * dice.uniform()));
+    v.push_back(dice.uniform() < still ? 0 : lattice ? dice.one_of({-1., 0., 1.}) : 2 * dice.uniform() - 1);
+    if (unequal) m.push_back(dice.below(2) == 0 ? 1 : heavy);
+  }
+  const double last = static_cast<double>(n);
+  const Scene<double> scene = std::make_shared<List<double>>(x, v, m, ring ? last : 0.);
+  if (ring || dice.below(3) > 0) return scene;
+  const auto wall = [&](double at) -> std::optional<Wall<double>> {
+    if (dice.below(3) == 0) return {};
+    return Wall<double>{
+        .position = at, .restitution = dice.uniform(), .temperature = dice.one_of({0., 0.3}), .seed = 3};
+  };
+  return std::make_shared<Walled<double>>(scene, wall(-0.5), wall(last + 0.5));
+}
+
+template <class Chain> void fuzz_once(Dice& dice) {
+  double duration = 0;
+  const Scene<double> scene = random_scene(dice, std::same_as<Chain, Unequal>, duration);
+  const std::vector<double> times{0.6 * duration, duration};
+  std::vector<SegmentsAs> ways;
+  for (const cradle::Steps* steps : targets())
+    ways.push_back({{.gaps = 1 + dice.below(dice.one_of<std::size_t>({8, 100, 2000})),
+                     .ghosts = 1 + dice.below(80),
+                     .collisions = dice.one_of({0., 0.5, 4., 20.}),
+                     .anywhere = true,
+                     .steps = steps},
+                    static_cast<unsigned>(1 + dice.below(3))});
+  // Not what collapses: the plain loop takes minutes for it.
+  const double restitution = dice.one_of({1., 0.999, 0.95, 0.6, 0.4});
+  const double cutoff = restitution > 0.99 ? dice.one_of({0., 1e-5, 0.1}) : dice.one_of({0.01, 0.1});
+  if (std::same_as<Chain, Unequal> && dice.below(3) == 0)
+    expect_same<Unequal>(scene, SpeedDependent<double>(restitution, 0.05 + dice.uniform(), 0.1 + dice.uniform()), times,
+                         ways);
+  else
+    expect_same<Chain>(scene, Inelastic<double>(restitution, cutoff), times, ways);
+}
+
+TEST_F(Steps, RandomScenes) {
+  const char* asked = std::getenv("CRADLE_FUZZ_SECONDS");
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(asked == nullptr ? 4. : std::atof(asked));
+  const char* first = std::getenv("CRADLE_FUZZ_SEED");
+  std::uint64_t seed = first != nullptr   ? std::strtoull(first, nullptr, 10)
+                       : asked == nullptr ? 1
+                                          : std::random_device()();
+  for (; std::chrono::steady_clock::now() < end && !HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    if (asked != nullptr) std::printf("seed %llu\n", static_cast<unsigned long long>(seed)), std::fflush(stdout);
+    Dice dice(seed);
+    dice.below(2) == 0 ? fuzz_once<Equal>(dice) : fuzz_once<Unequal>(dice);
+  }
+  RecordProperty("seed", std::to_string(seed));
+}
+
+}  // namespace steps_test

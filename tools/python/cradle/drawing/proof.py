@@ -1,0 +1,54 @@
+"""What is known of the numbers of a run: digits that runs of rising precision share with the last one, against time;
+and a proof in time: how small gaps get, and how well places and gaps are known."""
+import numpy as np
+
+from .style import BLUE, GREEN, ORANGE, plt, subplots
+
+
+def pictures(result, _theory, _units):
+    return [("trust", lambda axes=None: draw_trust(result, axes))] if result.trust else []
+
+
+def certificates(result, units):
+    known = len(result.certificate.get("time", ())) > 1
+    return [("certificate", lambda axes=None: draw_certificate(result, units, axes))] if known else []
+
+
+def draw_trust(result, axes=None):
+    """Digits of energy and front, and until when the sequence of collisions is right."""
+    figure, panels = subplots(axes, 2, 1, sharex=True, figsize=(6.4, 6.4))
+    for ax, name in zip(panels, ("energy", "front")):
+        for run, colour in zip(result.trust[:-1], plt.rcParams["axes.prop_cycle"].by_key()["color"] * 4):
+            line = "--" if run["coordinates"] == "absolute" else "-"
+            label = f"{run['precision']}, {run['coordinates']}"
+            ax.plot(run["time"], run[f"{name}_digits"], line, color=colour, label=label)
+            if not run["right_to_end"]:
+                ax.axvline(run["collisions_right_until"], color=colour, linestyle=line, linewidth=0.8)
+        ax.set_ylabel(f"digits of the {name}")
+        ax.set_ylim(bottom=0)
+    panels[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
+    panels[1].set_xlabel("time $t$   (vertical lines: until when the sequence of collisions is right)")
+    return figure
+
+
+def draw_certificate(result, units, axes=None):
+    """The smallest gap, the largest radius of a place, and that of a gap against the gap, which must stay below 1."""
+    proof = result.certificate
+    time = proof["time"] / units.t
+    figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))
+    for name, colour, label in (("gap", BLUE, "smallest gap"), ("widest", ORANGE, "largest radius of a place"),
+                                ("widest_of_gap", GREEN, "largest radius of a gap, against the gap")):
+        known = np.isfinite(proof[name])
+        top.plot(time[known], proof[name][known], color=colour, label=label)
+    top.axhline(0, color="k", lw=0.8, ls=":")
+    top.set_ylabel(r"$\log_{10}$")
+    about = proof.attributes
+    top.set_title(f"{about['verdict']}: {int(about['collisions']):,} collisions, run in {about['precision']}, "
+                  f"proved with {int(about['digits'])} digits", fontsize="medium")
+    top.legend(loc="best", fontsize="small")
+    below.plot(time, proof["collisions"], color=BLUE)
+    if proof["collisions"].max() > 1000:
+        below.set_yscale("symlog")
+    below.set_ylabel("collisions proved")
+    below.set_xlabel(units.time_label())
+    return figure

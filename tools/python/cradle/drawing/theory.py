@@ -1,0 +1,40 @@
+"""The table of predictions, as `cradle theory --csv` prints it."""
+import csv
+import io
+import re
+
+import numpy as np
+
+
+class Theory:
+    """Predictions in long format: quantity, equation, form, t, value; an empty t marks a number."""
+
+    def __init__(self, text):
+        self.rows = [(row["quantity"], row["form"], float(row["t"]) if row["t"] else None, float(row["value"]),
+                      row["equation"]) for row in csv.DictReader(io.StringIO(text))]
+
+    def _pick(self, quantity, with_time):
+        for form in ("continuous", "discrete", ""):  # never the misprinted one
+            found = [(t, value) for name, kind, t, value, _ in self.rows
+                     if name == quantity and kind == form and (t is not None) == with_time]
+            if found:
+                return sorted(found) if with_time else found
+        return []
+
+    def curve(self, quantity):
+        """Times and values, both empty where there is no prediction."""
+        points = self._pick(quantity, True)
+        return np.array([t for t, _ in points]), np.array([value for _, value in points])
+
+    def number(self, quantity):
+        points = self._pick(quantity, False)
+        return points[0][1] if points else None
+
+    def equation(self, *quantities):
+        """How the table cites them, as `Eq. (7)` or `Eqs. (4), (5)`; without a number, as it stands."""
+        cited = [next((row[4] for row in self.rows if row[0] == quantity), "") or quantity for quantity in quantities]
+        numbers = [re.search(r"\d+", text) for text in cited]
+        if not all(numbers):
+            return ", ".join(dict.fromkeys(cited))
+        numbers = list(dict.fromkeys(f"({number[0]})" for number in numbers))
+        return ("Eqs. " if len(numbers) > 1 else "Eq. ") + ", ".join(numbers)

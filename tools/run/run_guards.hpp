@@ -1,0 +1,90 @@
+// Checks during a run: of all particles once in so many collisions, and of every number before it is recorded. What
+// they find wrong ends the run by an Error (Exit::lost).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "cradle/core/observe/guards.hpp"
+#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/run/engine.hpp"
+#include "cradle/tools/run/report.hpp"
+#include "cradle/tools/run/run.hpp"
+
+namespace cradle::tools {
+
+template <Real T> class RunGuards {
+  static constexpr std::uint64_t collisions_between = 256;  // of each particle; half as many before the end
+  static constexpr std::uint64_t most_guarded = 1 << 22;    // particles: beyond, a check would double the memory
+
+ public:
+  RunGuards(const Scene& scene, const cradle::Particles<T>& particles, const Engine<T>& engine)
+      : scene_(scene), particles_(particles), engine_(engine), energy_(particles.kinetic_energy()),
+        start_(number<T>(scene.run.start)), last_before_(start_) {}
+
+  /// Checks all particles, if that is due: a hundredth of what their collisions take, by the count of collisions and
+  /// not by the clock, so that a run that stops here does so always.
+  void check(const T& time, bool at_end) {
+    const std::uint64_t collisions = engine_.counts().collisions;
+    const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
+    const std::uint64_t between = collisions_between / (at_end ? 2 : 1);
+    const bool put_off = checked_at_ > collisions && !at_end;
+    const bool due = checked_at_ > collisions ? last_before_ < engine_.last_collision_time()  // the end is checked
+                                              : collisions >= checked_at_ + between * active;
+    if (!put_off && due && active <= most_guarded) check_all(time);
+  }
+  /// The same at once, of a state that has been loaded: one that is well formed may still be of no run.
+  void check_loaded(const T& time) {
+    const std::uint64_t before = checked_at_;
+    if (static_cast<std::uint64_t>(engine_.collided_particles()) <= most_guarded) check_all(time);
+    checked_at_ = before;
+  }
+
+  /// What follows from a number beyond the type's range is noise.
+  void require_held(const T& number, const char* what, const T& time) const {
+    if (is_finite(number)) return;
+    throw Error({scene_.name, 0, ""}, fmt::format("{} beyond the range of {}", what, precision_name(scene_.run)),
+                "at t = " + to_text(time), "give an earlier run.until, smaller speeds or a wider run.precision",
+                Exit::lost);
+  }
+  void require_held(const Configuration<T>& now) const {
+    for (const T& x : now.x) require_held(x, "a position", now.time);
+    for (const T& v : now.v) require_held(v, "a velocity", now.time);
+  }
+
+  /// With the smallest gap and the closure errors of the last check.
+  const RunStatus& status() const { return status_; }
+
+  static auto state(auto& self) { return std::tie(self.checked_at_, self.last_before_); }
+
+ private:
+  void check_all(const T& time) {
+    const std::uint64_t collisions = engine_.counts().collisions;
+    const Account<T>& account = engine_.account();
+    const Configuration<T> now = engine_.configuration(time);
+    const GuardCheck<T> found =
+        guarded(now, particles_, collisions, T(energy_ - engine_.energy_lost()), T(time - start_),
+                engine_.last_collision_time(), last_before_, account.order_lost + account.unresolved == 0);
+    if (found.broken) throw Error(guard_message(reported(*found.broken, time)), Exit::lost);
+    // A check visits all particles that have merged, too: the next one, but for that at the end, is put off by as many.
+    const auto merged = static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size();
+    checked_at_ = collisions + collisions_between * merged;
+    last_before_ = engine_.last_collision_time();
+    status_.gap_min = to_double(found.gap_min);
+    status_.closure_gap = to_double(found.closure_gap);
+    status_.closure_speed = to_double(found.closure_speed);
+  }
+
+  const Scene& scene_;
+  const cradle::Particles<T>& particles_;
+  const Engine<T>& engine_;
+  T energy_, start_;
+  std::uint64_t checked_at_ = 0;  // collisions made, at the last check of all particles
+  T last_before_;                 // the time of the last of them
+  RunStatus status_;
+};
+
+}  // namespace cradle::tools

@@ -15,6 +15,7 @@
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 #include "gas.h"
 
 namespace {
@@ -51,7 +52,7 @@ template <class Advance> void measure(const char* engine, std::uint64_t particle
 void measure_segments(const char* engine, std::uint64_t particles, double until, unsigned threads) {
   measure(engine, particles, threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, [&](Run& run) {
     cradle::TbbExecutor executor(threads);
-    cradle::Segments<Law, Chain> segments(cradle::workers(executor));
+    cradle::Segments<Law, Chain> segments(cradle::workers(executor), {.steps = cradle::fastest_steps()});
     run.advance(until, segments);
   });
 }

@@ -20,7 +20,9 @@ void expect_identical(First& first, Second& second, double t, CloseCalls close_c
   ASSERT_EQ(second.advance(t), Status::reached);
   ASSERT_TRUE(same_collisions(first.counts(), second.counts()));
   ASSERT_EQ(first.counts().origin_moves, second.counts().origin_moves);
-  if (close_calls == CloseCalls::the_same) ASSERT_EQ(first.counts().close_calls, second.counts().close_calls);
+  if (close_calls == CloseCalls::the_same) {
+    ASSERT_EQ(first.counts().close_calls, second.counts().close_calls);
+  }
   ASSERT_EQ(first.energy_lost(), second.energy_lost());
   ASSERT_EQ(first.collided_particles(), second.collided_particles());
   ASSERT_EQ(first.chain().local_time(t), second.chain().local_time(t));

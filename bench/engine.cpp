@@ -1,5 +1,5 @@
-// Collisions per second of Cradle's engine, in gaps and in absolute positions, against conventional engines in double
-// (twins/), in one run: read the ratios, since the machine is the same and so are the collisions.
+// Collisions per second of Cradle's engine, in gaps and in absolute positions, and of conventional engines in double
+// (twins/). Compare the ratios within one run: there the machine and the collisions are the same.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_engine
 //   build/release/bench/bench_engine --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
@@ -9,11 +9,10 @@
 //         particles of long rows are not met yet: Cradle streams them.
 // gas     N particles of random velocities, all of them active from the start, eps = 0.999.
 //
-// Times are of the thread, not of the wall (but for the run on two threads), so that other work on the machine disturbs
-// less. The collisions that engines count must be the same; where they are not, the program says so and ends with
-// status
-// 1. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers, not the code timed
-// here.
+// Times are processor time of the thread (time by the clock for the run on two threads), so that other work on the
+// machine disturbs them less. All engines must count the same collisions; otherwise the program prints an error and
+// ends with status 1. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers, not
+// the measured code.
 
 #include <ctime>
 
@@ -47,7 +46,7 @@ using ParticlesPointer = std::shared_ptr<const cradle::Particles<double>>;
 
 constexpr twins::Law law{0.999, 1e-5};
 
-// ---- scenes
+// ---- initial states
 
 // Finaliser of splitmix64: the random numbers of the published collision counts.
 std::uint64_t hash(std::uint64_t i) {
@@ -74,7 +73,7 @@ ParticlesPointer gas(ParticleIndex n) {
   return std::make_shared<cradle::List<double>>(std::move(x), std::move(v));
 }
 
-// ---- engines, all with the twins' interface
+// ---- engines with the interface of twins/
 
 template <class Chain> class Cradle {
  public:
@@ -88,9 +87,9 @@ template <class Chain> class Cradle {
 };
 using Gaps = Cradle<cradle::GapChain<double>>;
 
-// One run in segments (core/parallel/segments.hpp), on so many threads; or cut into so many pieces, which shows how
-// evenly the work would be shared by as many processors: `parallel`, collisions of all over those of the busiest in
-// each time slab.
+// A run in segments (core/parallel/segments.hpp) on so many threads, or cut into so many pieces. The pieces show how
+// evenly as many processors would share the work: `parallel` is the number of collisions of all pieces divided by that
+// of the busiest one, in each time slab.
 template <unsigned threads, unsigned pieces = 0> class InSegments {
  public:
   InSegments(const ParticlesPointer& particles)
@@ -123,14 +122,15 @@ using TimeSlots = Twin<twins::TimeSlotsEngine>;
 
 // ---- measurements
 
-// Engines on several threads are timed by the wall.
+// Engines on several threads are timed by the clock.
 double seconds_of(clockid_t clock) {
   std::timespec now{};
   clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// A time at which all engines must have counted the same collisions: as given, or (0) as the first engine asked has.
+// A time at which all engines must have counted the same collisions: the given number or, if it is 0, that of the first
+// engine.
 struct Check {
   double time;
   std::uint64_t collisions;
@@ -218,7 +218,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   // Counts up to 6000 are those of an independent program, the same in double, binary128 and 100 digits. Soon after
-  // 6500 positions in double do not resolve the cluster any more, and counts begin to differ.
+  // 6500, positions in double no longer resolve the cluster, and counts begin to differ.
   enter_all(
       {"shock/8000", shock(8000), {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
   for (const ParticleIndex n : {100'000, 1'000'000})

@@ -1,6 +1,6 @@
-// Collisions per second where particles merge or pass through each other, wet and sticky, against a conventional engine
-// in absolute coordinates (twins/merging.hpp), in one run: read the ratios. And the sticky gas without events: the O(N)
-// solution of core/engine/sticky_gas.hpp.
+// Collisions per second with particles that merge or pass through each other, wet and sticky, and of a conventional
+// engine in absolute coordinates (twins/merging.hpp). Compare the ratios within one run. Also the sticky gas without
+// events: the O(N) solution of core/engine/sticky_gas.hpp.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_merging
 //   build/release/bench/bench_merging --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
@@ -10,8 +10,8 @@
 //          published ones.
 // cooling  N particles on a ring, Gaussian velocities of variance 1, to t = 1000.
 //
-// Times are of the thread, with two threads of the wall. Debian's Google Benchmark prints "library was built as DEBUG":
-// that concerns its own timers.
+// Times are processor time of the thread, with two threads time by the clock. Debian's Google Benchmark prints "library
+// was built as DEBUG": that concerns its own timers.
 
 #include <ctime>
 
@@ -68,7 +68,7 @@ struct Cradle {
     return loss < 0 ? made(cradle::Sticky<double>{}) : made(cradle::Wet<double>(loss));
   }
 };
-// In segments, on so many threads.
+// A run in segments on so many threads.
 template <unsigned threads> struct InSegments {
   static constexpr clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
   static std::uint64_t run(const cradle::Particles<double>&, const ParticlesPointer& particles, double loss,
@@ -94,7 +94,7 @@ struct Twin {
   }
 };
 
-// Setting up counts: it is part of what a run costs, and conventional engines set up every particle of the rows.
+// The time includes the set-up: it is part of a run's cost, and conventional engines set up every particle of the rows.
 template <class Engine>
 void enter(const std::string& of, const std::string& engine, const ParticlesPointer& particles, double loss,
            double until, std::uint64_t published = 0) {
@@ -107,7 +107,7 @@ void enter(const std::string& of, const std::string& engine, const ParticlesPoin
           const double start = seconds_of(Engine::clock);
           const std::uint64_t made = Engine::run(*particles, particles, loss, until);
           state.SetIterationTime(seconds_of(Engine::clock) - start);
-          static std::map<std::string, std::uint64_t> seen;  // by the first engine asked
+          static std::map<std::string, std::uint64_t> seen;  // from the first engine
           const std::uint64_t expected = published > 0 ? published : seen.try_emplace(of, made).first->second;
           if (made != expected) {
             std::fprintf(stderr, "%s: %llu collisions (expected %llu): times mean nothing\n", name.c_str(),

@@ -24,7 +24,7 @@ BARS = {"double": "double (16 digits)", "tuned_heap": "conventional double, tune
         "double-double": "double-double (31)", "float128": "float128 (34)"} | NAMES
 MARKERS = {"gaps": "o", "absolute": "s"}
 DIGIT_TICKS = [0, 1, 5, 10, 16, 31, 50, 75, 100, 150, 200]
-# representation, type, offset in points, alignment
+# representation, type, offset of the label in points, alignment
 WIDE_LABELS = [("gaps", "double-double", -4, -13, "center"), ("gaps", "float128", 4, 11, "left"),
                ("gaps", "mpfr 50", -9, -5, "right"), ("gaps", "mpfr 100", -9, -5, "right"),
                ("gaps", "mpfr 200", -9, -4, "right")]

@@ -1,12 +1,13 @@
-// Collisions in steps of time (core/parallel/steps) against the event loop, both in segments on one thread: the same
-// runs side by side, a piece of each in turn, so that both see the same machine. The collisions and the energy lost
-// must be the same to the bit; where they are not, the program says so and ends with status 1.
+// Collisions in steps of time (core/parallel/steps) and in the event loop, both in segments on one thread. Pieces of
+// the two runs alternate, so that both see the same machine. The collisions and the energy lost must be the same to the
+// bit; otherwise the program prints an error and ends with status 1.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_steps
 //   build/release/bench/bench_steps [CASE...]
 //
 // Cases are those of bench/engine.cpp, and gases with masses 1 and 3, between walls, and with a restitution that
-// depends on the speed. Times are of the thread. `late` is the last thirteenth of the time: 6000 to 6500 for the shock.
+// depends on the speed. Times are processor time of the thread. `late` is the last thirteenth of the time: 6000 to 6500
+// for the shock.
 
 #include <cstdio>
 #include <ctime>

@@ -189,19 +189,19 @@ template <class Once> void measure_speed(benchmark::State& state, Report found, 
 double time_engine(const Engine& engine, const ShockScene& scene, std::uint64_t& collisions) {
   return with_chain<double>(engine, [&]<class Chain>(std::type_identity<Chain>) {
     Run<Chain> simulation = prepare<Chain>(scene);
-    const double start = thread_seconds();
+    const double start = bench::seconds_now();
     simulation.advance(typename Chain::Scalar(scene.times.back()));
     collisions = simulation.counts().collisions;
-    return thread_seconds() - start;
+    return bench::seconds_now() - start;
   });
 }
 
 template <class Twin> double time_twin(const ShockScene& scene, std::uint64_t& collisions) {
-  Twin twin(*rows<double>(scene.particles), {0.999, 1e-5});
-  const double start = thread_seconds();
+  Twin twin(*bench::rows<double>(scene.particles), {0.999, 1e-5});
+  const double start = bench::seconds_now();
   twin.advance(scene.times.back());
   collisions = twin.collisions();
-  return thread_seconds() - start;
+  return bench::seconds_now() - start;
 }
 
 // ---- list of measurements

@@ -21,11 +21,9 @@
 // Two computations from the same ball are not known to be the same number: x - x is a ball around 0. There are separate
 // operations for combinations whose radii must not grow (combined).
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <string_view>
 
 #include "cradle/core/certify/enclosing.hpp"
@@ -82,7 +80,6 @@ template <class M> class Ball {
   using Of = Midpoint<M>;
 
  public:
-  using Middle = M;
   using Radius = typename Of::Radius;
 
   // Integers and doubles are exact: midpoints have more than 64 bits.

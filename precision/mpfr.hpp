@@ -6,7 +6,6 @@
 #include <mpfr.h>
 
 #include <array>
-#include <bit>
 #include <compare>
 #include <cstdint>
 #include <cstdlib>

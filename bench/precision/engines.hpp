@@ -2,22 +2,17 @@
 // The compared engines: every scalar type in both representations. Numbers of different types are compared as `Wide`,
 // 240 digits; converting to it adds no relevant rounding.
 
-#include <ctime>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
+#include "../common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/precision/scalars.hpp"
 
@@ -90,28 +85,12 @@ inline double relative_error(const Wide& value, const Wide& exact) {
   return std::min(static_cast<double>(Wide(abs(Wide(value - exact)) / abs(exact))), 1.0);
 }
 
-// Finaliser of splitmix64.
-inline std::uint64_t hash(std::uint64_t i) {
-  std::uint64_t z = i + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
-
-// ---- processor time of the thread, which other work on the machine disturbs less
-
-inline double thread_seconds() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 // Seconds of one call of f: the least of several trials, or of one trial if a call takes long.
 template <class F> double best_seconds(F f) {
   const auto seconds_of = [&](int calls) {
-    const double start = thread_seconds();
+    const double start = bench::seconds_now();
     for (int i = 0; i < calls; ++i) f();
-    return (thread_seconds() - start) / calls;
+    return (bench::seconds_now() - start) / calls;
   };
   double best = seconds_of(1);
   if (best > 1) return best;

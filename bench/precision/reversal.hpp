@@ -25,7 +25,7 @@ inline ReversalOutcome reverse(const Engine& engine) {
     const T elastic(1), time(reversal_time);
     std::vector<T> x, v, m;
     for (int i = 0; i < reversal_particles; ++i) {
-      const std::uint64_t bits = hash(static_cast<std::uint64_t>(i));
+      const std::uint64_t bits = bench::hash(static_cast<std::uint64_t>(i));
       x.push_back(T(i) + T(static_cast<std::int64_t>(bits & 0x3FF)) / T(2048));
       v.push_back(T(static_cast<std::int64_t>((bits >> 20) & 0x3FFF) - 8192) / T(8192));
       m.push_back(T(i % 2 ? 3 : 1));

@@ -26,17 +26,10 @@ struct ShockScene {
   std::uint64_t collisions;   // of the whole run: decides the distance of samples
 };
 
-template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex particles) {
-  const auto displacement = [](ParticleIndex i) {
-    return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
-  };
-  return std::make_shared<cradle::Rows<T>>(cradle::symmetric_rows<T>(particles, T(1) / T(2), T(1), displacement));
-}
-
 template <class Chain> Run<Chain> prepare(const ShockScene& scene) {
   using T = typename Chain::Scalar;
   return {cradle::Inelastic<T>(cradle::from_text<T>(scene.restitution), cradle::from_text<T>("1e-5")),
-          Chain(rows<T>(scene.particles), T(0))};
+          Chain(bench::rows<T>(scene.particles), T(0))};
 }
 
 // ---- errors
@@ -131,13 +124,13 @@ inline ShockRun run(const Engine& engine, const ShockScene& scene, const std::ve
     };
     auto next = sampling.begin();
     for (const double time : scene.times) {
-      const double start = thread_seconds();
+      const double start = bench::seconds_now();
       for (; next != sampling.end() && *next <= time; ++next) {
         advance(*next);
         result.samples.push_back({*next, trace.digest(), simulation.counts().collisions});
       }
       advance(time);
-      result.seconds += thread_seconds() - start;
+      result.seconds += bench::seconds_now() - start;
       result.states.push_back(read(simulation, scene, time));
     }
     return result;

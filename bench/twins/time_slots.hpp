@@ -4,7 +4,6 @@
 // 10.1145/63039.63045). A slot holds about two collisions; its width is adapted as the pace of collisions changes. The
 // table has one slot for every one or two gaps, so that few entries are further ahead than one round.
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -3,7 +3,6 @@
 // that moves up or down leaves a hole instead of being exchanged at every level.
 
 #include <algorithm>
-#include <memory>
 
 #include "line.hpp"
 

@@ -3,7 +3,6 @@
 // and the effect of a collision on three of them. The chain (gap_chain.hpp) or a segment, which is a copy of a part
 // (segments.hpp), handles its ends.
 
-#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>

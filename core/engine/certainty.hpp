@@ -4,7 +4,6 @@
 // system, and nothing more is estimated.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>

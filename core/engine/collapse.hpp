@@ -11,7 +11,6 @@
 // or `most_followed` collisions are made. Without such a proof a run reports no collapse.
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>

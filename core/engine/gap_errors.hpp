@@ -6,7 +6,6 @@
 // line of each neighbour, whenever it comes. Errors obey exactly the same maps, and their bounds obey the maps with the
 // magnitudes e, 1 and c. The rounding of each operation of a collision is added where it happens.
 
-#include <cstdint>
 #include <limits>
 #include <tuple>
 #include <unordered_map>

@@ -11,8 +11,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/chain.hpp"

@@ -10,7 +10,6 @@
 // collisions at the same gap shrink by a factor that tends to e e'/L^2.
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "cradle/core/engine/gap_errors.hpp"

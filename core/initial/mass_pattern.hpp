@@ -3,7 +3,6 @@
 // entries all masses are 1, at the cost of a constant.
 
 #include <algorithm>
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>

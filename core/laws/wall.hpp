@@ -18,7 +18,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <tuple>
 
 #include "cradle/core/engine/state.hpp"

@@ -13,7 +13,6 @@
 // of the energy is left, and 6e-13 at t = 6500, where 19 % is left; that of the sum over velocities is 9e-15 and 7e-14
 // (of double-double's energy).
 
-#include <limits>
 #include <optional>
 
 #include "cradle/core/engine/simulation.hpp"

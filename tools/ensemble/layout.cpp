@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <type_traits>
 
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/record/tables.hpp"

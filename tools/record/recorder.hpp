@@ -6,11 +6,8 @@
 #include <concepts>
 #include <cstdint>
 #include <iterator>
-#include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "cradle/core/engine/status.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <new>
 
 #include "cradle/tools/result/hdf5_values.hpp"
 #include "cradle/tools/result/seal.hpp"

@@ -32,8 +32,6 @@ template <Real T> class Engine {
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
-  /// Some engines compute each state directly, without collisions.
-  virtual bool makes_collisions() const = 0;
   /// `observer` may be empty.
   virtual Status advance(const T& until, const Observer<T>& observer) = 0;
 
@@ -81,7 +79,6 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   explicit EngineOf(const Workers& workers, Arguments&&... arguments)
       : run_(std::forward<Arguments>(arguments)...), segments_(workers, {.steps = fastest_steps()}) {}
 
-  bool makes_collisions() const override { return has_chain; }
   Status advance(const T& until, const Observer<T>& observer) override {
     if constexpr (has_chain)
       if (observer) return run_.advance(until, observer);

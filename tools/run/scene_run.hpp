@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>

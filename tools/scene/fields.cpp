@@ -1,8 +1,6 @@
 // The table of keys. To add a key, add a member in scene.hpp and a row here.
 #include "cradle/tools/scene/fields.hpp"
 
-#include <algorithm>
-
 #include "cradle/tools/model/laws.hpp"
 
 namespace cradle::tools {

@@ -1,6 +1,5 @@
 #include "cradle/tools/scene/overrides.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <string_view>
 

@@ -7,8 +7,6 @@
 #include <fstream>
 #include <iterator>
 
-#include <fmt/format.h>
-
 #include "cradle/tools/scene/checks.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/keys.hpp"

@@ -2,7 +2,6 @@
 #include "cradle/tools/scene/source.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 
 #include <toml++/toml.h>

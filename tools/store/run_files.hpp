@@ -18,7 +18,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"

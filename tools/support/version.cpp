@@ -1,6 +1,5 @@
 #include "cradle/tools/support/version.hpp"
 
-#include <memory>
 #include <type_traits>
 
 #include <fmt/format.h>

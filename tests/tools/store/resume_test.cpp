@@ -2,7 +2,6 @@
 // x initial state x policy x threads x where it is cut.
 #include <csignal>
 #include <fstream>
-#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>

@@ -232,7 +232,7 @@ class Simulation {
   // functions come last, since they may throw.
   Status review(Slot s, Notice notice) {
     if (notice == Notice::origin_should_move && pacing_.in_epochs && counts_.collisions < pacing_.next_review)
-      return Status::reached;  // there the run has ended
+      return Status::reached;  // within an epoch the origin does not move
     const Status judged = includes(notice, Notice::gap_below_floor) ? judge(s) : Status::reached;
     if constexpr (StreamingChain<Chain>)
       if (includes(notice, Notice::needs_slots)) {

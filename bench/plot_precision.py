@@ -2,8 +2,8 @@
 """Picture of run time against error: plot_precision.py CSV OUT.png, with the CSV of bench_precision.
 
 Panels: (a) three-particle collapse, (b) shock into the collapsed cluster, (c) time reversal, (d) speed on the long
-shock. One marker per representation, one colour per type; the line is the Pareto front: nothing is both faster and
-nearer (by half a digit).
+shock. One marker per representation, one colour per type; the line is the Pareto front: no other point is both faster
+and more accurate (by half a digit).
 Errors run from 1 (no digit is right) to 1e-200 on an axis that is linear in the square root of the digits.
 """
 import csv

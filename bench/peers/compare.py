@@ -5,7 +5,7 @@
     bench/peers/compare.py [COLLISIONS]
 
 The other program's time slots are tuned first, for every number of particles: slots per particle from 1 to 8, slot
-lengths by factors of two, the fastest pair is taken. Then all engines run in turn, five times; medians are printed, in
+lengths by factors of two; the fastest pair is used. Then all engines run in turn, five times; medians are printed, in
 millions of collisions per second. Both must have made the same number of collisions, to 1e-3: masses that differ by
 1e-4 leave the gas nearly integrable.
 """
@@ -24,7 +24,7 @@ def run(*words):
 
 
 def hardpoint(particles, slots, length, collisions):
-    """Collisions, time of the gas, seconds; nothing where a slot overflows."""
+    """Collisions, time of the gas, seconds; nothing if a slot overflows."""
     lines = run(FOLDER / f"peer_hardpoint_{particles}_{slots}", length, collisions)
     if not lines:
         return None
@@ -33,7 +33,7 @@ def hardpoint(particles, slots, length, collisions):
 
 
 def tuned(particles, collisions):
-    """Slots and slot length at which it is fastest."""
+    """The fastest number of slots and slot length."""
     rates = {}
     for slots in (particles * k for k in (1, 2, 4, 8)):
         for power in range(-3, 5):

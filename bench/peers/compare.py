@@ -46,7 +46,8 @@ def tuned(particles, collisions):
 
 def main():
     collisions = float(sys.argv[1]) if len(sys.argv) > 1 else 1e7
-    print("particles  slots  length   hardpoint  " + "  ".join(f"{e:>11}" for e in ("plain", "segments", "two_threads")))
+    engines = ("plain", "segments", "two_threads")
+    print("particles  slots  length   hardpoint  " + "  ".join(f"{engine:>11}" for engine in engines))
     for particles in (1024, 4096, 16384, 131072):
         slots, length = tuned(particles, collisions / 4)
         rates = {}
@@ -58,7 +59,7 @@ def main():
                 if abs(int(own) - made) > 1e-3 * made:
                     sys.exit(f"{particles} particles to t = {until}: {made} collisions and {own}: not the same gas")
                 rates.setdefault(engine, []).append(int(own) / float(own_seconds) / 1e6)
-        medians = [statistics.median(rates[e]) for e in ("hardpoint", "plain", "segments", "two_threads")]
+        medians = [statistics.median(rates[e]) for e in ("hardpoint", *engines)]
         print(f"{particles:9} {slots:6} {length:.1e} " + "  ".join(f"{m:11.1f}" for m in medians), flush=True)
 
 

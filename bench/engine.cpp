@@ -1,5 +1,5 @@
-// Collisions per second of Cradle's engine, in gaps and in absolute positions, against conventional engines in double
-// (twins/), in one run: read the ratios, since the machine is the same and so are the collisions.
+// Collisions per second of Cradle's engine, in gaps and in absolute positions, and of conventional engines in double
+// (twins/). Compare the ratios within one run: there the machine and the collisions are the same.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_engine
 //   build/release/bench/bench_engine --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
@@ -9,13 +9,10 @@
 //         particles of long rows are not met yet: Cradle streams them.
 // gas     N particles of random velocities, all of them active from the start, eps = 0.999.
 //
-// Times are of the thread, not of the wall (but for the run on two threads), so that other work on the machine disturbs
-// less. The collisions that engines count must be the same; where they are not, the program says so and ends with
-// status
-// 1. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers, not the code timed
-// here.
-
-#include <ctime>
+// Times are processor time of the thread (time by the clock for the run on two threads), so that other work on the
+// machine disturbs them less. All engines must count the same collisions; otherwise the program prints an error and
+// ends with status 1. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers, not
+// the measured code.
 
 #include <concepts>
 #include <cstdio>
@@ -27,12 +24,11 @@
 
 #include <benchmark/benchmark.h>
 
+#include "common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "twins/indexed_heap.hpp"
@@ -42,39 +38,11 @@
 
 namespace {
 
-using cradle::ParticleIndex;
-using ParticlesPointer = std::shared_ptr<const cradle::Particles<double>>;
+using namespace bench;
 
 constexpr twins::Law law{0.999, 1e-5};
 
-// ---- scenes
-
-// Finaliser of splitmix64: the random numbers of the published collision counts.
-std::uint64_t hash(std::uint64_t i) {
-  std::uint64_t z = i + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
-
-ParticlesPointer shock(ParticleIndex n) {
-  const auto displacement = [](ParticleIndex i) {
-    return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
-  };
-  return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(n, 0.5, 1.0, displacement));
-}
-
-ParticlesPointer gas(ParticleIndex n) {
-  std::vector<double> x, v;
-  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
-    const std::uint64_t bits = hash(i);
-    x.push_back(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29);
-    v.push_back(static_cast<double>(bits >> 28) * 0x1p-35 - 1);
-  }
-  return std::make_shared<cradle::List<double>>(std::move(x), std::move(v));
-}
-
-// ---- engines, all with the twins' interface
+// ---- engines with the interface of twins/
 
 template <class Chain> class Cradle {
  public:
@@ -88,9 +56,9 @@ template <class Chain> class Cradle {
 };
 using Gaps = Cradle<cradle::GapChain<double>>;
 
-// One run in segments (core/parallel/segments.hpp), on so many threads; or cut into so many pieces, which shows how
-// evenly the work would be shared by as many processors: `parallel`, collisions of all over those of the busiest in
-// each time slab.
+// A run in segments (core/parallel/segments.hpp) on so many threads, or cut into so many pieces. The pieces show how
+// evenly as many processors would share the work: `parallel` is the number of collisions of all pieces divided by that
+// of the busiest one, in each time slab.
 template <unsigned threads, unsigned pieces = 0> class InSegments {
  public:
   InSegments(const ParticlesPointer& particles)
@@ -123,14 +91,8 @@ using TimeSlots = Twin<twins::TimeSlotsEngine>;
 
 // ---- measurements
 
-// Engines on several threads are timed by the wall.
-double seconds_of(clockid_t clock) {
-  std::timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// A time at which all engines must have counted the same collisions: as given, or (0) as the first engine asked has.
+// A time at which all engines must have counted the same collisions: the given number or, if it is 0, that of the first
+// engine.
 struct Check {
   double time;
   std::uint64_t collisions;
@@ -167,9 +129,9 @@ template <class Engine> void measure(benchmark::State& state, const Case& c, con
     double last = 0;
     for (const Check& at : c.checks) {
       before = engine.collisions();
-      const double start = seconds_of(clock_of<Engine>);
+      const double start = seconds_now(clock_of<Engine>);
       engine.advance(at.time);
-      last = seconds_of(clock_of<Engine>) - start;
+      last = seconds_now(clock_of<Engine>) - start;
       seconds += last;
       check(c, engine_name, at, engine.collisions());
     }
@@ -218,11 +180,12 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   // Counts up to 6000 are those of an independent program, the same in double, binary128 and 100 digits. Soon after
-  // 6500 positions in double do not resolve the cluster any more, and counts begin to differ.
-  enter_all(
-      {"shock/8000", shock(8000), {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
+  // 6500, positions in double no longer resolve the cluster, and counts begin to differ.
+  enter_all({"shock/8000",
+             rows<double>(8000),
+             {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
   for (const ParticleIndex n : {100'000, 1'000'000})
-    enter_all({"shock/" + std::to_string(n), shock(n), {{2000, 0}, {4000, 0}}});
+    enter_all({"shock/" + std::to_string(n), rows<double>(n), {{2000, 0}, {4000, 0}}});
   const std::pair<ParticleIndex, double> gases[] = {{100, 300},    {1000, 300},     {8000, 300},
                                                     {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
   for (const auto& [n, until] : gases) enter_all({"gas/" + std::to_string(n), gas(n), {{until / 2, 0}, {until, 0}}});

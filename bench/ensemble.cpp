@@ -1,5 +1,5 @@
-// What an ensemble costs beside its runs, what threads gain, and whether two replicas interleaved collision by
-// collision in one thread go faster than one after the other.
+// What an ensemble costs in addition to its runs, what threads gain, and whether it is faster to interleave two
+// replicas collision by collision in one thread than to run one after the other.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_ensemble
 //   build/release/bench/bench_ensemble --benchmark_enable_random_interleaving=true --benchmark_repetitions=5
@@ -8,11 +8,11 @@
 // wet   replicas of 1e4 particles, E_loss = 0.05, to t = 9900, 101 samples (30,000 collisions each)
 // dry   replicas of the bundled scene fig2 to t = 4000, 101 samples (4.7 million collisions each)
 //
-// runs          as `cradle run` makes them, one after the other, results thrown away
+// runs          as `cradle run` makes them, one after the other; results are dropped
 // ensemble/T    as `cradle ensemble --threads T`: journal, statistics, file
 // in_turn, interleaved   engines without samples
 //
-// Times are of the wall: run it where nothing else runs, and read ratios of medians.
+// Times are by the clock: use an idle machine, and compare ratios of medians.
 
 #include <benchmark/benchmark.h>
 
@@ -83,7 +83,7 @@ template <class Simulation> void advance_both(Simulation& a, Simulation& b, doub
 }
 
 template <class Make> void enter_engine(const std::string& of, int replicas, double until, Make make) {
-  const auto lost = std::make_shared<double>(0);  // by all replicas: the same bits either way
+  const auto lost = std::make_shared<double>(0);  // of all replicas: its bits do not depend on the order
   const auto check = [=](double sum) {
     if (*lost == 0) *lost = sum;
     if (*lost == sum) return;

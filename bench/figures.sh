@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes every figure: runs its scene, draws its pictures, prints the seconds of the run. From the repository's folder,
-# after tools/quickstart.sh:
+# Makes every figure: runs its scene, draws its pictures, prints the seconds of the run. Call it from the repository's
+# folder, after tools/quickstart.sh:
 #   bench/figures.sh [FOLDER]     default: out
 #   bench/figures.sh FOLDER fig6  only some
 set -euo pipefail

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Peak resident memory of the program for two rows of 8000 and of 2e7 particles, run until t = 1000: rows are streamed,
-# so memory follows the active zone and the two must be about the same. Prints both and their ratio.
+# Peak resident memory of the program for two rows of 8000 and of 2e7 particles, run until t = 1000. Rows are streamed,
+# so memory depends on the active zone, and the two must be about equal. Prints both and their ratio.
 #   bench/memory.sh [PROGRAM]      (default: build/release/tools/cradle)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -9,7 +9,7 @@ cradle=${1:-build/release/tools/cradle}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Runs the program and prints the largest resident size it had, in kB.
+# Runs the program and prints its largest resident size, in kB.
 peak() {
   python3 - "$@" <<'PYTHON'
 import resource, subprocess, sys

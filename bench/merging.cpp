@@ -1,6 +1,6 @@
-// Collisions per second where particles merge or pass through each other, wet and sticky, against a conventional engine
-// in absolute coordinates (twins/merging.hpp), in one run: read the ratios. And the sticky gas without events: the O(N)
-// solution of core/engine/sticky_gas.hpp.
+// Collisions per second with particles that merge or pass through each other, wet and sticky, and of a conventional
+// engine in absolute coordinates (twins/merging.hpp). Compare the ratios within one run. Also the sticky gas without
+// events: the O(N) solution of core/engine/sticky_gas.hpp.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_merging
 //   build/release/bench/bench_merging --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
@@ -10,10 +10,8 @@
 //          published ones.
 // cooling  N particles on a ring, Gaussian velocities of variance 1, to t = 1000.
 //
-// Times are of the thread, with two threads of the wall. Debian's Google Benchmark prints "library was built as DEBUG":
-// that concerns its own timers.
-
-#include <ctime>
+// Times are processor time of the thread, with two threads time by the clock. Debian's Google Benchmark prints "library
+// was built as DEBUG": that concerns its own timers.
 
 #include <cstdio>
 #include <cstdlib>
@@ -23,33 +21,17 @@
 
 #include <benchmark/benchmark.h>
 
+#include "common.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/initial/ring.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "twins/merging.hpp"
 
 namespace {
 
-using ParticlesPointer = std::shared_ptr<const cradle::Particles<double>>;
-
-double seconds_of(clockid_t clock) {
-  std::timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// Rows displaced by the hash of the published counts.
-ParticlesPointer rows(cradle::ParticleIndex n) {
-  return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(n, 0.5, 1.0, [](cradle::ParticleIndex i) {
-    std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-    return static_cast<std::int64_t>((z ^ (z >> 31)) & 0x3FFFF) - 131072;
-  }));
-}
+using namespace bench;
 
 ParticlesPointer ring(cradle::ParticleIndex n) {
   return std::make_shared<cradle::Ring<double>>(n, static_cast<double>(n), 1.0, cradle::gaussian_velocity(1, 0),
@@ -68,7 +50,7 @@ struct Cradle {
     return loss < 0 ? made(cradle::Sticky<double>{}) : made(cradle::Wet<double>(loss));
   }
 };
-// In segments, on so many threads.
+// A run in segments on so many threads.
 template <unsigned threads> struct InSegments {
   static constexpr clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
   static std::uint64_t run(const cradle::Particles<double>&, const ParticlesPointer& particles, double loss,
@@ -94,7 +76,7 @@ struct Twin {
   }
 };
 
-// Setting up counts: it is part of what a run costs, and conventional engines set up every particle of the rows.
+// The time includes the set-up: it is part of a run's cost, and conventional engines set up every particle of the rows.
 template <class Engine>
 void enter(const std::string& of, const std::string& engine, const ParticlesPointer& particles, double loss,
            double until, std::uint64_t published = 0) {
@@ -104,10 +86,10 @@ void enter(const std::string& of, const std::string& engine, const ParticlesPoin
       [=](benchmark::State& state) {
         std::uint64_t collisions = 0;
         for (auto iteration : state) {
-          const double start = seconds_of(Engine::clock);
+          const double start = seconds_now(Engine::clock);
           const std::uint64_t made = Engine::run(*particles, particles, loss, until);
-          state.SetIterationTime(seconds_of(Engine::clock) - start);
-          static std::map<std::string, std::uint64_t> seen;  // by the first engine asked
+          state.SetIterationTime(seconds_now(Engine::clock) - start);
+          static std::map<std::string, std::uint64_t> seen;  // from the first engine
           const std::uint64_t expected = published > 0 ? published : seen.try_emplace(of, made).first->second;
           if (made != expected) {
             std::fprintf(stderr, "%s: %llu collisions (expected %llu): times mean nothing\n", name.c_str(),
@@ -129,11 +111,11 @@ void enter(const std::string& of, const std::string& engine, const ParticlesPoin
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  enter<Cradle>("wet/fig6", "cradle", rows(50'000), 1e-4, 12000, 12153997);
-  enter<Twin>("wet/fig6", "conventional", rows(50'000), 1e-4, 12000, 12153997);
-  enter<Cradle>("wet/fig11", "cradle", rows(20'000'000), 0.05, 1.9e7, 57079264);
-  enter<Cradle>("wet/fig11_begin", "cradle", rows(110'000), 0.05, 1e5);
-  enter<Twin>("wet/fig11_begin", "conventional", rows(110'000), 0.05, 1e5);
+  enter<Cradle>("wet/fig6", "cradle", rows<double>(50'000), 1e-4, 12000, 12153997);
+  enter<Twin>("wet/fig6", "conventional", rows<double>(50'000), 1e-4, 12000, 12153997);
+  enter<Cradle>("wet/fig11", "cradle", rows<double>(20'000'000), 0.05, 1.9e7, 57079264);
+  enter<Cradle>("wet/fig11_begin", "cradle", rows<double>(110'000), 0.05, 1e5);
+  enter<Twin>("wet/fig11_begin", "conventional", rows<double>(110'000), 0.05, 1e5);
   for (const cradle::ParticleIndex n : {10'000, 100'000, 1'000'000}) {
     const ParticlesPointer particles = ring(n);
     for (const double loss : {-1.0, 0.1}) {

@@ -3,7 +3,7 @@
 
     bench_engine --benchmark_filter=gas --benchmark_out=JSON --benchmark_out_format=json
 
-One line per engine: a gas of N particles, all of them active; of repetitions the median is taken.
+One line per engine: a gas of N particles, all of them active; points are medians of repetitions.
 """
 import json
 import statistics

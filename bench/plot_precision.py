@@ -2,8 +2,8 @@
 """Picture of run time against error: plot_precision.py CSV OUT.png, with the CSV of bench_precision.
 
 Panels: (a) three-particle collapse, (b) shock into the collapsed cluster, (c) time reversal, (d) speed on the long
-shock. One marker per representation, one colour per type; the line is the Pareto front: nothing is both faster and
-nearer (by half a digit).
+shock. One marker per representation, one colour per type; the line is the Pareto front: no other point is both faster
+and more accurate (by half a digit).
 Errors run from 1 (no digit is right) to 1e-200 on an axis that is linear in the square root of the digits.
 """
 import csv
@@ -24,7 +24,7 @@ BARS = {"double": "double (16 digits)", "tuned_heap": "conventional double, tune
         "double-double": "double-double (31)", "float128": "float128 (34)"} | NAMES
 MARKERS = {"gaps": "o", "absolute": "s"}
 DIGIT_TICKS = [0, 1, 5, 10, 16, 31, 50, 75, 100, 150, 200]
-# representation, type, offset in points, alignment
+# representation, type, offset of the label in points, alignment
 WIDE_LABELS = [("gaps", "double-double", -4, -13, "center"), ("gaps", "float128", 4, 11, "left"),
                ("gaps", "mpfr 50", -9, -5, "right"), ("gaps", "mpfr 100", -9, -5, "right"),
                ("gaps", "mpfr 200", -9, -4, "right")]

@@ -8,11 +8,12 @@
 // shock      N = 1000 into the collapsed cluster: energy, front and gaps against 230 digits, first collision out of
 //            order
 // order      N = 8000 to t = 6500, the paper's Fig. 3: the same against 100 digits, for the faster types
-// speed      N = 8000 to t = 4000: collisions per second, conventional engines in double (twins/) beside them
-// reversal   elastic gas there and back: rounding alone
+// speed      N = 8000 to t = 4000: collisions per second, also of conventional engines in double (twins/)
+// reversal   elastic gas forwards and back: rounding errors alone
 //
 // Errors are relative and at most 1. The CSV has a line per number: scene, representation, type, quantity, t, value.
-// Times are of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers.
+// Times are processor time of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns
+// its own timers.
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +43,7 @@ const ShockScene shock{"shock", 1000, "0.992", {500, 750, 812.5, 817}, 3'145'851
 const ShockScene order{"order", 8000, "0.999", {4000, 6000, 6500}, 34'679'181};
 const ShockScene speed{"speed", 8000, "0.999", {4000}, 4'685'816};
 
-// ---- what is found, for the file and for Google Benchmark's table
+// ---- results, for the file and for Google Benchmark's table
 
 class Report {
  public:
@@ -94,7 +95,7 @@ Report report(benchmark::State& state, const std::string& scene, const Engine& e
   return {state, scene, engine.representation(), engine.type()};
 }
 
-// ---- one function per question
+// ---- one function per measurement
 
 void measure_collapse(benchmark::State& state, const Engine& engine, const CollapseScene& scene) {
   for (auto iteration : state) {
@@ -127,7 +128,8 @@ void add_errors(Report& found, const ShockScene& scene, const ShockRun& run, con
   }
 }
 
-// Collisions, of the reference's, and time up to which the order is right; all there are if it is right to the end.
+// The number of collisions of the reference, and the time up to which their order is right; all collisions if it is
+// right to the end.
 void add_order(Report& found, const ShockScene& scene, const ShockRun& run, const ShockRun& exact) {
   const auto agreed = last_agreement(exact.samples, run.samples);
   const Sample last = agreed.value_or(exact.samples.back());
@@ -141,7 +143,7 @@ void add_order(Report& found, const ShockScene& scene, const ShockRun& run, cons
                  static_cast<unsigned long long>(scene.collisions));
 }
 
-// The scene's reference run, traced, and when it was sampled.
+// The traced reference run of a scene, and its sampling times.
 struct Reference {
   std::vector<double> sampling;
   ShockRun run;
@@ -187,22 +189,22 @@ template <class Once> void measure_speed(benchmark::State& state, Report found, 
 double time_engine(const Engine& engine, const ShockScene& scene, std::uint64_t& collisions) {
   return with_chain<double>(engine, [&]<class Chain>(std::type_identity<Chain>) {
     Run<Chain> simulation = prepare<Chain>(scene);
-    const double start = thread_seconds();
+    const double start = bench::seconds_now();
     simulation.advance(typename Chain::Scalar(scene.times.back()));
     collisions = simulation.counts().collisions;
-    return thread_seconds() - start;
+    return bench::seconds_now() - start;
   });
 }
 
 template <class Twin> double time_twin(const ShockScene& scene, std::uint64_t& collisions) {
-  Twin twin(*rows<double>(scene.particles), {0.999, 1e-5});
-  const double start = thread_seconds();
+  Twin twin(*bench::rows<double>(scene.particles), {0.999, 1e-5});
+  const double start = bench::seconds_now();
   twin.advance(scene.times.back());
   collisions = twin.collisions();
-  return thread_seconds() - start;
+  return bench::seconds_now() - start;
 }
 
-// ---- the list
+// ---- list of measurements
 
 template <class Measure> void enter(const std::string& name, Measure measure) {
   benchmark::RegisterBenchmark(name.c_str(), measure)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);

@@ -1,12 +1,13 @@
-// Collisions in steps of time (core/parallel/steps) against the event loop, both in segments on one thread: the same
-// runs side by side, a piece of each in turn, so that both see the same machine. The collisions and the energy lost
-// must be the same to the bit; where they are not, the program says so and ends with status 1.
+// Collisions in steps of time (core/parallel/steps) and in the event loop, both in segments on one thread. Pieces of
+// the two runs alternate, so that both see the same machine. The collisions and the energy lost must be the same to the
+// bit; otherwise the program prints an error and ends with status 1.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_steps
 //   build/release/bench/bench_steps [CASE...]
 //
 // Cases are those of bench/engine.cpp, and gases with masses 1 and 3, between walls, and with a restitution that
-// depends on the speed. Times are of the thread. `late` is the last thirteenth of the time: 6000 to 6500 for the shock.
+// depends on the speed. Times are processor time of the thread. `late` is the last thirteenth of the time: 6000 to 6500
+// for the shock.
 
 #include <cstdio>
 #include <ctime>
@@ -19,10 +20,9 @@
 #include <utility>
 #include <vector>
 
+#include "common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
@@ -31,57 +31,25 @@
 namespace {
 
 using namespace cradle;
-using Scene = std::shared_ptr<const Particles<double>>;
+using namespace bench;
 
-// Finaliser of splitmix64, as in bench/engine.cpp.
-std::uint64_t hash(std::uint64_t i) {
-  std::uint64_t z = i + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
-
-Scene shock(ParticleIndex n) {
-  const auto displacement = [](ParticleIndex i) {
-    return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
-  };
-  return std::make_shared<Rows<double>>(symmetric_rows(n, 0.5, 1.0, displacement));
-}
-
-Scene gas(ParticleIndex n, double other_mass = 1) {
-  std::vector<double> x, v, m;
-  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
-    const std::uint64_t bits = hash(i);
-    x.push_back(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29);
-    v.push_back(static_cast<double>(bits >> 28) * 0x1p-35 - 1);
-    if (other_mass != 1) m.push_back(i % 2 == 0 ? 1 : other_mass);
-  }
-  return std::make_shared<List<double>>(std::move(x), std::move(v), std::move(m));
-}
-
-Scene between_walls(ParticleIndex n) {
+ParticlesPointer between_walls(ParticleIndex n) {
   const auto wall = [](double position) { return Wall<double>{.position = position, .temperature = 0.3}; };
   return std::make_shared<Walled<double>>(gas(n), wall(-1), wall(static_cast<double>(n)));
 }
 
-double seconds() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 template <class Chain, class Law>
-bool compare(const char* name, const Scene& scene, const Law& law, double until, int pieces) {
+bool compare(const char* name, const ParticlesPointer& scene, const Law& law, double until, int pieces) {
   using Run = Simulation<double, Law, Chain>;
   Run loop(law, Chain(scene, 0.)), steps(law, Chain(scene, 0.));
   Segments<Law, Chain> by_loop, by_steps({}, {.steps = fastest_steps()});
   double of_loop = 0, of_steps = 0, late_loop = 0, late_steps = 0;
   for (int k = 1; k <= pieces; ++k) {
-    const double to = until * k / pieces, start = seconds();
+    const double to = until * k / pieces, start = seconds_now();
     loop.advance(to, by_loop);
-    const double between = seconds();
+    const double between = seconds_now();
     steps.advance(to, by_steps);
-    const double end = seconds();
+    const double end = seconds_now();
     of_loop += between - start, of_steps += end - between;
     late_loop = between - start, late_steps = end - between;
   }
@@ -107,7 +75,7 @@ int main(int argc, char** argv) {
   const Inelastic<double> law(0.999, 1e-5);
   const SpeedDependent<double> of_speed(0.9, 0.1, 0.2);
   const std::vector<std::pair<const char*, std::function<bool(const char*)>>> cases{
-      {"shock/8000", [&](const char* name) { return compare<Equal>(name, shock(8000), law, 6500, 13); }},
+      {"shock/8000", [&](const char* name) { return compare<Equal>(name, rows<double>(8000), law, 6500, 13); }},
       {"gas/1000", [&](const char* name) { return compare<Equal>(name, gas(1000), law, 3000, 13); }},
       {"gas/8000", [&](const char* name) { return compare<Equal>(name, gas(8000), law, 1000, 13); }},
       {"gas/1e5", [&](const char* name) { return compare<Equal>(name, gas(100'000), law, 100, 2); }},

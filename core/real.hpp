@@ -33,33 +33,33 @@ concept Real = std::copyable<T> && std::totally_ordered<T> && std::constructible
 
 template <Real T> double to_double(const T& x) { return static_cast<double>(x); }
 
-// Types that have a quicker way than a comparison overload these beside themselves.
+// Types with a quicker test overload these.
 template <Real T> bool is_negative(const T& x) { return x < T(0); }
 template <Real T> bool is_positive(const T& x) { return x > T(0); }
 
 template <Real T> T magnitude(const T& x) { return is_negative(x) ? T(-x) : x; }
 
-// Neither infinite nor not a number: of those, the difference from themselves is not 0.
+// Neither infinite nor NaN: for those x - x is not 0.
 template <Real T> bool is_finite(const T& x) { return x - x == T(0); }
 
-// Larger than any length of a scene. Exact types have no largest number and call it 0.
+// Larger than any length of a scene. Exact types have no largest number; their numeric_limits give 0.
 template <Real T> T far_away() {
   const T largest = std::numeric_limits<T>::max();
   return is_positive(largest) ? largest : T(std::numeric_limits<std::int64_t>::max());
 }
 
 // 2^exponent x as a double, rounded by a few units, within the range of double (larger numbers become its largest).
-// Types whose range is wider than double's say `double split(x, long& exponent)`: x = mantissa 2^exponent, |mantissa|
-// in [1/2, 1] or 0.
+// Types with a wider range than double define `double split(x, long& exponent)`: x = mantissa 2^exponent, |mantissa| in
+// [1/2, 1] or 0.
 inline double scale(double mantissa, long exponent) {
   if (exponent > 1000) return mantissa > 0 ? std::numeric_limits<double>::max() : -std::numeric_limits<double>::max();
   if (exponent < -1000) return 0;
   return mantissa * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
 
-// Not for doubles, which would convert: they are queue times as they are.
+// A template, so that doubles, which are queue times themselves, are not converted.
 template <std::same_as<long double> T> [[gnu::always_inline]] inline double split(T x, long& exponent) {
-  if constexpr (std::numeric_limits<long double>::digits == 64) {  // x87: read off the bits, frexp is a slow call
+  if constexpr (std::numeric_limits<long double>::digits == 64) {  // x87: read the bits, since frexp is a slow call
     std::uint64_t mantissa = 0;
     std::uint16_t sign_and_exponent = 0;
     std::memcpy(&mantissa, &x, sizeof mantissa);
@@ -91,7 +91,7 @@ template <Real T> struct Pair {
   static auto state(auto& self) { return std::tie(self.high, self.low); }
 };
 
-// a + b without error in types that round to the nearest number; in double-double, to its last digits but one.
+// a + b without error in types that round to the nearest number; in double-double exact up to its last digits.
 template <Real T> Pair<T> two_sum(const T& a, const T& b) {
   const T sum = a + b;
   const T b_seen = sum - a;
@@ -110,13 +110,14 @@ template <Real T> Pair<T> operator+(const Pair<T>& a, const Pair<T>& b) { return
 template <Real T> Pair<T> operator-(const Pair<T>& a) { return {T(-a.high), T(-a.low)}; }
 template <Real T> Pair<T> operator-(const Pair<T>& a, const Pair<T>& b) { return a + -b; }
 
-// (a - b) rounded once where the leading parts cancel, as they do for neighbouring times and positions.
+// a - b, rounded once if the leading parts cancel, as they do for neighbouring times and positions.
 template <Real T> T difference(const Pair<T>& a, const Pair<T>& b) {
   const Pair<T> leading = two_sum(a.high, T(-b.high));
   return leading.high + (leading.low + (a.low - b.low));
 }
 
-// Sum of many terms, each addition's error kept: exact to about 2 epsilon + n epsilon^2 times the sum of magnitudes.
+// Sum of many terms that keeps the rounding error of each addition: its error is about 2 epsilon + n epsilon^2 times
+// the sum of magnitudes.
 template <Real T> struct CompensatedSum {
   T sum{0};
   T errors{0};

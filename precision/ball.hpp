@@ -1,30 +1,29 @@
 #pragma once
-// Balls: a number known to lie within `radius` of a midpoint. Every operation encloses all that its operands may be:
-// midpoints are rounded as their type rounds, and a bound on that rounding is added to the radius. Radii are rounded
-// upwards by a factor that covers their own operations; no rounding mode is changed.
+// Balls: a number known to be within `radius` of a midpoint. The result of an operation contains all possible results
+// for its operands: the midpoint is rounded as its type rounds, and a bound on that rounding is added to the radius.
+// Radii are rounded upwards by a factor that covers their own operations; no rounding mode is changed.
 //
 // Midpoints and the relative errors of their operations, u = 2^-53, p bits:
 //
 //   double-double   sum 3 u^2 + 13 u^3, product 4 u^2, quotient 15 u^2 + 56 u^3 (double_double.hpp: Joldes, Muller and
 //                   Popescu 2017, doi 10.1145/3121432; formally verified by Muller and Rideau 2022,
-//                   doi 10.1145/3484514), as long as nothing underflows, which an absolute term stands for
+//                   doi 10.1145/3484514), if nothing underflows; an absolute term bounds underflow
 //   MPFR            half a unit in the last place: 2^-p
 //
-// Radii are doubles for double-double, whose range they share, and long doubles for MPFR: collapses go to gaps of
-// 1e-290, known to hundreds of digits. Where long double is no wider than double, radii end at 1e-308, and what would
-// take smaller ones is left open.
+// Radii are doubles for double-double, which has the same range, and long doubles for MPFR: collapses reach gaps of
+// 1e-290, known to hundreds of digits. If long double is no wider than double, radii end at 1e-308, and what needs
+// smaller ones remains undecided.
 //
-// Comparisons are certain: a < b says that all of a is less than all of b, and so neither a < b nor a >= b need hold.
-// order() says which it is. It compares in plain doubles with an error bound wherever these suffice.
+// Comparisons are certain: a < b means that all of a is less than all of b, so it is possible that neither a < b nor a
+// >= b holds. order() says which of these is certain. It compares in plain doubles with an error bound if these
+// suffice.
 //
-// What is computed twice from the same ball is not known to be the same number: x - x is a ball around 0. Combinations
-// whose radii must not grow are operations of their own (combined).
+// Two computations from the same ball are not known to be the same number: x - x is a ball around 0. There are separate
+// operations for combinations whose radii must not grow (combined).
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <string_view>
 
 #include "cradle/core/certify/enclosing.hpp"
@@ -37,7 +36,8 @@
 
 namespace cradle {
 
-// What balls require of their midpoints: sizes, to 2^-50 of themselves, and upper bounds of relative errors, as radii.
+// What balls require of their midpoints: sizes, with relative errors below 2^-50, and upper bounds of relative errors,
+// as radii.
 template <class M> struct Midpoint;
 
 template <> struct Midpoint<double_double> {
@@ -47,10 +47,10 @@ template <> struct Midpoint<double_double> {
   static double product_error() { return 0x1p-103; }  // > 4 u^2
   static double quotient_error() { return 0x1p-102; }
   static double literal_error() { return 0x1p-105; }
-  // Error terms of products below 2^-969 are lost: less than this. Sums lose nothing.
+  // Error terms of products below 2^-969 are lost; they are less than this. Sums lose nothing.
   static double lost() { return 0x1p-1000; }
   static double lost_in_sum() { return 0; }
-  // A double that differs by less than 2^-52 of itself or 2^-990.
+  // A double that differs by less than 2^-52 relatively or by less than 2^-990.
   static double near(const double_double& x) { return x.high(); }
 };
 
@@ -80,7 +80,6 @@ template <class M> class Ball {
   using Of = Midpoint<M>;
 
  public:
-  using Middle = M;
   using Radius = typename Of::Radius;
 
   // Integers and doubles are exact: midpoints have more than 64 bits.
@@ -108,7 +107,7 @@ template <class M> class Ball {
     return {middle, up(Of::size(x.middle_) * y.radius_ + (Of::size(y.middle_) + y.radius_) * x.radius_ +
                        Of::product_error() * Of::size(middle) + Of::lost())};
   }
-  // Infinite where the divisor may be 0.
+  // The radius is infinite if the divisor may be 0.
   friend Ball operator/(const Ball& x, const Ball& y) {
     const M middle = x.middle_ / y.middle_;
     const Radius least = y.least_size();
@@ -122,8 +121,8 @@ template <class M> class Ball {
   Ball& operator*=(const Ball& y) { return *this = *this * y; }
   Ball& operator/=(const Ball& y) { return *this = *this / y; }
 
-  // Of what is certainly positive; infinite otherwise. With s the root of the midpoint x as it was computed, whatever
-  // its error: |s - sqrt(y)| = |s^2 - y| / (s + sqrt(y)) <= (|s^2 - x| + |x - y|) / s.
+  // For a ball that is certainly positive; infinite otherwise. Let s be the computed root of the midpoint x, with any
+  // error: |s - sqrt(y)| = |s^2 - y| / (s + sqrt(y)) <= (|s^2 - x| + |x - y|) / s.
   friend Ball sqrt(const Ball& x) {
     using std::sqrt;
     if (!(x.least_size() > 0) || !is_positive(x.middle_)) return {x.middle_, std::numeric_limits<Radius>::infinity()};
@@ -134,11 +133,11 @@ template <class M> class Ball {
 
   static Ball widened(const Ball& x, Radius by) { return {x.middle_, up(x.radius_ + by)}; }
 
-  // Upper and lower bound of all sizes in it.
+  // Upper and lower bound of the absolute values in it.
   Radius size() const { return up(Of::size(middle_) + radius_); }
   Radius least_size() const { return (Of::size(middle_) * down - 2 * Of::lost() - radius_) * down; }
 
-  // In plain doubles if these decide it; open if they do not.
+  // Compares in plain doubles; open if they do not decide.
   friend Order order_in_doubles(const Ball& x, const Ball& y) {
     const double a = Of::near(x.middle_), b = Of::near(y.middle_), apart = b - a;
     const double error = (upper_double(x.radius_) + upper_double(y.radius_)) * (1 + 0x1p-50) +
@@ -158,7 +157,7 @@ template <class M> class Ball {
   friend bool operator>(const Ball& x, const Ball& y) { return y < x; }
   friend bool operator<=(const Ball& x, const Ball& y) { return x < y || x == y; }
   friend bool operator>=(const Ball& x, const Ball& y) { return y <= x; }
-  // Certainly the same number.
+  // Whether both are certainly the same number.
   friend bool operator==(const Ball& x, const Ball& y) {
     return x.radius_ == 0 && y.radius_ == 0 && x.middle_ == y.middle_;
   }
@@ -169,7 +168,7 @@ template <class M> class Ball {
     return is_finite(x.middle_) && x.radius_ <= std::numeric_limits<Radius>::max();
   }
 
-  // A share c in a combination, with what its sizes are.
+  // The share c of a combination, with the sizes of c and 1 - c.
   class Share {
    public:
     explicit Share(const Ball& c)
@@ -182,9 +181,9 @@ template <class M> class Ball {
     Radius size_, rest_;  // of c, of 1 - c
     Radius rounding_;
   };
-  // What two numbers become that are drawn to each other, given `apart` = x - y: (1 - c) x + c y and (1 - d) y + d x.
-  // Their radii are |1 - c| r_x + |c| r_y and what c and the roundings add: for 0 <= c <= 1 an average, while the same
-  // numbers written x - c (x - y) would make it r_x + c (r_x + r_y).
+  // Moves two numbers towards each other, given `apart` = x - y: (1 - c) x + c y and (1 - d) y + d x. The radius is |1
+  // - c| r_x + |c| r_y plus the contributions of c and of rounding: for 0 <= c <= 1 an average. The same numbers
+  // written as x - c (x - y) would have r_x + c (r_x + r_y).
   struct Both {
     Ball left, right;
   };
@@ -198,8 +197,8 @@ template <class M> class Ball {
 
  private:
   static constexpr Radius down = static_cast<Radius>(1 - 0x1p-48);
-  // A radius that has been rounded up to 15 times, with sizes good to 2^-50, enlarged by more than these can have taken
-  // off.
+  // Enlarges a radius that was rounded up to 15 times, from sizes with relative errors of 2^-50, by more than these
+  // errors can have removed.
   static Radius up(Radius r) { return r * static_cast<Radius>(1 + 0x1p-48); }
   static double upper_double(Radius r) {
     if constexpr (std::is_same_v<Radius, double>)
@@ -207,7 +206,7 @@ template <class M> class Ball {
     else
       return r < 1e300L ? static_cast<double>(r) * (1 + 0x1p-50) + 0x1p-1000 : std::numeric_limits<double>::infinity();
   }
-  // Of c times what is apart: that was rounded once, and the product is; c has a radius of its own.
+  // The rounding error of c times `apart`, and the contribution of the radius of c.
   static Radius off(const Ball& x, const Ball& y, const Ball& apart, const Share& c) {
     const Radius width = Of::size(apart.middle_);
     return c.rounding_ * width + c.c_.radius_ * (width + x.radius_ + y.radius_) + Of::lost();
@@ -220,7 +219,7 @@ template <class M> class Ball {
   Radius radius_ = 0;
 };
 
-// Without the error terms, which are balls as wide as the sum: a ball carries its own error.
+// Has no error terms: they would be balls as wide as the sum, and a ball carries its own error.
 template <class M> struct CompensatedSum<Ball<M>> {
   Ball<M> sum;
 
@@ -228,7 +227,7 @@ template <class M> struct CompensatedSum<Ball<M>> {
   Ball<M> value() const { return sum; }
 };
 
-// A decimal literal, enclosed; integers that every midpoint holds are exact.
+// Encloses a decimal literal; integers that every midpoint type holds are exact.
 template <class M> struct Text<Ball<M>> {
   static Ball<M> from(std::string_view literal) {
     const M middle = from_text<M>(literal);

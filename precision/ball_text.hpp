@@ -1,5 +1,5 @@
 #pragma once
-// Balls as intervals to be read: decimals and doubles, rounded outwards, so that what a ball encloses they enclose.
+// Balls as readable intervals: decimals and doubles, rounded outwards, so that they contain the ball.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
@@ -15,12 +15,12 @@ template <class Number> struct Enclosure { Number low, high; };
 
 namespace detail {
 
-// Room for the sum of any two doubles and a radius.
+// Wide enough for the sum of any two doubles and a radius.
 using Wide =
     boost::multiprecision::number<boost::multiprecision::cpp_bin_float<3300, boost::multiprecision::digit_base_2>,
                                   boost::multiprecision::et_off>;
 
-// The decimal of so many digits next to x on one side of it, or the one after that.
+// A decimal with so many digits on one side of x: the nearest one or the one after it.
 inline std::string decimal_beside(const Wide& x, int digits, bool below) {
   const auto text = [&](const Wide& number) { return number.str(digits - 1, std::ios_base::scientific); };
   std::string nearest = text(x);
@@ -55,7 +55,7 @@ template <int Limbs> Enclosure<std::string> decimals(const Mpfr<Limbs>& middle, 
 
 }  // namespace detail
 
-// Decimal digits that the two ends share, or may: log10 of the size against the radius; 0 where nothing is known.
+// The number of decimal digits that are known: log10 of the ratio of size to radius; 0 if nothing is known.
 template <class M> int digits_known(const Ball<M>& x) {
   if (!is_finite(x)) return 0;
   const auto size = static_cast<long double>(Midpoint<M>::size(x.middle()));
@@ -63,20 +63,20 @@ template <class M> int digits_known(const Ball<M>& x) {
   return digits > 0 ? static_cast<int>(digits) : 0;
 }
 
-// Both ends with the digits that are known and two more.
+// Both ends, with two digits more than are known.
 template <class M> Enclosure<std::string> in_decimals(const Ball<M>& x) {
   if (!is_finite(x)) return {"-inf", "inf"};
   return detail::decimals(x.middle(), x.radius(), digits_known(x) + 3);
 }
 
-// The doubles next to it on either side; infinite where there are none.
+// The nearest doubles on either side; infinite if there are none.
 template <class M> Enclosure<double> in_doubles(const Ball<M>& x) {
   constexpr double none = std::numeric_limits<double>::infinity();
   if (!is_finite(x)) return {-none, none};
   Enclosure<double> ends{to_double(x.middle()), to_double(x.middle())};
   const auto radius = static_cast<double>(x.radius());
   ends.low -= radius, ends.high += radius;
-  // About 0 the next double may be nearer than balls resolve: steps double, so that few suffice.
+  // Near 0 doubles are denser than balls resolve: the steps double, so that few suffice.
   constexpr double least = std::numeric_limits<double>::denorm_min();
   for (double by = least; ends.low > -none && !(Ball<M>(ends.low) < x); by += by)
     ends.low = std::nextafter(ends.low - by, -none);

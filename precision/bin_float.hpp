@@ -1,6 +1,6 @@
 #pragma once
-// Boost.Multiprecision's own binary floating point, header only: the portable fallback where neither MPFR nor
-// libquadmath is there. A fixed 100 decimal digits.
+// Boost.Multiprecision's own binary floating point, header only, with 100 decimal digits: the portable alternative to
+// MPFR and libquadmath.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstdint>

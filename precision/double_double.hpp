@@ -7,8 +7,8 @@
 //   product     DWTimesDW3 (12), with FMA               4 u^2
 //   quotient    DWDivDW2 (17), with FMA                 15 u^2 + 56 u^3
 //
-// The bounds hold while nothing underflows, that is, while results stay above 2^-969: that is numeric_limits::min().
-// Beyond the greatest number they give NaN: infinity is there to be compared with, not to compute with.
+// The bounds hold while nothing underflows, that is, while results stay above 2^-969, which is numeric_limits::min().
+// Results above the largest number are NaN: infinity can be compared with, but not computed with.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
@@ -30,7 +30,7 @@ class double_double {
   constexpr explicit double_double(std::int64_t i)
       : high_(static_cast<double>(i)), low_(static_cast<double>(i - nearest(high_)) - (high_ == 0x1p63 ? 1 : 0)) {}
   constexpr explicit double_double(double x) : high_(x) {}
-  // The sum of two doubles, whatever their sizes.
+  // The sum of two doubles of any sizes.
   static constexpr double_double sum(double a, double b) { return two_sum(a, b); }
 
   constexpr double high() const { return high_; }
@@ -88,7 +88,7 @@ class double_double {
  private:
   constexpr double_double(double high, double low) : high_(high), low_(low) {}
 
-  // 2^63 is one beyond the range.
+  // 2^63 is just beyond the range.
   static constexpr std::int64_t nearest(double x) {
     return x >= 0x1p63 ? std::numeric_limits<std::int64_t>::max() : static_cast<std::int64_t>(x);
   }
@@ -114,7 +114,7 @@ template <> class std::numeric_limits<cradle::double_double> {
   static constexpr bool is_specialized = true, is_signed = true, is_integer = false, is_exact = false;
   static constexpr bool has_infinity = true, has_quiet_NaN = true, is_iec559 = false, is_bounded = true;
   static constexpr int radix = 2;
-  // The narrowest spacing at 1 is not fixed; operations keep 2^-104 and better.
+  // The spacing of numbers near 1 is not fixed; operations keep 2^-104 or better.
   static constexpr int digits = 105, digits10 = 31, max_digits10 = 33;
   static constexpr int min_exponent = -968, max_exponent = 1024, min_exponent10 = -291, max_exponent10 = 308;
   static constexpr cradle::double_double epsilon() { return cradle::double_double(0x1p-104); }
@@ -131,14 +131,14 @@ template <> class std::numeric_limits<cradle::double_double> {
   }
 };
 
-// Through a type with room for any sum of two doubles (from 2^1024 down to 2^-1074): each way is rounded once.
+// Conversions use a type that holds the sum of any two doubles exactly (from 2^1024 down to 2^-1074): each rounds once.
 template <> inline constexpr std::string_view cradle::scalar_name<cradle::double_double> = "double-double";
 
 template <> struct cradle::Text<cradle::double_double> {
   static double_double from(std::string_view literal) { return rounded(Exact(checked_literal(literal))); }
 
   static std::string to(const double_double& x) {
-    // High and low may be far apart: take digits until all are written.
+    // High and low may differ greatly in size: add digits until the text is exact.
     for (int digits = 32;; digits += 8) {
       std::string text = near(x) ? written<Near>(x, digits) : written<Exact>(x, digits);
       if (digits > 700 || reads(text, x)) return text;
@@ -162,8 +162,8 @@ template <> struct cradle::Text<cradle::double_double> {
     return Number(Number(x.high()) + x.low()).str(digits);
   }
   static bool near(const double_double& x) { return x.low() == 0 || std::ilogb(x.high()) - std::ilogb(x.low()) < 150; }
-  // Whether from(text) is x. Rounding keeps the order: if both ends of what Near may be off are rounded to one number,
-  // so is the decimal between them.
+  // Whether from(text) is x. Rounding is monotonic: if both ends of the error interval of Near round to one number, so
+  // does the decimal between them.
   static bool reads(const std::string& text, const double_double& x) {
     const Near middle(text), off = ldexp(Near(abs(middle)), -240);
     const double_double one_end = rounded(Near(middle - off)), other = rounded(Near(middle + off));

@@ -1,8 +1,8 @@
 #pragma once
-// IEEE binary128, 113 bits, some 34 decimal digits: the compiler's __float128 with libquadmath for roots and text, held
-// in a class of its own so that the engine's templates see a type without conversions. (Boost.Multiprecision 1.74's
-// float128 compiles in GNU mode only.) Needs g++: clang cannot include quadmath.h. Signs and exponents, which the
-// engine asks for often, are read off the bits instead of calling the soft-float library.
+// IEEE binary128, 113 bits, about 34 decimal digits: the compiler's __float128, with libquadmath for roots and text, in
+// a class of its own, so that the engine's templates see a type without conversions. (Boost.Multiprecision 1.74's
+// float128 compiles in GNU mode only.) It needs g++: clang cannot include quadmath.h. The engine often needs signs and
+// exponents, so they are read from the bits instead of calling the soft-float library.
 
 #include <quadmath.h>
 
@@ -62,7 +62,7 @@ class float128 {
   friend double split(const float128& x, long& exponent) {
     const Words w = x.words();
     const auto biased = static_cast<long>(w.high >> 48 & 0x7FFF);
-    if (biased == 0) {  // zero, or subnormal: by the library
+    if (biased == 0) {  // zero or subnormal: use the library
       int e = 0;
       const auto mantissa = static_cast<double>(frexpq(x.value_, &e));
       exponent = e;

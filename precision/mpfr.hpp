@@ -1,13 +1,11 @@
 #pragma once
-// MPFR numbers of a precision chosen at run time, held in place: the limbs are part of the object, so that a number is
-// made, copied and dropped without the heap, and a chain's numbers lie side by side in memory. `Limbs` is the room for
-// them (64 bits each); the precision itself is one value per process, set before the first number is made and before
-// any thread starts. All operations round to nearest.
+// MPFR numbers of a precision chosen at run time, without the heap: the limbs are part of the object, so a chain's
+// numbers are side by side in memory. `Limbs` is the number of limbs (64 bits each) that fit. The precision is one
+// value per process, set before the first number is made and before any thread starts. All operations round to nearest.
 
 #include <mpfr.h>
 
 #include <array>
-#include <bit>
 #include <compare>
 #include <cstdint>
 #include <cstdlib>
@@ -25,10 +23,10 @@ namespace cradle {
 // The working precision of every Mpfr number, in bits.
 class MpfrPrecision {
  public:
-  // What `digits` decimal digits take, and a bit to spare.
+  // The bits for so many decimal digits, plus one.
   static constexpr mpfr_prec_t bits_for(unsigned digits) { return static_cast<mpfr_prec_t>(digits) * 3322 / 1000 + 2; }
   static mpfr_prec_t bits() { return bits_; }
-  // Writes only what is new: runs of one precision may begin on several threads at once.
+  // Writes only a new value: several threads may begin runs of one precision at once.
   static void set_bits(mpfr_prec_t bits) {
     if (bits_ != bits) bits_ = bits;
   }
@@ -40,14 +38,14 @@ class MpfrPrecision {
 
 template <int Limbs> class Mpfr {
  public:
-  // What fits: 8 limbs hold 153 digits, 56 hold 1078.
+  // Whether so many digits fit: 8 limbs hold 153 digits, 56 hold 1078.
   static constexpr bool holds(unsigned digits) { return MpfrPrecision::bits_for(digits) <= Limbs * GMP_NUMB_BITS; }
 
   Mpfr() { mpfr_custom_init_set(&v_, MPFR_ZERO_KIND, 0, MpfrPrecision::bits(), limbs_.data()); }
   explicit Mpfr(int i) : Mpfr() { mpfr_set_si(&v_, i, MPFR_RNDN); }
   explicit Mpfr(std::int64_t i) : Mpfr() { mpfr_set_sj(&v_, i, MPFR_RNDN); }
   explicit Mpfr(double x) : Mpfr() { mpfr_set_d(&v_, x, MPFR_RNDN); }
-  // From a decimal literal that has been checked to be one.
+  // Converts a decimal literal that has been checked.
   explicit Mpfr(const char* literal) : Mpfr() { mpfr_strtofr(&v_, literal, nullptr, 10, MPFR_RNDN); }
 
   Mpfr(const Mpfr& x) noexcept { take(x); }
@@ -60,7 +58,7 @@ template <int Limbs> class Mpfr {
   explicit operator double() const { return mpfr_get_d(&v_, MPFR_RNDN); }
   mpfr_srcptr get() const { return &v_; }
 
-  // Sign and kind, and of numbers other than 0 exponent and limbs.
+  // Saves sign and kind and, for numbers other than 0, exponent and limbs.
   void save(auto& to) const {
     const std::array<std::int32_t, 2> kind{mpfr_custom_get_kind(&v_), mpfr_signbit(&v_)};
     to.put(kind.data(), sizeof kind);
@@ -128,7 +126,7 @@ template <int Limbs> class Mpfr {
     return scaled;
   }
 
-  // x = mantissa 2^exponent, mantissa in [1/2, 1] or 0: read off the leading limb, good to 2^-52.
+  // x = mantissa 2^exponent, mantissa in [1/2, 1] or 0: read from the leading limb, with a relative error of 2^-52.
   friend double split(const Mpfr& x, long& exponent) {
     if (!mpfr_regular_p(&x.v_)) {
       exponent = 0;
@@ -136,7 +134,7 @@ template <int Limbs> class Mpfr {
     }
     exponent = x.v_._mpfr_exp;
     const auto leading = x.limbs_[static_cast<std::size_t>((x.v_._mpfr_prec - 1) / GMP_NUMB_BITS)];
-    const double mantissa = static_cast<double>(leading >> 1) * 0x1p-63;  // signed conversion: one instruction
+    const double mantissa = static_cast<double>(leading >> 1) * 0x1p-63;  // the signed conversion is one instruction
     return x.v_._mpfr_sign < 0 ? -mantissa : mantissa;
   }
 
@@ -170,9 +168,9 @@ template <int Limbs> class std::numeric_limits<cradle::Mpfr<Limbs>> {
   static constexpr std::float_round_style round_style = std::round_to_nearest;
   static constexpr bool has_infinity = true, has_quiet_NaN = true, is_iec559 = false, is_bounded = true;
   static constexpr int radix = 2;
-  // digits are a run-time choice: see MpfrPrecision.
-  // Above MPFR's least exponent by more than the precision: differences of larger numbers are exact or rounded, never
-  // zero.
+  // The number of digits is chosen at run time: see MpfrPrecision.
+  // The range ends above MPFR's least exponent by more than the precision: differences of larger numbers are exact or
+  // rounded, never zero.
   static constexpr long min_exponent = -(1L << 30) + (1L << 20) + 3, max_exponent = (1L << 30) - 1;
   static T epsilon() { return ldexp(T(1), 1 - cradle::MpfrPrecision::bits()); }
   static T min() { return ldexp(T(1), min_exponent - 1); }

@@ -8,7 +8,7 @@
 
 namespace cradle {
 
-// With so many significant digits; 0: as many as it takes to read the same number back in the same precision.
+// Text with so many significant digits; 0: as many as are needed to read the same number back in the same precision.
 inline std::string mpfr_text(mpfr_srcptr x, std::size_t digits) {
   if (mpfr_zero_p(x)) return mpfr_signbit(x) ? "-0" : "0";
   mpfr_exp_t exponent = 0;

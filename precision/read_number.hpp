@@ -1,6 +1,6 @@
 #pragma once
-// std::from_chars for double and long double, on every platform: libraries that lack it (libc++) read through a stream
-// that knows no locale. That is as exact and slower, and what is too small for the type comes as 0 without an error.
+// std::from_chars for double and long double on every platform. Libraries without it (libc++) read through a stream
+// with the classic locale: that is exact too, but slower, and numbers too small for the type become 0 without an error.
 
 #include <charconv>
 #include <cstddef>
@@ -18,7 +18,7 @@ template <class T> std::from_chars_result read_by_stream(const char* from, const
   const bool good = static_cast<bool>(stream >> read);
   if (!good && read == T(0)) return {from, std::errc::invalid_argument};
   const bool all = stream.eof();
-  stream.clear();  // a stream that has failed has no position
+  stream.clear();  // a stream in a failed state has no position
   const char* const end = all ? to : from + static_cast<std::ptrdiff_t>(stream.tellg());
   if (!good) return {end, std::errc::result_out_of_range};
   value = read;

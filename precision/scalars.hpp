@@ -1,11 +1,10 @@
 #pragma once
-// The list of scalar types, and the way from a name to a type. A new type takes a header of its own and a place in the
-// list, here and in precision/CMakeLists.txt, by which the engine is compiled once per type.
+// The list of scalar types, and the conversion of a name to a type. A new type needs a header and a place in the list,
+// here and in precision/CMakeLists.txt; the engine is compiled once per type.
 
 #include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -28,13 +27,13 @@ using Scalars = std::tuple<double, long double, double_double, bin_float
                            float128
 #endif
 #ifdef CRADLE_WITH_MPFR
-                           // smallest first: digits take the first type that has room for them
+                           // smallest first: the first type with enough digits is used
                            ,
                            Mpfr<4>, Mpfr<8>, Mpfr<16>, Mpfr<56>
 #endif
                            >;
 
-// A precision as scenes name it; digits count only with "mpfr".
+// A precision as scenes name it; digits are used only with "mpfr".
 struct ScalarChoice {
   std::string name;
   unsigned digits = 0;
@@ -66,8 +65,8 @@ template <class Result, std::size_t K, class F> Result choose_scalar(const Scala
 
 }  // namespace detail
 
-// Calls f(std::type_identity<T>) with the type T that a name stands for, MPFR's precision being set; Result is what f
-// returns. Throws std::invalid_argument for a type that there is not, saying what to do.
+// Calls f(std::type_identity<T>) with the type T of this name, after setting MPFR's precision; Result is the type that
+// f returns. Throws std::invalid_argument for an unknown type, with advice.
 template <class Result, class F> Result with_scalar(const ScalarChoice& choice, F f) {
 #ifdef CRADLE_WITH_MPFR
   if (choice.name == "mpfr") MpfrPrecision::set_bits(MpfrPrecision::bits_for(choice.digits));

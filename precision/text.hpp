@@ -1,7 +1,7 @@
 #pragma once
-// Exact text in and out, one specialisation per scalar type: `from_text` rounds a decimal literal once, to the nearest
-// number of the type; `to_text` writes as many digits as it takes to read the same number back, and inf, -inf, nan for
-// what is no number, which from_text does not take.
+// Exact conversion from and to text, one specialisation per scalar type. `from_text` rounds a decimal literal once, to
+// the nearest number of the type; it refuses inf and nan. `to_text` writes the digits needed to read the same number
+// back, or inf, -inf, nan.
 
 #include <array>
 #include <charconv>
@@ -21,13 +21,13 @@ namespace cradle {
 template <class T> struct Text;
 template <class T> struct SavedNumber;  // exactly, as bytes (core/engine/state.hpp)
 
-// What scenes call the type.
+// The type's name in scenes.
 template <class T> inline constexpr std::string_view scalar_name = "";
 template <> inline constexpr std::string_view scalar_name<double> = "double";
 template <> inline constexpr std::string_view scalar_name<long double> = "long double";
 
-// The literal, if it is a finite decimal one (1, -0.5, 2e-400); throws std::invalid_argument otherwise. Libraries that
-// read numbers leniently are given nothing else.
+// Returns the literal if it is a finite decimal one (1, -0.5, 2e-400); throws std::invalid_argument otherwise. It is
+// called before libraries that accept more than that.
 inline std::string checked_literal(std::string_view literal) {
   const auto fail = [&] {
     throw std::invalid_argument("not a number (" + std::string(literal) + "): give a decimal literal");
@@ -53,16 +53,17 @@ inline std::string checked_literal(std::string_view literal) {
 
 namespace detail {
 
-// The standard types: std::from_chars and std::to_chars are exact in both directions and know no locale.
+// The standard types: std::from_chars and std::to_chars are exact in both directions and ignore locales.
 template <class T> struct StandardText {
-  // Throws std::invalid_argument for anything but a finite decimal literal. Beyond the type's range: 0 or infinity.
+  // Throws std::invalid_argument for anything but a finite decimal literal. Beyond the type's range it gives 0 or
+  // infinity.
   static T from(std::string_view literal) {
     T value{};
     const std::string text = checked_literal(literal);
     const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
     const auto error = read_number(digits.data(), digits.data() + digits.size(), value).ec;
     if (error == std::errc::result_out_of_range) {
-      // Too large, too small, or (long double, libstdc++) merely subnormal: streams say which.
+      // Too large, too small, or (long double in libstdc++) merely subnormal: a stream distinguishes these.
       std::istringstream stream(text);
       stream.imbue(std::locale::classic());
       if (!(stream >> value)) value = std::copysign(std::numeric_limits<T>::infinity(), value);

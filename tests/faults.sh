@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# What goes wrong on machines, done to the program on purpose: kills, full disks, folders that cannot be written, two
-# writers, damaged files, too little memory, clocks that jump. Prints one table: tried, failed. Failed is 0.
+# Injects faults into the program: kills, full disks, folders that cannot be written, two writers, damaged files, too
+# little memory, clocks that jump. Prints one table: tried, failed. Failed must be 0.
 #
-#   tests/faults.sh [PROGRAM] [KILLS]     program: build/release/tools/cradle; kills of runs, and as many of ensembles:
-#   50
+#   tests/faults.sh [PROGRAM] [KILLS]     program: build/release/tools/cradle; 50 kills of runs and of ensembles each
 #
-# Needs to mount a small tmpfs for the full disk (a user namespace of its own) and faketime for the clock; says where
-# there is none. SEED=n draws other moments.
+# It mounts a small tmpfs for the full disk (in its own user namespace) and uses faketime for the clock; it says if one
+# is missing. SEED=n chooses other times.
 set -u
 program=$(readlink -f "${1:-build/release/tools/cradle}") kills=${2:-50}
 RANDOM=${SEED:-1}
@@ -24,7 +23,7 @@ counted() { # counted WHAT: the status of the command before says whether it wen
 }
 left_out() { order+=("$1"); tried[$1]=0 failed[$1]="not tried: $2"; }
 
-# ---- kills: whatever is left, `resume` makes the bytes of the run that was left alone
+# ---- kills: after every one, `resume` must give the bytes of the uninterrupted run
 dry='fig2 --set run.until=6000 --set output.snapshots=[1000,5500]'
 none='--set output.profiles.times=[] --set output.snapshots=[]'
 runs=(
@@ -76,9 +75,9 @@ for ((n = 0; n < kills; ++n)); do
   counted 'kill -9 of an ensemble, then resume' "${ensembles[k]}"
 done
 
-# How quick the machine is decides nothing: halted FILE starts a run that has a checkpoint and is halted, its process
-# being $pid, and makes whole.h5, what it comes to. A run that was over before is made again, twice as long. It ends by
-# itself once it is continued (kill -CONT $pid).
+# halted FILE starts a run that has a checkpoint and is halted ($pid is its process), and makes whole.h5, its expected
+# result. If the run ends too early, on a fast machine, it is made again, twice as long. It ends by itself when it is
+# continued (kill -CONT $pid).
 halted() {
   for ((until = 6000; ; until *= 2)); do
     rm -f "$1"*
@@ -99,7 +98,7 @@ for signal in INT TERM HUP USR1; do
   counted 'signals, then resume' "$signal, status $status"
 done
 
-# ---- full disk: of some kilobytes, so that it fills during the journal, a checkpoint, the result
+# ---- full disk: some kilobytes, so that it is full during the journal, a checkpoint or the result
 if unshare --user --map-root-user --mount true 2>/dev/null; then
   for size in 16k 40k 100k 180k 300k 600k 800k 1200k; do
     mkdir -p small elsewhere
@@ -121,7 +120,7 @@ else
   left_out 'full disk, then room' 'no user namespaces here'
 fi
 
-# ---- a folder that cannot be written (root may: as somebody else)
+# ---- a folder that cannot be written (as another user if this one is root)
 mkdir closed && chmod 555 closed
 if [ "$(id -u)" = 0 ]; then as() { setpriv --reuid=65534 --clear-groups "$@"; }; else as() { "$@"; }; fi
 chmod 755 "$folder"
@@ -184,7 +183,7 @@ library=$(ls /usr/lib/*/faketime/libfaketimeMT.so.1 2>/dev/null | head -1)
 if [ -n "$library" ]; then
   for jump in +10d -10d; do
     rm -f clock*; echo '+0' >clock
-    # The clock jumps while the run is halted; one that was over before has seen no jump, and is as good.
+    # The clock jumps while the run is halted. A run that was over before has seen no jump; it passes, too.
     LD_PRELOAD=$library FAKETIME_TIMESTAMP_FILE=$PWD/clock FAKETIME_NO_CACHE=1 FAKETIME_DONT_FAKE_MONOTONIC=1 \
       "$program" run $dry $often -o clock.h5 & pid=$!
     until [ -e clock.h5.checkpoint ]; do sleep 0.01; done

@@ -1,4 +1,4 @@
-// The two folders, as the build says them.
+// The two folders, as the build defines them.
 #include "cradle/tests/places.hpp"
 
 const std::string cradle::test::source_folder = CRADLE_SOURCE_DIR;

@@ -1,5 +1,5 @@
 #pragma once
-// Where the sources are and where they are built: known to one small file, so that no other changes with the folder.
+// The folders of the sources and of the build. Only this file is compiled again when they change.
 
 #include <string>
 

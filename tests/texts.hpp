@@ -1,5 +1,5 @@
 #pragma once
-// Texts that tests expect, with messages that print what there is instead.
+// Compares texts with expected ones; failures print the actual text.
 
 #include <regex>
 #include <set>

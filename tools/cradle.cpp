@@ -1,4 +1,4 @@
-// The command line: chooses a command, runs it and turns what goes wrong into one message and a documented exit status.
+// The command line: chooses a command and runs it; turns an exception into one message and a documented exit status.
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ int fail(std::string_view message, Exit status) {
   return static_cast<int>(status);
 }
 
-// What was printed must have arrived, or a script that reads it takes half of it for all.
+// Fails unless all output was written: else a script would take half of the output for all of it.
 int finish(Exit status) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(status);
   return fail("standard output cannot be written: check where it goes, a full disk or a program that has ended",
@@ -44,7 +44,7 @@ int finish(Exit status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, as on a full disk, instead of ending the program
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` then fails, as on a full disk
   try {
     CommandLine program(
         "cradle", "One-dimensional granular gases, event by event: dry, wet and sticky, in any precision.",
@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
     return finish(program.read(argc, argv)());
   } catch (const Error& error) {
     return fail(error.what(), error.status);
-  } catch (const std::system_error& error) {  // of output, first of all
+  } catch (const std::system_error& error) {  // mostly from output
     return fail(fmt::format("{}: check where the output goes", error.what()), Exit::io);
   } catch (const std::length_error&) {
     return fail("out of memory: see what `cradle check SCENE` expects", Exit::bad_input);

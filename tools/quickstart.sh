@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source tools/setup.sh
 
 set_up program
-# Tests and benchmarks are not built here: where their libraries are missing, leave them out of the build tree.
+# Tests and benchmarks are not built here: if their libraries are missing, leave them out of the build tree.
 options=()
 { has header gtest/gtest.h && has header rapidcheck.h; } || options+=(-DCRADLE_TESTS=OFF)
 has header benchmark/benchmark.h || options+=(-DCRADLE_BENCH=OFF)

@@ -1,15 +1,15 @@
 # shellcheck shell=bash
-# What quickstart.sh and test.sh share; both source it. `set_up program|tests` sees to it that everything needed to
-# build the program (and its tests) is there: it finds what is missing and installs that with apt, as root or through
-# sudo. Where that cannot be done it lists what is missing with Debian's names and stops. If nothing is missing nothing
-# is installed and no network, root or apt is needed. MPI and Highway are optional: they are installed where that needs
-# no password, and else left out; so is Chromium, in which tests inspect reports. `step` runs a command and, if it
-# fails, stops with what to do. Tried on bare Debian 12 and Debian 13.
+# Shared by quickstart.sh and test.sh, which source it. `set_up program|tests` makes sure that everything needed to
+# build the program (and its tests) is installed: it installs what is missing with apt, as root or through sudo. If it
+# cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no network, root or apt. MPI
+# and Highway are optional, and so is Chromium, in which tests inspect reports: they are installed if that needs no
+# password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on bare Debian
+# 12 and Debian 13.
 
 preset=release
 build=build/$preset
 
-# for | what | looked for as | Debian's package
+# purpose | what | probe | Debian's package
 needs() {
   cat <<'TABLE'
 program | C++20 compiler        | compiler                     | g++
@@ -62,7 +62,7 @@ has_cmake() {
     [[ $(printf '%s\n' "$1" "$found" | sort -V | head -n 1) == "$1" ]]
 }
 
-# A header in the compiler's, the environment's or Debian's folders.
+# Finds a header in the folders of the compiler, the environment or Debian.
 has_header() {
   local folder folders prefix prefixes
   IFS=: read -ra folders <<<"${CPATH:-}:${CPLUS_INCLUDE_PATH:-}"
@@ -94,7 +94,8 @@ has() {
   esac
 }
 
-# Fills the arrays missing and debian with what program (or, as well, tests) lacks, optional with what it could use.
+# Fills the arrays missing and debian with what the program (or also the tests) needs, and optional with what it could
+# use.
 search_for() {
   local group what probe package
   missing=() debian=() optional=()
@@ -140,7 +141,7 @@ apt_get() {
   as_root apt-get -qq -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 "$@"
 }
 
-# What is optional never stops anything.
+# Missing optional packages never stop the build.
 install_optional() {
   ((${#optional[@]})) || return 0
   if command -v apt-get >/dev/null && { ((EUID == 0)) || sudo -n true 2>/dev/null; }; then
@@ -169,7 +170,7 @@ set_up() {
     list_missing_and_stop "apt has installed its packages, but this is missing still or too old"
 }
 
-# configure OPTIONS...: the preset's build tree, with the generator that it has or else with what is there.
+# configure OPTIONS...: configures the preset's build tree, with its present generator or else with an installed one.
 configure() {
   local cached
   if cached=$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' "$build/CMakeCache.txt" 2>/dev/null) && [[ -n $cached ]]; then

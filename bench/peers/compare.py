@@ -5,7 +5,7 @@
     bench/peers/compare.py [COLLISIONS]
 
 The other program's time slots are tuned first, for every number of particles: slots per particle from 1 to 8, slot
-lengths by factors of two, the fastest pair is taken. Then all engines run in turn, five times; medians are printed, in
+lengths by factors of two; the fastest pair is used. Then all engines run in turn, five times; medians are printed, in
 millions of collisions per second. Both must have made the same number of collisions, to 1e-3: masses that differ by
 1e-4 leave the gas nearly integrable.
 """
@@ -24,7 +24,7 @@ def run(*words):
 
 
 def hardpoint(particles, slots, length, collisions):
-    """Collisions, time of the gas, seconds; nothing where a slot overflows."""
+    """Collisions, time of the gas, seconds; nothing if a slot overflows."""
     lines = run(FOLDER / f"peer_hardpoint_{particles}_{slots}", length, collisions)
     if not lines:
         return None
@@ -33,7 +33,7 @@ def hardpoint(particles, slots, length, collisions):
 
 
 def tuned(particles, collisions):
-    """Slots and slot length at which it is fastest."""
+    """The fastest number of slots and slot length."""
     rates = {}
     for slots in (particles * k for k in (1, 2, 4, 8)):
         for power in range(-3, 5):
@@ -46,7 +46,8 @@ def tuned(particles, collisions):
 
 def main():
     collisions = float(sys.argv[1]) if len(sys.argv) > 1 else 1e7
-    print("particles  slots  length   hardpoint  " + "  ".join(f"{e:>11}" for e in ("plain", "segments", "two_threads")))
+    engines = ("plain", "segments", "two_threads")
+    print("particles  slots  length   hardpoint  " + "  ".join(f"{engine:>11}" for engine in engines))
     for particles in (1024, 4096, 16384, 131072):
         slots, length = tuned(particles, collisions / 4)
         rates = {}
@@ -58,7 +59,7 @@ def main():
                 if abs(int(own) - made) > 1e-3 * made:
                     sys.exit(f"{particles} particles to t = {until}: {made} collisions and {own}: not the same gas")
                 rates.setdefault(engine, []).append(int(own) / float(own_seconds) / 1e6)
-        medians = [statistics.median(rates[e]) for e in ("hardpoint", "plain", "segments", "two_threads")]
+        medians = [statistics.median(rates[e]) for e in ("hardpoint", *engines)]
         print(f"{particles:9} {slots:6} {length:.1e} " + "  ".join(f"{m:11.1f}" for m in medians), flush=True)
 
 

@@ -5,10 +5,10 @@
 // Seconds are processor time of the thread; with two threads, time by the clock.
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <memory>
 #include <vector>
 
+#include "../common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
@@ -24,12 +24,6 @@ using Law = cradle::Inelastic<double>;
 using Chain = cradle::GapChain<double, cradle::IndividualMasses<double>>;
 using Run = cradle::Simulation<double, Law, Chain>;
 
-double seconds(clockid_t clock) {
-  std::timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 std::shared_ptr<const cradle::Particles<double>> gas(std::uint64_t particles) {
   std::vector<double> x, v, m;
   for (std::uint64_t i = 0; i < particles; ++i) {
@@ -43,10 +37,10 @@ std::shared_ptr<const cradle::Particles<double>> gas(std::uint64_t particles) {
 
 template <class Advance> void measure(const char* engine, std::uint64_t particles, clockid_t clock, Advance advance) {
   Run run(Law(1, 0), Chain(gas(particles), 0.));
-  const double start = seconds(clock);
+  const double start = bench::seconds_now(clock);
   advance(run);
   std::printf("%s %llu %.4f\n", engine, static_cast<unsigned long long>(run.counts().collisions),
-              seconds(clock) - start);
+              bench::seconds_now(clock) - start);
 }
 
 void measure_segments(const char* engine, std::uint64_t particles, double until, unsigned threads) {

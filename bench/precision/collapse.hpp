@@ -5,8 +5,8 @@
 //   three  x = (0, 1, 3),    v = (1, 0, -1),           eps = 0.05:  t_c = 12/7
 //   four   x = (0, 1, 3, 4), v = (3, 1, -1, -3)/2,     eps = 0.15:  t_c = 11/7; the outer gaps close together
 //
-// With p the closing speed of the gap that closes, q and g those of the other kind, and c = 2 where both outer gaps
-// push the middle one, else 1:  q -> q + c (1 + eps) p/2,  p -> -eps p,  and the next collision comes after g/q.
+// Let p be the closing speed of the gap that closes, q and g those of the other kind, and c = 2 if both outer gaps push
+// the middle one, else 1. Then  q -> q + c (1 + eps) p/2,  p -> -eps p,  and the next collision comes after g/q.
 
 #include <algorithm>
 #include <memory>
@@ -31,15 +31,15 @@ inline std::vector<CollapseScene> collapse_scenes() {
 }
 
 struct CollapseOutcome {
-  std::uint64_t collisions = 0;  // made until the collapse time is settled (policy stop); `seconds` are for these
+  std::uint64_t collisions = 0;  // made until the collapse time is known (policy stop); `seconds` are for these
   double seconds = 0;
-  double extrapolated = 1;             // relative error of the collapse time as settled
-  double claimed = 1;                  // what the engine says of it
-  double summed = 1;                   // and as the sum of all intervals between collisions that the type resolves
+  double extrapolated = 1;             // relative error of the collapse time
+  double claimed = 1;                  // the engine's estimate of it
+  double summed = 1;                   // of the sum of all intervals that the type resolves
   std::uint64_t collisions_right = 0;  // in the right order and with the gap right to 1e-6
 };
 
-inline constexpr std::uint64_t most_collisions = 2000;  // where counting right ones ends
+inline constexpr std::uint64_t most_collisions = 2000;  // counted at most
 
 template <class Chain> Run<Chain> prepare(const CollapseScene& scene, cradle::Policy<typename Chain::Scalar> policy) {
   using T = typename Chain::Scalar;
@@ -56,11 +56,11 @@ class ExactCollapse {
   explicit ExactCollapse(const CollapseScene& scene)
       : restitution_(scene.restitution), together_(scene.outer_together()) {}
 
-  bool outer() const { return outer_; }  // which kind closes: the outer gaps (of three particles, the left one)
+  bool outer() const { return outer_; }  // which kind closes: the outer gaps (with three particles, the left one)
   const Wide& gap() const { return gap_; }
   void step() {
     const Wide flight = gap_ / closing_;
-    gap_ = first_ ? Wide(2 - flight) : Wide(-other_ * flight);  // what the other gap has opened to since it closed
+    gap_ = first_ ? Wide(2 - flight) : Wide(-other_ * flight);  // the other gap, which has opened since
     first_ = false;
     const Wide pushed = other_ + (outer_ && together_ ? 2 : 1) * (1 + restitution_) / 2 * closing_;
     other_ = -restitution_ * closing_;
@@ -73,8 +73,8 @@ class ExactCollapse {
   bool together_, outer_ = true, first_ = true;
 };
 
-// Follows a collapse for as long as the type resolves it. Counts the collisions until one comes out of turn or finds a
-// gap that is not right to 1e-6; the time of the last collision is the sum of all intervals.
+// Follows a collapse as long as the type resolves it. Counts the collisions until one is out of order or its gap has an
+// error above 1e-6. The time of the last collision is the sum of all intervals.
 template <class Chain> void follow(const CollapseScene& scene, CollapseOutcome& outcome) {
   using T = typename Chain::Scalar;
   std::uint64_t right = 0, seen = 0;
@@ -83,7 +83,7 @@ template <class Chain> void follow(const CollapseScene& scene, CollapseOutcome& 
   policy.interrupt = [&] { return seen >= most_collisions; };
   Run<Chain> run = prepare<Chain>(scene, policy);
   ExactCollapse exact(scene);
-  unsigned closed = 0;  // gaps closed in this half cycle, as bits
+  unsigned closed = 0;  // gaps that have closed in this half cycle, as bits
   run.advance(T(2), [&](const cradle::Collision<T>& collision) {
     ++seen;
     const unsigned outer = scene.outer_together() ? 0b101 : 0b001, all = exact.outer() ? outer : 0b010;

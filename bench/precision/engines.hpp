@@ -1,23 +1,18 @@
 #pragma once
-// The engines compared: every scalar type in both representations, and how far their numbers are from others. Numbers
-// of different types meet in `Wide`, 240 digits, to which all of them convert without rounding that matters here.
-
-#include <ctime>
+// The compared engines: every scalar type in both representations. Numbers of different types are compared as `Wide`,
+// 240 digits; converting to it adds no relevant rounding.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
+#include "../common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/precision/scalars.hpp"
 
@@ -53,7 +48,7 @@ inline std::vector<cradle::ScalarChoice> scalars() {
           {"cpp_bin_float"}};
 }
 
-// The widest there is up to so many digits, in gaps: what the others are held against.
+// The widest available type with at most so many digits, in gaps: the reference for the others.
 inline Engine reference([[maybe_unused]] unsigned digits) {
 #ifdef CRADLE_WITH_MPFR
   return {{"mpfr", digits}, true};
@@ -74,7 +69,7 @@ Result with_chain(const Engine& engine, F f) {
 template <class Chain>
 using Run = cradle::Simulation<typename Chain::Scalar, cradle::Inelastic<typename Chain::Scalar>, Chain>;
 
-// ---- numbers of all types
+// ---- comparing numbers of all types
 
 using Wide =
     boost::multiprecision::number<boost::multiprecision::cpp_bin_float<800, boost::multiprecision::digit_base_2>,
@@ -85,33 +80,17 @@ inline Wide widen(long double x) { return Wide(x); }
 inline Wide widen(const cradle::double_double& x) { return Wide(x.high()) + x.low(); }
 template <class T> Wide widen(const T& x) { return Wide(cradle::to_text(x)); }
 
-// |value - exact| / |exact|, at most 1: no digit is right.
+// |value - exact| / |exact|, at most 1, which means that no digit is right.
 inline double relative_error(const Wide& value, const Wide& exact) {
   return std::min(static_cast<double>(Wide(abs(Wide(value - exact)) / abs(exact))), 1.0);
 }
 
-// Finaliser of splitmix64.
-inline std::uint64_t hash(std::uint64_t i) {
-  std::uint64_t z = i + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
-
-// ---- time, of the thread: what else the machine does disturbs less
-
-inline double thread_seconds() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// Seconds of one call of f, the least of several trials; calls that take long are made once.
+// Seconds of one call of f: the least of several trials, or of one trial if a call takes long.
 template <class F> double best_seconds(F f) {
   const auto seconds_of = [&](int calls) {
-    const double start = thread_seconds();
+    const double start = bench::seconds_now();
     for (int i = 0; i < calls; ++i) f();
-    return (thread_seconds() - start) / calls;
+    return (bench::seconds_now() - start) / calls;
   };
   double best = seconds_of(1);
   if (best > 1) return best;

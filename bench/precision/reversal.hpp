@@ -1,7 +1,7 @@
 #pragma once
-// Time reversal of an elastic gas, 64 particles with masses 1 and 3 in turn: run to t = 320, turn all velocities, run
-// as long again. In exact arithmetic every particle is back where it started; unequal masses make the gas unstable, so
-// what is missing is rounding and nothing else, amplified by the collisions in between.
+// Time reversal of an elastic gas, 64 particles with alternating masses 1 and 3: run to t = 320, reverse all
+// velocities, run for the same time again. In exact arithmetic every particle returns to its initial position. Unequal
+// masses make the gas unstable, so the deviation is rounding error, amplified by the collisions.
 
 #include <algorithm>
 #include <memory>
@@ -12,10 +12,9 @@
 namespace precision {
 
 struct ReversalOutcome {
-  std::uint64_t collisions = 0;  // both ways
+  std::uint64_t collisions = 0;  // forwards and back
   double seconds = 0;
-  double error =
-      1;  // root mean square of the particles' distances from where they started, in mean spacings; at most 1
+  double error = 1;  // root mean square distance from the initial positions, in mean spacings; at most 1
 };
 
 inline constexpr int reversal_particles = 64, reversal_time = 320;
@@ -26,7 +25,7 @@ inline ReversalOutcome reverse(const Engine& engine) {
     const T elastic(1), time(reversal_time);
     std::vector<T> x, v, m;
     for (int i = 0; i < reversal_particles; ++i) {
-      const std::uint64_t bits = hash(static_cast<std::uint64_t>(i));
+      const std::uint64_t bits = bench::hash(static_cast<std::uint64_t>(i));
       x.push_back(T(i) + T(static_cast<std::int64_t>(bits & 0x3FF)) / T(2048));
       v.push_back(T(static_cast<std::int64_t>((bits >> 20) & 0x3FFF) - 8192) / T(8192));
       m.push_back(T(i % 2 ? 3 : 1));

@@ -1,11 +1,12 @@
 #pragma once
-// The paper's shock, from the first collision into the collapsed cluster: two rows close in at speeds 1/2 and -1/2,
-// velocity cut-off 1e-5, every particle displaced by a hash of its number. Two things are asked of an engine:
+// The paper's shock, from the first collision into the collapsed cluster: two rows approach at speeds 1/2 and -1/2,
+// with a velocity cut-off of 1e-5 and every particle displaced by a hash of its number. Two quantities are measured for
+// each engine:
 //
 //   errors   of energy, front and gaps (median of their relative errors) at given times
-//   order    the first collision out of order. The digests of two runs' traces are sampled at many times; the runs
-//            disagree from the first sample on from which digests differ for good (a sample between two runs' times of
-//            one collision differs only for the moment)
+//   order    the first collision out of order. The digests of two runs' traces are sampled at many times. The runs
+//            disagree from the first sample after which digests always differ (a sample between the two runs' times
+//            of one collision differs only there)
 
 #include <algorithm>
 #include <memory>
@@ -21,21 +22,14 @@ struct ShockScene {
   std::string name;
   ParticleIndex particles;
   const char* restitution;
-  std::vector<double> times;  // when errors are asked for; the run ends with the last
-  std::uint64_t collisions;   // of the whole run: sets how far apart samples are
+  std::vector<double> times;  // of the errors; the run ends with the last
+  std::uint64_t collisions;   // of the whole run: decides the distance of samples
 };
-
-template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex particles) {
-  const auto displacement = [](ParticleIndex i) {
-    return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
-  };
-  return std::make_shared<cradle::Rows<T>>(cradle::symmetric_rows<T>(particles, T(1) / T(2), T(1), displacement));
-}
 
 template <class Chain> Run<Chain> prepare(const ShockScene& scene) {
   using T = typename Chain::Scalar;
   return {cradle::Inelastic<T>(cradle::from_text<T>(scene.restitution), cradle::from_text<T>("1e-5")),
-          Chain(rows<T>(scene.particles), T(0))};
+          Chain(bench::rows<T>(scene.particles), T(0))};
 }
 
 // ---- errors
@@ -44,7 +38,7 @@ struct ShockState {
   std::uint64_t collisions = 0;
   Wide energy, front;
   ParticleIndex first = 0;  // particle on the left of the first gap
-  std::vector<Wide> gaps;   // of the particles that have collided, and the next on either side
+  std::vector<Wide> gaps;   // of the particles that have collided and the next one on either side
 };
 
 template <class Chain> ShockState read(const Run<Chain>& run, const ShockScene& scene, double time) {
@@ -79,7 +73,8 @@ inline ShockErrors errors(const ShockState& state, const ShockState& exact) {
 
 inline constexpr std::uint64_t samples = 4000;
 
-// Sampling times: one in so many collisions, as gaps in double make them, halfway to the next collision; and the end.
+// Sampling times: at regular numbers of collisions of the run in gaps in double, halfway to the next collision; and the
+// end.
 inline std::vector<double> sampling_times(const ShockScene& scene) {
   std::vector<double> times;
   std::uint64_t made = 0;
@@ -97,7 +92,7 @@ struct Sample {
   std::uint64_t digest, collisions;
 };
 
-// The last sample in which both sums agree; nothing if that is the end of both runs.
+// The last sample in which both digests agree; nothing if that is the end of both runs.
 inline std::optional<Sample> last_agreement(const std::vector<Sample>& a, const std::vector<Sample>& b) {
   std::size_t k = std::min(a.size(), b.size());
   if (a[k - 1].digest == b[k - 1].digest) return std::nullopt;
@@ -108,12 +103,12 @@ inline std::optional<Sample> last_agreement(const std::vector<Sample>& a, const 
 // ---- runs
 
 struct ShockRun {
-  double seconds = 0;  // tracing included
+  double seconds = 0;  // includes tracing
   std::vector<ShockState> states;
   std::vector<Sample> samples;
 };
 
-// With sampling times the run is traced, without it is as a user's.
+// With sampling times the run is traced; without, it runs as for a user.
 inline ShockRun run(const Engine& engine, const ShockScene& scene, const std::vector<double>& sampling = {}) {
   return with_chain<ShockRun>(engine, [&]<class Chain>(std::type_identity<Chain>) {
     using T = typename Chain::Scalar;
@@ -129,13 +124,13 @@ inline ShockRun run(const Engine& engine, const ShockScene& scene, const std::ve
     };
     auto next = sampling.begin();
     for (const double time : scene.times) {
-      const double start = thread_seconds();
+      const double start = bench::seconds_now();
       for (; next != sampling.end() && *next <= time; ++next) {
         advance(*next);
         result.samples.push_back({*next, trace.digest(), simulation.counts().collisions});
       }
       advance(time);
-      result.seconds += thread_seconds() - start;
+      result.seconds += bench::seconds_now() - start;
       result.states.push_back(read(simulation, scene, time));
     }
     return result;

@@ -1,7 +1,7 @@
 #pragma once
-// The better conventional engine: a binary heap with one entry per gap that knows where each gap's entry is, so that a
-// new prediction replaces the old one in place (increase or decrease key). No stale events; the heap never grows. Laid
-// out as textbooks do: gaps in heap order, the place of each gap, the key of each gap.
+// The better conventional engine: a binary heap with one entry per gap. It knows the place of each gap's entry, so a
+// new prediction replaces the old one in place (increase or decrease key). There are no stale events, and the heap
+// never grows. The layout is that of textbooks: gaps in heap order, the place of each gap, the key of each gap.
 
 #include <utility>
 

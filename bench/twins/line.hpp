@@ -1,11 +1,10 @@
 #pragma once
-// Particles on a line as a conventional event-driven program keeps them: absolute positions and velocities in double,
-// each particle advanced only when it takes part in a collision. Equal masses; inelastic law with a velocity cut-off.
-// The heaps and the priority queue beside this file differ in how they find the next collision and in nothing else.
+// Particles on a line in a conventional event-driven program: absolute positions and velocities in double; a particle
+// is advanced only when it collides. Equal masses; inelastic law with a velocity cut-off. The heaps and the priority
+// queue in this folder differ only in how they find the next collision.
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -30,7 +29,7 @@ class Line {
 
   std::size_t gaps() const { return particles_.size() - 1; }
 
-  // Time of the next collision of particles i and i + 1, as seen at the time `now`.
+  // Time of the next collision of particles i and i + 1, predicted at the time `now`.
   double due(std::size_t i, double now) const {
     const Particle &left = particles_[i], &right = particles_[i + 1];
     const double closing = left.v - right.v;

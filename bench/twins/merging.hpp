@@ -1,7 +1,7 @@
 #pragma once
-// The conventional engine for particles that merge or pass through each other: absolute positions and velocities in
-// double, links to the neighbours still there, an indexed heap of the times when gaps close. Every particle of the
-// scene is held from the start. On a line or a ring.
+// The conventional engine for particles that merge or pass through each other, on a line or a ring: absolute positions
+// and velocities in double, links between the remaining neighbours, an indexed heap of the times when gaps close. It
+// holds every particle of the scene from the start.
 
 #include "indexed_heap.hpp"
 
@@ -9,7 +9,7 @@ namespace twins {
 
 class MergingEngine {
  public:
-  // Wet with this loss; below 0: sticky.
+  // `loss`: of the wet law; sticky particles if negative.
   MergingEngine(const cradle::Particles<double>& particles, double loss);
 
   // Makes every collision at times <= until.

@@ -1,7 +1,7 @@
 #pragma once
-// The textbook event-driven engine: predicted collisions go into a std::priority_queue and stay there. A collision
-// changes what was predicted for the particles involved; such stale events are known by the number of collisions that
-// the two particles had when they were predicted, and are skipped when they surface.
+// The textbook event-driven engine: predicted collisions are put into a std::priority_queue and stay there. A collision
+// invalidates the predictions for its particles. Such stale events are recognised by the numbers of collisions that the
+// two particles had at the time of the prediction, and are skipped when they come to the top.
 
 #include <queue>
 
@@ -34,7 +34,7 @@ class PriorityQueueEngine {
   }
 
   Line line_;
-  std::vector<std::uint32_t> had_;  // collisions of each particle so far
+  std::vector<std::uint32_t> had_;  // collisions of each particle until now
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t collisions_ = 0;
 };

@@ -1,4 +1,4 @@
-// Compiled apart from the loops that measure it: inlined into them, its speed depends on what stands around.
+// Compiled separately from the measuring loops: inlined into them, its speed would depend on the surrounding code.
 #include "time_slots.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ TimeSlotsEngine::TimeSlotsEngine(const cradle::Particles<double>& particles, Law
     gaps_.push_back(gap);
   }
   slots_.assign(std::bit_ceil(gaps_.size()), nobody);
-  // The pace of collisions at first: of those that are foreseen now.
+  // The initial pace of collisions, from the predicted ones.
   if (const std::size_t some = std::min<std::size_t>(due.size(), 1000); some > 0) {
     const auto last = due.begin() + static_cast<std::ptrdiff_t>(some - 1);
     std::nth_element(due.begin(), last, due.end());
@@ -89,11 +89,11 @@ void TimeSlotsEngine::kick(std::uint32_t i, double gain, double time) {
   predict(i);
 }
 
-// Slots as wide as the collisions since the last time ask for.
+// Fits the width of the slots to the number of collisions since the last call.
 void TimeSlotsEngine::fit(double time) {
   const double pace = static_cast<double>(collisions_ - fitted_at_) / (time - fitted_time_);
   next_fit_ =
-      collisions_ + std::clamp<std::uint64_t>(collisions_ / 4, 64, 64 + gaps_.size() / 8);  // at first the pace rises
+      collisions_ + std::clamp<std::uint64_t>(collisions_ / 4, 64, 64 + gaps_.size() / 8);  // the pace rises at first
   if (!(time > fitted_time_)) return;
   fitted_at_ = collisions_;
   fitted_time_ = time;

@@ -1,10 +1,9 @@
 #pragma once
 // The best of the conventional engines: neighbours as gaps, as in Cradle, and a flat table of time slots for the next
-// collisions, each slot a list that is searched from end to end (a calendar queue; R. Brown 1988, doi
-// 10.1145/63039.63045). A slot is as wide as holds some two collisions and is fitted to the pace of collisions as it
-// changes, the table has a slot for every gap or two, so that few entries lie further ahead than once around.
+// collisions. Each slot is a list that is searched from end to end (a calendar queue; R. Brown 1988, doi
+// 10.1145/63039.63045). A slot holds about two collisions; its width is adapted as the pace of collisions changes. The
+// table has one slot for every one or two gaps, so that few entries are further ahead than one round.
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,9 +25,9 @@ class TimeSlotsEngine {
   static constexpr std::uint64_t nowhere = ~std::uint64_t{0};
 
   struct Gap {
-    double gap, closing, time;  // as it was at `time`
+    double gap, closing, time;  // at `time`
     double due = never;
-    std::uint64_t slot = nowhere;  // since the time 0; in the table at that modulo its size
+    std::uint64_t slot = nowhere;  // counted from time 0; the place in the table is this modulo its size
     std::uint32_t next = nobody, previous = nobody;
   };
 

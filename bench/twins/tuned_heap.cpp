@@ -1,4 +1,4 @@
-// Compiled apart from the loops that measure it: inlined into them, its speed depends on what stands around.
+// Compiled separately from the measuring loops: inlined into them, its speed would depend on the surrounding code.
 #include "tuned_heap.hpp"
 
 namespace twins {

@@ -1,9 +1,8 @@
 #pragma once
-// The indexed heap of indexed_heap.hpp made fast: entries carry their times, so that comparing two does not look
-// anything up, and an entry that moves up or down leaves a hole instead of being exchanged at every level.
+// A faster form of indexed_heap.hpp: entries contain their times, so that comparing two needs no look-up, and an entry
+// that moves up or down leaves a hole instead of being exchanged at every level.
 
 #include <algorithm>
-#include <memory>
 
 #include "line.hpp"
 

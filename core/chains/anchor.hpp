@@ -1,6 +1,6 @@
 #pragma once
-// Particles whose flight is known, and from which positions and velocities of the others are computed: one that has not
-// collided, or the one at an end of a line, which is followed from collision to collision.
+// Particles whose flight is known, from which the positions and velocities of the others are computed: a particle that
+// has not collided, or the last one at an end of a line, which is followed from collision to collision.
 
 #include <tuple>
 
@@ -14,13 +14,13 @@ template <Real T> struct Flight {
   static auto state(auto& self) { return std::tie(self.x, self.v); }
 };
 
-// Of a particle that has not collided, so long after the start.
+// The flight of a particle that has not collided, at a time since the start.
 template <Real T> Flight<T> undisturbed(const Particles<T>& particles, ParticleIndex particle, const T& elapsed) {
   const T v = particles.velocity(particle);
   return {two_sum(particles.position(particle), T(v * elapsed)), {v, T(0)}};
 }
 
-// Times are local ones of the chain whose clock is given.
+// Times are local ones of the chain that the clock belongs to.
 template <Real T> class Anchor {
  public:
   ParticleIndex particle() const { return particle_; }
@@ -34,9 +34,9 @@ template <Real T> class Anchor {
     return collided_ ? from_.v.value() : particles.velocity(particle_);
   }
 
-  // Goes over to a particle that has not collided.
+  // Changes to a particle that has not collided.
   void take(ParticleIndex particle) { particle_ = particle; }
-  // Goes over to the last particle of a line, which gains velocity in a collision now: Gain is T or Pair<T>.
+  // Changes to the last particle of a line, which gains velocity in a collision now: Gain is T or Pair<T>.
   template <class Gain>
   void follow(ParticleIndex particle, const Particles<T>& particles, const Clock<T>& clock, const T& time,
               const Gain& gain) {
@@ -52,7 +52,7 @@ template <Real T> class Anchor {
  private:
   ParticleIndex particle_ = 0;
   bool collided_ = false;
-  Flight<T> from_;  // once it has collided: as its last collision, at the time since_, left it
+  Flight<T> from_;  // after a collision: as its last collision, at the time since_, left it
   Pair<T> since_;
 };
 

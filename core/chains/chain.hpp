@@ -1,11 +1,11 @@
 #pragma once
 // What the event loop requires of a chain. A chain holds the particles of a run in order, in coordinates of its choice.
-// A chain knows the next collision of each gap, makes one collision at a time and reports its result; the loop decides
-// which collision is next.
+// It knows the next collision of each gap, makes one collision at a time and reports its result; the loop decides which
+// collision is next.
 //
-// Slots number the gaps from left to right; those held are first() to last(), and two empty ones stand at either end.
-// Local times are the chain's own name for times of the scene: offsets from an origin that moves, or the times as they
-// are. A local time is good until the origin moves.
+// Slots number the gaps from left to right; the held ones are first() to last(), and there are two empty ones at either
+// end. Local times represent times of the scene inside the chain: offsets from an origin that moves, or the times
+// themselves. A local time is valid until the origin moves.
 
 #include <concepts>
 #include <cstddef>
@@ -23,19 +23,19 @@ namespace cradle {
 template <class C>
 concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, Slot s, const typename C::Scalar time) {
   typename C::Scalar;
-  // Whether queue times are the exact local times, not roundings of them; whether gaps can shrink without end.
+  // Whether queue times are the exact local times, not rounded ones; whether gaps can shrink without limit.
   { C::keys_are_exact } -> std::convertible_to<bool>;
   { C::may_collapse } -> std::convertible_to<bool>;
 
-  // The time of the scene at which the run starts; times of the scene to local ones and back; local times as the queue
-  // takes them. `move_origin` takes the local time to become the new origin and returns what that time is called then.
+  // The time of the scene at which the run starts; conversions from times of the scene to local ones and back, and from
+  // local times to queue times. `move_origin` takes the local time of the new origin and returns its new local time.
   { chain.start() } -> std::convertible_to<typename C::Scalar>;
   { chain.local_time(time) } -> std::convertible_to<typename C::Scalar>;
   { chain.stamp(time) } -> std::same_as<Pair<typename C::Scalar>>;
   { chain.queue_time(time) } -> std::same_as<double>;
   { changing.move_origin(time) } -> std::convertible_to<typename C::Scalar>;
 
-  // The gaps held: how many slots there are, the neighbours of one, the particle on its left.
+  // The held gaps: the number of slots, the neighbours of a slot, the particle on its left.
   { chain.slots() } -> std::same_as<std::size_t>;
   { chain.first() } -> std::same_as<Slot>;
   { chain.last() } -> std::same_as<Slot>;
@@ -50,21 +50,20 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.due(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.queue_due(s) } -> std::same_as<double>;
 
-  // Collisions that leave a gap below the floor beside them are noticed. The smaller gap beside the last collision; by
-  // how much two collision times at a place must differ to be distinguished; what could not be resolved.
+  // Collisions after which a neighbouring gap is below the floor are noticed. The smaller gap beside the last
+  // collision; the least difference of two collision times that is resolved; what could not be resolved.
   changing.set_floor(time);
   { chain.nearest_gap(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
   { chain.account() } -> std::same_as<const Account<typename C::Scalar>&>;
 
-  // Energy that a collision at a gap has lost; all that was lost; the kinetic energy that all particles of the scene
-  // have.
+  // Enters the energy lost by a collision at a gap; all energy lost; the kinetic energy of all particles of the scene.
   changing.lose(s, time);
   { chain.energy_lost() } -> std::convertible_to<typename C::Scalar>;
   { chain.kinetic_energy() } -> std::convertible_to<typename C::Scalar>;
 
-  // Reading, at a local time not before the last collision: a gap; the outermost particles that have collided and how
-  // many there are from one to the other; everything.
+  // Reading, at a local time not before the last collision: a gap; the outermost particles that have collided, and the
+  // number of particles between them, both included; the configuration.
   { chain.gap_at(s, time) } -> std::convertible_to<typename C::Scalar>;
   { chain.front_left(time) } -> std::convertible_to<typename C::Scalar>;
   { chain.front_right(time) } -> std::convertible_to<typename C::Scalar>;
@@ -72,7 +71,7 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.configuration(time) } -> std::same_as<Configuration<typename C::Scalar>>;
 };
 
-// Of the gaps held at the start; throws std::invalid_argument where one is not a number.
+// The smallest gap held at the start; throws std::invalid_argument if one is not a number.
 template <Chain C> typename C::Scalar smallest_gap(const C& chain) {
   using T = typename C::Scalar;
   const T start = chain.local_time(chain.start());
@@ -93,7 +92,7 @@ concept StreamingChain = Chain<C> && requires(C chain) {
   chain.make_room();
 };
 
-// The collision at slot s, due at the local time given, by a law that this chain can follow.
+// A chain that can make a collision at slot s, due at the given local time, by this law.
 template <class C, class L>
 concept CollidesBy = Chain<C> && Law<L, typename C::Scalar> &&
     requires(C chain, const L& law, Slot s, const typename C::Scalar& time) {

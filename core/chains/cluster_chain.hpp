@@ -1,17 +1,17 @@
 #pragma once
 // The chain for laws whose particles merge or pass through each other: gaps and particle velocities, for any masses.
 //
-// Why velocities, where gap_chain.hpp keeps closing speeds: a collision changes the velocity of a cluster of mass M by
-// J/M, 1e-8 and less. The closing speed between it and a light particle is of order one and would round such a kick
-// away, and what the closing speeds lose drifts into the gaps. The cluster's own velocity, in the frame in which the
-// total momentum vanishes, is small itself and keeps the kick.
+// It holds velocities, not closing speeds as gap_chain.hpp does: a collision changes the velocity of a cluster of mass
+// M by J/M, 1e-8 and less. The closing speed between the cluster and a light particle is of order one; rounding it
+// would lose such a kick, and these errors would drift into the gaps. The cluster's own velocity, in the frame in which
+// the total momentum vanishes, is small and keeps the kick.
 //
-// Cells and what a collision does to them: cluster_line.hpp. Rows are streamed (held_range.hpp).
+// For cells and their collisions see cluster_line.hpp. Rows are streamed (held_range.hpp).
 //
 // Positions come from a particle at an end that has not collided, else from the centre of mass, which moves uniformly.
-// On a ring the cells are linked in a circle. Positions there are counted once round from the first cell, and a
-// particle that moves from the first cell to the last one, across the seam, appears one circumference L further right.
-// The mass that has crossed is recorded, since the centre of mass of these positions jumps by L times its share.
+// On a ring the cells are linked in a circle. Positions are counted once round from the first cell; a particle that
+// moves from the first cell to the last one, across the seam, appears one circumference L further right. The mass that
+// has crossed is recorded, since each crossing moves the centre of mass of these positions by L times its share.
 
 #include <algorithm>
 #include <memory>
@@ -29,7 +29,7 @@
 
 namespace cradle {
 
-// Cells that follow each other in slots that do.
+// Consecutive cells in consecutive slots.
 struct CellsInARow {
   Slot first;
   std::size_t count;
@@ -55,7 +55,7 @@ template <Real T> class ClusterChain {
   Pair<T> stamp(const T& local) const { return clock().stamp(local); }
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
 
-  // ---- slots: cells held are first() to last(), vacant ones among them; the last one's gap is none
+  // ---- slots: held cells are first() to last(), with vacant ones among them; the last cell has no gap
   std::size_t slots() const { return line_.gaps.slots(); }
   Slot first() const { return range_.first(); }
   Slot last() const { return range_.last(); }
@@ -108,7 +108,7 @@ template <Real T> class ClusterChain {
   }
 
   void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
-  // The smaller gap next to the last collision, as of its local time; an end of the line counts as far away.
+  // The smaller gap next to the last collision, at its local time; beyond an end of the line it is far away.
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
     const Slot p = left(s), n = beyond_;
@@ -123,7 +123,7 @@ template <Real T> class ClusterChain {
 
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
-  // Positions of the outermost particles that have collided; only once there are some.
+  // Positions of the outermost particles that have collided; there must be some.
   T front_left(const T& time) const {
     if (first() == range_.front_left()) return configuration(time).x.front();
     const Slot beside = left(range_.front_left());
@@ -134,7 +134,7 @@ template <Real T> class ClusterChain {
     if (last() == front) return configuration(time).x.back();
     return (undisturbed_place(right(front), time) - gap_at(front, time)).value();
   }
-  // Of all particles of the scene, now; takes all cells held. (cluster_chain_configuration.hpp)
+  // Of all particles of the scene, now; reads all held cells. (cluster_chain_configuration.hpp)
   T kinetic_energy() const;
 
   static auto state(auto& self) {
@@ -149,7 +149,7 @@ template <Real T> class ClusterChain {
       require_state(cells[s].left < slots() && cells[s].right < slots() && cells[s].particle >= 0 &&
                         cells[s].particle < particles_->count() && is_positive(cells[s].mass),
                     "cells");
-    // From the first to the last by their links, with vacant ones between them only.
+    // Follows the links from the first cell to the last; only vacant cells are between them.
     int fronts = range_.has_fronts() ? 0 : 2;
     for (Slot s = first();; s = right(s)) {
       require_state(line_.fits(s, !on_ring() && s == last()) && cells[s].mass < heaviest, "numbers");
@@ -170,8 +170,7 @@ template <Real T> class ClusterChain {
   ParticleIndex place(Slot s) const { return static_cast<ParticleIndex>(s); }
   bool cramped(std::size_t) const { return sparse(); }
   bool fronts_are_within(Slot, Slot) const { return on_ring(); }
-  // Goes over to the cells after a held range: those held, and the mass that has gone across the seam, collision by
-  // collision.
+  // Replaces the cells by those of a held range, and enters the mass that crossed the seam, collision by collision.
   void continue_with(typename Line::Gaps& after, std::vector<CellsInARow> cells, const std::vector<T>& carried) {
     line_.gaps.swap_gaps(after);
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -187,8 +186,7 @@ template <Real T> class ClusterChain {
     for (const T& mass : carried) carried_.add(mass);
   }
 
-  // What there is of it: the particles that have collided and the next one on each side, see
-  // cluster_chain_configuration.hpp.
+  // The particles that have collided and the next one on each side, see cluster_chain_configuration.hpp.
   Configuration<T> configuration(const T& time) const;
 
  private:
@@ -206,7 +204,7 @@ template <Real T> class ClusterChain {
     if (on_ring()) active_ = particles_->count();
   }
 
-  // Vacant cells make the queue's tree deep, and neighbours live in different branches of it.
+  // Vacant cells make the queue's tree deep, and put neighbours into different branches of it.
   bool sparse() const { return 2 * vacated_ > last() - first() + 24; }
 
   // Position of a particle that has not collided.
@@ -214,20 +212,21 @@ template <Real T> class ClusterChain {
     return undisturbed(*particles_, particle(s), clock().elapsed(time)).x;
   }
 
-  // As at the start. The gap right of the last particle held is not computed: that would draw random numbers in vain.
+  // A cell as at the start. The gap right of the last held particle is not computed: it would draw random numbers in
+  // vain.
   Cell<T> load(ParticleIndex b, const T& time, bool with_gap) const {
     return {
         {with_gap ? particles_->gap(b) : T(1), time}, particles_->velocity(b) - frame_, particles_->mass(b), 0, 0, b};
   }
 
-  // Goes over to slots enough for the zone to grow by half on either side, with the cells at `kept`.
+  // Changes to enough slots for the zone to grow by half on either side, with the cells at `kept`.
   void lay_out(const std::vector<Slot>& kept, std::size_t held) {
     const auto growth = static_cast<ParticleIndex>(std::max<std::size_t>(held / 2, 24));
     const std::size_t slots = range_.lay_out(held, growth, kept);
     line_.gaps.lay_out(slots, first(), kept);
     vacated_ = 0;
   }
-  // Links the cells held one to the next; those that are not are vacant, linked to themselves.
+  // Links the held cells in order; the others are vacant, linked to themselves.
   void link() {
     for (Slot s = 0; s < slots(); ++s) {
       const bool held = s >= first() && s <= last();
@@ -246,7 +245,7 @@ template <Real T> class ClusterChain {
   // A collision at an end of the active zone: takes in the next particle there, if there is one.
   Notice widen(Slot s, const T& time) {
     const Slot n = right(s);
-    const auto count = [&](Slot from, Slot to) {  // cells held from one to before the other
+    const auto count = [&](Slot from, Slot to) {  // held cells from one slot to before the other
       ParticleIndex cells = 0;
       for (; from < to; from = right(from)) ++cells;
       return cells;
@@ -260,7 +259,7 @@ template <Real T> class ClusterChain {
       line_.place_end(first() - 1, first());
     }
     if (range_.beyond_right(n) == HeldRange::Beyond::row) {
-      // The gap right of n is new: it is as at the start.
+      // The gap right of n is new; its state is that at the start.
       line_.gaps.start(n, particles_->gap(particle(n)), time);
       const ParticleIndex b = range_.take_in_right(particles_->count());
       line_.gaps.put(last(), load(b, time, false));
@@ -272,7 +271,7 @@ template <Real T> class ClusterChain {
     return range_.cramped(slots()) || sparse() ? Notice::needs_slots : Notice::none;
   }
 
-  // Keeps account of the mass that goes from the first cell of a ring to the last one, that is, by a turn to the right.
+  // Records the mass that passes from the first cell of a ring to the last one, which is one turn to the right.
   void cross_seam(Slot s, Event event) {
     const Slot n = right(s);
     if (n > s || event == Event::bounce) return;
@@ -293,9 +292,9 @@ template <Real T> class ClusterChain {
   HeldRange range_;
   std::size_t vacated_ = 0;   // since the last layout
   ParticleIndex active_ = 0;  // particles from one front to the other, both included
-  Slot beyond_ = 0;  // the cell that has the gap right of the last collision: of both particles where they have merged
-  T frame_;          // velocity of the centre of mass
-  std::optional<T> centre_;    // of mass at the start, on a line where nothing else gives positions
+  Slot beyond_ = 0;          // the cell with the gap right of the last collision: of both particles if they have merged
+  T frame_;                  // velocity of the centre of mass
+  std::optional<T> centre_;  // of mass at the start, on a line without other known positions
   CompensatedSum<T> carried_;  // mass across the seam of a ring, see cross_seam
 };
 

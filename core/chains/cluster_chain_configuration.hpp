@@ -1,15 +1,15 @@
 #pragma once
 // The configuration of a chain in gaps and particle velocities, in positions: the particles that have collided and the
-// next one on each side; all that are held before the first collision; on a ring all, from the first one right of x =
+// next one on each side; before the first collision all held particles; on a ring all, from the first one right of x =
 // 0. They are computed from a particle that has not collided, the one at the left end if there is one, else from the
-// centre of mass. Where there is one at either end, or on a ring, gaps can be checked against what their sum must be;
-// closing speeds are differences of velocities and add up in any case.
+// centre of mass. If there is one at either end, or on a ring, the sum of the gaps can be checked; closing speeds are
+// differences of velocities and always add up.
 
 #include "cradle/core/chains/cluster_chain.hpp"
 
 namespace cradle {
 
-// Particles that are not held move like the outermost one that is.
+// Particles that are not held move like the outermost held one.
 template <Real T> T ClusterChain<T>::kinetic_energy() const {
   const T total = particles_->total_mass();
   const auto moving = relative_motion(total, T(0), [&](const T& c, const auto& add) {
@@ -32,8 +32,8 @@ template <Real T> Configuration<T> ClusterChain<T>::configuration(const T& time)
   const Slot to = collided && range_.front_right() < last() ? right(range_.front_right()) : last();
   Configuration<T> c;
   c.time = clock().time(time);
-  // A particle that has not collided still has its initial number. Where all particles at an end have collided, they
-  // are numbered from the end of the line.
+  // A particle that has not collided has its initial number. If all particles at an end have collided, they are
+  // numbered from the end of the line.
   const bool free_left = !on_ring() && (!collided || from != range_.front_left());
   const bool free_right = !on_ring() && (!collided || to != range_.front_right());
   c.from = free_left ? particle(from) : 0;

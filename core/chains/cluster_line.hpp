@@ -1,7 +1,6 @@
 #pragma once
-// The bare line of cells that a chain in gaps and particle velocities works on, and what a collision does to it. What
-// is at its ends is the chain's (cluster_chain.hpp), or that of a segment (cluster_segment.hpp), which is a copy of a
-// part.
+// The line of cells of a chain in gaps and particle velocities, and the effect of a collision on it. The chain
+// (cluster_chain.hpp) or a segment, which is a copy of a part (cluster_segment.hpp), handles its ends.
 //
 // A cell holds a particle and the gap between it and the next one (timed_gaps.hpp). Cells are linked from left to
 // right. When two particles merge, the result stays in the left one's cell, and the right one's is vacated: links pass
@@ -32,7 +31,7 @@ template <Real T> class ClusterLine {
  public:
   using Gaps = TimedGaps<T, Cell<T>, false>;
 
-  // `runaway`: no speed exceeds half of it.
+  // `runaway`: twice the largest possible speed or more.
   ClusterLine(const T& start, const T& energy, const T& runaway) : gaps(start, energy), runaway_(runaway) {}
 
   // Like another one, without any cells yet.
@@ -52,15 +51,15 @@ template <Real T> class ClusterLine {
     gaps[s].right = next;
     gaps[next].left = s;
   }
-  // A cell beyond the particles held, which runs away faster than any particle can. (Inlined, g++ 12 warns of a slot
-  // -1.)
+  // A cell beyond the held particles, which moves away faster than any particle can. (If it is inlined, g++ 12 warns of
+  // a slot -1.)
   [[gnu::noinline]] void place_end(Slot s, Slot beside) {
     const bool on_left = s < beside;
     gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), on_left ? s : beside, on_left ? beside : s, 0});
     (on_left ? gaps[beside].left : gaps[beside].right) = s;
   }
-  // Whether what is held can be a particle and the gap behind it, of the last one of a line a gap that never closes;
-  // whether beyond both ends there is what runs away.
+  // Whether the data can be those of a particle and the gap behind it (for the last one of a line a gap that never
+  // closes), with receding cells beyond both ends.
   bool fits(Slot s, bool last) const {
     const T speed = magnitude(gaps[s].velocity);
     return speed + speed <= runaway_ && gaps[s].fits(closing(s)) && (last || is_finite(gaps.lag(s)));
@@ -75,7 +74,7 @@ template <Real T> class ClusterLine {
   T due(Slot s) const { return gaps.due(s, closing(s)); }
   double queue_due(Slot s) const { return vacant(s) ? EventQueue::never : gaps.queue_due(s, closing(s)); }
 
-  // What a collision at the gap of a cell does to it and to its neighbours. (Inlined by force, see gap_line.hpp.)
+  // The effect of a collision at the gap of a cell on it and on its neighbours. (Inlined by force, see gap_line.hpp.)
   [[gnu::always_inline]] CollisionResult<T> strike(Slot s, const T& time, const Outcome<T>& outcome, Notice notice) {
     Cell<T>& l = gaps[s];
     const Slot p = l.left, n = l.right;
@@ -105,7 +104,7 @@ template <Real T> class ClusterLine {
   }
 
  private:
-  // Merges the particles at s and right of it, in the cell s.
+  // Merges the particles at s and right of it into the cell s.
   void absorb_right(Slot s, const T& velocity) {
     Cell<T>& l = gaps[s];
     const Slot n = l.right;
@@ -119,8 +118,8 @@ template <Real T> class ClusterLine {
     r.right = n;
   }
 
-  // A gap between particles of which one has had a collision, by which it closes faster by as much as u_left exceeds
-  // u_right; `struck` is the time since the local time of the gap that had it.
+  // Updates a gap beside a collision: it closes faster by the excess of u_left over u_right. `struck` is the time since
+  // the local time of the gap of the collision.
   [[gnu::always_inline]] Notice kick(Slot s, const T& so_far, const T& u_left, const T& u_right, const T& struck,
                                      const T& time) {
     const T since = gaps.kick(

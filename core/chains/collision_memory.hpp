@@ -1,5 +1,5 @@
 #pragma once
-// When there was last a collision at each gap, for laws with a memory (LawWithMemory); nothing for all others.
+// The time of the last collision at each gap, for laws with a memory (LawWithMemory); empty for all others.
 
 #include <initializer_list>
 #include <tuple>
@@ -13,8 +13,8 @@ namespace cradle {
 
 template <Real T> class CollisionMemory {
  public:
-  // Whether at all these gaps the last collision was longer ago than `span`. Remembers the one that is made at the gap
-  // s now. `start` is the local time at which the run began, `slots` how many gaps there can be.
+  // Whether the last collisions at all these gaps were longer ago than `span`. Records the present collision at the gap
+  // s. `start` is the local time at which the run began, `slots` the largest number of gaps.
   bool rested(std::initializer_list<Slot> gaps, Slot s, const T& now, const T& span, const T& start,
               std::size_t slots) {
     if (last_.empty()) {
@@ -37,12 +37,12 @@ template <Real T> class CollisionMemory {
     for (T& time : last_) time -= by;
     never_ -= by;
   }
-  std::size_t slots() const { return last_.size(); }  // 0: nothing is remembered yet
+  std::size_t slots() const { return last_.size(); }  // 0: nothing is recorded yet
   static auto state(auto& self) { return std::tie(self.last_, self.never_); }
 
  private:
   std::vector<T> last_;  // local times
-  T never_{0};           // what stands there for none
+  T never_{0};           // marks a gap without a collision
 };
 
 }  // namespace cradle

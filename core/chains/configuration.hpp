@@ -14,25 +14,25 @@ namespace cradle {
 
 template <Real T> struct Configuration {
   T time{0};
-  ParticleIndex from = 0, to = -1;  // the particles at the start that are in here, merged or not
-  // Which of the n particles have had a collision or lie between such: [collided_from, collided_to).
+  ParticleIndex from = 0, to = -1;  // range of particle numbers at the start; merged ones are included
+  // The particles that have collided or are between such: [collided_from, collided_to) of the n.
   std::size_t collided_from = 0, collided_to = 0;
   std::vector<ParticleIndex> index;  // n particles from left to right, by their number at the start
   std::vector<T> x, v, m;            // n
   std::vector<T> gap;  // n - 1, between neighbours; n on a ring, the last one from the last particle to the first
   std::vector<T> closing_speed;  // as many, u_left - u_right
 
-  // What the sum of all gaps (closing speeds) misses of the distance (velocity difference) of the two outermost
-  // particles, whose flight is known on its own; on a ring, of the circumference (of 0): the accumulated rounding of
-  // the run. None where nothing measures it: where gaps are differences of positions, closing speeds of velocities, or
-  // where the flight of one of the two is not known. Chains that have closing speeds spread both errors over the
-  // positions and velocities given here; the others compute positions from the left.
+  // The sum of all gaps (closing speeds) subtracted from the distance (velocity difference) of the two outermost
+  // particles, whose flight is known independently; on a ring, from the circumference (from 0): the accumulated
+  // rounding of the run. None if it is not measured: gaps are differences of positions, closing speeds are differences
+  // of velocities, or the flight of one of the two is not known. Chains with closing speeds distribute both errors over
+  // the positions and velocities given here; the others compute positions from the left.
   std::optional<T> closure_gap, closure_speed;
-  // Whether velocities are sums of closing speeds, each rounded in its own units, so that one has the errors of all.
+  // Whether velocities are sums of closing speeds, so that the rounding errors of all of them add up.
   bool speeds_are_sums = false;
 };
 
-// Takes out walls, which chains number -1 and `count` (wall.hpp), and the gaps to them.
+// Removes walls, which chains number -1 and `count` (wall.hpp), and the gaps to them.
 template <Real T> void leave_out_walls(Configuration<T>& c, ParticleIndex count) {
   if (c.to == count) {
     c.to -= 1;
@@ -50,7 +50,7 @@ template <Real T> void leave_out_walls(Configuration<T>& c, ParticleIndex count)
 }
 
 // Folds positions on a ring, increasing and spanning less than its circumference, to 0 <= x < circumference, the
-// smallest first. Places that are too many turns away to have digits within one turn stay as they are.
+// smallest first. Positions so many turns away that they have no digits within one turn are not changed.
 template <Real T> void fold(Configuration<T>& c, const T& circumference) {
   if (c.x.empty()) return;
   const double whole = std::floor(to_double(T(c.x.front() / circumference)));

@@ -1,6 +1,6 @@
 #pragma once
 // The chain in gaps and closing speeds: for neighbours l, r the gap g >= 0 and the closing speed w = u_l - u_r. A
-// collision hands an impulse J from left to right and changes three gaps:
+// collision transfers an impulse J from left to right and changes three gaps:
 //
 //   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
 //
@@ -32,7 +32,7 @@
 namespace cradle {
 
 // How the front at one end of a line has moved in a held range (segments.hpp): the outermost slot with a collision, and
-// the collisions at the last gap of the line, with what each handed to the particle that ends it.
+// the collisions at the last gap of the line, with the velocity that each gave to the last particle.
 template <Real T> struct FrontMove {
   struct AtEnd {
     T time, handed;
@@ -50,7 +50,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
-  // start. Throws std::invalid_argument for masses that are not identical where the chain is for such.
+  // start. Throws std::invalid_argument for masses that differ if the chain is for identical ones.
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
       : GapChain(particles, start, hold_all ? particles->gaps() : particles->gaps_in_motion()) {}
 
@@ -88,8 +88,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     return line_.strike(s - 1, s, s + 1, time, outcome(law, s, time), Notice::none);
   }
 
-  // Moves the origin of time to the given local time and returns what that time is called now. Touches no gap: only the
-  // names of times change.
+  // Moves the origin of time to the given local time and returns its new local time. Gaps do not change.
   T move_origin(const T& local) {
     if constexpr (Line::watched) line_.certainty.begin_anew(line_.gaps, first(), last());
     line_.gaps.move_origin(local, [this](auto&& each) {
@@ -106,9 +105,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     lay_out(kept, static_cast<ParticleIndex>(kept.size()));
   }
 
-  // Collisions that leave a gap below `floor` beside them are noticed (gap_below_floor).
+  // Collisions after which a neighbouring gap is below `floor` are noticed (gap_below_floor).
   void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
-  // The smaller gap next to a collision, as of its local time; an end of the line counts as far away.
+  // The smaller gap next to a collision, at its local time; beyond an end of the line it is far away.
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
     const T on_left = on_ring() || s > first() ? line_.gaps[left(s)].gap : far,
@@ -121,14 +120,14 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   // The smallest difference between two collision times that is resolved, as a time since the start.
   T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
 
-  // The particle on the left of a gap where rounding may decide whether it closes up to a local time not before the
-  // last collision.
+  // The left particle of a gap for which rounding may decide whether it closes up to a local time, which must not be
+  // before the last collision.
   std::optional<ParticleIndex> uncertain_at(const T& time) const requires(Line::watched) {
     for (Slot s = first(); s <= last(); ++s)
       if (line_.certainty.open(line_.gaps, s, time)) return particle(s);
     return {};
   }
-  // What comes of a collision at the speed 1, where that says what comes of any.
+  // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.
   template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
     if (walls_.beside(particle(s)))
       return walls_.at_unit_speed(particle(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
@@ -137,11 +136,11 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
 
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
-  // Positions of the outermost particles that have collided; only once there are some.
+  // Positions of the outermost particles that have collided; there must be some.
   T front_left(const T& time) const;
   T front_right(const T& time) const;
   const Walls<T>& walls() const { return walls_; }
-  // Of all particles of the scene, now; takes all gaps held. (gap_chain_configuration.hpp)
+  // Of all particles of the scene, now; reads all held gaps. (gap_chain_configuration.hpp)
   T kinetic_energy() const;
 
   static auto state(auto& self) {
@@ -158,7 +157,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
                   "particles");
     require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
     require_state(!on_ring() || (range_.front_left() == first() && range_.front_right() == last()), "seam");
-    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Slots beyond the gaps held are filled anew before they are used.
+    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Slots beyond the held gaps are filled again before use.
     const T fastest = particles_->walled() ? far_away<T>() : T(T(2) + T(4) * particles_->energy_over_least_mass());
     for (Slot s = first(); s <= last(); ++s) {
       const T& w = closing(s);
@@ -176,7 +175,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   const Particles<T>& particles() const { return *particles_; }
   const Line& line() const { return line_; }
   void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
-  ParticleIndex place(Slot s) const { return particle(s); }  // in the order of the line, whatever slots are called
+  ParticleIndex place(Slot s) const { return particle(s); }  // in the order of the line, for any numbering of slots
   // Slots free for particles that the fronts reach.
   std::size_t within_reach_left() const { return range_.free_left(); }
   std::size_t within_reach_right() const { return range_.free_right(slots()); }
@@ -186,12 +185,12 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
   Slot front_slot_left() const { return range_.front_left(); }
   Slot front_slot_right() const { return range_.front_right(); }
-  // Goes over to the gaps after a held range, at the same slots and at those that the fronts have reached.
+  // Replaces the gaps by those of a held range, in the same slots and in those that the fronts have reached.
   // (gap_chain_ends.hpp)
   void continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left, const FrontMove<T>& to_right);
 
-  // The particles that have collided and the next one on each side; all that are held before the first collision. On a
-  // ring all particles, from the first one right of x = 0. (gap_chain_configuration.hpp)
+  // The particles that have collided and the next one on each side; before the first collision all held ones. On a ring
+  // all particles, from the first one right of x = 0. (gap_chain_configuration.hpp)
   Configuration<T> configuration(const T& time) const;
 
  private:
@@ -216,7 +215,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Slot slot(ParticleIndex particle) const {
     return static_cast<Slot>(particle - line_.particle_of_slot_0);
   }  // of the gap right of it
-  // The outermost particle that has collided, walls not being particles here.
+  // The outermost particle that has collided; walls are not counted.
   ParticleIndex front_particle(End end) const {
     return end == End::left ? std::max<ParticleIndex>(particle(range_.front_left()), 0)
                             : std::min(particle(range_.front_right()) + 1, particles_->count() - 1);
@@ -228,7 +227,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     walls_.has(end) ? anchor.take(particle) : anchor.follow(particle, *particles_, clock(), time, gain);
   }
 
-  // Goes over to slots enough for the zone to grow by half on either side, with the gaps at `kept`.
+  // Changes to enough slots for the zone to grow by half on either side, with the gaps at `kept`.
   void lay_out(const std::vector<Slot>& kept, ParticleIndex held) {
     const std::size_t slots = range_.lay_out(static_cast<std::size_t>(held), held / 2 + 8, kept);
     line_.particle_of_slot_0 = particles_->gaps().first + range_.unheld_left() - static_cast<ParticleIndex>(first());
@@ -266,7 +265,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     return line_.strike(left(s), s, right(s), time, of_law, notice);
   }
 
-  // A collision at an end of the active zone: takes in the next particle there, or, at an end of the line, follows the
+  // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the
   // last one.
   Notice widen(Slot s, const T& time, const Outcome<T>& outcome);
 
@@ -274,7 +273,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Line line_;
   HeldRange range_;
   CollisionMemory<T> memory_;
-  T centre_{0};  // on a ring: of mass, at the start
+  T centre_{0};  // on a ring: centre of mass at the start
   Anchor<T> left_, right_;
   Walls<T> walls_;
 };

@@ -1,8 +1,8 @@
 #pragma once
-// The configuration of a chain in gaps and closing speeds, in positions and velocities. On a line both are summed up
-// from the left anchor and must lead to the right one; the difference, the closure error, is spread over the particles
-// between. On a ring positions follow from the centre of mass and velocities from the total momentum; there the closure
-// error is the difference between the circumference and the sum of the gaps.
+// The configuration of a chain in gaps and closing speeds, in positions and velocities. On a line, sums from the left
+// anchor give both, and must lead to the right one; the difference, the closure error, is distributed over the
+// particles between. On a ring positions follow from the centre of mass and velocities from the total momentum; the
+// closure error is the difference between the circumference and the sum of the gaps.
 
 #include "cradle/core/chains/gap_chain.hpp"
 
@@ -19,8 +19,8 @@ template <Real T, class Masses> T GapChain<T, Masses>::front_right(const T& time
   return (outermost < right_.particle() ? x - gap_at(slot(outermost), time) : x).value();
 }
 
-// Particles that are not held move like the outermost one that is. Velocities are relative to a wall, where there is
-// one: its own x is known, and its own velocity. On a ring the last gap follows from the others.
+// Particles that are not held move like the outermost held one. If there is a wall, velocities are relative to it,
+// since its velocity is known. On a ring the last gap follows from the others.
 template <Real T, class Masses> T GapChain<T, Masses>::kinetic_energy() const {
   const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
   const ParticleIndex count = particles_->count();
@@ -71,7 +71,7 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
     way.add(c.gap.back());
     line_.add_closing(s, slowing);
   }
-  // Where masses are far apart, from the heaviest: what the sums lose is then lost of the light ones.
+  // If masses are far apart, sums begin at the heaviest particle, so that light ones have the errors.
   if (line_.exact_sums()) {
     const Pair<T> own = slowings[heaviest];
     for (Pair<T>& each : slowings) each = each - own;

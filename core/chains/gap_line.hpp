@@ -1,9 +1,8 @@
 #pragma once
-// The bare line of gaps that a chain in gaps works on: timed gaps with their closing speeds, the masses of the
-// particles between them, and what a collision does to three of them. What is at its ends is the chain's
-// (gap_chain.hpp), or that of a segment (segments.hpp), which is a copy of a part of it.
+// The line of gaps of a chain in gaps: timed gaps with their closing speeds, the masses of the particles between them,
+// and the effect of a collision on three of them. The chain (gap_chain.hpp) or a segment, which is a copy of a part
+// (segments.hpp), handles its ends.
 
-#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
@@ -17,7 +16,7 @@
 
 namespace cradle {
 
-// What the line keeps of all its collisions where masses are not watched.
+// Per-run data of a line whose masses are not watched: none.
 struct NothingMore {
   static std::tuple<> state(auto&) { return {}; }
 };
@@ -46,7 +45,7 @@ template <Real T, class MassesOf> class GapLine {
 
   static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.particle_of_slot_0, self.certainty); }
 
-  // Whether closing speeds add up without error.
+  // Whether sums of closing speeds are exact.
   bool exact_sums() const { return watched && exact_; }
 
   // ---- copies of a part (segments.hpp): with so many slots; slot s here is s + offset there
@@ -59,7 +58,7 @@ template <Real T, class MassesOf> class GapLine {
     gaps.copy(other.gaps, from, to, count);
     masses.copy(other.masses, from, to, count + 1);
   }
-  // A gap that no collision beside it closes.
+  // Makes a gap that no collision beside it can close.
   void block(Slot s) { gaps.put(s, cell(T(1), T(0), T(-std::int64_t{1} << 62))); }
 
   ParticleIndex particle(Slot s) const { return static_cast<ParticleIndex>(s) + particle_of_slot_0; }
@@ -72,7 +71,7 @@ template <Real T, class MassesOf> class GapLine {
   T due(Slot s) const { return gaps.due(s, closing(s)); }
   double queue_due(Slot s) const { return gaps.queue_due(s, closing(s)); }
 
-  // As it is at the start, the gap right of a particle, and the mass of a particle.
+  // The gap right of a particle as at the start, and the mass of the particle.
   void load(Slot s, const Particles<T>& particles, const T& time) {
     const ParticleIndex b = particle(s);
     gaps.put(s, cell(particles.gap(b), time, particles.closing_speed(b)));
@@ -86,8 +85,8 @@ template <Real T, class MassesOf> class GapLine {
   void load_mass(Slot s, const Particles<T>& particles) { masses.set(s, mass_of(s, particles)); }
   bool has_mass(Slot s, const Particles<T>& particles) const { return masses[s] == mass_of(s, particles); }
 
-  // What a collision at the gap s does to it and to its neighbours p and n. Inlined by force: as a call this passes all
-  // results through memory, a fifth of the time per collision.
+  // The effect of a collision at the gap s on it and on its neighbours p and n. Inlined by force: a call would pass all
+  // results through memory, which costs a fifth of the time per collision.
   [[gnu::always_inline]] CollisionResult<T> strike(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
                                                    Notice notice) {
     const T since = gaps.flown(s, time);
@@ -103,11 +102,11 @@ template <Real T, class MassesOf> class GapLine {
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
-  // There is no gap beyond the last particle: what stands in its slot keeps opening, whatever it is handed.
+  // There is no gap beyond the last particle: its slot holds a gap that always opens, whatever the collisions give it.
   void seal(Slot s, const T& time, const T& handed) { gaps.put(s, cell(T(1), time, T(-(handed + handed) - T(1)))); }
 
-  // What the neighbours gain in a collision at the gap s. Where sums are exact all three closing speeds add up as
-  // before: what rounding has left over goes where more is handed, to the side of the lighter particle.
+  // The gains of the neighbours in a collision at the gap s. With exact sums the three closing speeds keep their sum:
+  // the rest of the rounding is added to the larger gain, which is on the side of the lighter particle.
   struct Handed {
     const T &left, &right;
   };
@@ -150,12 +149,12 @@ template <Real T, class MassesOf> class GapLine {
     gaps[s].closing = sum.high;
     gaps[s].rest = sum.low;
   }
-  // That of any particle where there is none, or a wall.
+  // The mass of the particle, or of any other if there is none or a wall.
   T mass_of(Slot s, const Particles<T>& particles) const {
     return particles.mass(particle(s) >= 0 && particle(s) < particles.count() ? particle(s) : 0);
   }
-  // Brings a gap up to date and adds to its closing speed; `struck` is the time since the local time of the gap beside
-  // it that had the collision.
+  // Updates a gap and adds to its closing speed; `struck` is the time since the local time of the neighbouring gap that
+  // had the collision.
   template <class Gain> [[gnu::always_inline]] Notice kick(Slot s, const Gain& gain, const T& struck, const T& time) {
     const T since = gaps.kick(
         s, closing(s), [&]() -> const T& { return high(gain); }, time);

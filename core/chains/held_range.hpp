@@ -1,12 +1,12 @@
 #pragma once
-// How much of a line a chain holds, and how far collisions have come in it. Rows are streamed: particles of a row never
-// meet each other, so a chain holds only the particle of each row that is next to the front; the collision that hits it
+// How much of a line a chain holds, and how far collisions have spread in it. Rows are streamed: particles within a row
+// never meet, so a chain holds only the particle of each row that is next to the front; the collision that hits it
 // takes in the next one. From left to right:
 //
 //   unheld particles | first ... left front ~~~ collisions ~~~ right front ... last | unheld particles
 //
-// Slots are the chain's own: gaps, where the fronts are the outermost ones that have had a collision, or particles,
-// where they are the outermost ones that have. Empty slots are left for the held range to grow on either side;
+// Slots are those of the chain. They number gaps (the fronts are then the outermost gaps that have had a collision) or
+// particles (the outermost particles that have collided). The held range can grow into empty slots on either side;
 // `cramped` says when they are used up and the chain must be laid out anew. On a ring all particles are held, and there
 // are no fronts.
 
@@ -22,7 +22,7 @@ namespace cradle {
 
 class HeldRange {
  public:
-  // Where collisions have been made so far.
+  // Where collisions have been made until now.
   enum class Extent { nowhere, between_fronts, ring };
   // What there is next to a front, away from the collisions.
   enum class Beyond { held, row, nothing };
@@ -37,8 +37,8 @@ class HeldRange {
   ParticleIndex unheld_left() const { return unheld_left_; }
   ParticleIndex unheld_right() const { return unheld_right_; }
 
-  // Puts so many held slots in the middle of enough for the held range to grow by `growth` on either side, and returns
-  // how many those are. `kept`: which slots have been these so far, from the first one held on.
+  // Puts so many held slots in the middle of enough slots for the held range to grow by `growth` on either side, and
+  // returns their number. `kept`: the previous slots of the held ones.
   std::size_t lay_out(std::size_t held, ParticleIndex growth, const std::vector<Slot>& kept = {}) {
     first_ = static_cast<Slot>(std::min(unheld_left_, growth)) + spare_;
     last_ = first_ + held - 1;
@@ -47,13 +47,13 @@ class HeldRange {
         *front = first_ + static_cast<Slot>(std::lower_bound(kept.begin(), kept.end(), *front) - kept.begin());
     return last_ + 1 + static_cast<Slot>(std::min(unheld_right_, growth)) + spare_;
   }
-  // Slots free for the next particles of the rows.
+  // Free slots for the next particles of the rows.
   std::size_t free_left() const { return std::min(static_cast<std::size_t>(unheld_left_), first_ - spare_); }
   std::size_t free_right(std::size_t slots) const {
     return std::min(static_cast<std::size_t>(unheld_right_), slots - 1 - spare_ - last_);
   }
-  // Whether there are fewer than so many, although rows have them: by default, whether the next collision at a front
-  // could find no slot for the particle that it takes in.
+  // Whether there are fewer free slots than `particles`, while rows have particles left: by default, whether the next
+  // collision at a front might find no slot for the particle that it takes in.
   bool cramped(std::size_t slots, ParticleIndex particles = 1) const {
     return static_cast<ParticleIndex>(free_left()) < std::min(particles, unheld_left_) ||
            static_cast<ParticleIndex>(free_right(slots)) < std::min(particles, unheld_right_);
@@ -64,25 +64,25 @@ class HeldRange {
   bool has_fronts() const { return extent_ == Extent::between_fronts; }
   Slot front_left() const { return front_left_; }
   Slot front_right() const { return front_right_; }
-  // Whether a collision from one slot to the other is between the fronts and concerns neither.
+  // Whether a collision from one slot to the other is between the fronts and touches neither.
   bool inside(Slot left, Slot right) const { return (left > front_left_) & (right < front_right_); }
-  // There has been a collision from one slot to the other.
+  // Extends the fronts to a collision from one slot to the other.
   void reach(Slot left, Slot right) {
     if (!has_fronts()) front_left_ = left, front_right_ = right;
     extent_ = Extent::between_fronts;
     front_left_ = std::min(front_left_, left);
     front_right_ = std::max(front_right_, right);
   }
-  // On a ring whose slots are gaps: those at either end are not `inside`, they are next to the seam.
+  // On a ring whose slots are gaps: those at either end are next to the seam, and so not `inside`.
   void place_seam() { front_left_ = first_, front_right_ = last_; }
 
   // ---- of a front
   Beyond beyond_left(Slot s) const { return s != first_ ? Beyond::held : row_or_nothing(unheld_left_); }
   Beyond beyond_right(Slot s) const { return s != last_ ? Beyond::held : row_or_nothing(unheld_right_); }
-  // Other slots are held now, and fewer.
+  // Changes the held range to other slots, and fewer.
   void hold(Slot first, Slot last) { first_ = first, last_ = last; }
-  // Takes in the next particle of a row, in the slot next to the last one held; returns its number, `count` particles
-  // in all.
+  // Takes in the next particle of a row, in the slot next to the last held one; returns its number, of `count`
+  // particles in all.
   ParticleIndex take_in_left() {
     --first_;
     return --unheld_left_;
@@ -102,8 +102,8 @@ class HeldRange {
     return std::tie(self.extent_, self.first_, self.last_, self.front_left_, self.front_right_, self.unheld_left_,
                     self.unheld_right_);
   }
-  // Whether it can be that of a chain with so many slots, which hold all particles of `count` but the unheld ones, or
-  // some.
+  // Whether it can be the range of a chain with so many slots, which hold all of the `count` particles but the unheld
+  // ones, or some.
   bool fits(std::size_t slots, ParticleIndex count) const {
     const bool held = last_ < slots && slots - 1 - last_ >= spare_ && first_ >= spare_ && last_ + 1 >= first_;
     const bool fronts = has_fronts() ? first_ <= front_left_ && front_left_ <= front_right_ && front_right_ <= last_
@@ -117,7 +117,7 @@ class HeldRange {
 
   Extent extent_;
   Slot first_ = 0, last_ = 0;
-  Slot front_left_ = 0, front_right_ = 0;  // as long as there are none both 0, between which nothing is inside
+  Slot front_left_ = 0, front_right_ = 0;  // both 0 while there are none; then no slot is inside
   ParticleIndex unheld_left_, unheld_right_;
   Slot spare_;
 };

@@ -1,7 +1,7 @@
 #pragma once
-// The masses of a chain's particles: one for all, or one for each. Identical masses cost nothing, neither memory nor
-// the divisions of the reduced mass. Watched ones take a chain that estimates what rounding does to the sequence of
-// collisions and, if they are far apart, keeps more of every closing speed (watched_gap.hpp).
+// The masses of a chain's particles: one for all, or one for each. Identical masses cost neither memory nor the
+// divisions of the reduced mass. Watched masses use a chain that estimates the effect of rounding on the sequence of
+// collisions and, if they are far apart, keeps more digits of every closing speed (watched_gap.hpp).
 
 #include <algorithm>
 #include <limits>
@@ -17,7 +17,7 @@
 namespace cradle {
 
 template <Real T> struct IdenticalMasses {
-  // Throws std::invalid_argument where they are not identical.
+  // Throws std::invalid_argument if they are not identical.
   explicit IdenticalMasses(const Particles<T>& particles) : mass(particles.mass(0)), reduced_mass(mass / T(2)) {
     if (particles.identical_masses()) return;
     ParticleIndex other = 1;
@@ -62,16 +62,16 @@ concept Watched = requires {
   requires Masses::watched;
 };
 
-// Of particles that share their energy, closing speeds lose the digits of the root of the ratio of masses from a heavy
-// one's velocity: here two.
+// When particles share their energy, a closing speed loses the digits of a heavy one's velocity: as many as the root of
+// the ratio of masses has; here two.
 template <Real T> bool far_apart(const Particles<T>& particles) {
   return T(10000) * particles.least_mass() < particles.greatest_mass();
 }
-// Not in a type whose sums are not rounded to the nearest: a double-double has digits to spare.
+// Not in a type whose sums are not rounded to the nearest: double-double, which has enough digits.
 template <Real T> inline constexpr bool sums_can_be_exact = std::numeric_limits<T>::is_exact || requires {
   requires std::numeric_limits<T>::round_style == std::round_to_nearest;
 };
-// Watching takes some three times the time per collision: it is done where masses are far apart, and for few particles.
+// Watching takes about three times the time per collision, so it is used for masses far apart and for few particles.
 template <Real T> bool to_be_watched(const Particles<T>& particles) {
   return !particles.identical_masses() && (particles.count() <= 1000 || far_apart(particles));
 }

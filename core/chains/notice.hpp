@@ -1,13 +1,13 @@
 #pragma once
-// What a chain requests of the event loop with a collision, off the hot path: a set, named for what is to be done.
+// The requests of a chain to the event loop after a collision, handled off the hot path: a set, named by what to do.
 
 namespace cradle {
 
 enum class Notice : unsigned {
   none = 0,
-  origin_should_move = 1,  // the flight before the collision was short against the time since the origin, 2^-20 of it
-  origin_must_move = 2,    // so short, 2^-40, that time loses its digits unless the origin moves now
-  gap_below_floor = 4,     // the collision left a gap below the floor beside it (collapse, or a gap that closed unseen)
+  origin_should_move = 1,  // the flight before the collision was short: 2^-20 of the time since the origin
+  origin_must_move = 2,    // so short, 2^-40, that time loses digits unless the origin moves now
+  gap_below_floor = 4,     // the collision left a neighbouring gap below the floor (collapse, or a gap that has closed)
   needs_slots = 8          // the chain has no slot for the next particle of a row: lay it out anew
 };
 
@@ -22,7 +22,7 @@ constexpr bool includes(Notice notices, Notice one) {
   return (static_cast<unsigned>(notices) & static_cast<unsigned>(one)) != 0;
 }
 
-// Of a flight that ends at the given time since the origin, both as queue times.
+// The request after a flight that ends at the given time since the origin, both as queue times.
 [[gnu::always_inline]] inline Notice of_flight(double flown, double time) {
   return when(flown < time * 0x1p-20, Notice::origin_should_move) |
          when(flown < time * 0x1p-40, Notice::origin_must_move);

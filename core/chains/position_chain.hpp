@@ -1,13 +1,11 @@
 #pragma once
-// The chain in absolute positions and velocities, as conventional event-driven programs keep it: every particle has a
-// position, a velocity and the time of its last collision, and the next collision of neighbours is predicted from
-// differences of positions in absolute time. It is plain on purpose: no streaming, no tuning. It is the reference twin
-// of the chain in gaps and one of the two sides of every comparison of precision; in a collapsing core its differences
-// lose their digits, which it counts.
+// The chain in absolute positions and velocities, as in conventional event-driven programs: every particle has a
+// position, a velocity and the time of its last collision, and differences of positions in absolute time give the next
+// collision of neighbours. It is plain on purpose: no streaming, no tuning. It is the reference twin of the chain in
+// gaps, and is compared with it in precision: in a collapsing core its differences lose their digits, which it counts.
 
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/collision_result.hpp"
@@ -101,8 +99,8 @@ template <Real T> class PositionChain {
   const Account<T>& account() const { return account_; }
   void lose(Slot, const T& energy) { lost_.add(energy); }
   T energy_lost() const { return lost_.value(); }
-  // The smallest difference between two collision times that is resolved: a position is rounded, and a slow pair takes
-  // long over such a distance.
+  // The smallest difference between two collision times that is resolved: the rounding of a position divided by the
+  // closing speed, which is large for a slow pair.
   T time_resolution(Slot s, const T& time) const {
     const T slowest = magnitude(closing_[s]);
     const T way = T(std::numeric_limits<T>::epsilon()) * (magnitude(at(s).x) + magnitude(time * at(s).v));
@@ -110,7 +108,7 @@ template <Real T> class PositionChain {
            (is_positive(slowest) ? T(T(8) * way / slowest) : way);
   }
 
-  // What comes of a collision at the speed 1, where that says what comes of any.
+  // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.
   template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
     if (walls_.beside(particle(s)))
       return walls_.at_unit_speed(particle(s), at(walls_.left_of(particle(s)) ? s + 1 : s).m);
@@ -129,7 +127,7 @@ template <Real T> class PositionChain {
     require_state(none || (front_left_ >= first() && front_left_ <= front_right_ && front_right_ <= last()), "fronts");
     bool right = is_finite(origin_);
     for (const Particle& p : particles_) right = right && p.holds_numbers();
-    for (Slot s = 0; s < slots(); ++s)  // where there is no gap none closes; collisions may be beyond the range
+    for (Slot s = 0; s < slots(); ++s)  // without a gap none closes; collisions may be beyond the range
       right = right && due_[s] == due_[s] && is_finite(closing_[s]) &&
               !(is_positive(closing_[s]) && (s < first() || s > last()));
     require_state(right, "numbers");
@@ -139,7 +137,7 @@ template <Real T> class PositionChain {
   T front_left(const T& time) const { return place(at(outermost_left()), time); }
   T front_right(const T& time) const { return place(at(outermost_right()), time); }
   const Walls<T>& walls() const { return walls_; }
-  // Of all particles, now. Between walls nothing is known of their momentum but what they have.
+  // Of all particles, now. Between walls their momentum is not conserved.
   T kinetic_energy() const {
     const T total = of_walls_->total_mass(), drift = of_walls_->conserved_momentum() / total;
     const auto moving = relative_motion(total, walls_.any() ? T(0) : drift, [&](const T& c, const auto& add) {
@@ -196,7 +194,7 @@ template <Real T> class PositionChain {
     return law(closing_[s], masses);
   }
 
-  // Slots left of which the outermost particles that have collided are, walls not being particles here.
+  // Slots of which the left particle is the outermost one that has collided; walls are not counted.
   Slot outermost_left() const { return front_left_ + (walls_.left_of(particle(front_left_)) ? 1 : 0); }
   Slot outermost_right() const { return front_right_ + (walls_.right_of(particle(front_right_)) ? 0 : 1); }
   std::size_t slots_of_particles() const {
@@ -218,7 +216,7 @@ template <Real T> class PositionChain {
     due_[s] = closing_[s] > T(0) ? T(now + gap_at(s, now) / closing_[s]) : T(0);
   }
 
-  // Predicts the next collision of a gap beside one that has just closed, and judges whether positions still resolve
+  // Predicts the next collision of a gap beside one that has just closed, and checks whether positions still resolve
   // it.
   Notice resolve(Slot s, const T& time) {
     predict(s, time);

@@ -1,6 +1,5 @@
 #pragma once
-// What a cell of a chain in gaps begins with (timed_gaps.hpp): a gap and the local time at which it was last brought up
-// to date.
+// The beginning of a cell of a chain in gaps (timed_gaps.hpp): a gap and the local time of its last update.
 
 #include <tuple>
 
@@ -10,7 +9,7 @@
 
 namespace cradle {
 
-// `lost`: the energy lost in collisions here. `fits`: whether it can be that of a gap closing at such a speed.
+// `lost`: the energy lost in collisions here. `fits`: whether the values can be those of a gap with this closing speed.
 template <Real T> struct TimedGap {
   T gap{1}, time{0}, lost{0};
   bool fits(const T& closing) const {
@@ -24,7 +23,7 @@ requires(Ledger<T>::in_any_order) struct TimedGap<T> {
   bool fits(const T& closing) const { return is_finite(gap) && is_finite(time) && is_finite(closing); }
   static auto state(auto& self) { return std::tie(self.gap, self.time); }
 };
-// In double the time of the next collision is its own key: it is kept, which saves a division when it comes.
+// In double the time of the next collision is its own key. It is stored, which saves a division at the collision.
 template <> struct TimedGap<double> {
   double gap = 1, time = 0, due = EventQueue::never;
   bool fits(double closing) const {

@@ -1,21 +1,20 @@
 #pragma once
-// The gaps of a chain, each with its local time: the time at which it was last brought up to date, an offset from a
-// moving origin. What both chains in gaps do with a gap g that closes at the speed w is done here, whatever they keep
-// beside it (gap_chain.hpp: closing speeds; cluster_chain.hpp: velocities, from which w follows):
+// The gaps of a chain, each with its local time: the time of its last update, an offset from a moving origin. Both
+// chains in gaps share what is done here with a gap g that closes at the speed w; they store different speeds
+// (gap_chain.hpp: closing speeds; cluster_chain.hpp: velocities, from which w follows):
 //
 //   next collision  local time + g/w, if w > 0
 //   brought to t    g -= w (t - local time), local time = t
 //   in collision    g = 0 exactly
 //
-// Collisions may come late: if the queue cannot distinguish two collisions, or if they commute, the one beside a gap
-// may be earlier than the gap's local time. A local time never goes back, which would hide that the order was wrong.
-// The gap becomes what it would be if the collision had come in time: the gain in closing speed has acted since then,
-// g += gain (t - local time) with t before the local time; and a collision at the gap itself leaves it open by what it
+// Collisions may come late: if the queue cannot distinguish two collisions, or if they commute, a collision beside a
+// gap may be earlier than the gap's local time. A local time never decreases: that would hide a wrong order. The gap
+// becomes what it would be if the collision had come in time: the gain in closing speed has acted since then, g += gain
+// (t - local time) with t before the local time; and a late collision at the gap itself leaves it as open as it has
+// become since then. If the order was truly lost, the gap becomes negative and is counted.
 // opens in between. Where the order was truly lost, the gap falls below zero and is counted.
-//
-// When the origin moves, a local time is rounded. What it loses is kept (`lag`; the true local time is the sum of both)
-// so that a move touches no gap. A lag is other than zero only where the local time is negative, and is looked up only
-// there.
+// When the origin moves, a local time is rounded. The rounding error is kept (`lag`; the true local time is the sum of
+// both), so that a move changes no gap. A lag is nonzero only if the local time is negative, and is read only then.
 
 #include <algorithm>
 #include <bit>
@@ -36,7 +35,7 @@
 
 namespace cradle {
 
-// `may_collapse`: gaps and times shrink without end, beyond the range of double where the type goes further.
+// `may_collapse`: gaps and times may shrink without limit, beyond the range of double if the type's range is wider.
 template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class TimedGaps {
  public:
   static constexpr bool keys_are_exact = std::same_as<T, double>;
@@ -48,19 +47,19 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   std::size_t slots() const { return cells_.size(); }
   Cell& operator[](Slot s) { return cells_[s]; }
   const Cell& operator[](Slot s) const { return cells_[s]; }
-  // Changes to so many slots. Those from `first` on hold what was at `kept`, in that order.
+  // Changes to so many slots. Those from `first` on get the contents of `kept`, in that order.
   void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept);
   void put(Slot s, Cell&& cell) {
     cells_[s] = std::move(cell);
     lag_[s] = T(0);
   }
-  // A gap that is of interest only from now on.
+  // Starts a gap that was not needed before.
   void start(Slot s, const T& gap, const T& now) {
     cells_[s].gap = gap;
     cells_[s].time = now;
     lag_[s] = T(0);
   }
-  // A gap comes to another slot.
+  // Moves a gap to another slot.
   void carry(Slot from, Slot to) {
     cells_[to].gap = cells_[from].gap;
     cells_[to].time = cells_[from].time;
@@ -68,8 +67,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     if constexpr (!Ledger<T>::in_any_order) cells_[to].lost += std::exchange(cells_[from].lost, T(0));
   }
 
-  // ---- copies of a part (segments.hpp). Changes to so many slots, and copies from `other` all that belongs to no
-  // slot.
+  // ---- copies of a part (segments.hpp). Changes to so many slots, and copies everything from `other` that belongs to
+  // no slot.
   void resemble(const TimedGaps& other, std::size_t slots) {
     resize(slots);
     clock_ = other.clock_;
@@ -84,7 +83,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
   void take_lags(Slot first, const T* lags, std::size_t gaps) { std::copy_n(lags, gaps, &lag_[first]); }
   void set_ledger(const Ledger<T>& ledger) { lost_ = ledger; }
-  void resize(std::size_t slots) {  // to be given gaps in so many slots
+  void resize(std::size_t slots) {  // gaps are then put into so many slots
     cells_.resize(slots);
     lag_.resize(slots);
   }
@@ -142,8 +141,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   // The gap at a time not before its local time.
   T gap_at(Slot s, const T& closing, const T& time) const { return cells_[s].gap - closing * flown(s, time); }
 
-  // ---- events. A collision at `time` beside the gap adds gain() to the closing speed that it has had so far. Returns
-  // the time since its local time, negative where the collision is late.
+  // ---- events. A collision at `time` beside the gap adds gain() to its closing speed. Returns the time since the
+  // local time, which is negative if the collision is late.
   template <class Gain> [[gnu::always_inline]] T kick(Slot s, const T& closing, const Gain& gain, const T& time) {
     Cell& cell = cells_[s];
     const T since = flown(s, time);
@@ -165,19 +164,19 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       renew(s, time);
     }
   }
-  // Predicts the next collision of a gap touched just now, as a queue time: rounded, in wide types, which the queue
-  // knows.
+  // Predicts the next collision of a gap that has just changed, as a queue time. In wide types it is rounded; the queue
+  // allows for that.
   [[gnu::always_inline]] double predict(Slot s, const T& closing) {
     Cell& cell = cells_[s];
     if constexpr (keys_are_exact) {
-      // Whether a gap closes cannot be predicted: choose by bits, where a positive number is a positive integer.
+      // Whether a gap closes is unpredictable, so choose by bits: a positive number is a positive integer.
       const auto bits = std::bit_cast<std::uint64_t>(cell.time + cell.gap / closing);
       const auto opening = std::uint64_t{0} - (std::bit_cast<std::int64_t>(closing) <= 0);
       return cell.due =
                  std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
     } else {
       if (!is_positive(closing)) return EventQueue::never;
-      // Exact times of float are too far from those in double for the queue's slack.
+      // Exact times of float differ too much from those in double for the queue's slack.
       if (std::same_as<T, float> || is_negative(cell.time)) [[unlikely]]
         return queue_due(s, closing);
       if constexpr (beyond_double) {
@@ -189,14 +188,14 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       }
     }
   }
-  // The same for any gap, its collision foreseen.
+  // The queue time of any gap; its collision has been predicted.
   double queue_key(Slot s, const T& closing) {
     if constexpr (keys_are_exact)
       return cells_[s].due;
     else
       return predict(s, closing);
   }
-  // The same off the hot path, for a gap as old as it may be.
+  // Predicts off the hot path, for a gap of any age.
   void foresee(Slot s, const T& closing) {
     if constexpr (keys_are_exact) cells_[s].due = closing > 0 ? collision_time(s, closing) : EventQueue::never;
   }
@@ -204,17 +203,17 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     if constexpr (keys_are_exact) cells_[s].due = EventQueue::never;
   }
 
-  // The origin of time moves by so much. `each_held` calls what it is given with every gap held and its closing speed.
+  // Moves the origin of time. `each_held` calls its argument with every held gap and its closing speed.
   // (timed_gaps_origin.hpp)
   template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held);
 
-  // ---- what must be inspected: gaps that a collision beside them leaves below the floor
+  // ---- gaps to inspect: those that a neighbouring collision leaves below the floor
   void set_floor(const T& floor) { floor_ = floor; }
   const T& floor() const { return floor_; }
   bool below_floor(Slot s) const { return cells_[s].gap < floor_; }
-  // Of a gap below the floor that a collision beside it has just closed faster by `gain`: `since` is what kick said,
-  // particle the one on its left, `struck` the time since the local time of the gap that had the collision. (Out of
-  // line and by value: inlined it costs the hot path 9 instructions per collision, of 410.)
+  // Called for a gap below the floor after a neighbouring collision that has made it close faster by `gain`: `since` is
+  // the result of kick, particle the one on its left, `struck` the time since the local time of the gap of the
+  // collision. (Out of line and by value: inlined it costs the hot path 9 instructions per collision, of 410.)
   [[gnu::noinline, gnu::cold]] Notice note(Slot s, T closing, T gain, T since, T struck, ParticleIndex particle,
                                            T time) {
     if (!is_positive(cells_[s].gap))
@@ -226,7 +225,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
   const Account<T>& account() const { return account_; }
 
-  // ---- energy lost in a collision at the gap; in all of those from one slot to another
+  // ---- energy lost in a collision at the gap; in all gaps from one slot to another
   [[gnu::always_inline]] void lose(Slot s, const T& energy) {
     if constexpr (Ledger<T>::in_any_order)
       lost_.add(energy);
@@ -250,9 +249,11 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
  private:
-  // By how much rounding may have put a gap below zero, see `note`. Times are rounded in units of the offset; times due
-  // before the last move of the origin in units of the offset at that move (`blur_`); ways flown in units of the way.
-  // Each acts on the gap at its speed before or after the collision. A gap below zero stays so and has its collision
+  // The largest negative gap that rounding explains, see `note`. Times are rounded in units of the offset, times due
+  // before the last move of the origin in units of the offset at that move (`blur_`), and distances in units of the
+  // distance. Each error acts on the gap at its speed before or after the collision. A negative gap stays negative and
+  // collides late, which shifts its neighbours in proportion to their gains: only the first such gap shows a lost
+  // order.
   // late, which shifts its neighbours in proportion to what it hands them: only the first such gap shows a lost order.
   T below_zero(Slot s, const T& closing, const T& gain, const T& since, const T& struck, const T& time) const {
     const T& gap = cells_[s].gap;
@@ -266,7 +267,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
   static T rounding_of(const T& time) { return T(16) * T(std::numeric_limits<T>::epsilon()) * time; }
 
-  // A queue time, unless rounding on the way has made it infinite, which would be `never`.
+  // A queue time, replaced if rounding has made it infinite, which would be `never`.
   [[gnu::always_inline]] double in_range(double rounded, Slot s, const T& closing) const {
     return std::isfinite(rounded) ? rounded : queue_due(s, closing);
   }
@@ -284,14 +285,14 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     then = now;
   }
 
-  // Queue times are local times in units of 2^-shift, such that the next collision is within the range of double.
+  // Queue times are local times in units of 2^-shift, with the next collision within the range of double.
   template <class EachHeld> void choose_shift(const EachHeld& each_held);
 
   std::vector<Cell> cells_;
   std::vector<T> lag_;
   Clock<T> clock_;
   T floor_{0};
-  T blur_{0};       // rounding of times when the origin moved last: collisions due then may be late by it
+  T blur_{0};       // rounding of times at the last move of the origin: collisions due then may be late by it
   long shift_ = 0;  // of queue times, see choose_shift(); stays 0 in types of the range of double
   Account<T> account_;
   Ledger<T> lost_;

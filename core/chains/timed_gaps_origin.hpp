@@ -1,5 +1,5 @@
 #pragma once
-// What is done to all timed gaps at once (timed_gaps.hpp): the origin of time moves, or slots change.
+// Operations on all timed gaps at once (timed_gaps.hpp): moves of the origin of time, and changes of slots.
 
 #include "cradle/core/chains/timed_gaps.hpp"
 
@@ -25,7 +25,7 @@ inline void TimedGaps<T, Cell, may_collapse>::move_origin(const T& by, const Eac
   each_held([&](Slot s, const T& closing) {
     const Pair<T> moved = two_sum(cells_[s].time, T(-by));
     const T lag = lag_[s] + moved.low;
-    const bool past = is_negative(moved.high);  // not so where a late collision has left it ahead of the origin
+    const bool past = is_negative(moved.high);  // false after a late collision, which has left it ahead of the origin
     cells_[s].time = past ? moved.high : T(moved.high + lag);
     lag_[s] = past ? lag : T(0);
     foresee(s, closing);

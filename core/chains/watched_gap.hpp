@@ -1,6 +1,5 @@
 #pragma once
-// The cell of a gap in a chain of gaps and closing speeds, and what it keeps beside them where masses are watched
-// (masses.hpp).
+// The cell of a gap in a chain of gaps and closing speeds, with the additional data of watched masses (masses.hpp).
 //
 // Exact sums, where masses are far apart. A collision with a particle of 1/M of its mass changes a heavy particle's
 // velocity by 2/M of the light one's. Both velocities are in one closing speed, of the size of the light one's:
@@ -34,7 +33,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -47,13 +45,13 @@
 
 namespace cradle {
 
-// In double 32 bytes, two to a line of the cache.
+// 32 bytes in double, two in a line of the cache.
 template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap : TimedGap<T> {
   T closing{-1};
   static auto state(auto& self) { return std::tuple_cat(TimedGap<T>::state(self), std::tie(self.closing)); }
 };
 
-// The numbers of deviations need few digits, but the range of the scalar type: gaps of 1e-1000 deviate by less.
+// Deviations need few digits, but the range of the scalar type: gaps of 1e-1000 have smaller deviations.
 template <Real T> using DeviationNumber = std::conditional_t<WiderRange<T>, T, double>;
 template <Real T> auto deviation_number(const T& x) {
   if constexpr (WiderRange<T>)
@@ -62,7 +60,7 @@ template <Real T> auto deviation_number(const T& x) {
     return to_double(x);
 }
 
-// Of a gap as of its local time, and of its closing speed; samples side by side.
+// Deviations of a gap at its local time, and of its closing speed; samples side by side.
 template <Real N> struct Deviation {
   static constexpr std::size_t samples = 2;
   static constexpr int certain_by = 64;
@@ -80,7 +78,7 @@ template <Real N> struct Deviation {
       closing[k] += share_of_speed * other.closing[k];
     }
   }
-  // As counted from a later time: every gap by what it closes in the meantime.
+  // Counts it from a later time: every gap changes by the distance that it closes in the meantime.
   void shift(const Samples& later, const N& closing_speed) {
     for (std::size_t k = 0; k < samples; ++k) gap[k] -= closing_speed * later[k];
   }
@@ -95,8 +93,8 @@ template <Real T> struct WatchedGap : Gap<T> {
   static auto state(auto& self) { return std::tuple_cat(Gap<T>::state(self), std::tie(self.rest, self.off)); }
 };
 
-// Numbers from -1 to 1, as if random: in sequence, the same for the same collisions; and of a number, the same for the
-// same one, since it is rounded in the same way wherever it stands.
+// Pseudo-random numbers from -1 to 1: either in sequence, the same for the same collisions; or for a given number,
+// always the same, since it is rounded in the same way everywhere.
 template <Real N> class Roundings {
  public:
   N next() {
@@ -122,7 +120,7 @@ template <Real N> class Roundings {
   std::uint64_t counter_ = 0, bits_ = 0, left_ = 0;
 };
 
-// Of the gap right of a particle at the start: its decimals have been rounded.
+// The deviation of the gap right of a particle at the start, whose decimals were rounded.
 template <Real T>
 Deviation<DeviationNumber<T>> at_start(const Particles<T>& particles, ParticleIndex particle, ParticleIndex next) {
   using N = DeviationNumber<T>;

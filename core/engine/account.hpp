@@ -8,7 +8,7 @@
 
 namespace cradle {
 
-// A place and time in a run that a report names.
+// The place and time of an event in a run that a report names.
 template <Real T> struct Incident {
   T time{0};
   ParticleIndex particle = -1;  // the particle on the left of the gap
@@ -17,17 +17,17 @@ template <Real T> struct Incident {
 };
 
 template <Real T> struct Account {
-  // Gaps closed to zero, or below it by no more than rounding, at a collision next to them: three particles met. The
+  // Gaps that were zero, or negative by no more than rounding, at a neighbouring collision: three particles met. The
   // tie rule (earlier time, then further left) decides the outcome.
   std::uint64_t simultaneous = 0;
-  // Gaps found negative beyond rounding: a collision came too late in the order of events.
+  // Gaps that were negative beyond rounding: a collision came too late in the order of events.
   std::uint64_t order_lost = 0;
   Incident<T> first_order_lost;
   // Positions only: gaps next to a collision below 1e6 units in the last place of the position.
   std::uint64_t unresolved = 0;
   Incident<T> first_unresolved;
-  // Watched masses only: 1 from the first collision on that rounding may have decided (watched_gap.hpp); `gap` is how
-  // far that collision's gap may be off by then.
+  // Watched masses only: 1 from the first collision on that rounding may have decided (watched_gap.hpp); `gap` is the
+  // possible error of that collision's gap.
   std::uint64_t uncertain = 0;
   Incident<T> first_uncertain;
 
@@ -36,7 +36,7 @@ template <Real T> struct Account {
                     self.uncertain, self.first_uncertain);
   }
 
-  // A gap that is not positive although no collision was made there.
+  // Enters a gap that is not positive although no collision was made there.
   void enter(const Incident<T>& closed, const T& rounding) {
     if (-closed.gap > rounding) {
       if (order_lost++ == 0) first_order_lost = closed;

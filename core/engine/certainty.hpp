@@ -1,10 +1,9 @@
 #pragma once
-// Whether the collisions of a chain whose masses are watched are those of the exact system, as far as its deviations
-// show (watched_gap.hpp). The first one that may not be is entered in the account; what follows is the motion of
-// another system, and nothing more is estimated.
+// Whether the collisions of a chain with watched masses are those of the exact system, as its deviations show
+// (watched_gap.hpp). The first one that may not be is entered in the account; afterwards the motion is that of another
+// system, and nothing more is estimated.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -24,8 +23,8 @@ template <Real T, class Gaps> class Certainty {
   using Off = Deviation<N>;
 
  public:
-  // A collision is to be made at the gap s, between p and n, and their deviations to be those after it. Called before
-  // the gaps change.
+  // Computes the deviations after the next collision, which is at the gap s between p and n. Called before the gaps
+  // change.
   template <class Masses>
   void collision(Gaps& gaps, Slot p, Slot s, Slot n, ParticleIndex particle, const T& time, const Outcome<T>& outcome,
                  const Masses& masses, bool exact_sums) {
@@ -41,7 +40,7 @@ template <Real T, class Gaps> class Certainty {
     bring(gaps, p, time);
     if (n != p) bring(gaps, n, time);
     const N back = number(outcome.closing) / w, own = slope == N(0) ? back : slope;
-    const N change = (N(1) - own) / (N(1) - back);  // of what is handed over, against that of a constant restitution
+    const N change = (N(1) - own) / (N(1) - back);  // of the impulse, relative to that of a constant restitution
     const auto hand = [&](Slot to, const N& share) {
       gaps[to].off.add(seen_from(gaps, to, time, here), share, share * change);
     };
@@ -58,7 +57,7 @@ template <Real T, class Gaps> class Certainty {
     if (is_negative(since)) gaps[s].off = gaps[s].off.after(-since);
   }
 
-  // A threshold of the law, of a collision that is to be made at the gap s.
+  // Checks a threshold of the law in the next collision, at the gap s.
   void threshold(Gaps& gaps, Slot s, ParticleIndex particle, const T& time, const T& speed) const {
     if (gaps.account().uncertain > 0 || !is_positive(speed)) return;
     const Off here = gaps[s].off.after(number(gaps.flown(s, time)));
@@ -66,20 +65,20 @@ template <Real T, class Gaps> class Certainty {
       doubt(gaps, particle, time, Off::largest(here.gap));
   }
 
-  // dw'/dw at the collision to be made next, of a law whose restitution depends on the speed.
+  // dw'/dw at the next collision, for a law whose restitution depends on the speed.
   template <class Law, class Masses>
   void slope(const Law& law, const T& w, const Masses& masses, const Outcome<T>& at) {
     const T step = w / T(1 << 20);
     slope_ = number(T((law(T(w + step), masses).closing - at.closing) / step));
   }
 
-  // Counts the deviations of all gaps held from a new time (watched_gap.hpp).
+  // Counts the deviations of all held gaps from a new time (watched_gap.hpp).
   void begin_anew(Gaps& gaps, Slot first, Slot last) {
     for (Slot s = first; s <= last; ++s) gaps[s].off.shift(last_, number(gaps[s].closing));
     for (std::size_t k = 0; k < Off::samples; ++k) delay_[k] += std::exchange(last_[k], N(0));
   }
 
-  // Whether a collision at the gap s may come before or after the time, which ends the run.
+  // Whether a collision at the gap s may come before or after this time, which is the end of the run.
   bool open(const Gaps& gaps, Slot s, const T& time) const {
     Off off = gaps[s].off.after(number(gaps.flown(s, time)));
     off.shift(delay_, -number(gaps[s].closing));
@@ -101,10 +100,10 @@ template <Real T, class Gaps> class Certainty {
   static bool exceeds(const N& off, const N& what) {
     return N(Off::certain_by) * number(std::numeric_limits<T>::epsilon()) * off > what;
   }
-  // Whether the gap beside the collision at s may have closed before.
+  // Whether the gap beside the collision at s may have closed earlier.
   static bool doubtful(const Gaps& gaps, Slot beside, Slot s, const T& time, const Off& here, const N& w) {
     const T since = gaps.flown(beside, time);
-    if (beside == s || is_negative(since)) return false;  // late collisions commute with what came before
+    if (beside == s || is_negative(since)) return false;  // late collisions commute with earlier ones
     const auto& cell = gaps[beside];
     const T gap = gaps.gap_at(beside, cell.closing, time);
     const Off there = cell.off.after(number(since));
@@ -117,7 +116,7 @@ template <Real T, class Gaps> class Certainty {
   static void doubt(Gaps& gaps, ParticleIndex particle, const T& time, const N& off) {
     gaps.doubt({gaps.clock().time(time), particle, T(scalar(off) * T(std::numeric_limits<T>::epsilon()))});
   }
-  // To the time of a collision beside it; g - w t is rounded.
+  // Advances the deviation to the time of a neighbouring collision; g - w t is rounded.
   void bring(Gaps& gaps, Slot s, const T& time) {
     const N since = number(gaps.flown(s, time));
     auto& cell = gaps[s];
@@ -126,13 +125,13 @@ template <Real T, class Gaps> class Certainty {
     const N size = magnitude(number(cell.gap)) + magnitude(N(number(cell.closing) * since));
     for (N& off : cell.off.gap) off += size * roundings_.next();
   }
-  // What a gap takes of it as of its own local time, where that is later.
+  // The deviation of a collision for a neighbouring gap, at that gap's local time if it is later.
   static Off seen_from(const Gaps& gaps, Slot s, const T& time, const Off& here) {
     const N since = number(gaps.flown(s, time));
     return is_negative(since) ? here.after(-since) : here;
   }
-  // Rounding of what the heavier particle is handed, the lighter one and the gap: their sum is exact. Masses are
-  // rounded once and for all.
+  // Rounding errors of the gain of the heavier particle, of that of the lighter one and of the gap: their sum is exact.
+  // Masses are rounded only once.
   template <class Masses>
   void round(Gaps& gaps, Slot p, Slot s, Slot n, const Outcome<T>& outcome, const Masses& masses) {
     const N left = number(outcome.to_left), right = number(outcome.to_right);
@@ -151,7 +150,7 @@ template <Real T, class Gaps> class Certainty {
   using Delays = typename Off::Samples;
   Roundings<N> roundings_;
   Delays last_{N(0), N(0)},
-      delay_{N(0), N(0)};  // by which the last collision is late, since the deviations are counted; in all times before
+      delay_{N(0), N(0)};  // error of the time of the last collision since deviations are counted; of all times before
   N slope_{0};             // 0: w'/w
 };
 

@@ -1,17 +1,16 @@
 #pragma once
 // Inelastic collapse: infinitely many collisions in a finite time, at a place where the intervals between collisions
-// shrink by a constant factor per cycle. What a run does about it is a declared policy:
+// shrink by a constant factor per cycle. The policy of a run is one of
 //
-//   cutoff   collisions below the law's velocity cut-off are elastic (the paper's way; nothing happens here)
-//   stop     exact dynamics; stop when the collapse time is settled, or when a gap falls below a given size
+//   cutoff   collisions below the law's velocity cut-off are elastic (as in the paper; nothing is done here)
+//   stop     exact dynamics; stop when the collapse time is known, or when a gap is below a given size
 //
-// It is settled where two gaps side by side are proved to collapse: by the closed form of their collisions
-// (two_gaps.hpp), with bounds on what rounding has done to it, and with all other particles too far away to come in
-// time. From then on the run follows them until the time left is less than the chain's resolution, or a gap is about to
-// underflow, or `most_followed` collisions are made. Without such a proof a run reports no collapse.
+// A collapse is settled if two neighbouring gaps are proved to collapse: by the closed form of their collisions
+// (two_gaps.hpp), with bounds on rounding errors, and with all other particles too far away to arrive in time. From
+// then on the run follows them until the time left is less than the chain's resolution, or a gap is about to underflow,
+// or `most_followed` collisions are made. Without such a proof a run reports no collapse.
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -30,11 +29,11 @@ enum class CollapsePolicy { cutoff, stop };
 // What is known of a collapse when the run stops.
 template <Real T> struct CollapseReport {
   T last_collision{0};          // time of the last collision made
-  T interval{0};                // since the one before at the same gap, 0 where there was none
+  T interval{0};                // since the previous collision at the same gap, 0 if there was none
   T gap{0};                     // smallest gap beside the last collision
   ParticleIndex particle = -1;  // the particle on the left of the gap of the last collision
   bool settled = false;
-  // Where it is settled: t_c, the ratio of successive intervals there in the end, and what their errors do not exceed.
+  // If it is settled: t_c, the limit of the ratio of successive intervals there, and bounds of their errors.
   Pair<T> time{};
   T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
 
@@ -44,9 +43,9 @@ template <Real T> struct CollapseReport {
   }
 };
 
-// A collapse of two gaps side by side that is proved, as well as it is known so far.
+// The proved collapse of two neighbouring gaps, with the best bounds known.
 template <Real T> struct KnownCollapse {
-  std::uint64_t collisions = 0;  // noticed there since
+  std::uint64_t collisions = 0;  // noticed there since then
   Pair<T> time;
   T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
   static auto state(auto& self) {
@@ -61,13 +60,14 @@ template <Real T> struct CollapseWatch {
   std::unordered_map<ParticleIndex, T> last;  // local times of collisions, by the particle left of the gap
   std::unordered_map<ParticleIndex, KnownCollapse<T>> known;  // by the particle left of both gaps
   CollapseReport<T> report;
-  T fastest{0};            // closing or opening speed of a gap so far
-  T greatest_approach{0};  // of any two particles, for good
-  GapErrors<T> errors;     // of all gaps, among few particles in a chain of gaps
+  T fastest{0};            // largest closing or opening speed of a gap until now
+  T greatest_approach{0};  // largest speed at which any two particles can ever approach
+  GapErrors<T> errors;     // of all gaps, for few particles in a chain of gaps
   static auto state(auto& self) { return std::tie(self.last, self.known, self.report, self.fastest, self.errors); }
 
-  // To be called before the first collision; `least` is the smallest gap. Returns the gap below which one beside a
-  // collision is of interest: among few particles, which round least before their first collisions, any.
+  // Call it before the first collision; `least` is the smallest gap. Returns the floor: gaps below it beside a
+  // collision are inspected. For few particles, whose rounding errors are least before their first collisions, all gaps
+  // are.
   template <class Chain> T begin(const Chain& chain, const T& least) {
     if constexpr (provable<Chain>) {
       using std::sqrt;
@@ -82,9 +82,9 @@ template <Real T> struct CollapseWatch {
     return least / T(64);
   }
 
-  // Takes note of the collision at slot s, which has left a small gap beside it; true when its collapse is settled and
-  // has been followed for long enough. `local` is its time as an offset, which resolves intervals that the full time no
-  // longer does; `collisions` is how many were made in all.
+  // Records the collision at slot s, which has left a small gap beside it. Returns true if its collapse is settled and
+  // has been followed for long enough. `local` is its time as an offset, which resolves intervals that the full time
+  // does not; `collisions` is the number of all collisions.
   template <class Law, class Chain>
   bool settled(const Law& law, const Chain& chain, Slot s, const T& local, std::uint64_t collisions) {
     const ParticleIndex particle = chain.particle(s);
@@ -116,13 +116,13 @@ template <Real T> struct CollapseWatch {
   }
 
  private:
-  // Exact types have no square roots, chains of particles that merge no need of them.
+  // Exact types have no square roots, and chains of particles that merge do not need them.
   template <class Chain>
   static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
     chain.particles();
   };
 
-  // What else holds gaps, and does not compute with them, has them from positions.
+  // Other chains compute with positions and derive gaps from them.
   template <class Chain> static constexpr bool in_gaps = provable<Chain>&& requires(const Chain& chain) {
     chain.line();
   };
@@ -131,8 +131,8 @@ template <Real T> struct CollapseWatch {
     if (fastest < magnitude(closing)) fastest = magnitude(closing);
   }
 
-  // The collapse of the gap at s, where a collision has just been made, and the one on its left or right; null where
-  // none is known. Each collision may bound it better than those before.
+  // The collapse of the gap at s, where a collision has just been made, and its left or right neighbour; null if none
+  // is known. Each collision may improve the bounds.
   template <class Law, class Chain>
   const KnownCollapse<T>* beside(const Law& law, const Chain& chain, Slot s, bool on_left, const T& local,
                                  std::uint64_t collisions) {
@@ -179,7 +179,7 @@ template <Real T> struct CollapseWatch {
                          std::max<T>(of_handed_there / handed_there, of_handed_here / handed_here)};
     if constexpr (in_gaps<Chain>)
       if (errors.kept()) return collapse_ahead(two, errors.at(chain.particle(here)), errors.at(chain.particle(there)));
-    // Of a history that has not been kept: that of each collision, with the greatest speeds so far; errors add up.
+    // The history is not stored: add up the errors of each collision, with the greatest speeds until now.
     const Roundoff<T> of;
     const T steps = T(static_cast<std::int64_t>(collisions + 1)),
             largest = std::max(error_here.to_left, error_here.to_right),
@@ -189,8 +189,8 @@ template <Real T> struct CollapseWatch {
     return collapse_ahead(two, any, any);
   }
 
-  // Of a time in the run: in gaps those of collisions are held in two numbers, and the way to it goes with the gaps;
-  // the bound is to hold for one number too. In positions each collision rounds it.
+  // The error of a time. In gaps the times of collisions are pairs of numbers, and the distance to the next one follows
+  // from the gaps; the bound must also hold for a single number. In positions each collision rounds its time.
   template <class Chain>
   static T of_time(const Chain& chain, Slot s, const T& time, const T& local, std::uint64_t collisions) {
     const Roundoff<T> of;
@@ -201,7 +201,7 @@ template <Real T> struct CollapseWatch {
       return steps * chain.time_resolution(s, local) / T(2);
   }
 
-  // Whether no other particle can get there before the collapse. A gap that is not held yet does not count.
+  // Whether no other particle can arrive before the collapse. A gap that is not held yet does not count.
   template <class Chain>
   bool alone(const Chain& chain, Slot left, Slot right, const Bounded<T>& ahead, const T& local) const {
     const T reach = T(2) * greatest_approach * (ahead.value + ahead.error);

@@ -1,11 +1,11 @@
 #pragma once
 // The event queue: one key per gap, updated in place, the next gap at the root of a binary tree of minima.
 //
-// A key is a 64-bit integer: the bits of the non-negative double "time of the next collision, from the origin",
-// whose low bits are replaced by the gap's slot. Integer order is then time order to a relative resolution of 2^(bits -
-// 52), and the root names the next gap without a descent. Where keys are equal or too close, the caller decides
-// exactly: `contested` says when, `for_each_before` lists the candidates. Keys made from a rounded time (wide scalar
-// types) may be off by two units: `slack` widens both by that.
+// A key is a 64-bit integer: the bits of the non-negative double "time of the next collision, from the origin", with
+// the gap's slot in the low bits. Integer order is then time order to a relative resolution of 2^(bits - 52), and the
+// root names the next gap without a descent. If keys are equal or too close, the caller decides exactly: `contested`
+// says when, `for_each_before` lists the candidates. Keys from a rounded time (wide scalar types) may be wrong by two
+// units: `slack` allows for that.
 
 #include <algorithm>
 #include <bit>
@@ -33,13 +33,13 @@ class EventQueue {
   Key next() const { return tree_[1]; }
   Slot slot(Key key) const { return key & mask_; }
 
-  // A negative time (of an event before the origin, after a move) has its sign bit set and would sort last; this key
-  // sorts it first.
+  // A negative time (an event before the origin, after a move) has its sign bit set and would sort last; its key sorts
+  // it first.
   Key key(double due, Slot slot) const {
     return (static_cast<Key>(std::max<std::int64_t>(std::bit_cast<std::int64_t>(due), 0)) & ~mask_) | slot;
   }
 
-  // Keys below `certainly_before(t)` are of collisions before t, keys above `possibly_before(t)` of collisions after
+  // Keys below `certainly_before(t)` belong to collisions before t, keys above `possibly_before(t)` to collisions after
   // it.
   Key certainly_before(double t) const {
     const Key k = key(t, 0);
@@ -47,8 +47,8 @@ class EventQueue {
   }
   Key possibly_before(double t) const { return no_later_than(key(t, 0)); }
 
-  // Whether any other key is too close to the root's to decide which comes first: the least of the others stands beside
-  // the path from the root to its leaf.
+  // Whether any other key is too close to the root's to decide which is first: the least of the others is beside the
+  // path from the root to its leaf.
   bool contested() const {
     const Key root = tree_[1];
     std::size_t node = leaves_ + slot(root);
@@ -59,8 +59,8 @@ class EventQueue {
   bool close(Key a, Slot b) const { return key_of(b) <= no_later_than(a); }
   Key key_of(Slot s) const { return tree_[leaves_ + s]; }
 
-  // Sets the times of three neighbouring gaps. Their paths to the root are two neighbouring paths that soon meet.
-  // Branches depend on the shape of the tree only: a processor cannot predict which of two times is smaller.
+  // Sets the times of three neighbouring gaps. Their paths to the root are adjacent and soon meet. Branches depend on
+  // the shape of the tree only: a processor cannot predict which of two times is smaller.
   [[gnu::always_inline]] void replace(Slot s, double left_due, double due, double right_due) {
     Key* const tree = tree_.data();
     const std::size_t leaf = leaves_ + s;
@@ -113,10 +113,10 @@ class EventQueue {
   }
 
   // Calls visit(slot) for every slot whose key is at most `bound`, from left to right, until it returns false; visits
-  // nothing else of the tree. Returns whether all were visited.
+  // no other part of the tree. Returns whether all were visited.
   template <class Visit> bool for_each_before(Key bound, Visit visit) const { return visit_before(bound, visit, 1); }
-  // The largest key that may belong to the same time as `key`.
-  // Never as far as the keys of `never`, which are those of slots without a gap too.
+  // The largest key that may belong to the same time as `key`. It is always less than the keys of `never`, which slots
+  // without a gap have.
   Key no_later_than(Key key) const { return std::min<Key>((key | mask_) + slack_, std::bit_cast<Key>(never) - 1); }
 
  private:
@@ -127,7 +127,7 @@ class EventQueue {
     tree[a] = least_a;
     tree[b] = least_b;
     tree[c] = least_c;
-    while (a > 1) {  // also where they have met: a test costs more than three steps
+    while (a > 1) {  // also after they have met: a test costs more than three steps
       least_a = std::min(least_a, tree[a ^ 1]);
       least_b = std::min(least_b, tree[b ^ 1]);
       least_c = std::min(least_c, tree[c ^ 1]);

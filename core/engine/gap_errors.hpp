@@ -3,10 +3,9 @@
 // collisions (README.md, "Collapse").
 //
 // As lines in time, G(t) = g - w t, gaps obey linear maps: a collision at s turns G_s into -e G_s and adds c G_s to the
-// line of each neighbour, whenever it comes. Errors obey the same maps, without remainder, and their bounds the maps of
-// magnitudes: e, 1 and c. What each operation of a collision rounds is added where it happens.
+// line of each neighbour, whenever it comes. Errors obey exactly the same maps, and their bounds obey the maps with the
+// magnitudes e, 1 and c. The rounding of each operation of a collision is added where it happens.
 
-#include <cstdint>
 #include <limits>
 #include <tuple>
 #include <unordered_map>
@@ -19,13 +18,13 @@
 
 namespace cradle {
 
-// What an operation rounds, relative to its result, at most: half of epsilon where it gives the nearest number. Where
-// it does not, epsilon bounds sums, products and roots, and four of it quotients (precision/double_double.hpp).
+// The largest rounding error of an operation, relative to its result: half of epsilon if it gives the nearest number,
+// else epsilon for sums, products and roots, and 4 epsilon for quotients (precision/double_double.hpp).
 template <Real T> struct Roundoff {
   static constexpr bool nearest = sums_can_be_exact<T>;
   T unit = T(std::numeric_limits<T>::epsilon()) / T(nearest ? 2 : 1);
   T quotient = nearest ? unit : T(T(4) * unit);
-  T way = T(nearest ? 2 : 4) * unit;  // of a time from the local time of a gap, with a moved origin
+  T way = T(nearest ? 2 : 4) * unit;  // of a time since the local time of a gap, with a moved origin
 };
 
 // Bounds on the errors of a gap at some time, and of its closing speed.
@@ -34,20 +33,21 @@ template <Real T> struct GapError {
   static auto state(auto& self) { return std::tie(self.gap, self.speed); }
 };
 
-// Bounds on the errors of what comes of a collision at the speed 1, as a type computes it from its decimals.
+// Bounds on the errors of the outcome of a collision at the speed 1, computed from the law's decimals.
 template <Real T> struct LawError { T rebound, to_left, to_right; };
 template <Real T> LawError<T> law_error(const Outcome<T>& at_unit_speed, bool identical_masses) {
   const T rebound = T(-at_unit_speed.closing), &left = at_unit_speed.to_left, &right = at_unit_speed.to_right;
   const Roundoff<T> of;
   const T& unit = of.unit;
-  // e w: the decimal and a product. From e = 1/2 on w - 2 h, h = ((1 + e)/2) w: half of the decimal, a sum, a product.
+  // e w: the decimal and a product. For e >= 1/2, w - 2 h with h = ((1 + e)/2) w: half of the decimal, a sum, a
+  // product.
   const bool soft = rebound + rebound < T(1);
   const T own = soft ? T(T(2) * unit * rebound) : T(unit * (T(5) * (left + right) / T(2) + rebound));
-  // Half of what is handed over in all: h, or what follows from e w with a sum.
+  // Half of the velocity exchanged: h, or the result of e w and a sum.
   const T of_half = T(5) * unit / T(2);
   if (identical_masses) return {own, T(of_half * left), T(of_half * right)};
-  // The lighter particle's mass over the sum: two decimals, a sum, a quotient; times what is handed over. The other
-  // share is the rest; it takes the rounding of w' too, where closing speeds add up without error.
+  // The lighter particle's mass over the sum: two decimals, a sum, a quotient; then times the velocity exchanged. The
+  // other share is the rest; it includes the rounding of w' if closing speeds add up without error.
   const bool larger_left = right < left;
   const T &small = larger_left ? right : left, &large = larger_left ? left : right;
   const T quotient = small * (T(4) * unit + of.quotient), of_small = of_half * small + quotient,
@@ -57,7 +57,7 @@ template <Real T> LawError<T> law_error(const Outcome<T>& at_unit_speed, bool id
 
 template <Real T> class GapErrors {
  public:
-  // Before the first collision, at the local time `now`: decimals and their differences are rounded.
+  // Initial errors, at the local time `now`: decimals and their differences are rounded.
   void begin(const Particles<T>& particles, const T& now) {
     const T unit = Roundoff<T>().unit;
     const GapRange all = particles.gaps();
@@ -75,7 +75,7 @@ template <Real T> class GapErrors {
   }
   bool kept() const { return !gaps_.empty(); }
 
-  // The collision made last, at slot s and the local time `now`, between `left` and `right`, where there are such gaps.
+  // Adds the last collision, at slot s and the local time `now`, between the gaps `left` and `right` if these exist.
   template <class Law, class Chain, class Beside>
   void collision(const Law& law, const Chain& chain, const Beside& left, Slot s, const Beside& right, const T& now) {
     const auto unit_speed = chain.at_unit_speed(law, s);
@@ -83,7 +83,7 @@ template <Real T> class GapErrors {
     const Roundoff<T> of;
     const T rebound = T(-unit_speed->closing);
     const LawError<T> error = law_error(*unit_speed, chain.particles().identical_masses());
-    // The line here at the time that the collision was made at, which is rounded.
+    // The line here at the time of the collision, which is rounded.
     Line& here = gaps_[chain.particle(s)];
     const T w = here.closing, since = magnitude(T(now - here.time));
     const GapError<T> off{T(here.off.gap + since * here.off.speed +
@@ -93,7 +93,7 @@ template <Real T> class GapErrors {
     const auto hand = [&](Slot to, const T& share, const T& of_share) {
       Line& there = gaps_[chain.particle(to)];
       const T way = magnitude(T(now - there.time));
-      // Before the collision or, where that comes late, after it.
+      // Before the collision or, if it comes late, after it.
       const T fastest = magnitude(there.closing) + share * w;
       there.off.gap += way * there.off.speed + way * fastest * (of.way + of.unit) +
                        of.unit * magnitude(chain.gap_at(to, now)) + share * off.gap;
@@ -103,8 +103,8 @@ template <Real T> class GapErrors {
     if (left) hand(*left, unit_speed->to_left, error.to_left);
     if (right) hand(*right, unit_speed->to_right, error.to_right);
   }
-  // Of the gap right of a particle that had the last collision, or was beside it. Second orders are left out of the
-  // bounds, which are rounded themselves: some 20 units a collision, less than 1/64 of them by far.
+  // The error of the gap right of a particle, after the last collision at it or beside it. Second orders are left out
+  // of the bounds, which are themselves rounded: about 20 units per collision, far less than 1/64 of the bounds.
   GapError<T> at(ParticleIndex particle) const {
     const auto found = gaps_.find(particle);
     if (found == gaps_.end()) return {far_away<T>(), far_away<T>()};
@@ -119,8 +119,8 @@ template <Real T> class GapErrors {
 
  private:
   struct Line {
-    T time{0}, closing{0};  // when a collision at it or beside it was last made, and what that left
-    GapError<T> off;        // then
+    T time{0}, closing{0};  // of the last collision at it or beside it, and the closing speed after it
+    GapError<T> off;        // at that time
     static auto state(auto& self) { return std::tie(self.time, self.closing, self.off); }
   };
   std::unordered_map<ParticleIndex, Line> gaps_;

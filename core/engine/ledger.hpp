@@ -1,11 +1,11 @@
 #pragma once
-// The ledger of energy: the sum of what collisions have lost. In the native types the sum does not depend on the order
+// The ledger of energy: the sum of the losses in collisions. In the native types the sum does not depend on the order
 // of its terms, since collisions that commute are made in different orders (segments.hpp). Each term is rounded to a
-// grid on which sums of up to four times the energy E are exact; the rest of the term is rounded to a finer grid, of
-// E eps / 2^22 or less, and summed as an integer, which does not overflow in 1e12 terms. The error of a term is half of
-// the finer grid at most.
+// grid on which sums of up to four times the energy E are exact; the rest of the term is rounded to a finer grid, of E
+// eps / 2^22 or less, and summed as an integer, which does not overflow in 1e12 terms. The error of a term is at most
+// half of the finer grid.
 //
-// Wider types have digits to spare for a plain sum, and no cheap way to this one: chains keep one sum for each gap
+// In wider types this sum is expensive, and a plain sum is precise enough: chains keep one sum for each gap
 // (timed_gaps.hpp).
 
 #include <cmath>
@@ -23,7 +23,7 @@ template <Real T> class Ledger {
   static constexpr bool in_any_order =
       std::same_as<T, float> || std::same_as<T, double> || std::same_as<T, long double>;
 
-  // `energy`: as much can be lost in all (Particles::energy_to_lose).
+  // `energy`: the largest possible loss (Particles::energy_to_lose).
   explicit Ledger(const T& energy = T(1)) {
     if constexpr (in_any_order) {
       T above(1);
@@ -41,17 +41,17 @@ template <Real T> class Ledger {
     if constexpr (in_any_order) {
       const T coarse = (loss + rounder_) - rounder_;
       sum_ += coarse;
-      add_rest(std::llrint((loss - coarse) * per_fine_));  // an instruction
+      add_rest(std::llrint((loss - coarse) * per_fine_));  // compiles to one instruction
     } else {
       sum_ += loss;
     }
   }
-  // What another one of the same energy has taken in.
+  // Adds another ledger of the same energy.
   void add(const Ledger& other) {
     sum_ += other.sum_;
     add_rest(other.rest_);
   }
-  // The grid, for those who sum up many terms at once: coarse parts, and the rests in units of the fine grid.
+  // The grid, for callers that add many terms at once: coarse parts, and the rests in units of the fine grid.
   const T& rounder() const { return rounder_; }
   const T& per_fine() const { return per_fine_; }
   void add_sums(const T& coarse, std::int64_t rest) {
@@ -72,12 +72,12 @@ template <Real T> class Ledger {
   static auto state(auto& self) { return std::tie(self.sum_, self.rest_); }
 
  private:
-  // Wraps around where particles lose far more than there is, which a state from a damaged file may cause.
+  // Wraps around if the losses are far more than the energy, which a state from a damaged file may cause.
   [[gnu::always_inline]] void add_rest(std::int64_t more) {
     rest_ = static_cast<std::int64_t>(static_cast<std::uint64_t>(rest_) + static_cast<std::uint64_t>(more));
   }
 
-  T rounder_{0};             // what is added to it and taken off again is rounded to the grid
+  T rounder_{0};             // adding and then subtracting it rounds a number to the grid
   T fine_{1}, per_fine_{1};  // the grid of the rest
   T sum_{0};
   std::int64_t rest_ = 0;  // in units of fine_

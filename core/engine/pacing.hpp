@@ -1,15 +1,16 @@
 #pragma once
-// How often the event loop reviews what is not a collision, and when the origin of time moves. Both follow from the
-// history of collisions alone, not from the calls of `advance`.
+// How often the event loop does work other than collisions, and when the origin of time moves. Both depend on the
+// history of collisions alone, not on the calls of `advance`.
 //
-// A small zone is reviewed by numbers of collisions. A move of the origin costs as much as a few collisions per gap: it
-// comes with every second collision in a few-particle collapse and after some 32 collisions per particle otherwise.
+// In a small zone reviews come after numbers of collisions. A move of the origin costs as much as a few collisions per
+// gap: it comes with every second collision in a few-particle collapse and otherwise after about 32 collisions per
+// particle.
 //
 // In a large zone time is divided into epochs: the time of the next move of the origin is known since the last move, so
-// that collisions far apart need no common order for it (segments.hpp). An epoch lasts as long as some 8 collisions per
-// active particle should take, or 32 where particles merge, by the rate of the epoch before. It ends early, with the
-// collision after which the chain requests that: where the flight before it was too short for the time since the
-// origin, or where there are four times as many collisions per particle as it should have.
+// that collisions far apart need no common order for it (segments.hpp). An epoch lasts for about 8 collisions per
+// active particle, or 32 if particles merge, estimated from the rate of the previous epoch. It ends early after a
+// collision at which the chain requests that: the flight before it was too short for the time since the origin, or
+// there were four times the expected collisions per particle.
 
 #include <algorithm>
 #include <cstdint>
@@ -24,24 +25,24 @@ template <Real T> struct Pacing {
   Pacing(const T& start, bool may_collapse)
       : time_before(start), may_collapse_(may_collapse), per_particle_(may_collapse ? 8 : 32) {}
 
-  static constexpr std::uint64_t large = 512;  // active particles from which on there are epochs
+  static constexpr std::uint64_t large = 512;  // active particles; epochs begin at this number
 
-  std::uint64_t next_review = 1;         // collisions made when the next regular review is due
-  std::uint64_t collisions_at_move = 0;  // collisions made when the origin moved last
-  std::uint64_t collisions_before = 0;  // collisions made, and the local time, at the regular review or the move before
+  std::uint64_t next_review = 1;         // number of collisions at the next regular review
+  std::uint64_t collisions_at_move = 0;  // number of collisions when the origin moved last
+  // Number of collisions and local time at the previous regular review or move.
+  std::uint64_t collisions_before = 0;
   T time_before;
 
   bool in_epochs = false;
-  T epoch{0};                         // how long this one is to last, from time_before
+  T epoch{0};                         // length of the present epoch, from time_before
   T epoch_end{0};                     // local
-  std::uint64_t expected = 0;         // collisions in it
-  std::uint64_t next_poll = 0;        // collisions made when the caller is polled again
-  std::uint64_t most_collisions = 0;  // made in all when it ends at the latest
+  std::uint64_t expected = 0;         // collisions in the epoch
+  std::uint64_t next_poll = 0;        // number of collisions at which the caller is polled again
+  std::uint64_t most_collisions = 0;  // number of collisions at which it ends at the latest
 
-  // After a collision at the given local time, with so many particles active. The chain may request a move; at a
-  // regular review the origin moves if particles can collapse. If they merge instead, the origin moves only after many
-  // collisions, or where these come at more than twice the rate, since the review before, that they have had since the
-  // last move.
+  // Decides after a collision at the given local time, with so many active particles. The chain may request a move. At
+  // a regular review the origin moves if particles can collapse. If they merge instead, it moves only after many
+  // collisions, or if their rate since the last review is more than twice that since the last move.
   bool origin_moves(Notice notice, std::uint64_t collisions, const T& time, std::uint64_t active) const {
     const std::uint64_t since_move = collisions - collisions_at_move;
     if (includes(notice, Notice::origin_must_move)) return true;
@@ -53,7 +54,7 @@ template <Real T> struct Pacing {
            T(static_cast<std::int64_t>(collisions - collisions_before)) * time;
   }
 
-  // After a review at the local time `then`, which is called `now` since. Reviews that a chain requested
+  // After a review at the local time `then`, which is now called `now`. Reviews that a chain requested
   // (Notice::needs_slots) change nothing: they depend on what is streamed.
   void reviewed(std::uint64_t collisions, const T& then, const T& now, std::uint64_t active, bool moved) {
     const bool regular = collisions >= next_review;
@@ -67,23 +68,23 @@ template <Real T> struct Pacing {
     if (!moved && !regular) return;
     begin_reviews(collisions, now, active);
   }
-  // Collisions to come up to a time in this epoch: by the rate foreseen, or by that so far. 0: no epochs.
+  // Collisions expected up to a time in this epoch: by the predicted rate, or by that until now. 0: no epochs.
   double ahead(std::uint64_t collisions, const T& now, const T& until) const {
     if (!in_epochs) return 0;
     const double made = static_cast<double>(collisions - collisions_before);
     const double passed = to_double(T((now - time_before) / epoch)), left = to_double(T((until - now) / epoch));
     return left * std::max(static_cast<double>(expected), passed > 0 ? made / passed : 0);
   }
-  // After so many more collisions this epoch ends.
+  // The number of collisions after which this epoch ends.
   std::uint64_t left(std::uint64_t collisions) const {
     return collisions < most_collisions ? most_collisions - collisions : 0;
   }
-  // After so many collisions without any review. They are fewer than an epoch's most.
+  // After so many collisions without a review, fewer than an epoch can have.
   void passed(std::uint64_t collisions, std::uint64_t active) {
     if (collisions >= next_poll) next_poll = collisions + std::min<std::uint64_t>(32 * active, 1 << 20);
     next_review = std::min(most_collisions, next_poll);
   }
-  // The origin has moved to where the epoch ends, which is called `now` since.
+  // The origin has moved to the end of the epoch, which is now called `now`.
   void epoch_ended(std::uint64_t collisions, const T& now, std::uint64_t active) {
     foresee(epoch, collisions - collisions_before, active);
     collisions_at_move = collisions;
@@ -92,10 +93,10 @@ template <Real T> struct Pacing {
     passed(collisions, active);
   }
 
-  // Whether it can be that of a run of so many particles which has made so many collisions, the last one at the given
-  // local time and so long after the start, but for rounding. Who waits for a review too long could not be interrupted.
+  // Whether it can be the pacing of a run with so many particles and collisions, the last one at the given local time
+  // and time since the start, up to rounding. If the next review were too far ahead, the run could not be interrupted.
   bool follows(std::uint64_t collisions, const T& last_collision, const T& since_start, std::int64_t particles) const {
-    constexpr std::uint64_t most = std::uint64_t{1} << 50;  // in a year; 4096 times as many are an integer too
+    constexpr std::uint64_t most = std::uint64_t{1} << 50;  // in a year; 4096 times this is still an integer
     return collisions < most && collisions_before <= collisions && collisions_at_move <= collisions &&
            expected < most &&
            std::max({next_review, next_poll, most_collisions}) <=
@@ -110,8 +111,8 @@ template <Real T> struct Pacing {
   }
 
  private:
-  // How long the next epoch is to be where so many collisions have taken so long: as long as those that it is to have
-  // should take, but not too many times as long, since a rate is not known well from a few collisions.
+  // Sets the length of the next epoch if so many collisions have taken so long: the time expected for its collisions,
+  // but limited, since a few collisions do not give a reliable rate.
   void foresee(const T& took, std::uint64_t collisions, std::uint64_t active) {
     const auto aim = static_cast<std::int64_t>(per_particle_ * active), made = static_cast<std::int64_t>(collisions);
     const std::int64_t most = made < 64 ? 64 : 4096;

@@ -1,11 +1,11 @@
 #pragma once
 // The event loop: take the next collision, let the chain apply the law, update the three gaps concerned in the queue,
-// enter the loss in the ledger. Scalar, law and chain are types; everything else happens in `review`, off the hot path.
+// enter the loss in the ledger. Scalar, law and chain are types; everything else is in `review`, off the hot path.
 //
-// The order of collisions is (exact time, position in the line). Where the queue's keys cannot decide it, exact times
-// are compared among all collisions that might be first (ties.hpp).
+// The order of collisions is (exact time, position in the line). If the queue's keys cannot decide it, exact times are
+// compared among all collisions that might be first (ties.hpp).
 //
-// Nothing depends on how often or until when `advance` is called: same initial state, same collisions, same bits.
+// The calls of `advance` do not matter, only the initial state: same collisions, same bits.
 
 #include <concepts>
 #include <cstdint>
@@ -34,7 +34,7 @@ class Simulation {
  public:
   using Scalar = T;
 
-  // Throws std::invalid_argument where the chain holds a number that is not finite.
+  // Throws std::invalid_argument if the chain holds a number that is not finite.
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
@@ -48,13 +48,13 @@ class Simulation {
     aim();
   }
 
-  // Makes every collision at times <= until. Except for `reached`, the run ends with the collision that was made last.
-  // Throws std::invalid_argument for a time that is not finite, or before the last collision made.
+  // Makes every collision at times <= until. If the status is not `reached`, the run ends at its last collision. Throws
+  // std::invalid_argument for a time that is not finite, or before the last collision.
   Status advance(const T& until) {
     head_for(until);
     return make_collisions();
   }
-  // The same in segments (segments.hpp), unless it is to stop at a collision or the law has memory.
+  // The same in segments (segments.hpp), unless the run may stop at a collision or the law has memory.
   template <class Segments>
   requires requires { typename Segments::Slab; }
   Status advance(const T& until, Segments& segments) {
@@ -62,8 +62,8 @@ class Simulation {
     const bool plain = policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_);
     return plain ? make_collisions() : make_slabs(segments);
   }
-  // The same, with observer(const Collision<T>&) called for every collision. It may throw: the collision is then still
-  // to be made.
+  // The same, with observer(const Collision<T>&) called before every collision. If it throws, the collision has not
+  // been made.
   template <class Observer> Status advance(const T& until, Observer&& observer) {
     head_for(until);
     const struct Forget {
@@ -83,7 +83,7 @@ class Simulation {
     status_ = Status::reached;
     aim();
   }
-  // Makes the next collision; false where there is none to make, or it is the last one.
+  // Makes the next collision; false if there is none, or if it is the last one.
   [[gnu::always_inline]] bool step() {
     const auto next = queue_.next();
     Slot s = queue_.slot(next);
@@ -110,10 +110,10 @@ class Simulation {
   const Chain& chain() const { return chain_; }
   const Account<T>& account() const { return chain_.account(); }
 
-  // The state at a time not before the last collision made nor after the time advanced to.
+  // The state at a time between the last collision and the time advanced to.
   Configuration<T> configuration(const T& time) const { return chain_.configuration(chain_.local_time(time)); }
-  // Right after the last collision made. The time of the scene that it is at is a rounded one: gaps that close within
-  // its rounding would be below zero there.
+  // The state right after the last collision. At the rounded time of the scene, gaps that close within the rounding
+  // would be negative.
   Configuration<T> configuration_at_last_collision() const { return chain_.configuration(last_collision_); }
   bool on_ring() const { return chain_.on_ring(); }
   ParticleIndex collided_particles() const { return chain_.collided_particles(); }
@@ -122,7 +122,7 @@ class Simulation {
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return chain_.energy_lost(); }
   T kinetic_energy() const { return chain_.kinetic_energy(); }
-  // The start if there was no collision yet.
+  // The start if there has been no collision.
   T last_collision_time() const { return chain_.stamp(last_collision_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report; }
 
@@ -149,7 +149,7 @@ class Simulation {
     queue_.rebuild(chain_.first(), chain_.last());
     ties_.forget();
   }
-  // The plain loop needs a queue of the whole (and fills one where there is none), time slabs do not.
+  // The plain loop needs a queue of all gaps (and fills one if there is none), time slabs do not.
   void release_queue() {
     if (std::exchange(queue_holds_, false)) queue_ = EventQueue(8, Chain::keys_are_exact);
   }
@@ -158,7 +158,7 @@ class Simulation {
     return status_;
   }
 
-  // The slab loop: time slabs in segments, and where those do not do, collisions in the plain loop.
+  // The slab loop: time slabs in segments; where these cannot be used, collisions in the plain loop.
   template <class Segments> Status make_slabs(Segments& segments) {
     for (T from = last_collision_;;) {
       const double ahead = pacing_.ahead(counts_.collisions, from, target_.stop);
@@ -182,15 +182,15 @@ class Simulation {
     }
   }
 
-  // The target time, as chain and queue call it now. Observed collisions all take the slow branch of `step`, others
-  // cost nothing.
+  // The target time as a local time and as keys. Observed collisions all take the slow branch of `step`; without an
+  // observer there is no cost.
   void aim() {
     target_.horizon = chain_.local_time(target_.until);
     target_.stop = pacing_.in_epochs && pacing_.epoch_end < target_.horizon ? pacing_.epoch_end : target_.horizon;
     target_.certainly_before = observer_ ? 0 : queue_.certainly_before(chain_.queue_time(target_.stop));
   }
 
-  // The next collision where keys do not decide whether it comes before the target; false if it does not.
+  // The next collision if keys do not decide whether it comes before the target; false if it does not.
   bool first_within_target(Slot& first) {
     if (!queue_holds_) {
       fill_queue();
@@ -221,18 +221,18 @@ class Simulation {
     observer_({chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_,
                chain_.closing(s)});
   }
-  // Once for every collision, however often it is the next one before it is made.
+  // Counts every collision once, even if it is the next one several times before it is made.
   void count_close_call() {
     if (counts_.collisions < close_calls_until_) return;
     ++counts_.close_calls;
     close_calls_until_ = counts_.collisions + 1;
   }
 
-  // Does all that is not a collision, after the one at slot s. What it does depends on the history of collisions only.
-  // The caller's functions come last, since they may throw.
+  // All work besides collisions, after the one at slot s. It depends on the history of collisions only. The caller's
+  // functions come last, since they may throw.
   Status review(Slot s, Notice notice) {
     if (notice == Notice::origin_should_move && pacing_.in_epochs && counts_.collisions < pacing_.next_review)
-      return Status::reached;  // it does not, there
+      return Status::reached;  // within an epoch the origin does not move
     const Status judged = includes(notice, Notice::gap_below_floor) ? judge(s) : Status::reached;
     if constexpr (StreamingChain<Chain>)
       if (includes(notice, Notice::needs_slots)) {
@@ -255,7 +255,7 @@ class Simulation {
   T elapsed(const T& local) const { return difference(chain_.stamp(local), Pair<T>{chain_.start(), T(0)}); }
   std::uint64_t active() const { return static_cast<std::uint64_t>(chain_.collided_particles()); }
 
-  // There are no more collisions in this epoch. Returns what the local time of its end is called now.
+  // No collision is left in this epoch. Returns the new local time of its end.
   T end_epoch() {
     const T now = move_origin(pacing_.epoch_end);
     pacing_.epoch_ended(counts_.collisions, now, active());
@@ -263,7 +263,7 @@ class Simulation {
     aim();
     return now;
   }
-  // Returns what the local time that it moves to is called now.
+  // Returns the new local time of the new origin.
   T move_origin(const T& to) {
     const T called = chain_.move_origin(to);
     const T by = to - called;
@@ -274,7 +274,7 @@ class Simulation {
     return called;
   }
 
-  // Whether the gap that the last collision, at slot s, has left beside it ends the run.
+  // Whether the gap left beside the last collision, at slot s, ends the run.
   Status judge(Slot s) {
     const bool watched = policy_.collapse == CollapsePolicy::stop;
     const bool followed = watched && watch_.settled(law_, chain_, s, last_collision_, counts_.collisions);
@@ -282,9 +282,9 @@ class Simulation {
   }
 
   struct Target {
-    T until, horizon;                      // the time to go to, of the scene and as the chain calls it
-    T stop;                                // where an epoch ends before that, its end, else the horizon
-    EventQueue::Key certainly_before = 0;  // collisions with lesser keys come before it, and nobody observes them
+    T until, horizon;                      // the time to advance to, in the scene and in the chain
+    T stop;                                // the end of the epoch if that is earlier, else the horizon
+    EventQueue::Key certainly_before = 0;  // collisions with smaller keys come before it and are not observed
   };
 
   Law law_;
@@ -295,7 +295,7 @@ class Simulation {
   bool queue_holds_ = true;
   T last_collision_;  // local time; the start if there was none
   Counts counts_;
-  std::uint64_t close_calls_until_ = 0;  // collisions up to this number have been counted as close calls or not
+  std::uint64_t close_calls_until_ = 0;  // collisions up to this number have been checked for close calls
   Pacing<T> pacing_;
   Standstill<T> standstill_;
   CollapseWatch<T> watch_;

@@ -1,15 +1,16 @@
 #pragma once
-// Whether time advances. Many particles may meet at one time and place, n(n - 1)/2 collisions if they are elastic.
-// Where more follow each other without any time passing, the scalar type cannot distinguish their times, or they have
-// no end: particles soft enough continue until their speeds underflow.
+// Detects that time does not advance. Many particles may meet at one time and place: n(n - 1)/2 collisions if they are
+// elastic. If more collisions follow at the same time, the scalar type cannot distinguish their times, or they never
+// end: the collisions of very inelastic particles continue until their speeds underflow.
 //
-// A law with a threshold ends them (README.md, Collapse), but late: soft particles in touch even out their speeds, w of
-// them to the cut-off delta, in up to n^2 w/(2 delta) collisions, of which every one waits for those on its left.
+// A law with a threshold ends them (README.md, Collapse), but late: very inelastic particles in touch even out their
+// speeds, from w to the cut-off delta, in up to n^2 w/(2 delta) collisions, each of which must wait for those on its
+// left.
 //
-// Offsets from a moving origin distinguish times for as long as a type's exponents last, which may be for ever. So
-// there is a second bound, the same in every type: collisions at one time since the start, as the type holds it. A
-// collapse may end there by a cut-off, and n particles can collapse only if 1 - eps is some pi/n or more: then their
-// speeds fall by a factor exp(x) within n^2 x/pi collisions, and the bound allows for a factor of 10^5000.
+// Offsets from a moving origin distinguish times as long as the exponents of the type suffice, possibly for ever. So
+// there is a second bound, the same in every type: on the collisions at one rounded time since the start. A cut-off may
+// end a collapse there. n particles can collapse only if 1 - eps is at least about pi/n: then their speeds fall by a
+// factor exp(x) within n^2 x/pi collisions, and the bound allows for a factor of 10^5000.
 
 #include <cstdint>
 #include <tuple>
@@ -23,15 +24,15 @@ template <Real T> struct Standstill {
   explicit Standstill(const T& start, bool threshold = false) : time(start), threshold_(threshold) {}
 
   T time;                             // local, at the last review
-  T elapsed{0};                       // since the start, when that was last found to advance
-  std::uint64_t collisions_then = 0;  // made when either was last found to advance
+  T elapsed{0};                       // since the start, at the last advance of time
+  std::uint64_t collisions_then = 0;  // number of collisions when time or elapsed advanced last
   std::uint64_t collisions_at_elapsed = 0;
   static auto state(auto& self) {
     return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
-  // At a review: local time now, time since the start, collisions made, particles active. `endless`: collisions at one
-  // time since the start have no bound.
+  // Called at a review with local time, time since the start, collisions made, active particles. `endless`: collisions
+  // at one time since the start have no bound.
   bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active, bool endless) {
     if (now > time) collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;
@@ -39,7 +40,7 @@ template <Real T> struct Standstill {
     return collisions - collisions_then > (threshold_ ? long_ones : 64 + 4 * active * active) ||
            (!endless && collisions - collisions_at_elapsed > long_ones);
   }
-  // An epoch has ended; the local time is called `now` since.
+  // An epoch has ended; its local time is now called `now`.
   void epoch_ended(const T& now, const T& since_start, std::uint64_t collisions) {
     time = now, collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;

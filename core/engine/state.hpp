@@ -3,14 +3,14 @@
 //
 //   static auto state(auto& self) { return std::tie(self.gap, self.time); }
 //
-// and saving, loading and comparing follow from the list. What a run was made from (law, particles, policy) and what
-// follows from other fields (the queue) is in no list; a class that has something to do or to check once it is loaded
-// says `void loaded()`, which throws std::invalid_argument where its fields contradict each other.
+// and saving, loading and comparing follow from the list. The inputs of a run (law, particles, policy) and data that
+// follow from other fields (the queue) are in no list. A class that must do or check something after loading has `void
+// loaded()`, which throws std::invalid_argument if its fields contradict each other.
 //
-// Numbers are kept exactly, little-endian: integers in 8 bytes, floating point as it is, other scalar types by a list
-// of their own or a specialisation of SavedNumber. Lists, maps and text come behind their length, an alternative of a
-// variant behind its number. `To` says put(const void*, size_t), `From` get(void*, size_t), which throws at its end,
-// and left(), the bytes to come.
+// Numbers are stored exactly, little-endian: integers in 8 bytes, floating point unchanged, other scalar types by a
+// list of their own or a specialisation of SavedNumber. The length comes before lists, maps and texts, the index before
+// an alternative of a variant. `To` has put(const void*, size_t); `From` has get(void*, size_t), which throws at its
+// end, and left(), the number of bytes left.
 
 #include <bit>
 #include <concepts>
@@ -33,7 +33,7 @@ namespace cradle {
 
 static_assert(std::endian::native == std::endian::little);
 
-// How a scalar type that is not built in is kept: `save(To&, const X&)` and `load(From&, X&)`.
+// How a scalar type that is not built in is stored: `save(To&, const X&)` and `load(From&, X&)`.
 template <class X> struct SavedNumber;
 
 template <class X>
@@ -56,20 +56,20 @@ template <class A, class B> inline constexpr bool is_pair<std::pair<A, B>> = tru
 
 template <class X> inline constexpr bool is_variant = false;
 template <class... X> inline constexpr bool is_variant<std::variant<X...>> = true;
-// Kept as it is in memory, at once.
+// Lists that are stored as one block of memory.
 template <class X>
 inline constexpr bool is_plain =
     std::same_as<X, std::string> || std::same_as<X, std::vector<double>> || std::same_as<X, std::vector<std::uint64_t>>;
 
 template <class X> inline constexpr bool is_whole = std::is_integral_v<X> || std::is_enum_v<X>;
 
-// Of a floating-point number without its padding.
+// The size of a floating-point number without its padding.
 template <std::floating_point X>
 inline constexpr std::size_t bytes_of = std::numeric_limits<X>::digits == 64 ? 10 : sizeof(X);
 
 template <class X> using Plain = std::remove_cvref_t<X>;
 
-// The least number of bytes of a value, which bounds how many there can be in a file.
+// The least number of bytes of a value, which limits how many of them a file can contain.
 template <class X> constexpr std::size_t least_bytes() {
   if constexpr (is_whole<X>) {
     return 8;
@@ -91,7 +91,7 @@ template <class X> constexpr std::size_t least_bytes() {
 [[noreturn, gnu::cold, gnu::noinline]] inline void refuse_number(const char* what, std::uint64_t number) {
   throw std::invalid_argument(std::string(what) + " (" + std::to_string(number) + "): take the file from a copy");
 }
-// How many entries follow, of at least so many bytes each.
+// Reads the number of entries; each has at least so many bytes.
 template <class From> std::size_t length(From& from, std::size_t least) {
   std::uint64_t number = 0;
   from.get(&number, sizeof number);
@@ -132,7 +132,7 @@ template <class To, class X> void save(To& to, const X& x) {
   }
 }
 
-// Throws std::invalid_argument where the bytes cannot be of such a value, and whatever `from` throws at its end.
+// Throws std::invalid_argument if the bytes cannot be those of such a value; passes on what `from` throws at its end.
 template <class From, class X> void load(From& from, X& x) {
   if constexpr (detail::is_whole<X>) {
     std::uint64_t number = 0;
@@ -181,7 +181,7 @@ template <class From, class X> void load(From& from, X& x) {
   }
 }
 
-// In memory. Two values are the same where their bytes are.
+// A state in memory. Two values are equal if their bytes are.
 class SavedState {
  public:
   SavedState() = default;
@@ -208,8 +208,7 @@ class SavedState {
   std::size_t read_ = 0;
 };
 
-// The shape of a class's state, as text: which fields of which kind. States of one shape cannot be distinguished
-// otherwise.
+// The shape of a class's state, as text: the kinds of its fields. States with the same shape cannot be distinguished.
 template <class X> void append_shape(std::string& shape);
 template <class... X> void append_shapes(std::string& shape, const char* open, const char* close) {
   shape += open;
@@ -249,7 +248,7 @@ template <class X> std::string state_shape() {
   return shape;
 }
 
-// For `loaded`: throws where fields contradict each other.
+// For `loaded`: throws if fields contradict each other.
 inline void require_state(bool holds, const char* what) {
   if (!holds)
     throw std::invalid_argument(std::string("a state that cannot be (") + what + "): take the file from a copy");

@@ -1,6 +1,6 @@
 #pragma once
-// What a run requires and reports: how it ended, how many collisions it made, a collision as observers receive it, and
-// what the caller wants called during the run.
+// The settings and reports of a run: how it ended, how many collisions it made, a collision as observers receive it,
+// and the functions of the caller that are called during the run.
 
 #include <cstdint>
 #include <functional>
@@ -15,16 +15,16 @@ namespace cradle {
 
 enum class Status {
   reached,     // all collisions up to the requested time are made
-  collapsed,   // policy stop: inelastic collapse, or a gap below the one given; see collapse()
-  exhausted,   // a gap is about to underflow, or time stands still: the scalar type resolves no more
-  interrupted  // the caller's `interrupt` said so
+  collapsed,   // policy stop: inelastic collapse, or a gap below the given one; see collapse()
+  exhausted,   // a gap is about to underflow, or time does not advance: the scalar type resolves no more
+  interrupted  // the caller's `interrupt` returned true
 };
 
 struct Counts {
-  std::uint64_t collisions = 0;  // all of them: those below the cut-off and merges included
+  std::uint64_t collisions = 0;  // all: those below the cut-off and merges included
   std::uint64_t below_cutoff = 0;
   std::uint64_t merges = 0;
-  std::uint64_t close_calls = 0;  // collisions in the plain loop whose key was too close to another one's
+  std::uint64_t close_calls = 0;  // collisions of the plain loop with a key too close to another one's
   std::uint64_t origin_moves = 0;
 
   Counts& operator+=(const Counts& other) {
@@ -32,7 +32,7 @@ struct Counts {
     close_calls += other.close_calls, origin_moves += other.origin_moves;
     return *this;
   }
-  static auto state(auto& self) {  // close calls are of how a run was made
+  static auto state(auto& self) {  // close calls depend on how a run was computed
     return std::tie(self.collisions, self.below_cutoff, self.merges, self.origin_moves);
   }
 };
@@ -41,22 +41,22 @@ struct Counts {
 template <Real T> struct Collision {
   ParticleIndex left, right;  // by their numbers at the start
   Pair<T> time;
-  T interval;  // since the collision before it, or the start: resolves what differences of times cannot
+  T interval;  // since the previous collision, or the start: more precise than a difference of times
   T closing_speed;
 };
 
 template <Real T> struct Policy {
   CollapsePolicy collapse = CollapsePolicy::cutoff;
-  T stop_gap{0};  // policy stop: continue until a gap is below this; 0: until the collapse time is settled
-  // Called after a collision now and then. What they throw leaves `advance`; the run is as it would be without, and can
-  // continue.
-  std::function<bool()> interrupt = {};  // true ends the run there
+  T stop_gap{0};  // policy stop: continue until a gap is smaller; 0: until the collapse time is known
+  // Called after some of the collisions. Exceptions from them leave `advance`; the run is unchanged and can continue.
+  std::function<bool()> interrupt = {};  // true ends the run
   std::function<void(const T& time, const Counts&)> progress = {};
 
-  // The caller wants a collapse followed, however long it takes.
+  // Whether a gap size is given: then a collapse is followed for any number of collisions.
   bool follows_a_gap() const { return collapse == CollapsePolicy::stop && is_positive(stop_gap); }
-  // What a collision beside which this gap is left makes of the run; `settled`: its collapse is, `followed`: for long
-  // enough. What leaves the type's range without being settled may yet part.
+  // The status of the run after a collision that leaves this gap beside it; `settled`: its collapse is known,
+  // `followed`: for long enough. If a gap leaves the type's range without a settled collapse, the particles may still
+  // separate.
   Status after(const T& gap, bool settled, bool followed) const {
     const T underflow{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows none
     const bool ends = is_positive(gap) && gap < underflow;

@@ -1,18 +1,18 @@
 #pragma once
-// The sticky gas without events: its state at a time t follows from the initial data alone. Particles that stick are
-// those whose free flights up to t would be out of order, averaged until they are not: from left to right, every
-// particle is pushed with its mass M, moment S = m (x + v t) and momentum P = m v; while the cluster below lies at or
-// beyond the top one, S/M against S/M, the two are one. What remains are the clusters, at S/M with velocity P/M (the
-// lower convex hull of moment against mass; weighted isotonic regression). O(N), and less from one time to the next,
-// since clusters never part: they are the particles of the next step.
+// The sticky gas without events: its state at a time t follows from the initial data alone. Particles merge if their
+// free flights up to t would be out of order; averaging continues until none are. From left to right, every particle is
+// put on a stack with its mass M, moment S = m (x + v t) and momentum P = m v; while the cluster below the top is at or
+// beyond the top one (compare S/M), the two are merged. The remaining clusters are at S/M with velocity P/M (the lower
+// convex hull of moment against mass; weighted isotonic regression). It takes O(N), and less from one time to the next,
+// since clusters never separate: they are the particles of the next step.
 //
-// On a ring of circumference L the line must be cut between two clusters. Such a place is the least of
+// On a ring of circumference L the line must be cut between two clusters. Such a place is the minimum of
 //   F_k = S_k - (L/2M) M_k^2 - (S_N - L M/2) M_k/M,   M_k, S_k cumulative mass and moment, M = M_N,
-// found from its increments m [y - (L/M)(M_k + m/2) - (S_N/M - L/2)], y = x + v t: differences of terms of N^2 L would
-// not resolve it.
+// computed from its increments m [y - (L/M)(M_k + m/2) - (S_N/M - L/2)], y = x + v t: differences of terms of N^2 L
+// would not resolve it.
 //
-// Of incoming rows only particles that have been hit are held, and one more on either side, which flies freely, as do
-// all particles beyond it. Particles are taken in at both ends as long as the outermost cluster held is more than one
+// Of incoming rows only particles that have been hit are held, and one more on either side, which moves freely, as do
+// all particles beyond it. Particles are taken in at both ends until the outermost held cluster is a single particle.
 // particle.
 
 #include <algorithm>
@@ -33,7 +33,7 @@ template <Real T> class StickyGas {
  public:
   using Scalar = T;
 
-  // Throws std::invalid_argument as chains do. Of the policy, what the caller wants done on the way.
+  // Throws std::invalid_argument as chains do. Of the policy it uses the caller's functions.
   StickyGas(std::shared_ptr<const Particles<T>> particles, const T& start, Policy<T> policy = {})
       : particles_(std::move(particles)), policy_(std::move(policy)), ring_(particles_->on_ring()), start_(start),
         time_(start), lost_(particles_->energy_to_lose()) {
@@ -42,8 +42,8 @@ template <Real T> class StickyGas {
     for (ParticleIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }
 
-  // Advances to the state at a time not before the last one: all particles that meet up to then have merged. After an
-  // interruption a call with the same time continues, to the same bits: the clusters held are in order already.
+  // Advances to the state at a time not before the last one: all particles that meet until then have merged. After an
+  // interruption a call with the same time continues, with the same bits: the held clusters are in order already.
   Status advance(const T& time) {
     time_ = time;
     elapsed_ = time - start_;
@@ -56,7 +56,7 @@ template <Real T> class StickyGas {
 
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
-  // Of all particles of the scene; those not held move like the outermost one that is.
+  // Of all particles of the scene; unheld particles move like the outermost held one.
   T kinetic_energy() const {
     const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
     const auto moving = relative_motion(total, drift, [&](const T& c, const auto& add) {
@@ -70,12 +70,12 @@ template <Real T> class StickyGas {
     });
     return total * drift * drift / T(2) + moving.energy;
   }
-  T last_collision_time() const { return time_; }  // collisions have no times here: that of the state
+  T last_collision_time() const { return time_; }  // collisions have no times here: the time of the state
   const Account<T>& account() const { return account_; }
   bool on_ring() const { return ring_; }
 
   // ---- at the time advanced to
-  // Clusters between the outermost two that have collided, both included.
+  // The number of clusters between the outermost two that have collided, both included.
   ParticleIndex collided_particles() const {
     if (ring_) return static_cast<ParticleIndex>(held_.size());
     const auto [from, to] = collided();
@@ -84,7 +84,7 @@ template <Real T> class StickyGas {
   T front_left(const T&) const { return held_[collided().first].x; }
   T front_right(const T&) const { return held_[collided().second - 1].x; }
 
-  // As that of a chain; a cluster is named after its heaviest particle; ties go left to right.
+  // As for a chain; a cluster is named after its heaviest particle; ties go left to right.
   Configuration<T> configuration(const T&) const {
     Configuration<T> c;
     c.time = time_;
@@ -135,7 +135,7 @@ template <Real T> class StickyGas {
   }
 
  private:
-  struct Lump {                   // particles that stick together
+  struct Lump {                   // particles that have merged
     T mass, moment, momentum, x;  // moment: at the start; x: at the time advanced to
     ParticleIndex first, count, heaviest;
     T greatest;  // mass of the heaviest particle
@@ -159,7 +159,7 @@ template <Real T> class StickyGas {
   T place(const Lump& c) const { return (c.moment + c.momentum * elapsed_) / c.mass; }
   static T velocity(const Lump& c) { return c.momentum / c.mass; }
 
-  // Particles of equal velocity never meet, whatever rounding makes of their places far away.
+  // Particles of equal velocity never meet, even if rounding of distant positions says so.
   static bool met(const Lump& left, const Lump& right) {
     return !(left.x < right.x) && velocity(right) < velocity(left);
   }
@@ -189,7 +189,7 @@ template <Real T> class StickyGas {
     return both;
   }
 
-  // Half-open range of held lumps between the outermost that have collided.
+  // The half-open range of held lumps between the outermost ones that have collided.
   std::pair<std::size_t, std::size_t> collided() const {
     std::size_t from = 0, to = held_.size();
     while (from < to && held_[from].count == 1) ++from;
@@ -210,7 +210,7 @@ template <Real T> class StickyGas {
     return Status::reached;
   }
 
-  // Turns the ring so that it is cut between two clusters.
+  // Rotates the ring so that it is cut between two clusters.
   void cut() {
     CompensatedSum<T> mass_sum, moment_sum;
     for (const Lump& lump : held_) {
@@ -242,7 +242,7 @@ template <Real T> class StickyGas {
   std::deque<Lump> held_;  // from left to right
   Counts counts_;
   Ledger<T> lost_;
-  Account<T> account_;  // stays empty: without events none can come too late
+  Account<T> account_;  // always empty: without events none can be late
 };
 
 }  // namespace cradle

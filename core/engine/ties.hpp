@@ -1,18 +1,16 @@
 #pragma once
-// Collisions that the queue's keys cannot distinguish: which of them is first by (exact time, position in the line)?
+// Decides which of several collisions is first by (exact time, position in the line) if the queue's keys cannot.
 //
-// All collisions whose keys may belong to the same time as the root's are candidates, wherever on the line they are.
-// Comparing neighbours only would be right for each pair and yet wrong: far collisions would overtake each other, by as
-// much as keys are wide, and their consequences would meet in the wrong order.
+// All collisions whose keys may belong to the same time as the root's are candidates, anywhere on the line. Comparing
+// only neighbours would be right for each pair and still wrong: distant collisions would overtake each other within the
+// width of a key, and their effects would meet in the wrong order.
 //
 // A few candidates are compared anew for every collision. On a lattice thousands are simultaneous: these are kept in a
 // heap from one collision to the next, and only the three gaps that a collision changes are checked again. An entry
-// whose gap is due at another time by now is dropped when it comes to the top.
+// whose gap is now due at another time is dropped when it comes to the top.
 
 #include <algorithm>
 #include <cstdint>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/chain.hpp"
@@ -23,7 +21,7 @@ namespace cradle {
 // C: a chain, or a segment of one.
 template <class C> class Ties {
  public:
-  // The first of all collisions, where the queue is contested; so many collisions have been made.
+  // The first of all collisions when the queue is contested, after so many collisions.
   Slot first(const EventQueue& queue, const C& chain, std::uint64_t collisions) {
     const EventQueue::Key bound = queue.no_later_than(queue.next());
     if (!brought_up_to_date(queue, chain, collisions, bound)) {
@@ -38,7 +36,7 @@ template <class C> class Ties {
     return first;
   }
 
-  // Slots, times or keys have changed at large.
+  // Forgets everything, after a general change of slots, times or keys.
   void forget() { heap_.clear(); }
 
  private:
@@ -74,7 +72,7 @@ template <class C> class Ties {
     gathered_ = heap_.size();
   }
 
-  // Whether the heap holds every collision up to the bound, after the one collision made since the last call.
+  // Whether the heap holds every collision up to the bound, after the single collision since the last call.
   bool brought_up_to_date(const EventQueue& queue, const C& chain, std::uint64_t collisions, EventQueue::Key bound) {
     if (heap_.empty() || bound > bound_ || heap_.size() > 2 * gathered_) return false;
     if (collisions == collisions_) return true;
@@ -95,11 +93,11 @@ template <class C> class Ties {
     heap_.pop_back();
   }
 
-  std::vector<Candidate> heap_;   // the first on top; empty: nothing is kept
-  std::size_t gathered_ = 0;      // candidates there were when it was made
-  EventQueue::Key bound_ = 0;     // collisions with keys up to this are in it
-  std::uint64_t collisions_ = 0;  // made at the last call
-  Slot changing_[3] = {0, 0, 0};  // the gaps that the collision it then named touches
+  std::vector<Candidate> heap_;   // the first is on top; empty: nothing is kept
+  std::size_t gathered_ = 0;      // candidates when it was made
+  EventQueue::Key bound_ = 0;     // it contains collisions with keys up to this
+  std::uint64_t collisions_ = 0;  // number of collisions at the last call
+  Slot changing_[3] = {0, 0, 0};  // the gaps that the collision found then changes
 };
 
 }  // namespace cradle

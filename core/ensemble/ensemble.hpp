@@ -1,7 +1,7 @@
 #pragma once
-// An ensemble: replicas of a run, each with initial data of its own, and statistics of the numbers that they give.
-// Replicas are independent tasks, taken in order of their index. One that throws is recorded as failed, and the others
-// continue. The statistics have the same bits on any number of threads, see ensemble/tree.hpp.
+// An ensemble: replicas of a run, each with its own initial data, and statistics of their numbers. Replicas are
+// independent tasks, taken in order of their index. If one throws, it is recorded as failed, and the others continue.
+// The statistics have the same bits on any number of threads, see ensemble/tree.hpp.
 //
 //   Ensemble energies;
 //   run_replicas(TbbExecutor(), {0, 1000}, energies, [](ReplicaIndex k) { return energy_of_replica(k); });
@@ -25,15 +25,15 @@
 
 namespace cradle {
 
-/// Thrown by a replica that was cut short: it is neither done nor failed.
+/// Thrown by an interrupted replica: it is neither done nor failed.
 struct ReplicaAbandoned : std::exception {
   const char* what() const noexcept override { return "replica abandoned"; }
 };
 
-/// Works off jobs: next() gives one (a std::optional, empty at the end), replica(job) does it, and done(job, result)
-/// takes what it returns, or failed(job, message) what it throws. All of them are called from several threads at once.
-/// cancelled() is called before every job; if true, the ensemble ends when the replicas that are running have returned.
-/// An exception from next, done or failed ends it too, and is thrown again here (the first if there are several).
+/// Runs jobs: next() gives a job (a std::optional, empty at the end), replica(job) runs it, done(job, result) takes its
+/// result, failed(job, message) the message of its exception. All are called from several threads at once. cancelled()
+/// is called before every job; if it returns true, the ensemble ends when the running replicas have returned. An
+/// exception from next, done or failed also ends it, and is thrown again here (the first if there are several).
 template <Executor E, class Next, class Replica, class Done, class Failed>
 void run_jobs(const E& executor, Next next, Replica replica, Done done, Failed failed,
               const std::function<bool()>& cancelled = {}) {
@@ -74,7 +74,7 @@ void run_jobs(const E& executor, Next next, Replica replica, Done done, Failed f
   if (first) std::rethrow_exception(first);
 }
 
-/// Replica indices one after the other, from ranges in order; may be called from several threads.
+/// Replica indices one by one, from ranges in order; may be called from several threads.
 class ReplicaQueue {
  public:
   explicit ReplicaQueue(std::vector<ReplicaRange> ranges) : ranges_(std::move(ranges)) {}
@@ -93,7 +93,7 @@ class ReplicaQueue {
   std::mutex mutex_;
 };
 
-/// A set of replicas: statistics of their vectors, and messages of those that failed.
+/// A set of replicas: statistics of their vectors, and messages of the failed ones.
 class Ensemble {
  public:
   void add(ReplicaIndex replica, std::vector<double> values) { tree_.add(replica, std::move(values)); }
@@ -118,8 +118,8 @@ class Ensemble {
   std::map<ReplicaIndex, std::string> failures_;
 };
 
-/// Runs those replicas of the range that the ensemble does not have yet; replica(index) returns a std::vector<double>,
-/// always of the same length, NaN where it has no number.
+/// Runs the replicas of the range that the ensemble does not have yet. replica(index) returns a std::vector<double>,
+/// always of the same length, with NaN for missing numbers.
 template <Executor E, class Replica>
 void run_replicas(const E& executor, ReplicaRange range, Ensemble& ensemble, Replica replica,
                   const std::function<bool()>& cancelled = {}) {

@@ -1,7 +1,7 @@
 #pragma once
-// Who does the work: an executor calls a step again and again, on several threads at once, until it reports that there
-// is none left. The one on oneTBB (tbb_executor.hpp) is what programs use. This one, on plain threads, does the same,
-// and is there for ThreadSanitizer, which sees races inside Debian's oneTBB that are none.
+// Runs work on threads: an executor calls a step again and again, on several threads at once, until it reports that
+// nothing is left. Programs use the one on oneTBB (tbb_executor.hpp). This one uses plain threads. It exists for
+// ThreadSanitizer, which reports false races inside Debian's oneTBB.
 
 #include <algorithm>
 #include <concepts>
@@ -16,8 +16,8 @@
 
 namespace cradle {
 
-/// A step returns false when there is nothing left to do, and throws nothing. It may be called from all threads at
-/// once. `run` returns when the last of them is through.
+/// A step returns false when nothing is left to do, and throws nothing. All threads may call it at once. `run` returns
+/// when the last call has returned.
 using Step = std::function<bool()>;
 
 template <class E>
@@ -26,7 +26,7 @@ concept Executor = requires(const E executor, const Step& step) {
   { executor.threads() } -> std::same_as<unsigned>;
 };
 
-/// 0 threads: as many as there are processors for this process.
+/// 0 threads: as many as this process has processors.
 inline unsigned thread_count(unsigned threads) {
   return threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
 }
@@ -51,9 +51,9 @@ class ThreadExecutor {
   unsigned threads_;
 };
 
-/// Calls work(job, worker) for all jobs from 0 to jobs - 1, on the executor's threads, and returns when they are done.
-/// `worker` is below the number of threads, and another one for each call that runs at the same time. What `work`
-/// throws is thrown on, the first of it, once no call runs any more; jobs not begun by then are left.
+/// Calls work(job, worker) for all jobs from 0 to jobs - 1 on the executor's threads, and returns when they are done.
+/// `worker` is below the number of threads, and differs between calls that run at the same time. The first exception
+/// from `work` is thrown again here when no call is running; jobs not begun by then are dropped.
 template <Executor E> void for_each(const E& executor, std::size_t jobs, const Workers::Work& work) {
   if (jobs == 1) return work(0, 0);
   std::mutex mutex;

@@ -1,6 +1,6 @@
 #pragma once
-// How the values of an entry are spread over replicas: counts in fixed bins of equal width, and quantiles from them.
-// Counts are integers and add exactly, in any order. A quantile is right to the width of a bin.
+// The distribution of the values of an entry over replicas: counts in fixed bins of equal width, and quantiles from
+// them. Counts are integers and add exactly, in any order. The error of a quantile is at most the width of a bin.
 
 #include <cmath>
 #include <cstddef>
@@ -41,7 +41,7 @@ class Histograms {
   const FixedBins& bins() const { return bins_; }
   std::size_t entries() const { return counts_.size() / row(); }
 
-  /// One replica's value for every entry.
+  /// Adds one replica's value for every entry.
   void add(std::span<const double> values) {
     if (values.size() != entries()) throw std::invalid_argument("histograms of another number of entries");
     for (std::size_t entry = 0; entry < values.size(); ++entry)
@@ -61,8 +61,8 @@ class Histograms {
     counts_ = std::move(counts);
   }
 
-  /// The value that a share p of the replicas stays below, linear within a bin; NaN if there are none or if it lies
-  /// outside the bins.
+  /// The value below which a share p of the replicas is, linearly interpolated within a bin; NaN if there are none or
+  /// if it is outside the bins.
   double quantile(std::size_t entry, double p) const {
     const auto of_entry = counts(entry);
     std::uint64_t all = 0;

@@ -1,8 +1,8 @@
 #pragma once
-// Mean, spread and extremes of a vector of numbers over replicas, entry by entry, without keeping the vectors: count,
-// mean, sum of squared deviations from the mean, least and greatest. Two sets of replicas are put together by the
-// pairwise update of Chan, Golub and LeVeque (Am. Stat. 37, 242, 1983, doi 10.1080/00031305.1983.10483115), which does
-// not cancel. It rounds, so the bits depend on the way sets are put together: tree.hpp fixes that.
+// Mean, spread and extremes of a vector of numbers over replicas, entry by entry, without storing the vectors: count,
+// mean, sum of squared deviations from the mean, least and greatest. Two sets of replicas are combined by the pairwise
+// update of Chan, Golub and LeVeque (Am. Stat. 37, 242, 1983, doi 10.1080/00031305.1983.10483115), which does not
+// cancel. It rounds, so the bits depend on how sets are combined: tree.hpp fixes that.
 //
 // An entry that a replica does not have (a time after its collapse) is NaN: it is skipped, and counted as missing.
 
@@ -18,11 +18,11 @@
 namespace cradle {
 
 struct Moments {
-  std::uint64_t replicas = 0;           // that gave a vector
-  std::vector<double> mean;             // 0 where no replica has the entry
+  std::uint64_t replicas = 0;           // number of vectors
+  std::vector<double> mean;             // 0 if no replica has the entry
   std::vector<double> squares;          // sum of squared deviations from the mean
-  std::vector<double> least, greatest;  // inf and -inf where no replica has the entry
-  std::vector<std::uint64_t> counts;    // replicas that have the entry; left empty where all have all
+  std::vector<double> least, greatest;  // inf and -inf if no replica has the entry
+  std::vector<std::uint64_t> counts;    // replicas that have the entry; empty if all have all
 
   std::size_t entries() const { return mean.size(); }
   std::uint64_t count(std::size_t entry) const { return counts.empty() ? replicas : counts[entry]; }
@@ -40,7 +40,7 @@ struct Moments {
   bool operator==(const Moments&) const = default;
 };
 
-// Of one replica.
+// The moments of one replica.
 inline Moments moments_of(std::vector<double> values) {
   Moments one;
   one.replicas = 1;
@@ -83,8 +83,8 @@ inline void join_extremes(Moments& left, const Moments& right) {
 
 }  // namespace detail
 
-// Of both sets. Moments of no replica change nothing, not a bit. Throws std::invalid_argument for vectors of different
-// lengths.
+// The moments of both sets. Moments without replicas change nothing, not a bit. Throws std::invalid_argument if the
+// lengths of the vectors differ.
 inline Moments combine(Moments left, const Moments& right) {
   if (right.replicas == 0) return left;
   if (left.replicas == 0) return right;

@@ -1,6 +1,6 @@
 #pragma once
-// The executor on oneTBB: every step is a task, in an arena and a task group of its own, so that what else the program
-// does with oneTBB (its cancellations, its exceptions) does not reach in here, nor the other way round.
+// The executor on oneTBB: every step is a task in an arena and a task group of its own, so that other uses of oneTBB in
+// the program (cancellations, exceptions) do not interfere, nor the other way round.
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
@@ -12,7 +12,7 @@ namespace cradle {
 
 class TbbExecutor {
  public:
-  // More threads than processors only where requested; oneTBB would not start them.
+  // More threads than processors only on request; oneTBB alone would not start them.
   explicit TbbExecutor(unsigned threads = 0)
       : threads_(thread_count(threads)), allowed_(oneapi::tbb::global_control::max_allowed_parallelism, threads_),
         arena_(static_cast<int>(threads_)) {}
@@ -29,7 +29,7 @@ class TbbExecutor {
   }
 
  private:
-  // One step, and then the next one.
+  // Runs one step, then starts the next one.
   struct Link {
     oneapi::tbb::task_group& group;
     const Step& step;

@@ -1,18 +1,18 @@
 #pragma once
-// Which replicas are put together with which: a fixed binary tree over replica indices. A node covers an aligned
-// interval of 2^level indices and is made of its two halves, the lower one first; a half without replicas changes
-// nothing. So the statistics of a set of replicas have the same bits however the set came about: in any order, on any
-// number of threads or ranks, split, interrupted, continued, merged.
+// The order in which replicas are combined: a fixed binary tree over replica indices. A node covers an aligned interval
+// of 2^level indices and combines its two halves, the lower one first; a half without replicas changes nothing. So the
+// statistics of a set of replicas have the same bits for every history of the set: in any order, on any number of
+// threads or ranks, split, interrupted, continued, merged.
 //
-// A set is held as its largest full nodes: those of which every replica is there and the sibling is not. Replicas
-// [first, first + n) take at most 2 log2 n of them, and T replicas that are still missing from such a range split it
-// into at most T + 1 ranges. Memory grows with threads times log(replicas). A replica that failed is there, and empty:
-// nodes grow over it, and what it leaves to the others is what a set without it gives.
+// A set is stored as its largest full nodes: those with all replicas whose sibling is not full. Replicas [first, first
+// + n) need at most 2 log2 n nodes, and T replicas that are still missing split them into at most T + 1 ranges. Memory
+// grows with threads times log(replicas). A failed replica is present but empty: nodes include it, and the statistics
+// are those of the set without it.
 //
-// Why not superaccumulators (Neal, arXiv:1505.05571), which are exact in any order: two of them for an entry, for the
-// sum and (double length) for the sum of squares, take some 1.6 kB against 32 bytes times the nodes held, one or two
-// dozen, and each addition costs several times the dozen operations of a pairwise update. The tree's error grows with
-// log(replicas) only, see tests/core/ensemble/ensemble_test.cpp.
+// Superaccumulators (Neal, arXiv:1505.05571) would be exact in any order. But two per entry, for the sum and (double
+// length) for the sum of squares, need about 1.6 kB instead of 32 bytes times the stored nodes, one or two dozen, and
+// each addition costs several times the dozen operations of a pairwise update. The error of the tree grows only with
+// log(replicas), see tests/core/ensemble/ensemble_test.cpp.
 
 #include <algorithm>
 #include <cstddef>
@@ -54,19 +54,19 @@ struct TreeNode {
 /// All functions may be called from several threads at once.
 class MomentTree {
  public:
-  /// One replica's vector; none for one that failed.
+  /// Adds one replica's vector; none for a failed replica.
   void add(ReplicaIndex replica, std::optional<std::vector<double>> values) {
     add({replica, 0, values ? moments_of(std::move(*values)) : Moments()});
   }
 
-  /// A node that was taken from another set, which must have no replica in common with this one; throws
-  /// std::invalid_argument for one that has, that no tree can hold, or whose vectors are of another length.
+  /// Adds a node from another set. Throws std::invalid_argument if the sets share replicas, if no tree has such a node,
+  /// or if its vectors have another length.
   void add(TreeNode node) {
     if (node.level > 62 || node.first >> 63 || (node.first & (node.range().count - 1)) != 0)
       throw std::invalid_argument("no node of the tree of replicas: index " + std::to_string(node.first) + ", level " +
                                   std::to_string(node.level));
     std::optional<Siblings> siblings = keep(std::move(node));
-    // What is slow, putting two nodes together, is done outside the lock; until that is done readers see the two.
+    // Combining two nodes is slow, so it is done outside the lock; until it is done readers see the two nodes.
     while (siblings) siblings = replace(*siblings, combine(*siblings->lower, *siblings->upper));
   }
 
@@ -81,7 +81,7 @@ class MomentTree {
     return fold({0, std::uint64_t{1} << level});
   }
 
-  /// The set as its nodes, by index.
+  /// The nodes of the set, by index.
   std::vector<TreeNode> nodes() const {
     const std::scoped_lock lock(mutex_);
     std::vector<TreeNode> all;
@@ -94,7 +94,7 @@ class MomentTree {
     return nodes_.size();
   }
 
-  /// Replicas there, failed ones included.
+  /// The number of replicas, failed ones included.
   std::uint64_t size() const {
     const std::scoped_lock lock(mutex_);
     std::uint64_t sum = 0;
@@ -104,15 +104,15 @@ class MomentTree {
 
   bool contains(ReplicaIndex replica) const { return overlaps({replica, 1}); }
 
-  /// Is any of these replicas there?
+  /// Whether any of these replicas is present.
   bool overlaps(ReplicaRange wanted) const {
     const std::scoped_lock lock(mutex_);
     return holds_some_of(wanted);
   }
 
-  /// Those of these replicas that are not there, in order.
+  /// The missing ones of these replicas, in order.
   std::vector<ReplicaRange> missing(ReplicaRange wanted) const { return gaps(wanted, false); }
-  /// Those that are.
+  /// The replicas that are present.
   std::vector<ReplicaRange> present() const { return gaps({0, std::uint64_t{1} << 63}, true); }
 
  private:
@@ -125,7 +125,7 @@ class MomentTree {
   static ReplicaRange range(Nodes::const_iterator at) { return {at->first, std::uint64_t{1} << at->second.level}; }
 
   bool holds_some_of(ReplicaRange wanted) const {
-    auto after = nodes_.lower_bound(wanted.end());  // the first node beyond; the one before it reaches furthest
+    auto after = nodes_.lower_bound(wanted.end());  // the first node beyond; the one before it extends furthest
     return after != nodes_.begin() && range(std::prev(after)).end() > wanted.first && wanted.count > 0;
   }
 
@@ -156,7 +156,7 @@ class MomentTree {
     return hold(halves.first, halves.level + 1, std::move(whole));
   }
 
-  // Gives the node and its sibling if that is there. Whoever held the later of the two, and nobody else, gets them.
+  // Adds a node. If its sibling is present, both are returned: only the caller that added the later one gets them.
   std::optional<Siblings> hold(ReplicaIndex first, unsigned level, Moments moments) {
     auto lower = nodes_.emplace(first, Held{level, std::make_shared<const Moments>(std::move(moments))}).first;
     auto upper = nodes_.find(first ^ (std::uint64_t{1} << level));
@@ -165,7 +165,7 @@ class MomentTree {
     return Siblings{lower->first, level, lower->second.moments, upper->second.moments};
   }
 
-  // Value of the node over `whole`, full or not.
+  // The moments of the node over `whole`, full or not.
   Moments fold(ReplicaRange whole) const {
     const auto at = nodes_.lower_bound(whole.first);
     if (at == nodes_.end() || at->first >= whole.end()) return {};
@@ -200,7 +200,7 @@ class MomentTree {
 
   mutable std::mutex mutex_;
   Nodes nodes_;
-  std::optional<std::size_t> entries_;  // of every vector
+  std::optional<std::size_t> entries_;  // length of every vector
 };
 
 }  // namespace cradle

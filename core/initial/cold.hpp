@@ -1,12 +1,12 @@
 #pragma once
-// A cold gas: particles at rest, spacing l apart or displaced at random, of mass 1 or of masses that repeat, some of
-// which move at the start: one that is kicked, or several with velocities drawn at random. The hot particles stand in
-// the middle of the others, about x = 0, or at the left end, the first one at x = 0. What they set in motion is a blast
-// (arXiv:2010.15868), a splash (arXiv:2203.11097) or a row of dominoes (arXiv:2605.16125).
+// A cold gas: particles at rest with spacing l, or displaced at random, of mass 1 or with masses that repeat. Some move
+// at the start: one that is kicked, or several with random velocities. These hot particles are in the middle of the
+// others, about x = 0, or at the left end, the first one at x = 0. The result is a blast (arXiv:2010.15868), a splash
+// (arXiv:2203.11097) or a row of dominoes (arXiv:2605.16125).
 //
 // Only the gaps beside hot particles are held at the start; particles at rest are taken in as the fronts reach them
-// (held_range.hpp). Velocities are integers, less the velocity of their centre of mass, times a unit that gives them
-// their energy: all scalar types start from the same state, each rounded for itself.
+// (held_range.hpp). Velocities are integers minus the velocity of their centre of mass, times a unit that gives them
+// their energy: all scalar types start from the same state, which each type rounds.
 
 #include <cstdint>
 #include <stdexcept>
@@ -23,7 +23,7 @@ namespace cradle {
 
 enum class HotPlace { middle, left };
 
-// The particles of a cold gas that move: particle first + j at the velocity (pace[j] - drift) unit.
+// The moving particles of a cold gas: particle first + j has the velocity (pace[j] - drift) unit.
 template <Real T> struct HotParticles {
   ParticleIndex first = 0;
   std::vector<std::int64_t> pace;
@@ -38,7 +38,7 @@ template <Real T> struct HotParticles {
   }
 };
 
-// The first of so many hot particles among all.
+// The index of the first hot particle.
 inline ParticleIndex first_hot(HotPlace place, ParticleIndex all, ParticleIndex hot) {
   return place == HotPlace::left ? 0 : (all - hot) / 2;
 }
@@ -48,9 +48,9 @@ template <Real T> HotParticles<T> kicked(ParticleIndex particle, const T& veloci
   return {particle, {1}, T(0), velocity};
 }
 
-// Several particles with independent Gaussian velocities, of one variance whatever their masses, less the velocity of
-// their centre of mass; scaled to the energy given. Throws std::invalid_argument for fewer than two particles or an
-// energy that is not positive and finite.
+// Several particles with independent Gaussian velocities, of one variance for all masses, minus the velocity of their
+// centre of mass; scaled to the given energy. Throws std::invalid_argument for fewer than two particles or an energy
+// that is not positive and finite.
 template <Real T>
 HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy, const MassPattern<T>& masses,
                        std::uint64_t seed, std::uint64_t replica) {
@@ -80,8 +80,8 @@ HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy
 
 template <Real T> class Cold final : public Particles<T> {
  public:
-  // Throws std::invalid_argument for no particles, more hot ones than there are or none, or a spacing or velocity that
-  // is not finite or, the spacing, not positive.
+  // Throws std::invalid_argument if there are no particles, no hot particles or more hot ones than particles, or if the
+  // spacing or a velocity is not finite or the spacing is not positive.
   Cold(ParticleIndex count, const T& spacing, HotPlace place, HotParticles<T> hot, Displacement displacement,
        MassPattern<T> masses = {})
       : count_(count), left_(place == HotPlace::left), hot_(std::move(hot)), displacement_(std::move(displacement)),

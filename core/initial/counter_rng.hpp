@@ -1,7 +1,7 @@
 #pragma once
 // Keyed random numbers without state: Philox4x32-10 (Salmon et al., SC'11, doi 10.1145/2063384.2063405). The key is the
-// seed, the counter is (replica, index), so the number belonging to a particle is the same whenever, wherever and in
-// whatever order it is drawn: a streamed row, a full one and any replica alone start identically.
+// seed, the counter is (replica, index), so a particle's number does not depend on when or in which order it is drawn:
+// a streamed row, a full row and a single replica start identically.
 
 #include <array>
 #include <cstdint>
@@ -21,7 +21,7 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c
   return counter;
 }
 
-// 64 random bits belonging to (seed, replica, index).
+// 64 random bits for (seed, replica, index).
 constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t replica, std::uint64_t index) {
   const auto low = [](std::uint64_t x) { return static_cast<std::uint32_t>(x); };
   const auto high = [](std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); };
@@ -29,7 +29,7 @@ constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t replica, s
   return words[0] | std::uint64_t{words[1]} << 32;
 }
 
-// Uniform integer in [-bound, bound], 0 <= bound < 2^31. Probabilities differ by 2^-32 of themselves at most.
+// Uniform integer in [-bound, bound], 0 <= bound < 2^31. Relative errors of probabilities are at most 2^-32.
 constexpr std::int64_t uniform_integer(std::uint64_t bits, std::int64_t bound) {
   const auto range = static_cast<std::uint64_t>(2 * bound + 1);
   return static_cast<std::int64_t>(((bits >> 32) * range + (((bits & 0xFFFFFFFF) * range) >> 32)) >> 32) - bound;

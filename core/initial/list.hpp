@@ -14,10 +14,9 @@ namespace cradle {
 
 template <Real T> class List final : public Particles<T> {
  public:
-  // One velocity per position; masses likewise, or none where all are 1. With a circumference the particles are on a
-  // ring. `momentum`: where more is known of it than their sum.
-  // Throws std::invalid_argument when lengths differ, when a number is not finite, when positions do not increase in
-  // the working precision or span the ring, or when a mass is not positive.
+  // One velocity per position; as many masses, or none if all are 1. With a circumference the particles are on a ring.
+  // `momentum`: if it is known more precisely than as a sum. Throws std::invalid_argument if lengths differ, a number
+  // is not finite, positions do not increase in the working precision or span the ring, or a mass is not positive.
   List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {}, T circumference = T(0),
        std::optional<T> momentum = {})
       : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)),

@@ -1,9 +1,8 @@
 #pragma once
-// Masses that repeat along the particles, counted from particle 0 on: particle b has the mass of entry b mod k. No
-// entries: all masses are 1, and the pattern costs no more than a constant.
+// Masses that repeat along the particles, counted from particle 0: particle b has the mass of entry b mod k. Without
+// entries all masses are 1, at the cost of a constant.
 
 #include <algorithm>
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,8 +16,8 @@ namespace cradle {
 template <Real T> class MassPattern {
  public:
   MassPattern() = default;
-  // `identical`: whether all masses are one number; without it, whether they are so in the type. Callers that have
-  // masses in more digits than the type give it, since the velocities of a ring depend on it (ring.hpp). Throws
+  // `identical`: whether all masses are the same number; by default they are compared in the type. Callers that know
+  // more digits than the type has must give it, since the velocities of a ring depend on it (ring.hpp). Throws
   // std::invalid_argument for masses that are not positive and finite.
   explicit MassPattern(std::vector<T> masses, std::optional<bool> identical = {}) : masses_(std::move(masses)) {
     for (std::size_t j = 0; j < masses_.size(); ++j) {
@@ -38,7 +37,7 @@ template <Real T> class MassPattern {
   }
   T least() const { return masses_.empty() ? T(1) : *std::min_element(masses_.begin(), masses_.end()); }
   T greatest() const { return masses_.empty() ? T(1) : *std::max_element(masses_.begin(), masses_.end()); }
-  // Of particles [from, to): how many there are of each entry, times its mass.
+  // The mass of particles [from, to): the sum over entries of number times mass.
   T total(ParticleIndex from, ParticleIndex to) const {
     if (masses_.empty()) return T(to - from);
     CompensatedSum<T> sum;
@@ -48,7 +47,7 @@ template <Real T> class MassPattern {
   }
 
  private:
-  // How many particles before `end` have the mass of an entry.
+  // The number of particles before `end` that have the mass of an entry.
   ParticleIndex times(ParticleIndex entry, ParticleIndex end) const { return (end - entry + period() - 1) / period(); }
 
   std::vector<T> masses_;

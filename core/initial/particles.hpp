@@ -1,6 +1,6 @@
 #pragma once
-// The particles of a scene at the start: read-only initial data, numbered from left to right. Chains copy from here the
-// particles that they hold; particles of a row that the front has not reached are in no chain, only here.
+// The particles of a scene at the start: read-only initial data, numbered from left to right. Chains copy the particles
+// that they hold; particles of a row that the front has not reached are only here.
 
 #include <cstdint>
 #include <limits>
@@ -18,10 +18,9 @@ struct GapRange {
   ParticleIndex first, last;  // a gap is numbered by the particle on its left; empty if last < first
 };
 
-// A line ends at both sides, and may have walls there (wall.hpp), which count as particles -1 and N: position and
-// velocity are defined for them too, as are gap and closing speed of the gaps to them. On a ring of circumference L the
-// last particle's neighbour on the right is the first one, at its position + L: as many gaps as particles, that of the
-// last one included.
+// A line has two ends and may have walls there (wall.hpp), which count as particles -1 and N: they have a position and
+// a velocity too, and the gaps to them a gap and a closing speed. On a ring of circumference L the right neighbour of
+// the last particle is the first one, at its position + L: there are as many gaps as particles.
 
 template <Real T> class Particles {
  public:
@@ -39,33 +38,33 @@ template <Real T> class Particles {
 
   virtual const Wall<T>* wall(End) const { return nullptr; }
   bool walled() const { return wall(End::left) != nullptr || wall(End::right) != nullptr; }
-  // Whether walls can give energy: one that moves, or heats.
+  // Whether walls can give energy: one moves or is thermal.
   bool driven() const {
     const auto gives = [](const Wall<T>* w) { return w != nullptr && (w->temperature > 0 || !(w->speed == T(0))); };
     return gives(wall(End::left)) || gives(wall(End::right));
   }
   Walls<T> walls() const { return {wall(End::left), wall(End::right), count()}; }
-  // All gaps that there are.
+  // The range of all gaps.
   GapRange gaps() const {
     if (on_ring()) return {0, count() - 1};
     return {wall(End::left) != nullptr ? -1 : 0, count() - (wall(End::right) != nullptr ? 1 : 2)};
   }
 
-  // Distance and closing speed of `particle` and the next one, without the cancellation of a difference of positions.
+  // Distance and closing speed of `particle` and the next one, without the cancellation in a difference of positions.
   virtual T gap(ParticleIndex particle) const = 0;
   virtual T closing_speed(ParticleIndex particle) const = 0;
 
-  // The gaps that a chain must hold from the start. The others have closing speed 0 and lie inside a row: nothing can
+  // The gaps that a chain must hold from the start. The others have closing speed 0 and are inside a row: nothing can
   // happen there before a neighbouring gap has had a collision.
   virtual GapRange gaps_in_motion() const { return {0, count() - 2}; }
 
   virtual T kinetic_energy() const = 0;
   virtual T momentum() const = 0;
-  // The momentum of all particles, exact where the initial state knows it: a sum of rounded numbers need not be 0 where
-  // the momentum is. Particles at rest against each other keep this momentum alone.
+  // The momentum of all particles, exact if the initial state knows it: a sum of rounded numbers may differ from an
+  // exact 0. Particles without relative motion have this momentum only.
   virtual T conserved_momentum() const { return momentum(); }
   virtual T total_mass() const = 0;
-  // Of particles [from, to).
+  // Mass of particles [from, to).
   virtual T mass_between(ParticleIndex from, ParticleIndex to) const {
     CompensatedSum<T> sum;
     for (ParticleIndex particle = from; particle < to; ++particle) sum.add(mass(particle));
@@ -73,26 +72,26 @@ template <Real T> class Particles {
   }
   virtual T least_mass() const = 0;
   virtual T greatest_mass() const { return least_mass(); }
-  // The position of a particle where it is a number of the scene, rounded as such; 0 where gaps are not made of
+  // The position of a particle if it is a number of the scene, rounded as such; 0 if gaps are not differences of
   // positions.
   virtual T rounded_place(ParticleIndex) const { return T(0); }
-  // Position of the centre of mass; takes all particles.
+  // Position of the centre of mass; reads all particles.
   T centre_of_mass() const {
     CompensatedSum<T> moment;
     for (ParticleIndex particle = 0; particle < count(); ++particle) moment.add(mass(particle) * position(particle));
     return moment.value() / total_mass();
   }
-  // What can be lost of it: the energy in the frame of the centre of mass, as far as the type resolves the difference.
+  // The largest possible loss: the energy in the frame of the centre of mass, as far as the type resolves it.
   virtual T energy_to_lose() const {
     const T energy = kinetic_energy(), least = energy * T(std::numeric_limits<T>::epsilon()) * T(1024);
     const T p = momentum(), square = p * p, twice = T(2) * total_mass();
     const T own = energy - (is_finite(square) ? T(square / twice) : T(p * (p / twice)));
     return own < least ? least : own;
   }
-  // Bounds the square of any speed to come, by a factor 2: energy is never gained, but from walls.
+  // Bounds the square of all future speeds, up to a factor 2: only walls add energy.
   T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }
-  // Bounds the square of the speed of any two against each other, for good; far away where walls give energy. Between
-  // two particles it is at most E over half of their reduced mass, E in the frame of the centre of mass.
+  // Bounds the square of all future relative speeds; very large if walls give energy. For two particles it is at most E
+  // over half of their reduced mass, E in the frame of the centre of mass.
   T greatest_approach_squared() const {
     if (walls().give_energy()) return far_away<T>();
     const T energy = walled() ? kinetic_energy() : energy_to_lose();
@@ -100,17 +99,17 @@ template <Real T> class Particles {
   }
 };
 
-// A number as messages print it.
+// A number for messages.
 template <Real T> std::string in_message(const T& x) { return std::to_string(to_double(x)); }
 
-// Throws std::invalid_argument unless the number is finite; `what` it is, as in "position of particle 3".
+// Throws std::invalid_argument unless the number is finite; `what` names it, for example "position of particle 3".
 template <Real T> void require_finite(const T& x, const std::string& what) {
   if (!is_finite(x))
     throw std::invalid_argument(what + " is not finite (" + in_message(x) +
                                 "): give a number within the range of the scalar type");
 }
 
-// Throws std::invalid_argument where mass, momentum or energy of all particles together is beyond the type's range.
+// Throws std::invalid_argument if the total mass, momentum or energy is beyond the type's range.
 template <Real T> void require_sums(const Particles<T>& particles) {
   const auto require = [](const T& sum, const char* what) {
     if (!is_finite(sum))
@@ -122,7 +121,7 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   require(particles.kinetic_energy(), "the kinetic energy");
 }
 
-// Checks what every chain requires of its particles. Throws std::invalid_argument.
+// Checks the requirements of all chains. Throws std::invalid_argument.
 template <Real T> void require_particles(const Particles<T>& particles, const T& start) {
   if (particles.count() < 1)
     throw std::invalid_argument("a chain without particles (" + std::to_string(particles.count()) +

@@ -1,12 +1,13 @@
 #pragma once
-// Free cooling: particles on a ring (a periodic line), of mass 1 or of masses that repeat, at equal distances or
+// Free cooling: particles on a ring (a periodic line), of mass 1 or with masses that repeat, at equal distances or
 // displaced at random, with independent velocities of a given variance and zero total momentum. Velocities and
-// displacements are integers, times a unit that every scalar type rounds for itself, so that all types start from the
-// same state; particle and replica alone decide on them (counter_rng.hpp).
+// displacements are integers, times a unit that every scalar type rounds, so that all types start from the same state;
+// they depend only on seed, replica and particle (counter_rng.hpp).
 //
-// Zero momentum: of identical masses the mean is taken off the integers, the remainder, less than one per particle,
-// from the first particles. Of masses that differ the velocity of the centre of mass, sum m_b n_b / sum m_b of the
-// integers n_b, is a fraction: it is taken off velocities in the working precision, and closing speeds do not have it.
+// Zero momentum: for identical masses the mean is subtracted from the integers, and its remainder, less than one per
+// particle, from the first particles. For masses that differ the velocity of the centre of mass, sum m_b n_b / sum m_b
+// of the integers n_b, is a fraction: it is subtracted from velocities in the working precision; closing speeds do not
+// contain it.
 
 #include <cmath>
 #include <stdexcept>
@@ -27,7 +28,7 @@ using VelocityDraw = std::function<std::int64_t(ParticleIndex)>;
 
 namespace detail {
 
-// Independent of displacements, which use indices as they stand.
+// Random bits that are independent of those of displacements, which use the indices 0, 1, ...
 inline std::uint64_t velocity_bits(std::uint64_t seed, std::uint64_t replica, ParticleIndex particle,
                                    std::uint64_t attempt) {
   return random_bits(seed, replica, static_cast<std::uint64_t>(particle) | (attempt + 1) << 56);

@@ -1,10 +1,10 @@
 #pragma once
-// Two rows of particles that run into each other (the paper's Riemann problem, section II): the left one of velocity
-// u_l and spacing l_l = 1/n_l, the right one of u_r and l_r; a scene may have a particle of any mass between them. The
-// masses of the rows are 1, or repeat by a pattern from particle 0 on (in which the particle between the rows takes a
-// place but not a mass). The first particles are half a spacing from the origin. Every particle of a row is displaced
-// by a random multiple of 2^-28 of the spacing, so that every scalar type and both representations start from the same
-// places.
+// Two rows of particles that run into each other (the paper's Riemann problem, section II): the left one with velocity
+// u_l and spacing l_l = 1/n_l, the right one with u_r and l_r; a scene may have a particle of any mass between them.
+// The masses of the rows are 1, or repeat by a pattern from particle 0 on (the particle between the rows takes a place
+// in the pattern but not its mass). The first particles are half a spacing from the origin. Every particle of a row is
+// displaced by a random multiple of 2^-28 of the spacing, so that every scalar type and both representations start from
+// the same positions.
 
 #include <cmath>
 #include <functional>
@@ -31,14 +31,13 @@ template <Real T> struct CentralParticle {
   T velocity;
 };
 
-// Displacement of a particle in units of 2^-28 of the spacing, below 2^27 in size: particles stay in order.
+// Displacement of a particle in units of 2^-28 of the spacing, with magnitude below 2^27: particles stay in order.
 using Displacement = std::function<std::int64_t(ParticleIndex)>;
 
 inline constexpr std::int64_t displacement_unit = std::int64_t{1} << 28;
 
-// The place of a particle that is so many half spacings from the origin, and displaced, in units of 2^-28 of the
-// spacing. 64 bits hold it up to 3e10 spacings; beyond, both factors are exact in any type of 53 bits, and so is the
-// product.
+// The position of a displaced particle, a number of half spacings from the origin, in units of 2^-28 of the spacing. 64
+// bits hold it up to 3e10 spacings; beyond, both factors are exact in any type of 53 bits, and so is the product.
 template <Real T> T place_of(std::int64_t half_steps, std::int64_t displacement) {
   constexpr std::int64_t half = displacement_unit / 2, most = std::numeric_limits<std::int64_t>::max() / half - 1;
   if (-most <= half_steps && half_steps <= most) return T(half_steps * half + displacement);
@@ -59,7 +58,7 @@ inline Displacement uniform_displacement(double perturbation, std::uint64_t seed
 template <Real T> class Rows final : public Particles<T> {
  public:
   // Throws std::invalid_argument for rows that are empty or do not approach each other, spacings or masses that are not
-  // positive, a central particle that no row reaches, numbers that are not finite.
+  // positive, a central particle that no row reaches, and numbers that are not finite.
   Rows(Row<T> left, Row<T> right, std::optional<CentralParticle<T>> centre, Displacement displacement,
        MassPattern<T> masses = {})
       : left_(std::move(left)), right_(std::move(right)), centre_(std::move(centre)),
@@ -109,7 +108,7 @@ template <Real T> class Rows final : public Particles<T> {
       const std::int64_t units = displacement_unit + displacement_(particle + 1) - displacement_(particle);
       return T(units) * (from_left ? left_unit_ : right_unit_);
     }
-    // Across the centre both distances from the origin are positive: their sum does not cancel.
+    // The distances of both particles from the origin are positive: their sum does not cancel.
     if (left_.spacing == right_.spacing && !centre_)
       return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * left_unit_;
     return position(particle + 1) - position(particle);
@@ -149,7 +148,7 @@ template <Real T> class Rows final : public Particles<T> {
   T right_mass() const { return masses_.total(count() - right_.count, count()); }
   bool is_centre(ParticleIndex particle) const { return centre_ && particle == left_.count; }
 
-  // From the origin.
+  // Half spacings from the origin.
   ParticleIndex half_steps(ParticleIndex particle) const {
     return particle < left_.count ? 2 * (particle - left_.count) + 1
                                   : 2 * (particle - left_.count - (centre_ ? 1 : 0)) + 1;
@@ -162,8 +161,8 @@ template <Real T> class Rows final : public Particles<T> {
   T left_unit_, right_unit_;
 };
 
-// The paper's symmetric shock: `particles` particles, half of them in each row, closing in at plus and minus `speed`.
-// Throws std::invalid_argument for an odd number of them, too.
+// The paper's symmetric shock: `particles` particles, half of them in each row, with velocities plus and minus `speed`.
+// Throws std::invalid_argument also for an odd number of them.
 template <Real T>
 Rows<T> symmetric_rows(ParticleIndex particles, const T& speed, const T& spacing, Displacement displacement,
                        MassPattern<T> masses = {}) {

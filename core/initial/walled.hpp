@@ -63,7 +63,7 @@ template <Real T> class Walled final : public Particles<T> {
   T rounded_place(ParticleIndex particle) const override {
     return is_wall(particle) ? at(particle).position : particles_->rounded_place(particle);
   }
-  // Walls give energy: a ledger for a million times as much as comes of them at once loses 20 of its spare bits.
+  // Walls may add energy: the ledger allows for a million times the initial energy, which costs 20 of its spare bits.
   T energy_to_lose() const override {
     T twice_per_mass(0);
     for (const auto* wall : {&left_, &right_})

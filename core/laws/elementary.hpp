@@ -1,6 +1,6 @@
 #pragma once
-// The few transcendental functions that a law needs, made of the four operations, so that every machine and every
-// build gets the same bits and every scalar type all of its digits. Libraries differ in the last place.
+// The transcendental functions that laws need, computed by the four operations, so that every machine and every build
+// gets the same bits and every scalar type all of its digits. Libraries differ in the last place.
 //
 //   1 - exp(-y), y >= 0     h = y 2^-k <= 1/8; series; then k times E(2h) = E(h) (2 - E(h)), by which relative
 //                           errors do not grow: each step adds a rounding or two. Nothing cancels for small y.
@@ -23,8 +23,8 @@ namespace cradle {
 
 namespace detail {
 
-// How many terms of a series of ones it takes until they are below the type's epsilon, each less than `ratio(n)` times
-// the one before.
+// The number of terms of a series of ones until they are below the type's epsilon; each is less than `ratio(n)` times
+// the previous one.
 template <Real T, class Ratio> int terms_needed(Ratio ratio) {
   T term(1);
   int n = 0;
@@ -32,7 +32,7 @@ template <Real T, class Ratio> int terms_needed(Ratio ratio) {
   return n;
 }
 
-// x 2^n; in two steps, since 2^n need not be in the range where the result is.
+// x 2^n; in two steps, since 2^n may be out of the range of the result.
 template <Real T> T times_power_of_two(const T& x, std::int64_t n) {
   const auto times = [](T y, std::int64_t k) {
     T two(2);
@@ -45,7 +45,7 @@ template <Real T> T times_power_of_two(const T& x, std::int64_t n) {
   return times(times(x, n / 2), n - n / 2);
 }
 
-// The n with x 2^-n from 1/2 to 1, or about so; x > 0.
+// The n for which x 2^-n is between about 1/2 and 1; x > 0.
 template <Real T> std::int64_t exponent_of(const T& x) {
   if constexpr (WiderRange<T>) {
     long exponent = 0;
@@ -53,7 +53,7 @@ template <Real T> std::int64_t exponent_of(const T& x) {
     return exponent;
   } else {
     constexpr int step = 1000;
-    std::int64_t beyond = 0;  // of types that have no `split` and yet a wider range than double
+    std::int64_t beyond = 0;  // for types without `split` but with a wider range than double
     double near = to_double(x);
     for (; !(near > 0); near = to_double(times_power_of_two(x, beyond))) beyond += step;
     for (; !std::isfinite(near); near = to_double(times_power_of_two(x, beyond))) beyond -= step;
@@ -71,7 +71,7 @@ template <Real T> class ExponentialRise {
   ExponentialRise() {
     const int terms = detail::terms_needed<T>([](int n) { return T(1) / T(8 * (n + 1)); });
     for (int n = 1; n <= terms + 1; ++n) reciprocals_.push_back(T(1) / T(n));
-    // Beyond this argument the exponential is less than an eighth of a unit of 1: ln 2 < 0.7.
+    // Beyond this argument the exponential is less than epsilon/8: ln 2 < 0.7.
     for (T rest(1); rest > T(std::numeric_limits<T>::epsilon()) / T(8); rest /= T(2)) all_ += T(7) / T(10);
   }
 
@@ -102,11 +102,11 @@ template <Real T> class Power {
       if (exponent == T(n)) whole_ = n;
     const int terms = detail::terms_needed<T>([](int) { return T(3) / T(100); });  // ((m - 1)/(m + 1))^2 < 0.0295
     for (int n = 0; n <= terms; ++n) odd_.push_back(T(1) / T(2 * n + 1));
-    // ln 2 as a sum like Machin's.
+    // ln 2 by a formula like Machin's.
     ln2_ = T(18) * artanh(T(1) / T(26)) - T(2) * artanh(T(1) / T(4801)) + T(8) * artanh(T(1) / T(8749));
   }
 
-  // x >= 0. Beyond the range of the type: its largest number, or 0.
+  // x >= 0. Beyond the range of the type it returns the largest number, or 0.
   T operator()(const T& x) const {
     if (!is_positive(x)) return T(0);
     const T power = whole_ > 0 ? product(x) : exponential(T(exponent_ * logarithm(x)));
@@ -149,7 +149,7 @@ template <Real T> class Power {
   }
 
   T exponent_;
-  int whole_ = 0;       // s, if it is whole and not too large
+  int whole_ = 0;       // s, if it is a whole number and not too large
   std::vector<T> odd_;  // 1, 1/3, 1/5, ...
   T ln2_{0};
   ExponentialRise<T> rise_;

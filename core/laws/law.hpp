@@ -1,19 +1,19 @@
 #pragma once
-// Collision laws: closing speed and masses in, outcome out; pure functions of values, all called in one way,
+// Collision laws: closing speed and masses in, outcome out; pure functions of values, all with the same interface,
 //
 //   law(w, masses)
 //
 //   w        closing speed u_l - u_r > 0 of the two colliding particles
 //   masses   theirs, as TwoMasses or EqualMasses; mu = m_l m_r / (m_l + m_r) is the reduced mass
 //
-// A law says what the two particles do: bounce, pass through each other (Newton's cradle: the one that was left comes
-// out on the right) or merge. For an impulse J from left to right the left particle loses J/m_l and the right one gains
+// The outcome says what the two particles do: bounce, pass through each other (Newton's cradle: the left one comes out
+// on the right) or merge. For an impulse J from left to right the left particle loses J/m_l and the right one gains
 // J/m_r.
 //
 // Inelastic law (paper, section II and III): w' = -eps w, energy lost mu w^2 (1 - eps^2)/2; below the velocity cut-off
-// delta the collision is elastic. The closing speed handed to the neighbours, w - w', is formed such that the sum of
-// all closing speeds is kept: for eps >= 1/2 the impulse comes first and w' = w - (its effect) is exact; below, w' =
-// -eps w comes first because there the difference would cancel.
+// delta the collision is elastic. The closing speed given to the neighbours, w - w', is computed such that the sum of
+// all closing speeds is kept. For eps >= 1/2 the impulse comes first and w' = w - (its effect) is exact; below, w' =
+// -eps w comes first, because there the difference would cancel.
 
 #include <cmath>
 #include <concepts>
@@ -26,7 +26,7 @@ namespace cradle {
 
 enum class Event : std::uint8_t { bounce, pass, merge };
 
-// Outcome of a collision, in closing speeds: the pair's own after it, and what the gaps on either side gain.
+// Outcome of a collision, in closing speeds: that of the pair after it, and the gains of the gaps on either side.
 template <Real T> struct Outcome {
   T closing;      // w' of the pair, <= 0
   T to_left;      // J / m_l, gained by the gap on the left
@@ -36,15 +36,15 @@ template <Real T> struct Outcome {
   Event event = Event::bounce;
 };
 
-// What each of two particles does to the closing speed, J/m_l and J/m_r; together w - w'.
+// The changes of the closing speed by each of the two particles, J/m_l and J/m_r; their sum is w - w'.
 template <Real T> struct Shares { T left, right; };
 
-// The masses of two particles in collision: references to numbers held elsewhere, not to be kept.
+// The masses of two colliding particles: references to numbers held elsewhere; do not store them.
 template <Real T> struct TwoMasses {
   const T &left, &right;
 
   T reduced() const { return left * (right / (left + right)); }
-  // The lighter particle takes the larger part: form that one by subtraction, so that both parts add up.
+  // The lighter particle takes the larger share: compute that one by subtraction, so that both shares add up.
   Shares<T> shares(const T& half) const {
     const T handed = half + half;
     const bool left_lighter = left < right;
@@ -54,7 +54,7 @@ template <Real T> struct TwoMasses {
   }
 };
 
-// The same mass twice, and half of it: no quotients. The bits are those of TwoMasses.
+// The same mass twice, and half of it, without divisions. The bits are those of TwoMasses.
 template <Real T> struct EqualMasses {
   const T &left, &half;
   const T& right = left;
@@ -63,7 +63,7 @@ template <Real T> struct EqualMasses {
   Shares<T> shares(const T& half_of_change) const { return {half_of_change, half_of_change}; }
 };
 
-// A collision law in the scalar T, where `bounces_only` says whether particles keep their order and number.
+// A collision law in the scalar T; `bounces_only` says whether particles keep their order and number.
 template <class L, class T>
 concept Law = Real<T> && requires(const L law, const T& w, const TwoMasses<T>& two, const EqualMasses<T>& equal) {
   { L::bounces_only } -> std::convertible_to<bool>;
@@ -71,22 +71,22 @@ concept Law = Real<T> && requires(const L law, const T& w, const TwoMasses<T>& t
   { law(w, equal) } -> std::same_as<Outcome<T>>;
 };
 
-// A law by which a collision is elastic(w, masses) where one of the particles has had another one within contact_time()
-// > 0 before it; the chain remembers when.
+// A law for which a collision is elastic(w, masses) if one of the particles has had another one within contact_time() >
+// 0 before it; the chain remembers when.
 template <class L, class T>
 concept LawWithMemory = Law<L, T> && requires(const L law, const T& w, const TwoMasses<T>& two) {
   { law.contact_time() } -> std::convertible_to<T>;
   { law.elastic(w, two) } -> std::same_as<Outcome<T>>;
 };
 
-// A law that says whether every result of a collision is proportional to the closing speed, at any speed. Of other laws
-// this is unknown, and no collapse is proved for them (two_gaps.hpp).
+// A law that says whether every outcome is proportional to the closing speed, at any speed. For other laws this is
+// unknown, and no collapse is proved for them (two_gaps.hpp).
 template <class L>
 concept ScaleFreeLaw = requires(const L law) {
   { law.scale_free() } -> std::same_as<bool>;
 };
 
-// Whether it says that it is not.
+// Whether it says that outcomes are not proportional.
 template <class L> bool has_threshold(const L& law) {
   if constexpr (ScaleFreeLaw<L>)
     return !law.scale_free();
@@ -98,7 +98,7 @@ template <Real T> class Inelastic {
  public:
   static constexpr bool bounces_only = true;
 
-  // restitution in [0, 1]; cutoff >= 0, a speed (0: the plain law).
+  // restitution in [0, 1]; cutoff >= 0, a speed (0: none).
   explicit Inelastic(const T& restitution, const T& cutoff = T(0))
       : restitution_(restitution), cutoff_(cutoff), half_sum_((T(1) + restitution) / T(2)),
         lost_((T(1) - restitution) * (T(1) + restitution) / T(2)), soft_(restitution * T(2) < T(1)) {}
@@ -106,7 +106,7 @@ template <Real T> class Inelastic {
   template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const {
     return outcome(w, masses, w < cutoff_);
   }
-  // As below the cut-off, whatever the speed.
+  // The outcome of an elastic collision, as below the cut-off, for any speed.
   template <class Masses> Outcome<T> elastic(const T& w, const Masses& masses) const {
     return outcome(w, masses, true);
   }
@@ -114,7 +114,7 @@ template <Real T> class Inelastic {
   const T& restitution() const { return restitution_; }
   const T& cutoff() const { return cutoff_; }
   bool scale_free() const { return !is_positive(cutoff_); }
-  // The same in the form in which it is computed.
+  // The law's numbers as they are used in computing.
   const T& half_sum() const { return half_sum_; }
   const T& lost_share() const { return lost_; }
   bool soft() const { return soft_; }
@@ -126,7 +126,7 @@ template <Real T> class Inelastic {
     return {after, shares.left, shares.right, energy_lost(w, masses.reduced(), elastic), elastic};
   }
 
-  // Choices between two numbers at hand, not between two computations: late in a collapse they cannot be predicted.
+  // Selects a number, not a computation: late in a collapse the choice cannot be predicted.
   const T& share(bool elastic) const { return elastic ? one_ : half_sum_; }
   T closing_after(const T& w, bool elastic) const {
     if (soft_) return -((elastic ? one_ : restitution_) * w);
@@ -150,9 +150,9 @@ template <Real T> class Inelastic {
 //
 //   eps(w) = eps + (1 - eps) exp(-(w/delta)^sigma),
 //
-// elastic at slow collisions and of restitution eps at fast ones; the plain law's cut-off is sigma -> infinity. The
-// loss 1 - eps(w) = (1 - eps) E, E = 1 - exp(-(w/delta)^sigma), is formed first: of nearly elastic collisions, on which
-// the fate of a slow gas hangs, it keeps its digits. Collisions below delta are counted as below the cut-off.
+// elastic for slow collisions and with restitution eps for fast ones; sigma -> infinity is the plain law's cut-off. The
+// loss 1 - eps(w) = (1 - eps) E, E = 1 - exp(-(w/delta)^sigma), is computed first, to keep the digits of nearly elastic
+// collisions, which decide the fate of a slow gas. Collisions below delta are counted as below the cut-off.
 template <Real T> class SpeedDependent {
  public:
   static constexpr bool bounces_only = true;
@@ -166,7 +166,7 @@ template <Real T> class SpeedDependent {
     const T restitution = T(1) - missing;
     const T half_sum = T(1) - missing / T(2);  // (1 + eps(w))/2
     T after(0), half(0);
-    if (restitution * T(2) < T(1)) {  // as in the plain law, what would cancel comes second
+    if (restitution * T(2) < T(1)) {  // as in the plain law, the number that would cancel is computed second
       after = -(restitution * w);
       half = (w - after) / T(2);
     } else {
@@ -184,8 +184,8 @@ template <Real T> class SpeedDependent {
   ExponentialRise<T> rise_;
 };
 
-// The inelastic law with a duration of collisions (TC model: Luding and McNamara 1998, doi 10.1007/s100350050017):
-// elastic too where one of the particles has had another collision less than that before.
+// The inelastic law with a duration of collisions (TC model: Luding and McNamara 1998, doi 10.1007/s100350050017): also
+// elastic if one of the particles has had another collision within that duration.
 template <Real T> class ContactTime {
  public:
   static constexpr bool bounces_only = true;
@@ -204,7 +204,7 @@ template <Real T> class ContactTime {
   T contact_time_;
 };
 
-// Inelastic law whose particles stick below a closing speed (collapse policy `merge`).
+// Inelastic law whose particles merge below a closing speed (collapse policy `merge`).
 template <Real T> class InelasticMerging {
  public:
   static constexpr bool bounces_only = false;
@@ -236,10 +236,10 @@ template <Real T> struct Sticky {
   }
 };
 
-// Wet law (paper, section II): a collision costs E_loss, the particles pass through each other; if their relative
-// kinetic energy mu w^2/2 does not exceed it, they merge. With w_c = sqrt(2 E_loss/mu): w' = sqrt((w - w_c)(w + w_c)),
-// since w^2 - w_c^2 loses half the digits at the threshold, and J = 2 E_loss/(w + w'), never mu (w - w'). Where w is
-// not near w_c, which of the two happens is decided without the root, so that the processor predicts the branch.
+// Wet law (paper, section II): a collision costs E_loss, and the particles pass through each other; if their relative
+// kinetic energy mu w^2/2 does not exceed E_loss, they merge. With w_c = sqrt(2 E_loss/mu): w' = sqrt((w - w_c)(w +
+// w_c)), since w^2 - w_c^2 loses half the digits at the threshold, and J = 2 E_loss/(w + w'), never mu (w - w'). If w
+// is not near w_c, this is decided without the root, so that the processor predicts the branch.
 template <Real T> class Wet {
  public:
   static constexpr bool bounces_only = false;
@@ -261,7 +261,7 @@ template <Real T> class Wet {
 
  private:
   T loss_, twice_loss_;
-  T below_, above_;  // that, a thousandth less and more
+  T below_, above_;  // w_c times 0.999 and 1.001
 };
 
 }  // namespace cradle

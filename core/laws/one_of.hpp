@@ -1,6 +1,6 @@
 #pragma once
-// One of several laws, chosen when a run begins: engines for few runs, or whose law takes a small part of the time, are
-// compiled once for all of them. The first law costs a branch that the processor predicts.
+// One of several laws, chosen when a run begins. Engines that are rarely used, or whose law takes a small part of the
+// time, are compiled once for all these laws. The first law costs a branch that the processor predicts.
 
 #include <cstddef>
 #include <variant>
@@ -37,7 +37,7 @@ template <class First, class... Others> class OneOf {
         return false;
     });
   }
-  // Null where it is another one.
+  // Null if it is another one.
   template <class Law> const Law* as() const { return std::get_if<Law>(&law_); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The logarithm behind random speeds.
+// The logarithm used for random speeds.
 
 #include <cmath>
 

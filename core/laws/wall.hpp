@@ -1,24 +1,23 @@
 #pragma once
-// Walls at the ends of a line: particles of infinite mass that fly at a constant speed whatever hits them. The left one
-// counts as particle -1, the right one as particle N, and the gap to one is a gap like any other. A collision at it,
-// closing at the speed w > 0, obeys the wall's own law, in the frame of the wall:
+// Walls at the ends of a line: particles of infinite mass with a constant speed. The left one counts as particle -1,
+// the right one as particle N, and the gap to a wall is a gap like any other. A collision with a wall, closing at the
+// speed w > 0, obeys the wall's own law, in the frame of the wall:
 //
 //   reflecting   w' = -r w, r the restitution of the wall
 //   thermal      w' = -v, v from the density (m v/T) exp(-m v^2/2T) of speeds at which particles of mass m in
 //                equilibrium at the temperature T come from the wall, whatever w was
 //
-// Random speeds are keyed by seed, replica, wall and number of the collision at this wall: the same in any order of
-// collisions elsewhere. They are doubles in every scalar type, so that all types see the same walls.
+// Random speeds are keyed by seed, replica, wall and number of the collision at this wall, so they do not depend on the
+// order of collisions elsewhere. They are doubles in every scalar type, so that all types have the same walls.
 //
-// A wall hands over energy: m/2 (w'^2 - w^2) in its own frame, and m (w - w') V more where it moves at V towards the
-// particles. What it has given is kept beside the ledger of all losses, where it is entered as a negative loss.
+// A wall adds energy: m/2 (w'^2 - w^2) in its own frame, plus m (w - w') V if it moves at V towards the particles. This
+// energy is stored beside the ledger of all losses, where it is entered as a negative loss.
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <tuple>
 
 #include "cradle/core/engine/state.hpp"
@@ -33,12 +32,12 @@ enum class End : std::uint8_t { left, right };
 template <Real T> struct Wall {
   T position;              // at the start
   T speed{0};              // positive to the right
-  T restitution{1};        // of a reflecting one, in [0, 1]
-  double temperature = 0;  // of a thermal one, > 0
+  T restitution{1};        // of a reflecting wall, in [0, 1]
+  double temperature = 0;  // of a thermal wall, > 0
   std::uint64_t seed = 1, replica = 0;
 };
 
-// The tally of a wall: collisions at it, and the energy that it has given to the particles (negative: taken).
+// The tally of a wall: its collisions, and the energy that it has given to the particles (negative: taken).
 template <Real T> struct WallTally {
   std::uint64_t collisions = 0;
   CompensatedSum<T> given;
@@ -46,17 +45,16 @@ template <Real T> struct WallTally {
   void loaded() const { require_state(is_finite(given.sum) && is_finite(given.errors), "walls"); }
 };
 
-// The speed of a particle of mass 1 that comes from a wall of temperature 1 at its collision number k.
+// The speed after collision number k of a particle of mass 1 with a wall of temperature 1.
 inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, std::uint64_t collision) {
-  // Indices as no particle has them: displacements and velocities use those up to 2^62 or so (counter_rng.hpp,
-  // ring.hpp).
+  // Indices that no particle has: displacements and velocities use those up to about 2^62 (counter_rng.hpp, ring.hpp).
   const std::uint64_t bits =
       random_bits(seed, replica, collision | (std::uint64_t{end == End::left ? 0xFEU : 0xFFU} << 56));
   const double uniform = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
   return std::sqrt(-2 * detail::portable_log(uniform));
 }
 
-// The double, exactly; a scalar type need not be constructible from one.
+// The double, exactly; a scalar type may have no constructor from double.
 template <Real T> T exactly(double x) {
   int exponent = 0;
   T value = T(static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53)));
@@ -65,28 +63,28 @@ template <Real T> T exactly(double x) {
   return value;
 }
 
-// The walls of a line of particles, none, one or two of them.
+// The walls of a line of particles: none, one or two.
 template <Real T> class Walls {
  public:
   Walls() = default;
-  // `left`, `right` may be null; else they outlive this. `particles`: how many there are between them.
+  // `left`, `right` may be null; otherwise they must outlive this. `particles`: the number of particles between them.
   Walls(const Wall<T>* left, const Wall<T>* right, std::int64_t particles)
       : walls_{left, right}, last_(particles - 1) {}
 
   bool any() const { return has(End::left) || has(End::right); }
   bool has(End end) const { return walls_[at(end)] != nullptr; }
-  // Whether one is at this end of the gap right of a particle. (Copies of a ring's parts number particles beyond its
-  // ends.)
+  // Whether there is a wall at this end of the gap right of a particle. (Copies of parts of a ring number particles
+  // beyond its ends.)
   bool left_of(std::int64_t gap) const { return gap < 0 && has(End::left); }
   bool right_of(std::int64_t gap) const { return gap == last_ && has(End::right); }
   bool beside(std::int64_t gap) const { return left_of(gap) || right_of(gap); }
 
-  // The collision of a particle of this mass with the wall at the gap, which closes at w > 0.
+  // The collision of a particle of this mass with the wall at the gap, with closing speed w > 0.
   Outcome<T> strike(std::int64_t gap, const T& w, const T& mass) {
     const End end = left_of(gap) ? End::left : End::right;
     const Wall<T>& wall = *walls_[at(end)];
     WallTally<T>& tally = tallies_[at(end)];
-    // The larger of impulse and speed afterwards is formed from the other, see law.hpp.
+    // Of impulse and final speed, the larger one is computed from the other, see law.hpp.
     const T half = (T(1) + wall.restitution) * w / T(2);
     const bool hard = !(wall.temperature > 0) && !(wall.restitution * T(2) < T(1));
     const T after = hard ? T(w - (half + half)) : T(-outgoing(wall, end, w, mass, tally.collisions));
@@ -100,7 +98,7 @@ template <Real T> class Walls {
     return {after, end == End::left ? T(0) : handed, end == End::left ? handed : T(0), lost};
   }
 
-  // Of a collision at the speed 1, where what comes of any is in proportion to its speed; it is made in no run.
+  // The outcome at the speed 1 if outcomes are proportional to the speed; no such collision is made in the run.
   std::optional<Outcome<T>> at_unit_speed(std::int64_t gap, const T& mass) const {
     if (walls_[at(left_of(gap) ? End::left : End::right)]->temperature > 0) return {};
     return Walls(*this).strike(gap, T(1), mass);
@@ -113,7 +111,7 @@ template <Real T> class Walls {
 
   const WallTally<T>& tally(End end) const { return tallies_[at(end)]; }
   void continue_with(const WallTally<T>& left, const WallTally<T>& right) { tallies_ = {left, right}; }
-  // Energy that the walls have given.
+  // The energy that the walls have given.
   T given() const { return tallies_[0].given.value() + tallies_[1].given.value(); }
 
   static auto state(auto& self) { return std::tie(self.tallies_[0], self.tallies_[1]); }

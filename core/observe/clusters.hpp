@@ -1,7 +1,7 @@
 #pragma once
-// The clusters of a gas whose particles merge: the two heaviest ones, the cloud around them, and how masses are
-// distributed. Only particles that have collided count; a particle that has not merged is a cluster of its own. Units
-// of the scene.
+// The clusters of a gas whose particles merge: the two heaviest ones, the cloud around them, and the distribution of
+// masses. Only particles that have collided count; a particle that has not merged is a cluster of its own. Units of the
+// scene.
 
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace cradle {
 
 template <Real T> struct Cluster {
   T mass{0}, x{0}, v{0};
-  // The initial number of the particle that names the cluster. It stays when clusters pass each other; when they
+  // The initial number of the particle that names the cluster. It is kept when clusters pass each other; when they
   // merge it is that of the heavier one.
   ParticleIndex index = -1;
 };
@@ -23,8 +23,8 @@ template <Real T> struct Cloud {
   // The two heaviest clusters in the order of the line; ties go left to right. After they have passed
   // each other the index says which is which.
   std::optional<Cluster<T>> left, right;
-  T mass{0};   // of all that have collided
-  T width{0};  // standard deviation of position, weighted by mass, of all but the heaviest two; 0 where there are none
+  T mass{0};   // of all clusters
+  T width{0};  // standard deviation of position, weighted by mass, without the heaviest two; 0 if none are left
 };
 
 template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
@@ -57,11 +57,11 @@ template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
   return found;
 }
 
-// Entry k: how many clusters have a mass from 2^(k/4) to below 2^((k+1)/4) times that of the lightest particle.
+// Entry k: the number of clusters with a mass from 2^(k/4) to below 2^((k+1)/4) times that of the lightest particle.
 template <Real T> std::vector<std::uint64_t> mass_distribution(const Configuration<T>& c, const T& least_mass) {
   std::vector<std::uint64_t> clusters;
   for (std::size_t j = c.collided_from; j < c.collided_to; ++j) {
-    // Whole masses lie on an edge of a bin only where it is a power of two, whose logarithm is exact.
+    // A whole mass is at an edge of a bin only if it is a power of two, whose logarithm is exact.
     const double quarters = 4 * std::log2(to_double(T(c.m[j] / least_mass)));
     const auto k = static_cast<std::size_t>(std::max(0.0, std::floor(quarters)));
     if (clusters.size() <= k) clusters.resize(k + 1);

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers read off a configuration: sums that check the run's ledger, and the spread of its gaps.
+// Numbers computed from a configuration: sums that check the run's ledger, and the statistics of its gaps.
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 
 namespace cradle {
 
-// Kinetic energy summed over all particles of the scene: the direct sum that the ledger is checked against.
+// Kinetic energy summed over all particles of the scene: the direct sum that is compared with the ledger.
 template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>& particles) {
   CompensatedSum<T> twice, twice_before;  // of the particles in the configuration, now and at the start
   for (std::size_t j = 0; j < c.x.size(); ++j) twice.add(c.m[j] * c.v[j] * c.v[j]);
@@ -16,7 +16,7 @@ template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>
   return particles.kinetic_energy() + (twice.value() - twice_before.value()) / T(2);
 }
 
-// Momentum that the particles of a configuration have gained since the start; zero but for rounding.
+// Momentum that the particles of a configuration have gained since the start; zero except for rounding.
 template <Real T> T momentum_gained(const Configuration<T>& c, const Particles<T>& particles) {
   CompensatedSum<T> gained;
   for (std::size_t j = 0; j < c.x.size(); ++j) gained.add(c.m[j] * c.v[j]);
@@ -26,7 +26,7 @@ template <Real T> T momentum_gained(const Configuration<T>& c, const Particles<T
 
 template <Real T> struct GapStatistics { T least{0}, median{0}; };
 
-// Of the gaps of a configuration with at least two particles.
+// Statistics of the gaps of a configuration with at least two particles.
 template <Real T> GapStatistics<T> gap_statistics(const Configuration<T>& c) {
   std::vector<T> gaps = c.gap;
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);

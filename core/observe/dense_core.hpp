@@ -1,16 +1,16 @@
 #pragma once
-// The core that a shock of dissipative particles leaves at its centre: how much of the mass it holds, how wide it is,
-// how much its velocities differ, how close its particles are. Definitions, for all particles that have collided:
+// The core that a shock of dissipative particles leaves at its centre: its mass, its width, the range of its
+// velocities, its gaps. Definitions, for all particles that have collided:
 //
-//   width   is the length of the shortest interval that holds more than half of their mass (a robust measure: particles
-//           on their way in do not count until they are half of all); 0 where that is one particle, merged from many;
-//   mass    is the mass within three such lengths about the same middle: the core. With m = 1 its number of particles;
-//   range   is the range of the velocities of the core, from the one that 5 % of its mass stay below to the one that
-//           5 % are above;
-//   gap     is the median of the gaps within the core; NaN where it is one particle.
+//   width   is the length of the shortest interval that holds more than half of their mass (a robust measure: incoming
+//           particles do not count until they are half of all); 0 if that is one particle, merged from many;
+//   mass    is the mass within three such lengths around the same middle: the core. With m = 1 it is the number of its
+//           particles;
+//   range   is the range of the velocities of the core, from the 5 % to the 95 % quantile by mass;
+//   gap     is the median of the gaps within the core; NaN if it is one particle.
 //
-// Positions decide which interval is the shortest, which is unknown where they do not resolve it; its width is a sum of
-// gaps. Units of the scene; float64. All NaN where there are fewer than two particles.
+// Positions decide which interval is the shortest; if they do not resolve it, that is unknown. Its width is a sum of
+// gaps. Units of the scene; float64. All NaN if there are fewer than two particles.
 
 #include <algorithm>
 #include <limits>
@@ -31,7 +31,7 @@ struct Interval {  // particles first to last, both included
   std::size_t first, last;
 };
 
-// The shortest one with more than half of the mass; ties go left to right.
+// The shortest interval with more than half of the mass; ties go left to right.
 template <Real T> Interval shortest_half(const Configuration<T>& c) {
   double all = 0, held = 0;
   for (std::size_t j = c.collided_from; j < c.collided_to; ++j) all += to_double(c.m[j]);
@@ -49,7 +49,7 @@ template <Real T> Interval shortest_half(const Configuration<T>& c) {
 
 }  // namespace detail
 
-// Of a configuration on a line.
+// For a configuration on a line.
 template <Real T> DenseCore dense_core(const Configuration<T>& c) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (c.collided_to < c.collided_from + 2) return {none, none, none, none};

@@ -1,6 +1,6 @@
 #pragma once
-// What holds in every run, whatever its physics. Where it does not hold, the machine or the program is at fault, and
-// later results mean nothing. It is checked on a configuration, now and then:
+// Conditions that hold in every run, for any physics. If one fails, the machine or the program is at fault, and later
+// results mean nothing. They are checked on a configuration from time to time:
 //
 //   order     no two particles have changed places, unless the run's account records it
 //   past      the last collision is not later than the time of the check, nor earlier than that of the check before
@@ -8,17 +8,17 @@
 //   momentum  is what it was at the start, except between walls
 //   closure   gaps and closing speeds add up to what the particles at the ends of the line give, or to the ring
 //
-// Bounds follow from the type, the collisions made and what there was at the start, not from how fast particles happen
-// to be when they are checked: a light particle may have been faster by the square root of any ratio of masses. With
-// E the energy at the start, M the mass of all particles and m the least one,
+// Bounds follow from the type, the number of collisions and the initial state, not from the present speeds: a light
+// particle may have been faster by the square root of any ratio of masses. With E the energy at the start, M the mass
+// of all particles and m the least one,
 //
 //   delta = 8 epsilon (C + N + 64),   C collisions of N particles, a factor of 5 to spare,
 //   U     = sqrt(2 E/m), which no speed can exceed; where masses are identical the largest one at the start, since
 //           velocities after a collision lie between those before.
 //
-// A collision rounds the velocities of its two particles in their own units, and so what they exchange: |m dv| <=
-// epsilon J, J = (1 + eps) mu w <= 2 sqrt(2 E mu), whatever their masses. A velocity that is a sum of closing speeds
-// has the rounding of each of these instead, epsilon U, which shifts all particles on one side of the gap. So
+// A collision rounds the velocities of its two particles in their own units, and so their exchange: |m dv| <= epsilon
+// J, J = (1 + eps) mu w <= 2 sqrt(2 E mu), for any masses. A velocity that is a sum of closing speeds has the rounding
+// of each of these instead, epsilon U, which shifts all particles on one side of the gap. So
 //
 //                                    |dE| <=                     |dp| <=                 closing speeds add up to
 //   velocities of particles' own        delta 2 E                   delta sqrt(2 E M)       delta epsilon U
@@ -31,12 +31,12 @@
 //   |dx| <= delta (extent + U t),   extent that at the start or now, whichever is more: the particles at the ends are
 //                                   pushed outwards only,
 //
-// since errors of speeds have acted for the time t at most. Walls that move or heat give energy: with such, E is what
-// the ledger of losses is laid out for (Walled::energy_to_lose).
+// since errors of speeds have acted at most for the time t. Moving and thermal walls add energy: with them E is the
+// energy for which the ledger of losses is made (Walled::energy_to_lose).
 //
-// An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is less: for 5e8 collisions where velocities
-// are the particles' own, for 5e8 sqrt(E/(M U^2/2)) where they are sums. An error in a place is found where it exceeds
-// delta U t, which masses of 1e-8 beside 1 can make 1e4 times as large as equal masses do.
+// An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is smaller: for 5e8 collisions if velocities are
+// the particles' own, for 5e8 sqrt(E/(M U^2/2)) if they are sums. An error in a position is found if it exceeds delta U
+// t; masses of 1e-8 beside 1 can make this 1e4 times larger than equal masses do.
 
 #include <cstdint>
 #include <limits>
@@ -54,23 +54,23 @@ template <Real T> struct GuardReport {
   ParticleIndex particle = -1;  // order: the particle on the left
 };
 
-// What a check finds.
+// The result of a check.
 template <Real T> struct GuardCheck {
   std::optional<GuardReport<T>> broken;
   T gap_min{0};
-  T closure_gap{0}, closure_speed{0};  // 0 where the configuration has none
+  T closure_gap{0}, closure_speed{0};  // 0 if the configuration has none
 };
 
-// At least the root of x >= 0 and at most 1.06 times that, of the four operations: types need have no root.
+// A number from the root of x >= 0 to 1.06 times the root, by the four operations: some types have no root.
 template <Real T> T root_above(const T& x) {
   if (!is_positive(x)) return T(0);
-  T root = x < T(1) ? T(1) : x;  // not below; halved until it is near, then Newton's steps, which stay above
+  T root = x < T(1) ? T(1) : x;  // an upper bound; halved until it is near, then Newton's steps, which remain above
   while (x < root * root / T(4)) root /= T(2);
   for (int step = 0; step < 2; ++step) root = (root + x / root) / T(2);
   return root;
 }
 
-// `energy`: what the ledger leaves; `elapsed`: since the start; `ordered`: no account of lost order.
+// `energy`: what the ledger leaves; `elapsed`: since the start; `ordered`: the account has no lost order.
 template <Real T>
 GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, std::uint64_t collisions,
                       const T& energy, const T& elapsed, const T& last_collision, const T& collision_before,
@@ -80,7 +80,7 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   const auto report = [&](Guard guard, const T& found, const T& bound, ParticleIndex particle = -1) {
     if (!check.broken) check.broken = GuardReport<T>{guard, found, bound, particle};
   };
-  // A time is stamped from an origin that moves, and rounded anew.
+  // A time is the sum of an offset and a moving origin, and is rounded.
   const T of_time = T(8) * T(std::numeric_limits<T>::epsilon()) * (magnitude(c.time) + magnitude(collision_before));
   if (!(last_collision <= c.time + of_time) || last_collision < collision_before - of_time)
     report(Guard::past, last_collision, last_collision < collision_before ? collision_before : c.time);
@@ -95,7 +95,7 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
     if (fastest < magnitude(v)) fastest = magnitude(v);
     if (most_energy < own) most_energy = own;
   }
-  // What the other particles have, and these had at the start.
+  // The sums over the other particles, and over these at the start.
   CompensatedSum<T> twice_before, momentum_before;
   const bool all = c.from == 0 && c.to + 1 == particles.count();
   T fastest_before(0);
@@ -113,11 +113,11 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   const T twice_energy = T(2) * (driven ? T(start_energy + particles.energy_to_lose()) : start_energy);
   const bool bounded_by_start = particles.identical_masses() && !driven;
   const T top_speed = bounded_by_start ? fastest_before : root_above(T(twice_energy / particles.least_mass()));
-  const T all_as_one = root_above(T(twice_energy * mass));  // no momentum is more
+  const T all_as_one = root_above(T(twice_energy * mass));  // no momentum is larger
 
   const T of_sums = c.speeds_are_sums ? delta : T(delta * epsilon);
   const T of_energy = delta * twice_energy + of_sums * top_speed * all_as_one;
-  // No particle has more than there was.
+  // No particle has more than the total energy.
   if (!(most_energy <= twice_energy + T(2) * of_energy)) report(Guard::energy, most_energy, twice_energy);
   const T off_energy = magnitude(T(rest + twice.value() / T(2) - energy));
   if (!(off_energy <= of_energy)) report(Guard::energy, off_energy, of_energy);

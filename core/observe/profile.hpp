@@ -30,8 +30,8 @@ struct BinRange {
 
 namespace detail {
 
-// One bin, filled particle by particle; mean and variance by West's update, since late temperatures are small against
-// v^2. A particle at rest counts as neither right- nor left-mover.
+// One bin, filled particle by particle; mean and variance by West's update, since late temperatures are small compared
+// with v^2. A particle at rest is neither a right- nor a left-mover.
 struct Bin {
   double count = 0, mass = 0, velocity = 0, scatter = 0;
   double right = 0, right_speed = 0, left = 0, left_speed = 0;
@@ -47,8 +47,8 @@ struct Bin {
   }
 };
 
-// The bin of a particle that is in range: `place` counts bins from the start of the range, and may round up to their
-// number for a particle just below its end.
+// The bin of a particle within the range: `place` counts bins from the start of the range; it may be rounded up to
+// their number for a particle just below the end.
 inline std::size_t bin_at(double place, std::size_t bins) {
   return std::min(static_cast<std::size_t>(place), bins - 1);
 }
@@ -59,13 +59,14 @@ inline double mean(double sum, double weight) {
 
 }  // namespace detail
 
-// Thrown out of a walk over particles that its caller has stopped: its result is incomplete.
+// Thrown by a loop over particles that its caller has stopped: its result is incomplete.
 struct WalkStopped : std::exception {
   const char* what() const noexcept override { return "a walk over particles was stopped"; }
 };
 
-// Calls visit(x, v, m) for every particle in a range, also for those that the fronts have not reached: they fly as at
-// the start. They may be too many to wait for: `stopped` is called now and then, and true throws WalkStopped.
+// Calls visit(x, v, m) for every particle in a range, also for those that the fronts have not reached, which fly as at
+// the start. There may be very many of them: `stopped` is called from time to time; if it returns true, WalkStopped is
+// thrown.
 template <Real T, class Visit>
 void for_each_particle(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed, BinRange range,
                        Visit visit, const std::function<bool()>& stopped = {}) {
@@ -81,7 +82,7 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
     if (particle % between_stops == 0 && stopped && stopped()) throw WalkStopped();
     visit(x, to_double(particles.velocity(particle)), to_double(particles.mass(particle)));
   };
-  // They fly in order: the first of [low, high) that is not to the left of a place.
+  // They fly in order: finds the first of [low, high) that is not to the left of a position.
   const auto first_from = [&](ParticleIndex low, ParticleIndex high, double place) {
     while (low < high) {
       const ParticleIndex middle = low + (high - low) / 2;

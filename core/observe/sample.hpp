@@ -2,18 +2,17 @@
 // One row of the time series: the state after all collisions at times <= t, in a few numbers. The ledger holds what
 // walls have given as a negative loss; here the two are separated.
 //
-// The energy comes from the ledger as long as that leaves half of the energy at the start or more, at constant cost;
-// else from the velocities of all particles (relative_motion.hpp), as it does where walls have given or taken some.
-// Reason: at a collision c rounding adds an energy e_c to the state that the ledger does not contain. Later the energy
+// If the ledger leaves half of the initial energy or more, the energy comes from the ledger, at constant cost; else it
+// comes from the velocities of all particles (relative_motion.hpp), as it does if walls have given or taken some. The
+// reason: at a collision c rounding adds an energy e_c to the state that the ledger does not contain. Later the energy
 // E(t) of the state contains the share E(t)/E(t_c) of e_c, as of any other energy; the energy of the ledger misses the
-// rest of e_c, which losses have taken. So the error of the former is sum e_c E(t)/E(t_c), that of the latter
-// sum e_c (1 - E(t)/E(t_c)): zero for elastic particles; where particles have come to rest, the sum of all e_c, more
-// than the energy that is left. Besides, a ledger that leaves half is rounded to 2 eps of it. Where many collisions
-// lose much, losses have errors of their own: for Fig. 2 in double the ledger is off by 3e-14 at t = 2000, where 74 %
-// of the energy is left, and by 6e-13 at t = 6500, where 19 % is left; the sum over velocities is off by 9e-15 and
-// 7e-14 (of double-double's energy).
+// rest of e_c, which losses have removed. So the error of the former is sum e_c E(t)/E(t_c), that of the latter sum e_c
+// (1 - E(t)/E(t_c)): it is zero for elastic particles; after particles have come to rest it is the sum of all e_c, more
+// than the energy that is left. Besides, a ledger that leaves half is rounded to 2 eps of it. If many collisions lose
+// much, losses have errors of their own: for Fig. 2 in double the error of the ledger is 3e-14 at t = 2000, where 74 %
+// of the energy is left, and 6e-13 at t = 6500, where 19 % is left; that of the sum over velocities is 9e-15 and 7e-14
+// (of double-double's energy).
 
-#include <limits>
 #include <optional>
 
 #include "cradle/core/engine/simulation.hpp"
@@ -41,13 +40,13 @@ template <class Run, Real T = typename Run::Scalar> T given_by_walls(const Run& 
     return T(0);
 }
 
-// Kinetic energy of all particles of the scene, after the collisions made so far.
+// Kinetic energy of all particles of the scene, after the collisions made until now.
 template <class Run, Real T = typename Run::Scalar> T energy_now(const Run& run, const T& initial_energy) {
   const T left = initial_energy - run.energy_lost();
   return T(left + left) < initial_energy || !(given_by_walls(run) == T(0)) ? T(run.kinetic_energy()) : left;
 }
 
-// Of a Simulation or a StickyGas. `time` must not be before the last collision made nor after the time advanced to.
+// A sample of a Simulation or a StickyGas. `time` must be between the last collision and the time advanced to.
 template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
   const T lost = run.energy_lost(), given = given_by_walls(run);

@@ -1,14 +1,14 @@
 #pragma once
-// Which of the paper's two scenarios a wet shock takes (section VI, Fig. 9). Its two heaviest clusters either pass
-// through each other when they meet, and continue to oscillate, or stick, and then another cluster becomes the second
-// one. The watch receives every collision, and samples the clusters now and then.
+// Decides which of the paper's two scenarios a wet shock follows (section VI, Fig. 9). Its two heaviest clusters either
+// pass through each other when they meet, and continue to oscillate, or stick, and then another cluster becomes the
+// second one. The watch receives every collision, and samples the clusters from time to time.
 //
 //   pair         the two heaviest clusters, from the first sample in which they hold more than half of the mass that
-//                has collided, and ten particles each or more
+//                has collided, and at least ten particles each
 //   meeting      a collision of the two clusters that were the pair at the last sample: a pass or a stick
-//   role change  a sample whose pair is not made of the same two clusters as the pair of the sample before
+//   role change  a sample whose pair differs from that of the sample before
 //   regime       apart: these two have not met yet; through: their last meeting was a pass; stuck: it was a stick
-//   exponents    powers of time by which the largest separation and the largest speed of the pair grow: one point for
+//   exponents    powers of time with which the largest separation and the largest speed of the pair grow: one point for
 //                each third of a decade since there is a pair, at least four, least squares in the logarithms
 //                (theory: (17), 1/3 and -1/3)
 // Samples should be spread evenly in the logarithm of time, a hundred per decade or more.
@@ -38,7 +38,7 @@ struct Scenario {
   double separation_exponent = std::numeric_limits<double>::quiet_NaN();
   double speed_exponent = std::numeric_limits<double>::quiet_NaN();
 
-  // What is known before the end.
+  // The numbers known before the end.
   static auto state(auto& self) {
     return std::tie(self.established, self.first_meeting, self.first_passed, self.passes, self.sticks,
                     self.role_changes, self.regime);
@@ -47,7 +47,7 @@ struct Scenario {
 
 class ScenarioWatch {
  public:
-  // To be called before each collision, with the numbers of its particles and of the merges so far.
+  // Call it before each collision, with the numbers of its particles and of the merges until then.
   void collision(ParticleIndex left, ParticleIndex right, double time, std::uint64_t merges) {
     settle(merges);
     if (!pair_ ||
@@ -56,7 +56,7 @@ class ScenarioWatch {
     meeting_ = {time, merges};
   }
 
-  // A sample, when all collisions up to `time` (since the start) are made.
+  // Takes a sample when all collisions up to `time` (since the start) are made.
   template <Real T> void sample(const Cloud<T>& cloud, double time, std::uint64_t merges) {
     settle(merges);
     if (!cloud.left || !cloud.right) return;
@@ -76,7 +76,7 @@ class ScenarioWatch {
     speed = std::max({speed, std::abs(to_double(cloud.left->v)), std::abs(to_double(cloud.right->v))});
   }
 
-  // At the end of the run, after so many merges.
+  // The result at the end of the run, after so many merges.
   Scenario result(std::uint64_t merges) {
     settle(merges);
     found_.separation_exponent = exponent([](const auto& largest) { return largest.first; });
@@ -93,7 +93,7 @@ class ScenarioWatch {
     static auto state(auto& self) { return std::tie(self.time, self.merges_before); }
   };
 
-  // A collision is reported before it is made: the count that comes with the next one shows whether it was a merge.
+  // A collision is reported before it is made: the count given with the next one shows whether it was a merge.
   void settle(std::uint64_t merges) {
     if (!meeting_) return;
     const bool passed = merges == meeting_->merges_before;
@@ -106,7 +106,7 @@ class ScenarioWatch {
     meeting_.reset();
   }
 
-  // Leaves out the first and the last bin, which are cut short by the beginning and the end.
+  // Leaves out the first and the last bin, which the beginning and the end cut short.
   template <class Of> double exponent(Of of) const {
     if (largest_.size() < 6) return std::numeric_limits<double>::quiet_NaN();
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;

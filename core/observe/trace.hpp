@@ -1,8 +1,8 @@
 #pragma once
-// The trace of a run: a hash that two runs share exactly if, at every particle, they have made the same collisions in
-// the same sequence. A plain list of collisions would not do: collisions of different particles commute and may be made
-// in either order. So every particle carries a hash of its past. A collision mixes the two pasts and gives the result
-// to both particles (the canonical form of a Mazurkiewicz trace). The digest is the sum over all particles.
+// The trace of a run: a hash that two runs share exactly if every particle has had the same collisions in the same
+// sequence. A hash of the list of collisions would not do: collisions of different particles commute and may be made in
+// either order. So every particle carries a hash of its past. A collision mixes the two pasts and gives the result to
+// both particles (the canonical form of a Mazurkiewicz trace). The digest is the sum over all particles.
 
 #include <cstdint>
 #include <unordered_map>

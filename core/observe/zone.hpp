@@ -6,10 +6,10 @@
 //
 //   2L = (u0 - u_crit)/|slope|,   |slope| = (u0/2)/(x_{1/4} - x_{3/4}),   u+(x_q) = q u0,
 //
-// from right-movers and mirrored left-movers together. The zone wanders with the heavy clusters, which would smear a
-// long average: time is divided into parts, and 2L is the median of their widths. Its error is that of a median of n
-// Gaussian numbers, 1.253 sigma/sqrt(n), with sigma = 1.483 times the median deviation. Where (13) counts the fall from
-// u0 to 0, it is u0/(u0 - u_crit) times as wide.
+// from right-movers and mirrored left-movers together. The zone moves with the heavy clusters, which would smear a long
+// average: time is divided into parts, and 2L is the median of their widths. Its error is that of a median of n
+// Gaussian numbers, 1.253 sigma/sqrt(n), with sigma = 1.483 times the median deviation. Equation (13) counts the fall
+// from u0 to 0, which is u0/(u0 - u_crit) times as wide.
 // Sampling and units: those of the scene; float64.
 
 #include <algorithm>
@@ -33,15 +33,15 @@ class ZoneAverage {
  public:
   static constexpr std::size_t parts = 16;
 
-  // `samples` are to come, over a range around the centre of the shock that is mirror-symmetric: -reach to reach.
-  // Throws std::invalid_argument for fewer samples than parts or a reach that is not positive.
+  // `samples` will be given, over a range -reach to reach around the centre of the shock. Throws std::invalid_argument
+  // for fewer samples than parts or a reach that is not positive.
   ZoneAverage(double reach, std::size_t bins, std::size_t samples, double row_mass)
       : reach_(reach), bins_(bins), samples_(samples), row_mass_(row_mass), part_(parts, Part(bins)) {
     if (!(reach > 0) || bins < 4 || samples < parts)
       throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 16 samples at least");
   }
 
-  // As it was where the walk is stopped (WalkStopped, see for_each_particle).
+  // If the loop is stopped, nothing is added (WalkStopped, see for_each_particle).
   template <Real T>
   void add(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
            const std::function<bool()>& stopped = {}) {
@@ -68,7 +68,7 @@ class ZoneAverage {
   std::vector<double> velocity_right() const { return quotient(&Part::right_speed, &Part::right); }
   std::vector<double> velocity_left() const { return quotient(&Part::left_speed, &Part::left); }
 
-  // For rows at `speed` whose particles stick below the closing speed `critical`.
+  // For rows at `speed` whose particles merge below the closing speed `critical`.
   ZoneWidth width(double speed, double critical) const {
     std::vector<double> widths;
     for (const Part& part : part_)
@@ -125,7 +125,7 @@ class ZoneAverage {
     return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
   }
 
-  // How far it is from where u+ falls through 3/4 of u0 to where it falls through 1/4, between the centres of bins.
+  // The distance between the points at which u+ is 3/4 and 1/4 of u0, interpolated between the centres of bins.
   std::optional<double> half_fall(const Part& part, double speed) const {
     std::array<double, 2> crossing{};
     std::size_t found = 0;

@@ -16,17 +16,17 @@
 
 namespace cradle::theory {
 
-/// c = m/(m + mu): half of the speed, in those of the kick, that a light particle gets from its first collision.
+/// c = m/(m + mu): half of a light particle's speed after its first collision, in units of the kick's speed.
 template <class T> T domino_cosine(const T& heavy, const T& light) { return T(heavy / (heavy + light)); }
 
-/// The k for which the front is ballistic, pi/alpha = 2k + 1, where that is whole to one part in 2^20; else 0.
+/// The k for which the front is ballistic, pi/alpha = 2k + 1, if k is whole to one part in 2^20; else 0.
 inline int domino_order(double heavy, double light) {
   const double turns = 3.141592653589793 / std::acos(domino_cosine(heavy, light));
   const double k = std::floor(turns / 2);
   return k >= 1 && std::abs(turns - (2 * k + 1)) < 0x1p-20 * turns ? static_cast<int>(k) : 0;
 }
 
-/// When particle n, even and > 0, is first hit, in spacings per speed of the kick; of a ballistic front.
+/// The time at which a ballistic front first hits particle n, even and > 0, in spacings per speed of the kick.
 template <class T> T domino_time(const T& heavy, const T& light, int n) {
   return T(T(n - 1) + T(1) / (T(2) * domino_cosine(heavy, light)));
 }

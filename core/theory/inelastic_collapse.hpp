@@ -99,12 +99,12 @@ template <class T> class CollapseSequence {
       : eps_(restitution), coupling_(coupling), now_{0, t0, p0, g0}, next_speed_(other_speed + coupling * p0) {}
 
   const CollapseCollision<T>& now() const { return now_; }
-  /// p_{j+1}, the closing speed at the collision to come; where it is not positive the sequence has ended.
+  /// p_{j+1}, the closing speed at the next collision; if it is not positive the sequence has ended.
   const T& next_closing_speed() const { return next_speed_; }
   /// Time from this collision to the next.
   T interval() const { return T(now_.other_gap / next_speed_); }
 
-  /// Advances to the next collision; false, and nothing changes, where there is none.
+  /// Advances to the next collision; if there is none, returns false and changes nothing.
   bool advance() {
     if (!(next_speed_ > T(0))) return false;
     const T speed = next_speed_;

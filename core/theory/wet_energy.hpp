@@ -13,7 +13,6 @@
 
 #include "cradle/core/theory/wet_shock.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

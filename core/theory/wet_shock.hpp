@@ -22,14 +22,14 @@
 
 namespace cradle::theory {
 
-/// Closing speed up to which two particles stick, sqrt(2 E_loss/mu), mu the reduced mass; 2 sqrt(E_loss/m) for equal
-/// ones.
+/// Largest closing speed at which two particles stick, sqrt(2 E_loss/mu), mu the reduced mass; 2 sqrt(E_loss/m) for
+/// equal ones.
 template <class T> T critical_closing_speed(const T& loss, const T& mass_left, const T& mass_right) {
   using std::sqrt;
   return T(sqrt(T(T(2) * loss * ((mass_left + mass_right) / (mass_left * mass_right)))));
 }
 
-/// The same as the paper's section II prints it, sqrt(2 E_loss)/mu, for comparison only: right where mu = 1.
+/// The same as the paper's section II prints it, sqrt(2 E_loss)/mu, for comparison only: right if mu = 1.
 template <class T> T critical_closing_speed_printed(const T& loss, const T& mass_left, const T& mass_right) {
   using std::sqrt;
   return T(sqrt(T(T(2) * loss)) * ((mass_left + mass_right) / (mass_left * mass_right)));
@@ -55,8 +55,8 @@ template <class T> T initial_energy(const WetShock<T>& shock) {
   return T(detail::from_count<T>(shock.particles) * shock.mass * shock.speed * shock.speed / T(2));
 }
 
-/// What each of two single particles closing at w > w_c loses of its speed, (w - w')/2 = 2e/(w + w'), w' = sqrt(w^2 -
-/// w_c^2).
+/// The speed that each of two single particles loses at the closing speed w > w_c, (w - w')/2 = 2e/(w + w'), w' =
+/// sqrt(w^2 - w_c^2).
 template <class T> T speed_lost(const T& specific_loss, const T& w, const T& critical) {
   using std::sqrt;
   return T(T(2) * specific_loss / (w + sqrt(T((w - critical) * (w + critical)))));
@@ -72,12 +72,12 @@ template <class T> class WetFrontRecursion {
         critical_(shock.critical_speed()), now_{0, T(0), shock.origin(), shock.speed} {}
 
   const FrontCollision<T>& now() const { return now_; }
-  /// Time of the collision to come.
+  /// Time of the next collision.
   T next_time() const { return T(now_.time + shock_.spacing / closing_speed()); }
-  /// Whether the tracer will stick at the collision to come.
+  /// Whether the tracer will stick at the next collision.
   bool sticks_next() const { return !(closing_speed() > critical_); }
 
-  /// Advances to the next collision; false, and nothing changes, where the tracer sticks at it.
+  /// Advances to the next collision; if the tracer sticks at it, returns false and changes nothing.
   bool advance() {
     if (sticks_next()) return false;
     const T w = closing_speed();
@@ -135,7 +135,7 @@ std::optional<FrontCollision<T>> turnover_collision(const WetShock<T>& shock, st
 
 // ---- continuous: equation (8) in closed form ----
 
-/// The front where the collisions are counted by a real number n.
+/// The front with the number of collisions n as a real number.
 template <class T> struct WetFrontState {
   T collisions;
   T time;
@@ -145,7 +145,7 @@ template <class T> struct WetFrontState {
 
 namespace detail {
 
-/// z - atan z for z >= 0, to full relative precision where z is small.
+/// z - atan z for z >= 0, to full relative precision also for small z.
 template <class T> T arctangent_deficit(const T& z) {
   using std::atan;
   if (!(T(2) * z < T(1))) return T(z - atan(z));
@@ -174,7 +174,7 @@ template <class T> class WetFront {
     y0_ = T(T(1) + depth0_);
   }
 
-  /// Where its velocity is u <= u0; none where it sticks before it is that slow, or never slows (loss 0).
+  /// The front at velocity u <= u0; none if it sticks before it is that slow, or never slows (loss 0).
   std::optional<WetFrontState<T>> at_velocity(const T& u) const {
     using std::sqrt;
     if (!moves() || u > shock_.speed) return std::nullopt;
@@ -219,10 +219,10 @@ template <class T> class WetFront {
     return found;
   }
 
-  /// Where u = 0: n*, t*, x*. None where it sticks before (u0 < 2 sqrt e).
+  /// The front at u = 0: n*, t*, x*. None if it sticks before (u0 < 2 sqrt e).
   std::optional<WetFrontState<T>> turnover() const { return at_velocity(T(0)); }
 
-  /// Where it is as slow as u = 2 sqrt e - u0 and sticks; none without loss.
+  /// The front at u = 2 sqrt e - u0, where it sticks; none without loss.
   std::optional<WetFrontState<T>> sticking() const {
     if (!moves() || !(root_ > T(0))) return std::nullopt;
     return state(depth0_, T(0));

@@ -19,7 +19,7 @@
 
 namespace cradle::theory {
 
-/// m u0^2/(2 E_loss n0), the length over which as many particles stand as their losses take to use up m u0^2/2.
+/// m u0^2/(2 E_loss n0): a length with so many particles that collisions with them cost m u0^2/2.
 template <class T> T stopping_length(const WetShock<T>& shock) {
   return T(shock.mass * shock.speed * shock.speed * shock.spacing / (T(2) * shock.loss));
 }
@@ -40,7 +40,7 @@ template <class T> T density_excess() {
 template <class T> T collisions_to_rest(const WetShock<T>& shock) {
   return T(shock.mass * shock.speed * shock.speed / shock.loss);
 }
-/// Speed lost per collision where the two rows close at u0 >= u_crit: (u0/2)(1 - sqrt(1 - 4 E_loss/(m u0^2))), about
+/// Speed lost per collision of two rows closing at u0 >= u_crit: (u0/2)(1 - sqrt(1 - 4 E_loss/(m u0^2))), about
 /// E_loss/(m u0) (printed before (13): E_loss/(m u0^2)).
 template <class T> T zone_speed_lost(const WetShock<T>& shock) {
   return speed_lost(shock.specific_loss(), shock.speed, shock.critical_speed());

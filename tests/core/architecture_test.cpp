@@ -1,8 +1,7 @@
-// The layers, checked on the sources: core/ includes nothing but the standard library and itself, no input or output,
-// no threads (the ensemble alone has them, and one file of it oneTBB), no vectors (but for one file of Highway's),
-// nothing of Boost; it speaks of the scalar
-// through the Real concept only, so no std:: mathematics on it, except that found by `using` as a fallback for built-in
-// types; every header stands alone in being guarded and opened by a comment.
+// The layers, checked in the sources. core/ includes only the standard library and itself: no input or output, no
+// threads (except the ensemble, one file of which uses oneTBB), no vectors (except one file, which uses Highway), no
+// Boost. It uses the scalar only through the concept Real, so no std:: mathematics on it, except by `using` as a
+// fallback for built-in types. Every header is guarded and begins with a comment.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #pragma once
-// Comparing runs: states bit for bit, and sequences of collisions as far as they mean anything. Collisions at gaps that
-// are not neighbours commute, so two runs made the same collisions if at every two neighbouring gaps they came in the
-// same order; the order across the line may differ.
+// Compares runs: states bit for bit, and sequences of collisions if their order matters. Collisions at gaps that are
+// not neighbours commute, so two runs made the same collisions if the order is the same at every two neighbouring gaps.
 
 #include <map>
 #include <vector>
@@ -18,7 +17,7 @@ template <class T> bool identical(const Configuration<T>& a, const Configuration
          a.closure_speed == b.closure_speed;
 }
 
-// `close_calls` and `origin_moves` are how the run was made, not what happened in it.
+// `close_calls` and `origin_moves` depend on how the run was computed, not on the motion.
 inline bool same_collisions(const Counts& a, const Counts& b) {
   return a.collisions == b.collisions && a.below_cutoff == b.below_cutoff && a.merges == b.merges;
 }
@@ -26,7 +25,7 @@ inline bool identical(const Counts& a, const Counts& b) {
   return same_collisions(a, b) && a.close_calls == b.close_calls && a.origin_moves == b.origin_moves;
 }
 
-// Collisions in order, for each gap and its right neighbour.
+// The collisions in order, for each gap and its right neighbour.
 class Sequence {
  public:
   void add(ParticleIndex left) {

@@ -12,7 +12,7 @@ using Wide = boost::multiprecision::cpp_bin_float_50;  // expression templates o
 
 inline Wide decimal(const char* digits) { return Wide(std::string(digits)); }
 
-// Half a unit in the last place that the reference was printed to.
+// Half a unit in the last printed place of the reference.
 inline Wide printed_tolerance(const std::string& digits) {
   const auto point = digits.find('.');
   const auto places = point == std::string::npos ? 0 : static_cast<int>(digits.size() - point - 1);

@@ -49,24 +49,24 @@ template <class T> Scene<T> rmix(ParticleIndex n) {
 
 inline std::int64_t rshock_displacement(ParticleIndex particle) { return bits_of(particle, 0, 0x3FFFF) - 131072; }
 
-// Rows of unit spacing closing in at plus and minus `speed`.
+// Rows of unit spacing that approach each other at plus and minus `speed`.
 template <class T> Scene<T> rshock(ParticleIndex n, const T& speed) {
   return std::make_shared<Rows<T>>(symmetric_rows<T>(n, speed, T(1), rshock_displacement));
 }
 template <class T> Scene<T> rshock(ParticleIndex n) { return rshock(n, T(T(1) / T(2))); }
 
-// Undisplaced: pairs of a generation meet at one time.
+// Without displacements: many pairs collide at one time.
 template <class T = double> Scene<T> lattice_rows(ParticleIndex n) {
   return std::make_shared<Rows<T>>(
       symmetric_rows<T>(n, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
 }
-// Rows that differ in density and speed, with a heavy particle between them.
+// Rows with different densities and speeds, with a heavy particle between them.
 inline Scene<double> unequal_rows() {
   return std::make_shared<Rows<double>>(Row<double>{160, 0.75, .5}, Row<double>{240, -0.25, 1.5},
                                         CentralParticle<double>{20, .125}, rshock_displacement);
 }
 
-// Rows and rings as scenes have them, displaced by counters.
+// Rows and rings as in scenes, displaced by counter-based random numbers.
 inline Scene<double> uniform_rows(ParticleIndex count) {
   return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));
 }
@@ -74,7 +74,7 @@ inline Scene<double> gaussian_ring(ParticleIndex count, double length) {
   return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
 }
 
-// The same particles, held as a list without any knowledge of rows.
+// The same particles as a list, which does not know that they are rows.
 template <class T> Scene<T> as_list(const Particles<T>& particles) {
   std::vector<T> x, v, m;
   for (ParticleIndex b = 0; b < particles.count(); ++b) {

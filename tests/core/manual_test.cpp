@@ -1,5 +1,5 @@
-// What is written about the code is about this code: links between the pages lead somewhere, core/README.md names every
-// header of core/ (or its folder), and files that it or a comment names are there.
+// The documents match the code: links between the pages are valid, core/README.md names every header of core/ (or its
+// folder), and files named there or in a comment exist.
 #include <gtest/gtest.h>
 
 #include <filesystem>

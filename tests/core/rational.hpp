@@ -1,6 +1,6 @@
 #pragma once
-// Exact arithmetic: quotients of integers of any size, without expression templates, as the engine's scalar. The oracle
-// of small cases: no rounding, so every identity of the dynamics holds with ==.
+// Exact arithmetic: quotients of integers of any size, without expression templates, as the engine's scalar. It is the
+// reference for small cases: without rounding every identity of the dynamics holds with ==.
 
 #include <algorithm>
 #include <string>
@@ -14,10 +14,10 @@ namespace cradle::test {
 using Rational =
     boost::multiprecision::number<boost::multiprecision::cpp_rational_backend, boost::multiprecision::et_off>;
 
-// A double is a quotient of integers.
+// A double as a quotient of integers.
 inline Rational exactly(double x) { return Rational(x); }
 
-// 12.5, -3e-20: without rounding in rationals.
+// Converts 12.5, -3e-20 without rounding if T is rational.
 template <class T> T decimal(const std::string& text) {
   const auto e = text.find_first_of("eE");
   std::string digits = text.substr(0, e);

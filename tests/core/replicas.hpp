@@ -1,5 +1,5 @@
 #pragma once
-// Replicas with values that put the arithmetic of statistics to the test.
+// Replicas whose values are difficult for the arithmetic of statistics.
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace cradle::test {
 
 inline constexpr std::size_t entries = 5;
 
-// Uniform in [-1, 1) times scales from 1 to 1e12, on an offset that makes naive sums of squares cancel.
+// Uniform in [-1, 1) times scales from 1 to 1e12, plus an offset for which naive sums of squares cancel.
 inline std::vector<double> values_of(ReplicaIndex k) {
   std::vector<double> values;
   for (std::size_t i = 0; i < entries; ++i) {

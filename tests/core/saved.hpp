@@ -7,7 +7,8 @@
 
 namespace cradle::test {
 
-// Saved every `step` and continued by another run of make(): the same bits as the run that was not interrupted.
+// Saves a run every `step` and continues it with a new run from make(): the bits must be those of the uninterrupted
+// run.
 template <class Make, class Check>
 void expect_same_from_anywhere(const Make& make, double first, double step, double end, const Check& check) {
   for (double cut = first; cut < end; cut += step) {

@@ -1,5 +1,5 @@
 #pragma once
-// Runs in segments against the plain loop, bit for bit: state, counts, energy, account, at several times.
+// Compares runs in segments with the plain loop, bit for bit: state, counts, energy, account, at several times.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ inline Workers threads(unsigned count) {
   return {count, [count](std::size_t jobs, const Workers::Work& work) { for_each(ThreadExecutor(count), jobs, work); }};
 }
 
-// Segments that no one would choose among them: of three gaps, with one ghost, with more ghosts than gaps.
+// Includes impractical segments: of three gaps, with one ghost, with more ghosts than gaps.
 struct SegmentsAs {
   Segmentation how;
   unsigned threads;
@@ -61,7 +61,7 @@ template <class Run, class T> void expect_same_state(const Run& a, const Run& b,
   EXPECT_EQ(a.collided_particles(), b.collided_particles());
 }
 
-// Advances a run in segments, and one in the plain loop, through the same times.
+// Advances a run in segments and a run in the plain loop through the same times.
 template <class Chain, class T, class Law>
 SlabsMade expect_same_in_segments(const Scene<T>& scene, const Law& law, const SegmentsAs& as,
                                   const std::vector<T>& times) {

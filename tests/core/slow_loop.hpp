@@ -1,7 +1,7 @@
 #pragma once
-// The event loop in its plainest form, twin of Simulation: no queue, no keys, no ties by rounding. Before every
-// collision all gaps are searched for the least exact time, ties go left to right; the origin of time may be
-// moved after any number of collisions. Made one collision at a time, which the real loop cannot be.
+// The event loop in its plainest form, the slow twin of Simulation: no queue, no keys, no rounded ties. Before every
+// collision it searches all gaps for the least exact time; ties go left to right. The origin of time may be moved after
+// any number of collisions. It makes one collision at a time, which the real loop cannot do.
 
 #include <optional>
 #include <utility>
@@ -14,10 +14,10 @@ namespace cradle::test {
 
 template <class T> struct Step {
   ParticleIndex particle;  // on the left of the gap
-  Pair<T> time;            // of the scene
-  T local_time;            // as the chain called it
+  Pair<T> time;            // in the scene
+  T local_time;            // in the chain
   T closing_speed;         // before the collision
-  T nearest_gap;           // beside it
+  T nearest_gap;           // the smaller of the neighbouring gaps
 };
 
 template <class Law, class Chain> class SlowLoop {
@@ -29,7 +29,7 @@ template <class Law, class Chain> class SlowLoop {
 
   const Chain& chain() const { return chain_; }
 
-  // The gap that closes next; none when all particles part.
+  // The gap that closes next; none if all particles part.
   std::optional<Slot> next() const {
     std::optional<Slot> first;
     for (Slot s = chain_.first(); s <= chain_.last(); ++s)

@@ -1,6 +1,6 @@
 #pragma once
-// Particles on a ring in the plainest form, twin of the chains on a ring: positions and velocities, all particles
-// advanced from collision to collision, the next one found by looking at every pair of neighbours.
+// Particles on a ring in the plainest form, the slow twin of the chains on a ring: positions and velocities; all
+// particles are advanced from collision to collision, and the next one is searched among all pairs of neighbours.
 
 #include <algorithm>
 #include <optional>
@@ -15,7 +15,7 @@ namespace cradle::test {
 template <Real T> class SlowRing {
  public:
   struct Particle {
-    T x, v, m;  // x unwrapped: those of the list increase and span less than the circumference
+    T x, v, m;  // x unwrapped: increases along the list, which spans less than the circumference
     ParticleIndex index;
   };
 
@@ -42,9 +42,9 @@ template <Real T> class SlowRing {
     fly(until);
   }
 
-  // As they are given, from the first one on the left; on a ring so large that nothing comes round: a line.
+  // The particles from the first one on the left. A very large ring serves as a line.
   const std::vector<Particle>& unfolded() const { return ring_; }
-  // From the first particle right of 0.
+  // The particles from the first one right of 0.
   std::vector<Particle> folded() const {
     std::vector<Particle> particles = ring_;
     for (Particle& b : particles) {

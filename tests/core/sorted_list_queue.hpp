@@ -1,5 +1,5 @@
 #pragma once
-// The event queue in its plainest form, twin of EventQueue: a list sorted by (time, slot), every time in full.
+// The event queue in its plainest form, the slow twin of EventQueue: a list sorted by (time, slot), with exact times.
 
 #include <set>
 #include <utility>

@@ -1,8 +1,7 @@
 #pragma once
-// The strictest scalar that the engine must accept: the arithmetic of double and nothing else. Conversions from an int
-// or a 64-bit integer and to a double are explicit; there is no default value, and std:: mathematics is found by
-// argument-dependent lookup only. Code that compiles with it has no implicit conversions; its results have the bits of
-// double.
+// The strictest scalar that the engine must accept: only the arithmetic of double. Conversions from an int or a 64-bit
+// integer and to a double are explicit; there is no default value, and std:: mathematics is found by argument-dependent
+// lookup only. Code that compiles with it has no implicit conversions; its results have the bits of double.
 
 #include <cmath>
 #include <compare>
@@ -21,7 +20,7 @@ class StrictReal {
   requires std::is_arithmetic_v<Other> StrictReal(Other)
   = delete;
 
-  // For the tests only; the engine does not use it.
+  // For tests; the engine does not use it.
   static StrictReal of(double value) {
     StrictReal x(0);
     x.value_ = value;

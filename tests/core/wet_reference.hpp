@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of the wet shock's theory compare with: numbers of the validation table.
+// Reference numbers for tests of the wet shock's theory, from the validation table.
 
 #include <array>
 #include <cstdint>
@@ -11,10 +11,10 @@
 namespace cradle::test {
 
 inline constexpr double ulp = std::numeric_limits<double>::epsilon();
-// Identities evaluated in Wide: a few thousand roundings of 2^-168, some after factors of up to 1e4.
+// Tolerance for identities in Wide: a few thousand roundings of 2^-168, some multiplied by up to 1e4.
 inline const Wide tiny = pow(Wide(10), -42);
 
-// In the paper's units, u0 = 1/2.
+// A shock in the paper's units, u0 = 1/2.
 template <class T> theory::WetShock<T> paper_shock(const T& loss, std::uint64_t particles = 0) {
   theory::WetShock<T> shock{loss};
   shock.particles = particles;

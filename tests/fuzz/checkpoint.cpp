@@ -1,5 +1,4 @@
-// States of runs, as they are behind a checkpoint's checksum: they are refused, or the run continues with whatever it
-// was given, to some end.
+// States of runs as in a checkpoint, after its checksum: they are refused, or the run continues from them to some end.
 #include <memory>
 #include <stdexcept>
 

@@ -1,6 +1,6 @@
 #pragma once
-// What the targets have in common: an Error is what malformed input is answered with; anything else that leaves a
-// target is a finding, as are crashes, sanitizer reports, leaks and more than a minute for one input (-timeout=60).
+// Shared by the targets: malformed input may only throw Error. Any other exception that leaves a target is a failure,
+// as are crashes, sanitizer reports, leaks and more than a minute for one input (-timeout=60).
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Contents of journals, as they are behind their checksums, which a fuzzer would not guess: their header,
-// records of a run and of an ensemble.
+// Contents of journals without their checksums, which a fuzzer would not guess: the header, records of a run and of an
+// ensemble.
 #include "cradle/tests/fuzz/fuzz.hpp"
 #include "cradle/tools/store/ensemble_store.hpp"
 #include "cradle/tools/store/run_journal.hpp"

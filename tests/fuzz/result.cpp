@@ -1,5 +1,5 @@
-// Results as bytes, of any names, types and shapes: what can be written as a file can be read from it. A seal that a
-// fuzzer does not guess stands before HDF5, which crashes on damaged files.
+// Results as bytes, with any names, types and shapes: every result that can be written as a file can be read from it.
+// The seal, which a fuzzer does not guess, protects HDF5, which crashes on damaged files.
 #include <unistd.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Writes inputs to begin with: seeds FOLDER makes FOLDER/TARGET/NAME, right ones, of every kind.
+// Writes initial inputs for the fuzzer: seeds FOLDER makes FOLDER/TARGET/NAME, valid ones of every kind.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

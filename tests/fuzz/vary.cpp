@@ -1,5 +1,5 @@
-// Values of --vary and --point, one a line, those of points behind a '!'. A million points are right, and take seconds
-// with sanitizers: here some thousand are too many.
+// Values of --vary and --point, one per line; those of points have a '!' before them. A million points are allowed, but
+// take seconds with sanitizers: here the limit is some thousand.
 #include <sstream>
 
 #include "cradle/tests/fuzz/fuzz.hpp"

@@ -1,6 +1,6 @@
-// What a user's program looks like: two rows of inelastic particles run into each other (the scene fig2, made small),
-// once and as an ensemble. Shows that an installed Cradle compiles and runs outside its own tree, with the libraries it
-// needs; the exit status says whether the energy balance is right.
+// An example of a user's program: two rows of inelastic particles run into each other (a small version of the scene
+// fig2), once and as an ensemble. It shows that an installed Cradle compiles and runs outside its own tree, with the
+// libraries that it needs; the exit status says whether the energy balance is right.
 
 #include <cmath>
 #include <iostream>

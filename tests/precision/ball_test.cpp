@@ -1,5 +1,5 @@
-// Balls enclose: every operation on random balls holds the exact result of every number in them, at their ends above
-// all; comparisons are certain or open; decimals and doubles are rounded outwards.
+// Balls enclose: the result of every operation on random balls contains the exact results for the numbers in them,
+// above all for their ends; comparisons are certain or open; decimals and doubles are rounded outwards.
 #include <array>
 #include <vector>
 

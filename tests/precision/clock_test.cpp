@@ -1,5 +1,5 @@
-// A run started late. Proves: from t = 1e12, where a double resolves 1e-4, a run makes the collisions of the one from
-// t = 0 with the same gaps and closing speeds to the last bit, and collision times less 1e12 agree to 1e-18.
+// A run that starts late. Proves: from t = 1e12, where a double resolves 1e-4, a run makes the collisions of a run from
+// t = 0 with the same gaps and closing speeds to the last bit, and its collision times minus 1e12 agree to 1e-18.
 //
 // Bound. Times are kept as a sum of two numbers; a move of the origin rounds the lower one, which is at most half a
 // unit in the last place of 1e12, 2^-14 in double, to 53 bits: 2^-68 a move, 3.4e-21. The scenes here move it some tens

@@ -1,7 +1,7 @@
-// Collapse of many particles under policy stop. Proves: among 3, 10 and 100 particles as soft as three need to be to
-// collapse, a run with exact dynamics ends by itself with the collapse time of the same run in 100 digits, to within
-// the uncertainty it states, or in double, where rounding may leave the collapse open, with the type's range; near the
-// elastic limit 100 and 1e5 particles get to just before the onset of collapse; no order is lost on the way. A
+// Collapse of many particles under policy stop. Proves: for 3, 10 and 100 particles with a restitution at which three
+// collapse, a run with exact dynamics ends by itself with the collapse time of the same run in 100 digits, within its
+// stated uncertainty. In double, where rounding may leave the collapse open, it may also end with the type's range.
+// Near the elastic limit 100 and 1e5 particles run until just before the onset of collapse; no order is lost. A
 // mirror-symmetric pattern of 4 particles, in which symmetry is unstable, keeps it as long as the type's digits allow.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// How many pieces of memory the program has asked for so far. Compiled apart: where the compiler sees both ends of it,
-// it takes the memory of `new` to be freed in the wrong way.
+// How many pieces of memory the program has requested until now. Compiled separately: if the compiler sees both
+// operators, it warns that the memory of `new` is freed in the wrong way.
 
 #include <atomic>
 #include <cstdint>

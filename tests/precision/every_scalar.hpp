@@ -1,6 +1,6 @@
 #pragma once
-// Every scalar type, MPFR at several numbers of digits, for tests that are the same in all of them. MPFR's precision is
-// one per process: the fixture sets it before a test makes its first number.
+// Every scalar type, with MPFR at several numbers of digits, for tests that are the same in all types. MPFR has one
+// precision per process: the fixture sets it before a test makes its first number.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ template <class... P> struct Joined<testing::Types<P...>> { using Types = testin
 template <class... P, class... Q, class... More>
 struct Joined<testing::Types<P...>, testing::Types<Q...>, More...> : Joined<testing::Types<P..., Q...>, More...> {};
 
-// What this build has of them.
+// The types that this build has.
 #ifdef CRADLE_WITH_FLOAT128
 using Binary128 = testing::Types<Precision<float128>>;
 #else
@@ -45,9 +45,9 @@ using EveryMpfr = testing::Types<>;
 using EveryPrecision =
     Joined<testing::Types<Precision<double>, Precision<long double>, Precision<double_double>, Precision<bin_float>>,
            Binary128, EveryMpfr>::Types;
-// Types in which the queue's keys are rounded times, one of each kind.
+// Types whose queue keys are rounded times, one of each kind.
 using WidePrecision = Joined<testing::Types<Precision<double_double>>, Binary128, Mpfr50>::Types;
-// One type of each kind of arithmetic, where EveryPrecision would take too long.
+// One type of each kind of arithmetic, for tests that take too long with EveryPrecision.
 using EachKindOfPrecision = Joined<testing::Types<Precision<double>, Precision<long double>>, WidePrecision>::Types;
 
 struct PrecisionName {
@@ -59,7 +59,7 @@ struct PrecisionName {
   }
 };
 
-// Exact dynamics until a gap is below this; 0: until the collapse time is settled.
+// Exact dynamics until a gap is smaller than this; 0: until the collapse time is known.
 template <class T> Policy<T> stop_below(const T& gap) {
   Policy<T> policy;
   policy.collapse = CollapsePolicy::stop;

@@ -1,7 +1,7 @@
-// Scenes at the edge of what numbers hold. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the
-// same collisions in double as in double-double; restitutions next to 0 and 1, and 0 and 1 themselves, and collisions
-// of equal times by construction end a run as they should, without a hang and without a lost order; the velocity
-// cut-off takes effect exactly below its value.
+// Scenes at the limits of the number range. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the
+// same collisions in double as in double-double; with restitutions at and next to 0 and 1, and with collisions at equal
+// times, a run ends as it should, without a hang and without a lost order; the velocity cut-off takes effect exactly
+// below its value.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,9 +1,8 @@
-// The filtered queue: 64-bit keys made from rounded times, exact times only where keys are too close to call. Proves it
-// equal to a loop that looks through all gaps for the least (exact time, position): the same collisions in the same
-// order at each particle, at the same times to the last bit, in scenes that collapse and in shocks. Where many
-// collisions fall on the same time by construction, in lattices, collisions that commute may swap, and rounding decides
-// triple collisions: there every single choice is checked, against all gaps that could claim to come first. The number
-// of index bits in a key changes no bit of a run.
+// The filtered queue: 64-bit keys made from rounded times, and exact times only if keys are too close. Proves that it
+// is equal to a loop that searches all gaps for the least (exact time, position): the same collisions in the same order
+// at each particle, at the same times to the last bit, in collapses and in shocks. In lattices, where many collisions
+// are simultaneous, collisions that commute may swap, and rounding decides triple collisions: there every single choice
+// is checked against all gaps that might be first. The number of index bits in a key changes no bit of a run.
 #include <gtest/gtest.h>
 
 #include <utility>

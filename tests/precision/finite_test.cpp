@@ -1,6 +1,6 @@
-// In every scalar type, whatever its numeric_limits, a run refuses an infinite or undefined time to advance to, and
-// continues unharmed. (In double-double a run to an infinite time used to make no collisions, without a message; in
-// double an undefined time overwrote memory.)
+// In every scalar type, for any numeric_limits, a run refuses to advance to an infinite time or to NaN, and can then
+// continue. (In double-double a run to an infinite time used to make no collisions, without a message; in double NaN
+// overwrote memory.)
 #include <gtest/gtest.h>
 
 #include <stdexcept>

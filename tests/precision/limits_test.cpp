@@ -1,6 +1,6 @@
-// What std::numeric_limits says of every scalar type against how the type computes. Proves: epsilon is the spacing that
-// the digits promise; least and greatest number are those that the exponents promise; infinity and NaN, where they are
-// claimed, are there and behave as such.
+// Compares std::numeric_limits of every scalar type with its arithmetic. Proves: epsilon is the spacing for its digits;
+// the least and the greatest number are those of its exponents; infinity and NaN, if they are claimed, exist and behave
+// as such.
 #include <gtest/gtest.h>
 
 #include <cmath>

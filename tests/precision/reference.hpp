@@ -1,6 +1,6 @@
 #pragma once
-// MPFR numbers of 4400 bits, some 1300 digits, on the heap and of their own precision: what a test computes beside a
-// run in any scalar type, whatever precision that one works in. Every scalar converts to one without error.
+// MPFR numbers of 4400 bits, about 1300 digits, on the heap and with a precision of their own: references for runs in
+// any scalar type at any precision. Every scalar converts to one without error.
 
 #include <mpfr.h>
 
@@ -59,7 +59,7 @@ class Reference {
     mpfr_mul_2si(result.v_, x.v_, exponent, MPFR_RNDN);
     return result;
   }
-  // To the nearest number of so many bits.
+  // Rounds to the nearest number of so many bits.
   friend Reference rounded(const Reference& x, long to_bits) {
     mpfr_t narrow;
     mpfr_init2(narrow, to_bits);
@@ -88,7 +88,7 @@ inline Reference reference(long double x) {
   return result;
 }
 inline Reference reference(const double_double& x) { return Reference(x.high()) + Reference(x.low()); }
-// A template, so that nothing is tried to be converted to it.
+// A template, to prevent implicit conversions to its argument.
 template <std::same_as<bin_float> T> Reference reference(const T& x) {
   int exponent = 0;
   Reference sum;
@@ -115,8 +115,8 @@ template <int Limbs> Reference reference(const Mpfr<Limbs>& x) { return Referenc
 
 template <class T> Reference reference(const Pair<T>& x) { return reference(x.high) + reference(x.low); }
 
-// Largest relative error of one operation of a type: half its epsilon, and 15 u^2 + 56 u^3 < 4 epsilon for the quotient
-// of double-doubles (u = 2^-53, epsilon = 4 u^2).
+// The largest relative error of one operation of a type: half its epsilon, or for the quotient of double-doubles 15 u^2
+// + 56 u^3 < 4 epsilon (u = 2^-53, epsilon = 4 u^2).
 template <class T> Reference rounding() {
   const Reference epsilon = reference(std::numeric_limits<T>::epsilon());
   return std::same_as<T, double_double> ? epsilon * Reference(4) : epsilon / Reference(2);

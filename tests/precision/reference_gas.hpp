@@ -1,6 +1,6 @@
-// A gas that shares no code with the engine or the checker of proofs: the next collision is searched among all pairs of
-// neighbours. The place of a particle is held as the place from which its flight would have started at time 0, which
-// keeps rationals short. In rationals it is exact; scenes with roots take 100 digits.
+// A gas that shares no code with the engine or the checker of proofs: it searches all pairs of neighbours for the next
+// collision. A particle's stored position is extrapolated back to time 0, which keeps rationals short. In rationals it
+// is exact; scenes with roots use 100 digits.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace cradle::test {
 
 enum class GasLaw { inelastic, contact_time, merging, sticky, wet };
 
-// Particles that are together are one; cells stand from left to right, on a ring up to the seam.
+// Merged particles are one cell; cells are ordered from left to right, on a ring up to the seam.
 template <class T> struct Gas {
   struct Cell {
     T origin, v, m;
@@ -29,14 +29,14 @@ template <class T> struct Gas {
 
   T time{0};
   std::uint64_t collisions = 0, below_cutoff = 0, merges = 0;
-  bool tied = false;  // three met at one time: the motion after that is undefined
+  bool tied = false;  // three particles met at one time: the motion after that is undefined
 
-  // All collisions up to a time, or the first `most` of all.
+  // Makes all collisions up to a time, or the first `most`.
   void advance(const T& until, std::uint64_t most) {
     while (collisions < most && next(until)) continue;
     if (collisions < most) time = until;
   }
-  // The next collision not after `until`, made; `wrong_side`: as if it were on the other side of the cut-off.
+  // Makes the next collision not after `until`; `wrong_side`: as if it were on the other side of the cut-off.
   std::optional<std::pair<std::int64_t, std::int64_t>> next(const T& until, bool wrong_side = false) {
     std::optional<T> first;
     std::vector<std::size_t> together;
@@ -114,7 +114,7 @@ template <class T> struct Gas {
     l.particles.insert(l.particles.end(), r.particles.begin(), r.particles.end());
     cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(after(k)));
   }
-  // The closing speed is now a speed of parting.
+  // The closing speed is now a speed of separation.
   T after_bridge(const T& w, const T& reduced) const {
     if constexpr (std::is_same_v<T, Rational>)
       return w;

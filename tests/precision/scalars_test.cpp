@@ -1,5 +1,5 @@
-// From the name of a precision to a type. Proves: every name leads to its type, digits to the smallest MPFR type with
-// room for them, which then works in that many bits; a name there is not is refused with what to do instead.
+// The conversion of the name of a precision to a type. Proves: every name gives its type; digits give the smallest MPFR
+// type that can hold them, which then works in that many bits; an unknown name is refused with advice.
 #include <concepts>
 
 #include <gtest/gtest.h>

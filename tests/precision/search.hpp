@@ -1,8 +1,7 @@
 #pragma once
-// What the filtered queue is compared with: a loop that looks through all gaps for the least (exact time, position).
-//
-// It moves its origin of time where the run did (after the same number of collisions, by the same offset), since times
-// are rounded as offsets; it knows nothing else of the run.
+// A slow twin of the filtered queue: a loop that searches all gaps for the least (exact time, position). It moves its
+// origin of time as the run did (after the same number of collisions, by the same offset), since times are rounded as
+// offsets; it uses nothing else of the run.
 
 #include <cstdint>
 #include <map>
@@ -20,7 +19,7 @@ template <class T> struct Meeting {
   ParticleIndex other;
   T time;
 };
-// Of each particle, in order.
+// For each particle its collisions, in order.
 template <class T> using Meetings = std::map<ParticleIndex, std::vector<Meeting<T>>>;
 
 template <class T> void note(Meetings<T>& meetings, ParticleIndex left, ParticleIndex right, const T& time) {
@@ -29,8 +28,8 @@ template <class T> void note(Meetings<T>& meetings, ParticleIndex left, Particle
 }
 
 template <class T> struct Origin {
-  std::uint64_t collisions;  // made before it moved
-  T offset;                  // to where
+  std::uint64_t collisions;  // made before the move
+  T offset;                  // the new origin
 };
 
 template <class T> struct Recorded {
@@ -39,8 +38,7 @@ template <class T> struct Recorded {
   Counts counts;
 };
 
-// Of a run as the queue orders it, which must be the same observed and not: observed ones take another path through the
-// loop.
+// Records a run with and without an observer: observed runs take another path through the loop, and must be the same.
 template <class Run, class T> Recorded<T> recorded(Run run, const T& end) {
   Run unobserved = run;
   const Status status = unobserved.advance(end);
@@ -88,7 +86,7 @@ template <class Chain, class Law, class T> Meetings<T> searched(Chain chain, con
   return meetings;
 }
 
-// Every particle has the same collisions with the same others in the same order, at the same times to the last bit.
+// Every particle has the same collisions with the same partners in the same order, at the same times to the last bit.
 template <class T> void expect_same_meetings(const Meetings<T>& found, const Meetings<T>& expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (const auto& [particle, meetings] : found) {
@@ -101,7 +99,7 @@ template <class T> void expect_same_meetings(const Meetings<T>& found, const Mee
   }
 }
 
-// Of runs that `make` gives with so many index bits in a key. Returns the close calls of the last.
+// Tests runs from `make` with several numbers of index bits in a key. Returns the close calls of the last.
 template <class Make, class T>
 std::uint64_t expect_index_bits_change_no_bit(const Make& make, const T& step, int steps) {
   auto run = make(3), run13 = make(13), run20 = make(20);
@@ -118,7 +116,7 @@ std::uint64_t expect_index_bits_change_no_bit(const Make& make, const T& step, i
   return run20.counts().close_calls;
 }
 
-// Particles on integers with a few integer velocities: times are small rationals at first, equal ones abound.
+// Particles at integers with small integer velocities: times are small rationals at first, and many are equal.
 template <class T> Scene<T> integers() {
   std::vector<T> x, v;
   for (ParticleIndex i = 0; i < 60; ++i) {

@@ -1,5 +1,5 @@
-// Proves: a light particle between a wall that takes energy and a heavy particle, elastic where slow, comes to an end
-// in every type, those whose exponents have none included.
+// Proves: a light particle between a wall that takes energy and a heavy particle, elastic at low speeds, comes to an
+// end in every type, also in types with unlimited exponents.
 #include <gtest/gtest.h>
 
 #include "cradle/core/initial/walled.hpp"

@@ -1,6 +1,6 @@
-// Text in and out, in every scalar type. Proves: what is written is read back as the same number, random, extreme or
-// subnormal; a literal becomes the nearest number of the type, by 1300 digits of MPFR; exponents beyond double arrive
-// where the type has room for them; whatever is not a finite decimal literal is refused.
+// Conversion from and to text in every scalar type. Proves: random, extreme and subnormal numbers are read back
+// unchanged; a literal becomes the nearest number of the type, compared with 1300 digits of MPFR; exponents beyond
+// double are kept if the type can hold them; anything but a finite decimal literal is refused.
 #ifdef CRADLE_WITH_MPFR
 
 #include <gtest/gtest.h>

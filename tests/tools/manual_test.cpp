@@ -1,5 +1,5 @@
-// The manual, tools/README.md, is of this program: what it quotes is what the program prints, every command and every
-// option has its place, and every group, dataset and attribute of result files is named.
+// The manual, tools/README.md, describes this program: its quotations are what the program prints, it has every command
+// and every option, and it names every group, dataset and attribute of result files.
 
 #include <algorithm>
 #include <regex>

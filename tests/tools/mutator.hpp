@@ -10,7 +10,7 @@
 
 namespace cradle::tests {
 
-// CRADLE_MUTATIONS makes them more than the usual number.
+// The number of mutations; CRADLE_MUTATIONS can increase it.
 inline int mutations(int usual) {
   const char* wanted = std::getenv("CRADLE_MUTATIONS");
   return wanted != nullptr ? std::atoi(wanted) : usual;
@@ -21,7 +21,7 @@ class Mutator {
   explicit Mutator(unsigned seed) : random_(seed) {}
   std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
 
-  // Up to three faults, none of them before the given byte.
+  // Adds up to three faults, none of them before the given byte.
   std::string mutate(std::string bytes, std::size_t from = 0) {
     for (std::size_t faults = 1 + below(1 + below(3)); faults > 0 && bytes.size() > from + 8; --faults)
       damage(bytes, from);
@@ -53,14 +53,14 @@ class Mutator {
       number(bytes, std::max(from, structure(bytes, at)) + below(64));
   }
 
-  // Where HDF5's own bookkeeping begins after this place.
+  // The position after this one at which HDF5's own structures begin.
   std::size_t structure(const std::string& bytes, std::size_t at) {
     static constexpr std::array names{"TREE", "HEAP", "SNOD", "GCOL", "OHDR", "FRHP", "BTHD", "\x89HDF"};
     const std::size_t found = bytes.find(names.at(below(names.size())), at);
     return found == bytes.npos ? 0 : found;
   }
 
-  // Sizes, counts and addresses that cannot be, infinity and nan.
+  // Writes impossible sizes, counts and addresses, infinity and nan.
   void number(std::string& bytes, std::size_t at) {
     static constexpr std::array<std::uint64_t, 11> wrong{0,
                                                          1,

@@ -57,8 +57,8 @@ class ProgramTest : public testing::Test {
     if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
   }
 
-  // `command` as typed in the test's folder; `cradle` is the program that was built. Another exit status than the
-  // expected one is a failure of the test.
+  // `command` is typed in the test's folder; `cradle` is the built program. The test fails if the exit status is not
+  // the expected one.
   Printed shell(const std::string& command, std::optional<int> expected = {}, const char* file = __builtin_FILE(),
                 int line = __builtin_LINE()) const {
     const std::string whole = "cd '" + folder.string() + "' && PATH=\"" + test::build_folder + "/tools:$PATH\" && { " +
@@ -101,21 +101,21 @@ std::vector<T> numbers(const tools::Result& result, std::string_view group, std:
   return std::get<std::vector<T>>(column(result, group, name).values);
 }
 
-// Runs that are interfered with must not end by themselves, however quick the machine is: this one would make 1e18
-// collisions. It keeps its state ten times a second.
+// A run that never ends by itself, on any machine, for tests that interrupt it: it would make 1e18 collisions. It saves
+// its state ten times a second.
 inline std::string endless_run(const std::string& file) {
   return "cradle run cooling --quiet --set law.type=inelastic --set law.restitution=1 --set initial.particles=2000 "
          "--set run.until=1e15 --set output.checkpoint.every_seconds=0.1 -o " +
          file;
 }
 
-// Puts the command before it in the background, its process being $pid, and waits until its state has collisions in it.
+// Puts the command before it in the background ($pid) and waits until its saved state has collisions.
 inline std::string until_collisions(const std::string& file) {
   return " & pid=$!; until cradle info " + file +
          ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* collisions'; do sleep 0.01; done; ";
 }
 
-// Initial perturbation of the published fixtures: the splitmix64 finaliser of the particle's number.
+// The initial perturbation of the published fixtures: the splitmix64 finaliser of the particle's number.
 inline std::uint64_t hash(std::uint64_t i) {
   std::uint64_t z = i + 0x9E3779B97F4A7C15;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;

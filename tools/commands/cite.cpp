@@ -7,7 +7,7 @@ namespace cradle::tools {
 
 namespace {
 
-// The file that reports quote, too.
+// Reports quote this file, too.
 Exit cite() {
   for (const EmbeddedFile& file : python_package())
     if (file.name == "cradle/cite.bib") fmt::print("{}", file.text);

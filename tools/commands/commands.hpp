@@ -1,5 +1,5 @@
-// The commands of the program, one file each. A command adds itself to the command line and, when chosen, does its work
-// and returns an exit status; it throws Error for everything a user can put right.
+// The commands of the program, one file each. Each adds itself to the command line. When chosen, it does its work and
+// returns an exit status; it throws Error for everything a user can put right.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct CommonOptions : RunningOptions {
   std::vector<std::string> overrides;
   std::optional<std::string> seed;
 
-  /// What --set and --seed say.
+  /// The assignments of --set and --seed.
   std::vector<std::string> all_overrides() const;
   Scene read() const;
 };

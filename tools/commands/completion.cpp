@@ -1,5 +1,5 @@
-// Completion of command lines. The shells' scripts are a line or two each: they call the program with the words typed
-// so far and show what it prints, one candidate per line, with a tab and its meaning behind it.
+// Completion of command lines. The scripts for the shells have a line or two each: they call the program with the words
+// typed so far and show its output, one candidate per line followed by a tab and its meaning.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ struct CompletionArguments {
   std::vector<std::string> words;
 };
 
-// What may follow the words, the last of which is being typed, as pairs of a word and its meaning.
+// Candidates for the last of the words, which is being typed: pairs of a word and its meaning.
 std::vector<std::pair<std::string, std::string>> candidates(const std::vector<CommandText>& commands,
                                                             const std::vector<std::string>& words) {
   std::vector<std::pair<std::string, std::string>> all;
@@ -78,7 +78,7 @@ Exit completion(const CommandLine& program, const CompletionArguments& arguments
     }
   if (arguments.shell != "words") throw Error({}, "no such shell", arguments.shell, "give bash, zsh or fish");
   const std::string typed = arguments.words.empty() ? "" : arguments.words.back();
-  std::set<std::string> printed;  // several rows of the table may share a key
+  std::set<std::string> printed;  // several rows of the table may have the same key
   for (const auto& [word, meaning] : candidates(program.texts(), arguments.words))
     if (word.starts_with(typed) && printed.insert(word).second) fmt::print("{}\t{}\n", word, meaning);
   return Exit::done;

@@ -53,7 +53,7 @@ std::string checkpoint_listing(const CheckpointHeader& found, const std::string&
                                         found.collisions, found.seconds, std::filesystem::file_size(path)));
 }
 
-// Of the one that is there and is this journal's.
+// Describes the checkpoint, if it exists and belongs to this journal.
 std::string checkpoint_listing(const JournalHeader& journal, const std::string& path) {
   if (!std::filesystem::exists(path)) return line("checkpoint", "none yet: `resume` starts anew");
   const StateReader reader(path);
@@ -101,7 +101,7 @@ Exit info(const InfoArguments& options) {
   return Exit::done;
 }
 
-// As long as the run continues, its journal is there.
+// Repeats while the journal exists, which is as long as the run continues.
 Exit follow(const InfoArguments& options) {
   using namespace std::chrono_literals;
   const auto in_progress = [&] { return stored_in(options.file) == Stored::journal; };

@@ -10,7 +10,7 @@ namespace cradle::tools {
 
 namespace {
 
-// As it stands: backslashes are troff's own, minus signs not hyphens, and a line may begin with a dot.
+// Escapes text for troff: backslashes, minus signs (else hyphens), and dots at the beginning of a line.
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text) {

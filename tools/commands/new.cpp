@@ -1,5 +1,5 @@
-// A scene to start from, with every key that it could use: what the table of keys says of each, and a line of its own,
-// commented out where the value is the default.
+// Writes a scene to start from, with every key that it could use: the documentation of each key, and a line with its
+// value, commented out if that is the default.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ struct NewArguments {
   std::string file = "shock.toml", from;
 };
 
-// Without --from: Fig. 2, smaller, and through its turn-over.
+// Without --from: a smaller Fig. 2 that runs beyond its turn-over.
 Scene to_start_from(const std::string& name) {
   if (!name.empty()) return read_scene(name, {});
   return read_scene("fig2", {"title=two rows of inelastic particles", "initial.particles=2000", "run.until=1500",
@@ -25,7 +25,7 @@ Scene to_start_from(const std::string& name) {
                              "output.profiles.range=[-100,100]"});
 }
 
-// Spelled otherwise, 1.0 instead of 1, a value is written: it stands in the result as it does here.
+// Compares texts: a value that is spelled differently (1.0 instead of 1) is written, as results write it.
 bool is_default(const Field& field, const Scene& scene) {
   if (field.fallback == "required") return false;
   Scene other = scene;

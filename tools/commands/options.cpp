@@ -31,7 +31,7 @@ std::string with_example(const std::string& example, const std::string& ending) 
   return fmt::format("Example: {}\n{}", example, ending);
 }
 
-// The command that was being read, as one would type it.
+// The command as the user types it.
 std::string words_of(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
   return program.get_name() + (chosen.empty() ? "" : " " + chosen.front()->get_name());

@@ -1,6 +1,6 @@
 // The command line as commands see it: a command declares its arguments and options, each bound to a variable of its
-// own, and what it does. Only options.cpp knows the library that reads them: included in every command it was nearly a
-// third of the program's compile time.
+// own, and its action. Only options.cpp includes the library that parses them: included in every command, it took
+// nearly a third of the program's compile time.
 #pragma once
 
 #include <cstdint>
@@ -29,11 +29,11 @@ struct WholeNumbers {
   std::uint64_t least = 0, most = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// One command. An argument has a name, "FILE", an option one or two, "-o,--output". Variables are written when the
-/// command line is read, and only where it says something: what they hold before is the default.
+/// One command. An argument has a name, "FILE"; an option has one or two, "-o,--output". Reading the command line
+/// writes the variables of the options that are given; the others keep their values, which are the defaults.
 class Command {
  public:
-  /// Help ends with `ending`, a note above it.
+  /// The help text ends with the note, if there is one, and `ending`.
   Command(CLI::App& command, Action& chosen, const std::string& ending);
 
   void argument(const std::string& name, std::string& value, const std::string& help, Needed needed = Needed::yes);
@@ -61,15 +61,15 @@ class Command {
   std::string ending_;
 };
 
-/// An option or an argument, as help has it.
+/// An option or an argument, as the help text shows it.
 struct OptionText {
-  std::vector<std::string> names;  // "-o", "--output"; of an argument its name, "SCENE"
-  std::string value, help;         // the former empty for flags
+  std::vector<std::string> names;  // "-o", "--output"; for an argument its name, "SCENE"
+  std::string value, help;         // value is empty for flags
   bool argument = false;
 };
 struct CommandText {
   std::string name, help;
-  std::vector<OptionText> options;  // --help left out
+  std::vector<OptionText> options;  // without --help
 
   bool takes(const std::string& argument) const;
 };
@@ -77,14 +77,14 @@ struct CommandText {
 /// All commands, and which of them was chosen.
 class CommandLine {
  public:
-  /// `ending` is that of every help, below an example.
+  /// `ending` ends every help text.
   CommandLine(const std::string& program, const std::string& description, const std::string& about_version,
               const std::string& example, const std::string& ending);
   ~CommandLine();
 
   Command add(const std::string& name, const std::string& description, const std::string& example);
 
-  /// What is printed where not even a command is given.
+  /// Sets what is printed when no command is given.
   void begin_with(const std::string& text) { first_steps_ = text; }
 
   /// All commands with their options, for completion and the manual page.

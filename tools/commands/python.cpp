@@ -19,7 +19,7 @@ namespace cradle::tools {
 
 namespace {
 
-// A folder that is gone, with its files, when its owner is. Throws Error (Exit::io) where there is no room for it.
+// A temporary folder, removed with its files by the destructor. Throws Error (Exit::io) if it cannot be made.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -35,7 +35,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::string& path() const { return path_; }
-  // Makes folders in the name where they are missing.
+  // Makes missing folders in the name.
   void write(std::string_view name, std::string_view text) const {
     const auto file = std::filesystem::path(path_) / name;
     std::error_code failed;
@@ -73,8 +73,8 @@ int execute(const std::vector<std::string>& words, bool silent) {
   return WEXITSTATUS(status);
 }
 
-// The first Python that has what pictures need; python3 may be one without. Looked for only, nothing is imported: that
-// would take longer than some pictures.
+// The first Python that has the packages for pictures; python3 may not have them. It only searches for the packages:
+// importing them would take longer than some pictures.
 std::string find_python() {
   std::vector<std::string> candidates{"python3", "/usr/bin/python3"};
   if (const char* chosen = std::getenv("CRADLE_PYTHON")) candidates = {chosen};
@@ -87,7 +87,7 @@ std::string find_python() {
               Exit::io);
 }
 
-// fig2.h5 and fig2.h5.part are reported in fig2.html.
+// The output for fig2.h5 and for fig2.h5.part is fig2.html.
 std::string output_beside(std::filesystem::path file, const char* extension) {
   if (file.extension() == ".part") file.replace_extension();
   return file.replace_extension(extension).string();
@@ -98,14 +98,14 @@ std::string output_beside(std::filesystem::path file, const char* extension) {
 Exit run_python(const std::string& command, const PageArguments& arguments, const char* extension,
                 std::string_view what) {
   const auto& [file, wanted] = arguments;
-  if (stored_in(file) == Stored::other) read_result(file, Reading::ends);  // or Python would see it damaged
+  if (stored_in(file) == Stored::other) read_result(file, Reading::ends);  // before Python reads a damaged file
   const std::string output = wanted.empty() ? output_beside(file, extension) : wanted;
-  file_behind(output);  // neither a folder nor a device
+  file_behind(output);  // throws for a folder or a device
   const TemporaryFolder folder;
   for (const EmbeddedFile& part : python_package()) folder.write(part.name, part.text);
   std::error_code unknown;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  if (!unknown) ::setenv("CRADLE_PROGRAM", self.c_str(), 1);  // what the package calls in its turn
+  if (!unknown) ::setenv("CRADLE_PROGRAM", self.c_str(), 1);  // the package calls this program
   const int status = execute({find_python(), "-B", folder.path() + "/cradle", command, file, "-o", output}, false);
   if (status != 0 && status != static_cast<int>(Exit::bad_input) && status != static_cast<int>(Exit::io))
     throw Error({file, 0, ""}, fmt::format("{} could not be made", what), fmt::format("status {}", status),

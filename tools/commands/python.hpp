@@ -1,5 +1,5 @@
-// What the program does in Python: pictures and reports. It carries the package tools/python/cradle in itself, so that
-// both work wherever it is installed.
+// What the program does in Python: pictures and reports. The program contains the package tools/python/cradle, so both
+// work wherever the program is installed.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 namespace cradle::tools {
 
 struct EmbeddedFile {
-  std::string_view name, text;  // the name with the folders below tools/python
+  std::string_view name, text;  // the name includes the folders below tools/python
 };
 
 /// The package, written by embed.cmake.
@@ -21,9 +21,9 @@ struct PageArguments {
   std::string file, output;
 };
 
-/// Runs the package's `cradle COMMAND FILE -o OUTPUT` from a temporary folder and returns its status, that of bad input
-/// or of files; the output is by default FILE without .part and with another extension. `what` names what is made ("the
-/// picture"); throws Error (Exit::io) where FILE is damaged or there is no Python for it.
+/// Runs the package's `cradle COMMAND FILE -o OUTPUT` from a temporary folder. Returns its status if that is one of bad
+/// input or files. The default output is FILE without .part and with another extension. `what` names the product ("the
+/// picture"). Throws Error (Exit::io) if FILE is damaged or no suitable Python is found.
 Exit run_python(const std::string& command, const PageArguments& arguments, const char* extension,
                 std::string_view what);
 

@@ -1,4 +1,4 @@
-// What `run` and `resume` have in common: computes, reports how it went, gives the exit status.
+// What `run` and `resume` share: compute, report how the run ended, return the exit status.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace cradle::tools {
 
-/// Runs what the files are of, into `output`, which the caller has claimed.
+/// Runs the scene of the files into `output`, which the caller has claimed.
 Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt);
 
 }  // namespace cradle::tools

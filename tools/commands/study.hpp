@@ -1,4 +1,4 @@
-// What `ensemble` and `sweep` have in common: runs a study, reports how it went, gives the exit status.
+// What `ensemble` and `sweep` share: run a study, report how it ended, return the exit status.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace cradle::tools {
 
-/// How many there may be, and the highest number of one: what float64 counts exactly.
+/// The most replicas, and the highest number of one: float64 counts exactly up to here.
 inline constexpr std::uint64_t most_replicas = std::uint64_t{1} << 53;
 
 struct StudyPlan {
@@ -19,8 +19,8 @@ struct StudyPlan {
   std::string output;
 };
 
-/// Runs what the plan's output does not have yet. Under MPI every rank makes the plan; what is wrong with it is
-/// reported once.
+/// Runs the replicas of the plan that its output does not have yet. Under MPI every rank makes the plan; an error in it
+/// is reported once.
 Exit run_study_command(const RunningOptions& options, const std::function<StudyPlan()>& make_plan);
 
 }  // namespace cradle::tools

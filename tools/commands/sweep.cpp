@@ -15,7 +15,7 @@ struct SweepArguments : CommonOptions {
   std::string output;
 };
 
-// What the command line says, else what the scene says.
+// The points of the command line or, without any, those of the scene.
 StudyPlan plan(const SweepArguments& options) {
   const Scene scene = options.read();
   Sweep sweep = scene.sweep;

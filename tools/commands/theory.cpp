@@ -21,7 +21,7 @@ Exit theory(const TheoryArguments& options) {
     return Exit::done;
   }
   fmt::print("{:<28}{:<18}{:<12}{:>12}  {}\n", "quantity", "equation", "form", "t", "value");
-  // Curves at a few times only: --csv has them all.
+  // Prints curves at a few times only; --csv writes all points.
   std::size_t shown = 0;
   for (const auto& p : table) {
     if (p.t && (p.form == "printed" || shown++ % 250 != 0)) continue;

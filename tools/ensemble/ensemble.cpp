@@ -45,7 +45,7 @@ std::uint64_t count(const std::vector<JobRange>& jobs) {
   return sum;
 }
 
-// MPFR has one number of digits per process at a time.
+// A process has one number of MPFR digits at a time.
 void check_digits(const Study& study) {
   for (const Study::Point& point : study.points)
     if (point.scene.run.digits != study.points.front().scene.run.digits)
@@ -54,13 +54,13 @@ void check_digits(const Study& study) {
                   "run them one after the other");
 }
 
-// As a shell takes it.
+// Quotes a path for a shell.
 std::string quoted(const std::string& path) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("._-+/", c) != nullptr; };
   return std::all_of(path.begin(), path.end(), plain) ? path : "'" + path + "'";
 }
 
-// Runs that replica, with the settings of its point, as a run of its own.
+// The command that runs this replica alone, with the settings of its point.
 std::string alone_command(const std::string& file, const std::string& group, ReplicaIndex replica) {
   const auto stem = std::filesystem::path(file).replace_extension().string();
   const std::string folder = stem == file ? file + "-scenes" : stem;
@@ -87,7 +87,7 @@ std::string failure_warning(const EnsembleStates& states, const std::string& fil
   return text;
 }
 
-// Works off jobs on all threads of this process, into the store.
+// Runs jobs on all threads of this process and puts the results into the store.
 void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew, const NextJob& next,
           const std::function<void()>& finished) {
   run_jobs(
@@ -113,7 +113,7 @@ EnsembleOutcome outcome_of(const EnsembleStore& store, const std::string& file) 
   return end;
 }
 
-// Rank 0: knows the files.
+// The part of rank 0, which handles the files.
 EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const std::string& file, Crew& crew) {
   const std::vector<JobRange> jobs = jobs_left(store, options.replicas);
   const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = count(jobs);

@@ -1,5 +1,6 @@
-// Ensembles of a scene: replicas run on all threads (and ranks), statistics of what they record in one file. Finished
-// replicas are never lost nor run again: see ensemble_store.hpp. The file has the same bytes for the same replicas.
+// Ensembles of a scene: replicas run on all threads (and ranks); one file holds the statistics of what they record.
+// Finished replicas are never lost or run again: see ensemble_store.hpp. The same replicas give a file with the same
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +16,25 @@ namespace cradle::tools {
 
 struct EnsembleOptions {
   ReplicaRange replicas;  // of every point: initial.replica of the runs
-  unsigned threads = 0;   // of each rank; 0: as many as there are processors
+  unsigned threads = 0;   // of each rank; 0: one per processor
   ProgressLine::Show progress = ProgressLine::Show::on_terminal;
-  std::uint64_t journal_bytes = std::uint64_t{1} << 26;  // beyond which a journal is written anew, as statistics
-  /// Runs the scene of one replica; what it throws is that replica's failure.
+  std::uint64_t journal_bytes = std::uint64_t{1} << 26;  // a larger journal is rewritten as statistics
+  /// Runs the scene of one replica. If it throws, that replica has failed.
   std::function<RunOutcome(const Scene&, const RunOptions&)> runner = run_scene;
 };
 
 struct EnsembleOutcome {
-  Exit status = Exit::done;    // interrupted and terminated: what was done is journalled
+  Exit status = Exit::done;    // if interrupted or terminated, finished replicas are in the journal
   std::uint64_t fresh = 0;     // replicas that were run now
-  std::uint64_t replicas = 0;  // that are there now, those of earlier calls included
+  std::uint64_t replicas = 0;  // in the output now, those of earlier calls included
   std::string outcome;         // how they ended: "990 reached the end, 10 inelastic collapse"
   std::string account,
-      warning;  // of journals that were read; of replicas that failed or lost order: for standard error
+      warning;  // about journals that were read, replicas that failed or lost order: for standard error
 };
 
-/// Runs what `file` and its journals do not have yet of the wanted replicas of every point, and writes the file. Throws
-/// Error as EnsembleStore does. Under MPI all ranks call it with the same arguments; only rank 0 gets an outcome, the
-/// others no more than a status.
+/// Runs the wanted replicas of every point that `file` and its journals do not have yet, and writes the file. Throws
+/// Error as EnsembleStore does. Under MPI all ranks call it with the same arguments; rank 0 gets the full outcome, the
+/// others only a status.
 EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, const std::string& file, Crew& crew);
 
 /// The study of one scene, by this process alone.

@@ -1,5 +1,5 @@
-// An ensemble in a result file: statistics to read, and the nodes of the tree of replicas with every bit, from which it
-// is continued and merged. Everything depends on the set of replicas only.
+// An ensemble in a result file: statistics for readers, and the nodes of the tree of replicas with every bit, so that
+// it can be continued and merged. The contents depend only on the set of replicas.
 #include <fmt/format.h>
 
 #include <algorithm>

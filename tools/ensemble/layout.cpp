@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <type_traits>
 
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/record/tables.hpp"
@@ -32,7 +31,7 @@ double at(const Numbers& values, std::size_t i) {
   return std::get<std::vector<double>>(values)[i];
 }
 
-// How many samples a run took at planned times: all, unless it ended early; its last one is then where it ended.
+// How many samples a run took at planned times. A run that ended early has an additional sample at its end.
 std::size_t samples_taken(const Column& time, const std::vector<double>& planned) {
   std::size_t taken = std::min(time.rows(), planned.size());
   if (taken > 0 && at(time.values, taken - 1) != planned[taken - 1]) --taken;
@@ -121,7 +120,7 @@ std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {
   if (!early && samples != time.rows()) throw std::logic_error("a run that reached its end has not taken all samples");
   for (const Quantity& quantity : quantities) {
     const bool series = of_series(quantity.group);
-    if (!series && early && run.result.find(quantity.group) == nullptr) continue;  // ended before this profile
+    if (!series && early && run.result.find(quantity.group) == nullptr) continue;  // the run ended before this profile
     const Column& column = get(run.result, quantity.group, quantity.name);
     const std::size_t rows = series ? samples : quantity.rows;
     if (column.width != quantity.width || column.rows() < rows)

@@ -1,7 +1,7 @@
-// What the numbers of a replica mean: every column that a run of the scene records in its series, profiles and zone,
-// one after the other in one vector of doubles, which is what ensembles keep statistics of. Times and bins are common
-// to all replicas, so they are here and not among the numbers. Which columns there are is said by the tables of a run
-// (record/tables.hpp).
+// What the numbers of a replica mean. A replica is one vector of doubles: the columns that a run of the scene records
+// in its series, profiles and zone, one after the other. Ensembles keep statistics of this vector. Times and bins are
+// the same in all replicas, so they are stored here. The tables of a run (record/tables.hpp) say which columns there
+// are.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace cradle::tools {
 
-/// What stands for a number that a replica or a point has not.
+/// Marks a number that a replica or a point does not have.
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// A column of "series", "series/heaviest", "profiles/0002", ...: `rows` times `width` numbers from `offset` on.
@@ -33,7 +33,7 @@ struct ReplicaRow {
   std::uint64_t index = 0;
   RunEnd outcome = RunEnd::reached;
   std::uint64_t collisions = 0, merges = 0;
-  std::vector<double> numbers;  // one for each of ReplicaLayout::numbers; NaN: has none
+  std::vector<double> numbers;  // one for each of ReplicaLayout::numbers; NaN: none
 
   static auto state(auto& self) {
     return std::tie(self.index, self.outcome, self.collisions, self.merges, self.numbers);
@@ -54,21 +54,22 @@ struct ReplicaLayout {
   Column time;  // of the series
   std::vector<Binned> binned;
   std::vector<Quantity> quantities;
-  std::size_t entries = 0;      // length of the vector of all quantities
-  std::vector<Column> numbers;  // of a row: energy at the end and so on; without values
+  std::size_t entries = 0;      // length of the vector
+  std::vector<Column> numbers;  // the numbers of a ReplicaRow (energy at the end, ...), without values
 
-  /// The vector of a run; NaN where it ended before. Throws std::logic_error for a run of another layout.
+  /// The vector of a run, with NaN after its end if it ended early. Throws std::logic_error for a run with another
+  /// layout.
   std::vector<double> values(const RunOutcome& run) const;
   ReplicaRow row(std::uint64_t index, const RunOutcome& run) const;
 };
 
-/// Throws Error for a scene that no ensemble can be made of, naming the key.
+/// Throws Error, naming the key, if the scene cannot be run as an ensemble.
 void check_ensemble(const Scene& scene);
 
-/// Of the scene's replicas; nothing is run. Throws Error as check_ensemble does.
+/// The layout of the scene's replicas; runs nothing. Throws Error as check_ensemble does.
 ReplicaLayout replica_layout(const Scene& scene);
 
-/// The scene of one replica, without what ensembles do not keep: snapshots, masses and events.
+/// The scene of one replica, without the outputs that ensembles do not keep: snapshots, masses and events.
 Scene replica_scene(const Scene& scene, std::uint64_t index);
 
 }  // namespace cradle::tools

@@ -16,7 +16,7 @@ std::string describe(const std::vector<ReplicaRange>& ranges) {
   return fmt::format("{} to {}", ranges[0].first, ranges[0].end() - 1);
 }
 
-// Nothing is done with the scene of a file before it is known to be the one that its replicas are of.
+// Checks that the scene in a file is the one of its replicas before using it.
 Study study_in(const std::string& file) {
   const Result result = read_result(file);
   Study study = study_kind(result, file) == "sweep" ? sweep_in(result, file) : ensemble_in(result, file);

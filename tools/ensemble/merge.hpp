@@ -1,4 +1,4 @@
-// Ensembles (or sweeps) of the same scene with different replicas, as one.
+// Merges ensembles (or sweeps) of the same scene with different replicas into one.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace cradle::tools {
 
-/// The replicas of all files. Throws Error: Exit::bad_input for files of different scenes, or with replicas in common;
-/// Exit::io for those that cannot be read or are damaged.
+/// All replicas of all files. Throws Error: Exit::bad_input if the files have different scenes or share replicas;
+/// Exit::io if a file cannot be read or is damaged.
 std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files);
 
 }  // namespace cradle::tools

@@ -60,7 +60,7 @@ void EnsembleState::add(const ReplicaRow& row, std::vector<double> values) {
 }
 
 void EnsembleState::fail(ReplicaIndex replica, std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');  // a line each in result files
+  std::replace(message.begin(), message.end(), '\n', ' ');  // one line each in result files
   {
     const std::scoped_lock lock(mutex_);
     table_.add({replica, RunEnd::failed, 0, 0, {}});
@@ -118,7 +118,7 @@ Error damaged(const std::string& from, const std::string& found) {
 
 }  // namespace
 
-// A node that comes from a file or another process: nothing in it is believed.
+// Checks everything in a node from a file or another process.
 void EnsembleState::take_node(TreeNode node, const std::string& from) {
   const Moments& m = node.moments;
   const auto wrong = [&](const std::string& found) { return damaged(from, found); };
@@ -145,7 +145,7 @@ void EnsembleState::take_counts(std::size_t k, std::vector<std::uint64_t> counts
   spreads_[k].add(other);
 }
 
-// The table of replicas and the statistics are of the same ones.
+// The table of replicas and the statistics must have the same replicas.
 void EnsembleState::check_replicas(const std::string& file) const {
   std::uint64_t in_statistics = 0, in_table = 0;
   for (const TreeNode& node : tree_.nodes()) in_statistics += node.moments.replicas;

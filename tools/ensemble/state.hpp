@@ -1,6 +1,6 @@
 // One ensemble in memory: statistics of all quantities over replicas (core/ensemble/tree.hpp), the table of replicas,
-// messages of those that failed, and counts in fixed bins where requested. It goes to journals and between ranks as
-// records, and to result files as groups; both keep every bit, so that ensembles can be continued and merged.
+// messages of failed replicas, and histograms if requested. Journals and ranks exchange it as records, result files
+// hold it as groups. Both keep every bit, so that ensembles can be continued and merged.
 #pragma once
 
 #include <algorithm>
@@ -32,23 +32,22 @@ struct FailureRecord {
   static auto state(auto& self) { return std::tie(self.replica, self.message); }
   void loaded() const { require_state(replica >> 63 == 0, "a replica beyond the last"); }
 };
-using RowsRecord =
-    std::vector<std::pair<ReplicaRow, std::string>>;  // with messages, of replicas whose values nodes have
+using RowsRecord = std::vector<std::pair<ReplicaRow, std::string>>;  // with messages; their values are in the nodes
 struct SpreadRecord {
   std::uint64_t number = 0;  // of the spread
   std::vector<std::uint64_t> counts;
   static auto state(auto& self) { return std::tie(self.number, self.counts); }
 };
 struct EnsembleRecord {
-  std::uint64_t point = 0;  // the number of this ensemble among those of a sweep
+  std::uint64_t point = 0;  // which ensemble of a sweep
   std::variant<ReplicaRecord, FailureRecord, RowsRecord, SpreadRecord, TreeNode> what;
   static auto state(auto& self) { return std::tie(self.point, self.what); }
 
-  /// Of how many replicas it holds the outcome.
+  /// The number of replicas whose outcome it holds.
   std::uint64_t replicas() const;
 };
 
-/// Rows as they come, numbers side by side: some 50 bytes a replica.
+/// Rows in the order of arrival, numbers side by side: about 50 bytes a replica.
 class ReplicaTable {
  public:
   explicit ReplicaTable(std::size_t numbers) : width_(numbers) {}
@@ -56,7 +55,7 @@ class ReplicaTable {
   void add(const ReplicaRow& row);
   std::size_t size() const { return integers_.size() / integers; }
   ReplicaRow operator[](std::size_t k) const;
-  /// Numbers of the rows by increasing index.
+  /// The positions of the rows, sorted by replica index.
   std::vector<std::size_t> order() const;
 
  private:
@@ -66,44 +65,45 @@ class ReplicaTable {
   std::vector<double> numbers_;
 };
 
-/// Of a node of the tree; what is too large for one stays so.
+/// The level of a tree node; a number too large for a level stays too large.
 inline unsigned level_of(std::uint64_t number) { return static_cast<unsigned>(std::min<std::uint64_t>(number, 64)); }
 
-/// Mean, standard error and extremes of a quantity; NaN where no replica has it, and how many do where not all.
+/// Mean, standard error and extremes of a quantity. NaN if no replica has it. Counts the replicas that have it if not
+/// all do.
 Group statistics_group(std::string name, const Quantity& quantity, const Moments& total);
 
 class EnsembleState {
  public:
   using Outcomes = std::array<std::uint64_t, outcome_count>;
 
-  /// `group` is where it stands in a result file: "" for the whole file, or "points/0003". Throws Error for a scene
-  /// that no ensemble can be made of.
+  /// `group` is the place in the result file: "" for the whole file, or "points/0003". Throws Error if the scene cannot
+  /// be run as an ensemble.
   EnsembleState(std::string group, Scene scene, const std::vector<SpreadRequest>& spreads);
 
   const std::string& group() const { return group_; }
   const Scene& scene() const { return scene_; }
   const ReplicaLayout& layout() const { return layout_; }
 
-  /// Both may be called from several threads, for replicas that are not there yet.
+  /// Adds a replica that is not there yet. Both may be called from several threads.
   void add(const ReplicaRow& row, std::vector<double> values);
   void fail(ReplicaIndex replica, std::string message);
 
   const MomentTree& replicas() const { return tree_; }
   Outcomes outcomes() const;
   const ReplicaTable& table() const { return table_; }
-  /// Why, of the replicas that cannot be trusted: what stopped them, or that they lost the order of collisions or
-  /// exhausted the resolution.
+  /// The replicas that cannot be trusted, each with its reason: what stopped it, or that it lost the order of
+  /// collisions or exhausted the resolution.
   std::map<ReplicaIndex, std::string> failures() const;
   const std::vector<Histograms>& spreads() const { return spreads_; }
 
   bool holds_all_of(const EnsembleState& other) const;
   bool holds_any_of(const EnsembleState& other) const;
-  /// The other's replicas join these; there must be none in common.
+  /// Adds the other's replicas; the two must share none.
   void take(EnsembleState& other);
 
-  /// All there is as records, for a set that is read from nothing else; `point` is the number of this ensemble.
+  /// Puts everything as records, enough to restore this state; `point` is the number of this ensemble.
   void put_records(std::uint64_t point, const JournalWriter::Put& put) const;
-  /// A replica that is there already is passed over. Throws Error (Exit::io) for a record of another ensemble.
+  /// Skips a replica that is there already. Throws Error (Exit::io) for a record of another ensemble.
   void apply(EnsembleRecord&& record);
 
   // ---- as groups of a result file
@@ -114,7 +114,7 @@ class EnsembleState {
  private:
   struct SpreadOf {
     SpreadRequest request;
-    std::size_t quantity = 0;  // of the layout
+    std::size_t quantity = 0;  // its number in the layout
   };
 
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
@@ -130,9 +130,9 @@ class EnsembleState {
   Scene scene_;
   ReplicaLayout layout_;
   MomentTree tree_;
-  mutable std::mutex mutex_;  // of all that follows
+  mutable std::mutex mutex_;  // guards all that follows
   ReplicaTable table_;
-  std::map<ReplicaIndex, std::string> messages_;  // of the replicas that were stopped
+  std::map<ReplicaIndex, std::string> messages_;  // of the replicas that failed
   std::vector<SpreadOf> spread_of_;
   std::vector<Histograms> spreads_;
 };

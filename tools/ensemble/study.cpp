@@ -13,8 +13,7 @@ namespace cradle::tools {
 
 namespace {
 
-// Whether replicas differ: by displacements, which are whole numbers of units (core/initial/rows.hpp), velocities or
-// walls.
+// Whether replicas differ: by displacements (whole multiples of a unit, core/initial/rows.hpp), velocities or walls.
 bool is_random(const Scene& scene) {
   const Initial& initial = scene.initial;
   const bool displaced = initial.type == InitialType::rows || initial.type == InitialType::cold;

@@ -1,5 +1,5 @@
-// What a file of ensembles is about, and how to decide whether two files are about the same: same scenes, same version
-// of the program, same bins, same listed particles.
+// What a file of ensembles contains, and whether two files contain the same: same scenes, same version of the program,
+// same bins, same listed particles.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace cradle::tools {
 
 using EnsembleStates = std::vector<std::unique_ptr<EnsembleState>>;
 
-/// What a file of ensembles is about: one ensemble, or several, one for each point of a sweep.
+/// What a file of ensembles contains: one ensemble, or one for each point of a sweep.
 struct Study {
   struct Point {
     std::string group;  // in the file: "points/0003"; "": the file itself
@@ -22,29 +22,29 @@ struct Study {
   };
 
   std::string kind = "ensemble";
-  Scene scene;  // the file's; in a sweep what the points are varied from
+  Scene scene;  // the file's; for a sweep the scene that is varied
   std::vector<Point> points;
   std::vector<SpreadRequest> spreads = {};
-  std::vector<Attribute> attributes = {};                                 // of the file, beside the usual ones
+  std::vector<Attribute> attributes = {};                                 // of the file, besides the usual ones
   std::function<std::vector<Group>(const EnsembleStates&)> summary = {};  // written before the points
 
-  /// The same number for the same ensembles by the same version of the program.
+  /// Equal for the same ensembles by the same version of the program.
   std::uint64_t identity() const;
 };
 
-/// Where so many replicas of a point are one and the same run, since nothing in its scene is random: which and why, for
-/// standard error; else empty.
+/// A warning for standard error if all replicas of a point are the same run, since nothing in its scene is random:
+/// which point, and why. Else empty.
 std::string same_replicas_warning(const Study& study, std::uint64_t replicas);
 
-/// Replicas of all of them.
+/// The number of replicas of all ensembles.
 std::uint64_t replicas_in(const EnsembleStates& states);
 
 /// The study of one ensemble.
 Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads = {});
-/// "ensemble" or "sweep". Throws Error (Exit::bad_input) for a file that holds neither.
+/// "ensemble" or "sweep". Throws Error (Exit::bad_input) for other files.
 std::string study_kind(const Result& result, const std::string& file);
 
-/// The study of the one ensemble that a file holds, the scene as it stands there.
+/// The study of the one ensemble in a file, with the scene stored there.
 Study ensemble_in(const Result& result, const std::string& file);
 
 /// The first key in which two scenes differ, with both values; empty if there is none.

@@ -8,13 +8,13 @@ namespace cradle::tools {
 
 namespace {
 
-// The study of a scene, which names the sweep, with scene_at(point) at each of its points.
+// The study of a scene that names the sweep; scene_at(point) gives the scene of each point.
 template <class SceneAt> Study study_of(Scene scene, SceneAt scene_at) {
   const auto points = sweep_points(scene.sweep);
   Study study;
   study.kind = "sweep";
   study.scene = std::move(scene);
-  study.scene.sweep.replicas = 1;  // how many there are is another matter
+  study.scene.sweep.replicas = 1;  // the number of replicas is not part of the study
   for (std::size_t p = 0; p < points.size(); ++p) {
     const std::string group = fmt::format("points/{:04}", p);
     study.points.push_back({group, scene_at(points[p], group)});

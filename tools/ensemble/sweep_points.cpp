@@ -48,7 +48,7 @@ Varied varied(const std::string& text, double most) {
   for (int k = 0; k <= last; ++k) {
     const double share = static_cast<double>(k) / last;
     const double value = logarithmic ? *from * std::pow(*to / *from, share) : *from + (*to - *from) * share;
-    // Twelve digits: 0.1 + 0.2 is to be 0.3.
+    // Twelve digits, so that 0.1 + 0.2 becomes 0.3.
     result.values.push_back(k == 0 ? parts[0] : k == last ? parts[1] : fmt::format("{:.12g}", value));
   }
   return result;
@@ -66,7 +66,7 @@ SweepPoint given_point(const std::string& text) {
   return point;
 }
 
-// Before memory for them is taken. A point of a grid has a value for every key.
+// Called before memory is allocated. A point of a grid has a value for every key.
 void check_count(const std::vector<Varied>& keys, bool cuts, double most) {
   double points = cuts ? 0 : 1;
   for (const Varied& one : keys) {

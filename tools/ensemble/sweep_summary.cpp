@@ -9,7 +9,7 @@ namespace cradle::tools {
 
 namespace {
 
-// Columns of numbers, one row per point, appended as they come up; NaN where a point has none.
+// Columns of numbers, one row per point, added in the order of first use; NaN if a point has no value.
 class Table {
  public:
   explicit Table(std::size_t points) : points_(points) {}
@@ -29,7 +29,7 @@ class Table {
   std::map<std::string, std::size_t> places_;
 };
 
-// In the order of the replicas' indices: the same bits however they came about.
+// Adds in the order of the replicas' indices, so that the bits do not depend on the order of computing.
 void put_mean(Table& table, std::size_t point, const Column& about, const std::vector<double>& values) {
   double n = 0, mean = 0, squares = 0;
   for (const double value : values) {

@@ -1,4 +1,4 @@
-// What the points of a sweep have come to: one table, a row per point.
+// The results of a sweep in one table, a row per point.
 #pragma once
 
 #include "cradle/tools/ensemble/study.hpp"

@@ -1,4 +1,4 @@
-// How a run, a replica or a proof ends: one table of what results say and with which status the program ends.
+// How a run, a replica or a proof ends. One table gives the text in results and the exit status.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace cradle::tools {
 
-/// The first five are outcomes of replicas too; as numbers, these are in files.
+/// The first five are also outcomes of replicas. Files store these numbers.
 enum class RunEnd : std::uint64_t {
   reached,
   collapsed,
   order_lost,
   exhausted,
   failed,
-  small_gap,  // below run.stop_gap, and that it is a collapse is not proved; of replicas: collapsed
+  small_gap,  // below run.stop_gap, without a proof of collapse; for replicas: collapsed
   interrupted,
   undecided  // of a proof
 };
@@ -48,7 +48,7 @@ constexpr bool run_ends_in_order() {
 }
 static_assert(run_ends_in_order());
 
-/// The status of a run whose result says that it ended so; done for other words.
+/// The exit status for the text in a result; done for other texts.
 constexpr Exit status_of_text(std::string_view text) {
   for (const EndRow& row : run_ends)
     if (row.text == text) return row.status;

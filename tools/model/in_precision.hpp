@@ -1,4 +1,4 @@
-// From a scene's precision to a type.
+// Calls code with the scalar type of a scene.
 #pragma once
 
 #include <stdexcept>
@@ -8,10 +8,10 @@
 
 namespace cradle::tools {
 
-/// What the scene calls its scalar type.
+/// The scene's name for its scalar type.
 ScalarChoice scalar_choice(const Run& run);
 
-/// Calls f(std::type_identity<T>) with the scene's scalar type; throws Error where this build has none such.
+/// Calls f(std::type_identity<T>) with the scene's scalar type. Throws Error if this build does not have it.
 template <class Result, class F> Result in_precision(const Scene& scene, F f) {
   try {
     return with_scalar<Result>(scalar_choice(scene.run), f);

@@ -1,4 +1,4 @@
-// From a scene to the particles of the engine, every number read in the working precision.
+// The engine's particles for a scene, with every number read in the working precision.
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ template <Real T> std::shared_ptr<const cradle::Particles<T>> particles_without_
     return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m), T(0),
                                      momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt);
   }
-  // Below 1/2, whatever the nearest double is.
+  // The nearest double may be 1/2; the perturbation is smaller.
   const double perturbation = std::min(initial.perturbation.value, std::nextafter(0.5, 0.));
   const Displacement displacement = uniform_displacement(perturbation, initial.seed, initial.replica);
   if (initial.type == InitialType::cold) return cold_particles<T>(initial, displacement);
@@ -95,7 +95,7 @@ template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initi
 
 }  // namespace detail
 
-/// Throws Error where the scene's particles cannot be had in this precision, or its walls not beside them.
+/// Throws Error if this precision cannot represent the scene's particles, or if its walls do not fit beside them.
 template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
   try {
     auto particles = detail::particles_without_walls<T>(scene.initial);

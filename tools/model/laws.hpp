@@ -13,22 +13,22 @@ struct Cost;
 
 struct LawRow {
   LawType type;
-  bool merges;                                  // particles stick or pass through each other; else they bounce
+  bool merges;                                  // particles stick or pass through each other; otherwise they bounce
   bool needs_events;                            // false: the state at any time follows without collisions
-  bool provable;                                // `certify` has its map in balls (tools/certify)
-  void (*predict)(const Scene&, Predictions&);  // the paper's formulas; null: none
-  void (*cost_of_rows)(const Scene&, Cost&);    // expected collisions of two equal rows; null: not known
+  bool provable;                                // `certify` has its map in balls (tools/proof)
+  void (*predict)(const Scene&, Predictions&);  // the paper's formulas; null if there are none
+  void (*cost_of_rows)(const Scene&, Cost&);    // expected collisions of two equal rows; null if not known
   std::string_view misprints;                   // of the paper's formulas for this law
 };
 
 /// The row of the scene's law.
 const LawRow& law_row(const Scene& scene);
 
-/// Particles stick or pass through each other, by the law or by the collapse policy.
+/// Whether particles stick or pass through each other, by the law or by the collapse policy.
 bool particles_merge(const Scene& scene);
-/// Inelastic collapse is possible and ends the run.
+/// Whether inelastic collapse is possible and ends the run.
 bool stops_at_collapse(const Scene& scene);
-/// Nothing requires collisions: the state at each time is computed directly.
+/// Whether the state at each time is computed directly, without collisions.
 bool without_collisions(const Scene& scene);
 
 }  // namespace cradle::tools

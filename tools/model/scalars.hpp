@@ -11,18 +11,18 @@ namespace cradle::tools {
 enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
 
 struct ScalarRow {
-  // A quantity that grows with the digits of types that take any number of them.
+  // A quantity that grows linearly with the digits, for types with a variable number of digits.
   struct Linear {
     double fixed, per_digit = 0;
     constexpr double at(std::uint64_t digits) const { return fixed + per_digit * static_cast<double>(digits); }
   };
 
   Precision type;
-  std::string_view name;  // as scenes and precision/ have it
-  // The time of a collision in gaps and in positions, against that in gaps in double (Fig. 2 to t = 4000,
-  // bench_precision), and the bytes of a number.
+  std::string_view name;  // as in scenes and precision/
+  // Time per collision in gaps and in positions, relative to gaps in double (Fig. 2 to t = 4000, bench_precision), and
+  // bytes per number.
   Linear gaps, absolute, bytes;
-  // The range of positive numbers; empty: as good as none.
+  // The range of positive numbers; empty: practically without limit.
   std::string_view largest, least;
   bool any_digits = false;
 };
@@ -44,7 +44,7 @@ inline constexpr std::array<ScalarRow, 6> scalar_rows{{
      "1.7976931348623157e308",
      "2.2250738585072014e-308"},
     {Precision::float128, "float128", {10}, {30}, {16}, "1.18973149535723176502e4932", "3.3621031431120935063e-4932"},
-    // Exponents of 32 bits.
+    // The exponent has 32 bits.
     {Precision::cpp_bin_float, "cpp_bin_float", {41}, {104}, {64}, "1e323228496", "1e-323228496"},
     {Precision::mpfr, "mpfr", {6.3, 0.112}, {22, 0.4}, {48, 1 / 2.4}, "", "", true},
 }};

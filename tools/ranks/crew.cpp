@@ -13,7 +13,7 @@ unsigned processors() {
   cpu_set_t set;
   if (::sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(CPU_COUNT(&set));
 #endif
-  return thread_count(0);  // systems that bind no processes, and machines of more than 1024 processors
+  return thread_count(0);  // for systems that do not bind processes, and machines with more than 1024 processors
 }
 
 std::optional<JobRange> JobQueue::take(std::uint64_t most) {

@@ -1,4 +1,5 @@
-// Whether this process is one of several. MPI_Init without a launcher costs 0.3 s, so it is called only under one.
+// Finds out whether this process is one of several. MPI_Init without a launcher costs 0.3 s, so it is called only under
+// one.
 #include <cstdlib>
 #include <initializer_list>
 #include <string>
@@ -14,14 +15,14 @@ namespace cradle::tools {
 
 namespace {
 
-// Open MPI; MPICH, Intel MPI and Slurm by PMI; Slurm by PMIx.
+// The variables of Open MPI; of MPICH, Intel MPI and Slurm by PMI; of Slurm by PMIx.
 bool launched() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_SIZE", "PMI_FD", "PMIX_RANK"})
     if (std::getenv(name) != nullptr) return true;
   return false;
 }
 
-// As far as the launcher says.
+// The number of processes that the launcher states.
 int processes() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
     if (const char* size = std::getenv(name)) return std::atoi(size);

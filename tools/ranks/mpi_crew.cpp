@@ -26,7 +26,7 @@ constexpr int to_leader = 1, from_leader = 2, records = 3;  // tags
 // What another rank reports to rank 0.
 enum class Wish : std::uint64_t { nothing, piece, leave };
 struct Report {
-  std::uint64_t taken = 0;  // jobs since the last report: finished, or in work
+  std::uint64_t taken = 0;  // jobs since the last report, finished or running
   Wish wish = Wish::nothing;
   std::uint64_t signal = 0;
 };
@@ -39,7 +39,7 @@ struct Reply {
   std::uint64_t signal = 0;                       // stop
 };
 
-// Both are messages as they are.
+// Reports and Replies are sent as raw bytes.
 template <class Message> void send(const Message& message, int rank, int tag) {
   static_assert(sizeof(Message) % 8 == 0);
   MPI_Send(&message, sizeof message / 8, MPI_UINT64_T, rank, tag, MPI_COMM_WORLD);
@@ -49,7 +49,7 @@ template <class Message> Message receive(int rank, int tag) {
   MPI_Recv(&message, sizeof message / 8, MPI_UINT64_T, rank, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
   return message;
 }
-// The rank that a message has come from, or -1.
+// The rank that has sent a message, or -1.
 int sender(int rank, int tag) {
   int there = 0;
   MPI_Status status;
@@ -57,7 +57,7 @@ int sender(int rank, int tag) {
   return there != 0 ? status.MPI_SOURCE : -1;
 }
 
-// MPI's own waiting takes a whole processor, which other ranks may need.
+// Waits by polling with pauses: MPI's own waiting uses a whole processor, which other ranks may need.
 template <class Condition> void wait(Condition condition) {
   while (!condition()) std::this_thread::sleep_for(1ms);
 }
@@ -107,7 +107,7 @@ MpiCrew::MpiCrew(int processes_launched, Interrupt& interrupt) : Crew(interrupt)
     throw Error({}, "the launched processes do not see each other", fmt::format("{} of them", processes_launched),
                 "use the launcher of the MPI that this program was built with");
   }
-  // Ranks that are not bound to processors of their own share those of their machine.
+  // Ranks that are not bound to processors share all processors of their machine.
   MPI_Comm machine = MPI_COMM_NULL;
   int ranks_here = 1;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
@@ -128,7 +128,7 @@ Exit MpiCrew::together(const std::function<void()>& step) {
   int first = size_;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
   if (first == size_) return Exit::done;
-  ignore_signals();  // launchers end all ranks with one as soon as the first of them has ended
+  ignore_signals();  // launchers send all ranks a signal as soon as the first of them has ended
   std::string message;
   int status = rank_ == first ? status_of(error, message) : 0;
   MPI_Bcast(&status, 1, MPI_INT, first, MPI_COMM_WORLD);
@@ -136,7 +136,7 @@ Exit MpiCrew::together(const std::function<void()>& step) {
   return static_cast<Exit>(status);
 }
 
-// The other ranks cannot know: the launcher ends them, and what they have is in their journals.
+// Ends the job from one rank. The launcher ends the other ranks; their replicas are in their journals.
 void MpiCrew::abandon(const std::exception_ptr& error) const {
   std::string message;
   const int status = status_of(error, message);
@@ -151,7 +151,7 @@ int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(c
   if (rank_ == 0) {
     JobQueue all(jobs);
     std::mutex mutex;
-    // A third of an even share of what is left: few messages at first, no long wait for the last rank in the end.
+    // A piece is a third of an even share of the rest: few messages at first, and no long wait for the last rank.
     const auto piece = [&] {
       const std::scoped_lock lock(mutex);
       return all.take(std::max<std::uint64_t>(1, all.left() / (3 * static_cast<std::uint64_t>(size_))));
@@ -162,7 +162,7 @@ int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(c
     Workshop shop(work, {}, interrupt());
     follow(shop);
   }
-  // Some were through before a signal came: all continue as rank 0 does, which waits for all.
+  // Some ranks may have finished before a signal came: all return what rank 0 returns, which waits for all.
   int signal = interrupt().signal();
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibcast(&signal, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
@@ -236,7 +236,7 @@ void MpiCrew::follow(Workshop& shop) const {
       closed = true;
     }
   }
-  for (Reply reply; reply.order != Order::farewell; reply = receive<Reply>(0, from_leader))  // others are on their way
+  for (Reply reply; reply.order != Order::farewell; reply = receive<Reply>(0, from_leader))  // after earlier replies
     wait([] { return sender(0, from_leader) == 0; });
 }
 

@@ -1,7 +1,7 @@
-// Ensembles across machines: the ranks of an MPI job. Rank 0 gives out aligned pieces of the replicas that are left,
-// large ones first and smaller ones towards the end, to whoever requests them; threads within a rank take theirs from
-// its pieces. MPI is called from the main thread only, which does nothing else; the work is done on others. When a rank
-// dies the launcher ends the job: what every rank journalled is there for the next one.
+// Ensembles across machines: the ranks of an MPI job. Rank 0 gives aligned pieces of the remaining replicas to ranks
+// that request them, large pieces first and smaller ones towards the end; the threads of a rank share its pieces. Only
+// the main thread calls MPI, and it does nothing else; other threads do the work. If a rank dies the launcher ends the
+// job; the next job finds the journals of all ranks.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace cradle::tools {
 
-/// Starts MPI; to be called under a launcher only. Throws Error where the ranks do not see each other.
+/// Starts MPI; call it only under a launcher. Throws Error if the ranks do not see each other.
 std::unique_ptr<Crew> make_mpi_crew(int processes_launched, Interrupt& interrupt);
 
 }  // namespace cradle::tools

@@ -1,5 +1,5 @@
-// The work of one rank of a job: on threads of its own, so that the main thread is free for messages, with a store of
-// jobs that is filled as it runs out.
+// The work of one rank of a job. It runs on threads of its own, so that the main thread is free for messages; a queue
+// of jobs is refilled as it runs out.
 #pragma once
 
 #include <chrono>
@@ -19,8 +19,8 @@ class Workshop {
  public:
   using More = std::function<std::optional<JobRange>()>;
 
-  /// Begins work(next) at once. `more` gives the jobs that are to be done next; without it they are put, until the
-  /// workshop is closed. An interrupt ends it before.
+  /// Begins work(next) at once. `more` gives the next jobs; without it `put` adds jobs until the workshop is closed. An
+  /// interrupt ends the work early.
   Workshop(const std::function<void(const NextJob&)>& work, More more, const Interrupt& interrupt)
       : more_(std::move(more)), interrupt_(interrupt), thread_([this, work] { run(work); }) {}
   ~Workshop() { thread_.join(); }
@@ -32,7 +32,7 @@ class Workshop {
     jobs_.put(piece);
     changed_.notify_all();
   }
-  /// Nothing more will be put.
+  /// No more jobs will be put.
   void close() {
     const std::scoped_lock lock(mutex_);
     closed_ = true;
@@ -42,19 +42,19 @@ class Workshop {
     const std::scoped_lock lock(mutex_);
     return jobs_.left() == 0;
   }
-  /// Jobs that threads have taken.
+  /// The number of jobs that threads have taken.
   std::uint64_t taken() const {
     const std::scoped_lock lock(mutex_);
     return taken_;
   }
 
-  /// True when the work has returned. Waits a moment for that or, if requested, for the last job to be taken.
+  /// True when the work has returned. Waits a moment for that or, if requested, until the last job is taken.
   bool idle(bool or_empty) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return idle_ || (or_empty && jobs_.left() == 0); });
     return idle_;
   }
-  /// What the work threw, if anything; when idle.
+  /// What the work threw, if anything; call it when idle.
   const std::exception_ptr& error() const { return error_; }
 
  private:
@@ -85,7 +85,7 @@ class Workshop {
         continue;
       }
       if (closed_) return std::nullopt;
-      changed_.wait_for(lock, std::chrono::milliseconds(10));  // a signal wakes nobody
+      changed_.wait_for(lock, std::chrono::milliseconds(10));  // wakes for signals, which notify nobody
     }
   }
 
@@ -97,7 +97,7 @@ class Workshop {
   bool closed_ = false, idle_ = false;
   std::uint64_t taken_ = 0;
   std::exception_ptr error_;
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last, since it uses all of the above
 };
 
 }  // namespace cradle::tools

@@ -1,10 +1,9 @@
-// The columns of the time series: one list. A row says what a column is called, its unit, what it is, in which scenes
-// it is there, and how it is filled from a sample. To add a column is to add a row.
+// The columns of the time series: one list. A row gives a column's name, unit, meaning, the scenes that have it, and
+// how to fill it from a sample. To add a column, add a row.
 #pragma once
 
 #include <concepts>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,7 +20,8 @@
 
 namespace cradle::tools {
 
-/// What columns are filled from at one time. What takes all particles is computed where a column requires it, once.
+/// The source of all columns at one time. Quantities that need all particles are computed once, and only if a column
+/// requires them.
 template <Real T> class Moment {
  public:
   Moment(const Engine<T>& run, std::shared_ptr<const cradle::Particles<T>> particles, const T& start, const T& time)
@@ -39,9 +39,9 @@ template <Real T> class Moment {
   const DenseCore& core() const {
     return computed(core_, [&] { return dense_core(configuration()); });
   }
-  /// Energy minus that of the sticky gas from the same initial state; of both ledgers: what they share cancels.
+  /// Energy minus that of the sticky gas from the same initial state, from the two ledgers: what they share cancels.
   T sticky_excess() const {
-    StickyGas<T> sticky(particles_, start_);  // anew: what it gives must not depend on earlier samples
+    StickyGas<T> sticky(particles_, start_);  // a new one: the result must not depend on earlier samples
     sticky.advance(state.time);
     const T energy = particles_->kinetic_energy();
     return T(T(energy - run_.energy_lost()) - (energy - sticky.energy_lost()));
@@ -61,8 +61,8 @@ template <Real T> class Moment {
   mutable std::optional<DenseCore> core_;
 };
 
-/// How a column is filled: what holds its numbers, and entering one. They are of the run's type, or doubles or whole
-/// numbers in every run.
+/// How a column is filled: a container for its numbers, and a function that adds one. Numbers are of the run's type,
+/// doubles or whole numbers.
 template <Real T> struct Filling {
   using Values = std::variant<std::vector<T>, Numbers>;
   Values (*empty)();
@@ -147,7 +147,7 @@ template <Real T> class SeriesRecorder {
   }
 
   std::size_t rows() const { return rows_; }
-  /// The rows since it was called last.
+  /// The rows since the last call.
   Recorded<T> take() {
     Recorded<T> rows{table_, std::move(values_), {}};
     values_.clear();

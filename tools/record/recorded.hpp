@@ -1,5 +1,5 @@
-// Rows of a table as a run has them, in its own type, and what a result file gets of them: doubles, and decimals below
-// /exact where the type has more digits.
+// Rows of a table in the run's own type, and what a result file stores: doubles and, if the type has more digits,
+// decimals below /exact.
 #pragma once
 
 #include <concepts>
@@ -19,7 +19,7 @@ namespace cradle::tools {
 
 template <Real T> T none() { return std::numeric_limits<T>::quiet_NaN(); }
 
-/// Columns of a table, or some of them: numbers of the run's type, and others, which have no more digits than a double.
+/// Columns of a table, or some of them: numbers of the run's type, and others that a double holds completely.
 template <Real T> using Columns = std::vector<std::variant<std::vector<T>, Numbers>>;
 template <Real T, class... Values> Columns<T> columns(Values&&... values) {
   Columns<T> all;
@@ -31,17 +31,17 @@ template <class Item> void append(std::vector<Item>& all, std::vector<Item>&& mo
   std::move(more.begin(), more.end(), std::back_inserter(all));
 }
 
-/// Below which those numbers stand that a double does not hold; of doubles there are none.
+/// The folder for numbers that a double does not hold completely; doubles have none.
 template <Real T> inline constexpr std::string_view exact_part = std::same_as<T, double> ? "" : exact_folder;
 
-/// Rows of a table as the run has them.
+/// Rows of a table in the run's type.
 template <Real T> struct Recorded {
   Group table;  // without numbers
   Columns<T> columns;
   std::vector<std::pair<std::string, T>> attributes;
 };
 
-/// The same numbers as decimals, all digits of them, below /exact.
+/// The same numbers as decimals with all digits, below /exact.
 template <Real T> Group as_decimals(const Recorded<T>& rows) {
   Group exact{std::string(exact_part<T>) + rows.table.name, {}, {}};
   for (const auto& [name, value] : rows.attributes) exact.attributes.emplace_back(name, to_text(value));
@@ -56,7 +56,7 @@ template <Real T> Group as_decimals(const Recorded<T>& rows) {
   return exact;
 }
 
-/// Rounded to float64: here, at the last moment.
+/// Rounds to float64, as the last step.
 template <Real T> Group as_doubles(Recorded<T>&& rows) {
   const auto rounded = [](auto& values) -> Numbers {
     if constexpr (std::same_as<std::decay_t<decltype(values)>, Numbers> || std::same_as<T, double>) {
@@ -64,7 +64,7 @@ template <Real T> Group as_doubles(Recorded<T>&& rows) {
     } else {
       std::vector<double> doubles;
       doubles.reserve(values.size());
-      // Types have NaN of either sign.
+      // NaN may have either sign here; files get one form.
       for (const T& value : values) doubles.push_back(value == value ? to_double(value) : none<double>());
       return doubles;
     }
@@ -75,7 +75,7 @@ template <Real T> Group as_doubles(Recorded<T>&& rows) {
   return filled(std::move(rows.table), std::move(all));
 }
 
-/// What a result holds of them; `exact`: with decimals where the type has more digits than a double.
+/// The tables for a result. `exact`: also the decimals, if the type has more digits than a double.
 template <Real T> std::vector<Group> tables(Recorded<T>&& rows, bool exact) {
   std::vector<Group> all;
   if (!exact_part<T>.empty() && exact) all.push_back(as_decimals(rows));
@@ -83,7 +83,7 @@ template <Real T> std::vector<Group> tables(Recorded<T>&& rows, bool exact) {
   return all;
 }
 
-/// What was in it, which is empty afterwards.
+/// Returns the contents and leaves the container empty.
 template <class Numbers> Numbers taken(Numbers& numbers) { return std::exchange(numbers, Numbers()); }
 
 }  // namespace cradle::tools

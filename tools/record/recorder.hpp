@@ -6,11 +6,8 @@
 #include <concepts>
 #include <cstdint>
 #include <iterator>
-#include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "cradle/core/engine/status.hpp"
@@ -22,7 +19,7 @@
 
 namespace cradle::tools {
 
-/// The two heaviest clusters, below the series.
+/// The two heaviest clusters: the table series/heaviest.
 template <Real T> class HeaviestRecorder {
  public:
   void add(const Cloud<T>& cloud) {
@@ -34,7 +31,7 @@ template <Real T> class HeaviestRecorder {
     }
   }
 
-  /// The rows since it was called last.
+  /// The rows since the last call.
   Recorded<T> take() { return {heaviest_table(), columns<T>(taken(mass_), taken(x_), taken(v_), taken(index_)), {}}; }
 
  private:
@@ -43,7 +40,7 @@ template <Real T> class HeaviestRecorder {
   std::vector<std::uint64_t> index_;
 };
 
-/// How many clusters there are of which mass.
+/// The number of clusters of each mass.
 template <Real T> Group masses_table(const Configuration<T>& c, const T& least_mass, const std::string& name) {
   std::vector<std::uint64_t> clusters = mass_distribution(c, least_mass);
   std::vector<double> from;
@@ -93,7 +90,7 @@ inline Group profile_table(Profile&& p, const std::string& name) {
   return table;
 }
 
-/// Every collision, where a scene requests them.
+/// Every collision, if the scene requests it.
 template <Real T> class EventRecorder {
  public:
   void operator()(const Collision<T>& c) {
@@ -105,7 +102,7 @@ template <Real T> class EventRecorder {
     interval_.push_back(c.interval);
     speed_.push_back(c.closing_speed);
   }
-  /// What the last collision was shows in the engine's counts after it: to be called before the next one.
+  /// Records the kind of the last collision, from the engine's counts after it. Call it before the next collision.
   void made(const Counts& now) {
     if (kind_.size() < left_.size())
       kind_.push_back(now.merges > before_.merges ? 2 : now.below_cutoff > before_.below_cutoff ? 1 : 0);
@@ -113,7 +110,7 @@ template <Real T> class EventRecorder {
   }
 
   std::size_t rows() const { return left_.size(); }
-  /// The rows since it was called last.
+  /// The rows since the last call.
   Recorded<T> take() {
     return {events_table(),
             columns<T>(taken(left_), taken(right_), taken(time_), taken(low_), taken(interval_), taken(speed_),
@@ -122,7 +119,7 @@ template <Real T> class EventRecorder {
   }
 
  private:
-  // The number of type T that the double nearest to `time` stands for.
+  // The number of type T for the double nearest to `time`.
   static T rounded(const T& time) {
     if constexpr (std::same_as<T, double>)
       return time;

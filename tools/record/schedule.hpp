@@ -1,5 +1,5 @@
-// When a run is sampled: the times of series, snapshots and all other outputs of a scene in the working precision, and
-// their union.
+// When a run is sampled: the times of the series, snapshots and other outputs of a scene, and their union, in the
+// working precision.
 #pragma once
 
 #include <fmt/format.h>
@@ -44,14 +44,14 @@ template <Real T> std::vector<T> series_times(const Series& series, const T& sta
       if (k + 1 == points) return end;
       if (series.spacing == Spacing::linear) return T(start + span * T(k) / T(points - 1));
       if (k == 0) return start;
-      // Any numbers will do as times: shares of the span in double, the same in every precision.
+      // Shares of the span are computed in double, so that the times are the same in every precision.
       const double part = static_cast<double>(k - 1) / static_cast<double>(std::max<std::int64_t>(points - 2, 1));
       return T(start + span * from_text<T>(fmt::format("{}", std::pow(first_log_share, 1 - part))));
     };
     for (std::int64_t k = 0; k < points || at(k) < until; ++k) times.push_back(at(k));
     if (times.back() < until) times.push_back(until);
   }
-  // Times that the type cannot distinguish are one.
+  // Times that the type cannot distinguish become one.
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
@@ -76,11 +76,11 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
   return plan;
 }
 
-/// The decimal that a sample of the series is of; nothing where no decimal of the scene says so.
+/// The decimal of the scene for a sample of the series; nothing if the scene gives no decimal.
 template <Real T>
 std::optional<Decimal> series_decimal(const Scene& scene, const std::vector<T>& times, const T& time) {
   const Series& series = scene.output.series;
-  // Times that the type cannot distinguish are left out: the decimal may stand further back in its list.
+  // Times that the type cannot distinguish are merged, so the decimal may be further back in its list.
   auto k = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time) - times.begin());
   const T start = number<T>(scene.run.start);
   if (!series.times.empty()) {
@@ -98,7 +98,7 @@ std::optional<Decimal> series_decimal(const Scene& scene, const std::vector<T>& 
   return {};
 }
 
-/// The times that a run in this type stands for where it is at one of its stops.
+/// The decimal times that this stop of a run stands for.
 template <Real T>
 std::vector<RequestedTime> requested_times(const Scene& scene, const Schedule<T>& plan, const T& time) {
   std::vector<RequestedTime> all;

@@ -1,5 +1,5 @@
-// The tables that a run of a scene writes, without the numbers: names, units, what they mean. They follow from the
-// scene alone, so that ensembles know what their replicas will record before one of them has run.
+// The tables that a run of a scene writes, without the numbers: names, units, meanings. They follow from the scene
+// alone, so an ensemble knows what its replicas will record before one has run.
 #pragma once
 
 #include <optional>
@@ -16,30 +16,29 @@
 
 namespace cradle::tools {
 
-/// Below which the numbers of types wider than double stand as decimals.
+/// The folder of decimals: numbers of types wider than double.
 inline constexpr std::string_view exact_folder = "exact/";
-/// The name of the table whose decimals a table is; of others their own.
+/// The name of the table that a table of decimals belongs to; other names are returned unchanged.
 inline std::string_view rounded_name(std::string_view name) {
   return name.starts_with(exact_folder) ? name.substr(exact_folder.size()) : name;
 }
 
 struct RunTables {
-  std::vector<Group> series;         // "series" and what stands below it
-  std::optional<Group> profile;      // each profile, where there are any; with the bins of a given range
+  std::vector<Group> series;         // "series" and the tables below it
+  std::optional<Group> profile;      // for each profile, if the scene has any; with its bins if the range is given
   std::optional<Group> zone;         // with its bins
   std::vector<std::string> summary;  // names of RunOutcome::summary
 };
-/// Throws Error where the zone's reach is unknown.
+/// Throws Error if the extent of the zone is unknown.
 RunTables run_tables(const Scene& scene);
 
-/// Puts the numbers into the columns of a table, in their order. Throws std::logic_error where there is another number
-/// of them.
+/// Puts the numbers into the columns of a table, in order. Throws std::logic_error if their number differs.
 Group filled(Group table, std::vector<Numbers> columns);
 template <class... Values> Group filled(Group table, Values&&... values);
 
-// ---- each of them
+// ---- single tables
 
-/// With the numbers of clouds and of the core, where a scene has them.
+/// Includes the columns of clouds and of the core if the scene has them.
 Group series_table(const Scene& scene);
 Group heaviest_table();
 Group snapshot_table(const std::string& name);
@@ -47,19 +46,19 @@ Group profile_table(const std::string& name);
 Group masses_table(const std::string& name);
 Group zone_table();
 Group events_table();
-/// The initial state of those particles that events are about.
+/// The initial state of the particles that events refer to.
 Group initial_table();
-/// Of the model of two clusters.
+/// The tables of the model of two clusters.
 std::vector<Group> cluster_series_tables();
 
-/// Particles that merge on a line make two heavy clusters and a cloud; on a ring none are like them.
+/// Whether particles end up in two heavy clusters and a cloud: those that merge on a line do, on a ring they do not.
 bool has_clouds(const Scene& scene);
 
-/// What is averaged over the interaction zone. Throws Error as above.
+/// The average over the interaction zone. Throws Error as above.
 ZoneAverage zone_average(const Scene& scene);
 Group zone_result(const ZoneAverage& zone, const ZoneWidth& width, const Scene& scene);
 
-/// As numbers with names, NaN where there is none.
+/// Named numbers; NaN for those that the run does not have.
 std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& scenario);
 
 // ---- implementation

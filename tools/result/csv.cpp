@@ -12,7 +12,7 @@ namespace cradle::tools {
 
 namespace {
 
-// Text of several lines stays one comment.
+// Makes text of several lines one comment.
 std::string comment(const Attribute& attribute) {
   std::string value = std::visit([](const auto& v) { return fmt::format("{}", v); }, attribute.second);
   for (std::size_t at = value.find('\n'); at != value.npos; at = value.find('\n', at + 1)) value.insert(at + 1, "#   ");
@@ -47,7 +47,7 @@ class Folder {
     const std::filesystem::path file = path_ / name;
     std::error_code error;
     std::filesystem::create_directories(file.parent_path(), error);
-    // Made again with the same command: no need to wait for the disk.
+    // The same command makes the file again, so there is no need to wait for the disk.
     replace_file(file.string(), text, Sync::no);
     written_.push_back(file.string());
   }

@@ -1,4 +1,4 @@
-// A result as text: one CSV file per group, and the scene beside them, ready to be run again.
+// Exports a result as text: one CSV file per group, and the scene, ready to be run again.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace cradle::tools {
 
-/// One line per row, as many digits as it takes to read the same number back. Columns that are shorter (gaps of n
-/// particles) leave their last fields empty; attributes come first, as comments.
+/// One line per row, with enough digits to read the same number back. Shorter columns (gaps of n particles) leave their
+/// last fields empty. Attributes come first, as comments.
 std::string csv(const Group& group);
 
-/// Writes GROUP.csv for every group below `folder`, and scene.toml where there is a scene: that of the file, those of a
-/// sweep's points. Returns the files' paths. Throws Error (Exit::io).
+/// Writes GROUP.csv for every group below `folder`, and scene.toml if there is a scene: that of the file, and those of
+/// a sweep's points. Returns the paths. Throws Error (Exit::io).
 std::vector<std::string> export_csv(const Result& result, const std::string& folder);
 
 }  // namespace cradle::tools

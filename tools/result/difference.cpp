@@ -21,7 +21,7 @@ bool same(std::uint64_t a, std::uint64_t b) { return a == b; }
 
 bool same(const std::string& a, const std::string& b) { return a == b; }
 
-// |a - b| against the larger of both; of infinities and of what is no number infinite.
+// |a - b| divided by the larger of |a| and |b|; infinite if a number is infinite or NaN.
 double relative(double a, double b) {
   if (a == b) return 0;
   const double size = std::abs(a - b) / std::max(std::abs(a), std::abs(b));
@@ -31,7 +31,7 @@ double relative(std::uint64_t a, std::uint64_t b) {
   return static_cast<double>(std::max(a, b) - std::min(a, b)) / static_cast<double>(std::max(a, b));
 }
 
-// Decimals of many digits are the same, or they are not.
+// Decimals with many digits are either equal or different.
 double relative(const std::string&, const std::string&) { return std::numeric_limits<double>::infinity(); }
 
 std::string size_of(const std::string&, const std::string&) { return ""; }
@@ -64,7 +64,7 @@ class Comparison {
   Comparison(const std::string& first, const std::string& second, double rtol)
       : first_(first), second_(second), rtol_(rtol) {}
 
-  // Calls both(x, y) for what is in both lists under one name, in the order of the first, and reports all others.
+  // Calls both(x, y) for names in both lists, in the order of the first, and reports all other names.
   template <class Named, class Name, class Both>
   void pair(const std::vector<Named>& a, const std::vector<Named>& b, const Name& name, const std::string& kind,
             const Both& both) {
@@ -156,7 +156,7 @@ class Comparison {
 }  // namespace
 
 std::uint64_t ulps_between(double a, double b) {
-  // Bits of negative numbers count down: as signed integers in the order of the numbers.
+  // Maps doubles to signed integers in the same order: the bits of negative numbers count down.
   const auto place = [](double x) {
     const auto bits = std::bit_cast<std::int64_t>(x);
     return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;

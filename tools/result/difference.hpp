@@ -1,5 +1,5 @@
-// In what two results differ. Nothing is passed over: attributes, groups and columns that only one of them has, units,
-// shapes and every number; what a tolerance lets pass is counted.
+// The differences of two results. Everything is compared: attributes, groups and columns that only one of them has,
+// units, shapes and every number. Differences within the tolerance are counted.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 namespace cradle::tools {
 
 struct Differences {
-  /// A line each: where, the first difference there and its size, how many more there are.
+  /// One line each: the place, the first difference there and its size, and how many more there are.
   std::vector<std::string> lines;
   std::uint64_t numbers = 0;    // compared
-  std::uint64_t tolerated = 0;  // not the same, but within the tolerance
+  std::uint64_t tolerated = 0;  // different, but within the tolerance
 };
 
-/// Numbers a and b are taken as the same where |a - b| <= rtol max(|a|, |b|); with rtol = 0 only the same bits are, and
-/// any not-a-number is like any other. `first` and `second` are what the results are called.
+/// Numbers a and b are equal if |a - b| <= rtol max(|a|, |b|). With rtol = 0 their bits must be equal; all NaN are
+/// equal. `first` and `second` name the results in the text.
 Differences differences(const Result& a, const Result& b, const std::string& first, const std::string& second,
                         double rtol = 0);
 
-/// How many numbers of the type lie from one to the other, 0 to -0 being none.
+/// How many steps between neighbouring numbers of the type lead from a to b; 0 and -0 are the same.
 std::uint64_t ulps_between(double a, double b);
 
 }  // namespace cradle::tools

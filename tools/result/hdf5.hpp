@@ -1,5 +1,5 @@
-// HDF5 identifiers as values that close themselves, and failures as errors that name the file. Only functions that
-// HDF5 1.10 to 1.14 have under the same names and with the same arguments are used.
+// HDF5 identifiers as values that close themselves, and failures as errors that name the file. Only functions with the
+// same names and arguments in HDF5 1.10 to 1.14 are used.
 #pragma once
 
 #include <hdf5.h>
@@ -37,7 +37,7 @@ class Handle {
   Close close_;
 };
 
-/// UTF-8 of any length.
+/// UTF-8 text of any length.
 inline Handle text_type(const std::string& path) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, path + ": no text type");
   check(H5Tset_size(type, H5T_VARIABLE), path + ": no text type");
@@ -45,7 +45,7 @@ inline Handle text_type(const std::string& path) {
   return type;
 }
 
-/// UTF-8 of so many bytes or less.
+/// UTF-8 text of at most so many bytes.
 inline Handle text_type(std::size_t bytes, const std::string& path) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, path + ": no text type");
   check(H5Tset_size(type, bytes), path + ": no text type");
@@ -54,8 +54,8 @@ inline Handle text_type(std::size_t bytes, const std::string& path) {
   return type;
 }
 
-/// To be called first. HDF5 prints a stack of its own messages; ours name the file and what to do. At exit it flushes
-/// again what it could not write to a full disk, and crashes.
+/// Call it first. It turns off HDF5's own error messages, since ours name the file and what to do, and HDF5's work at
+/// exit: there it would write again what did not fit on a full disk, and crash.
 inline void silence() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);

@@ -51,7 +51,7 @@ Attribute attribute(const Source& source, hid_t object, const std::string& name,
   }
 }
 
-// Rows, and the column's width.
+// Returns the number of rows and sets the column's width.
 hsize_t shape(const Source& source, hid_t data, const std::string& where, Column& column) {
   const Handle space(H5Dget_space(data), H5Sclose, source.unreadable(where));
   const int dimensions = H5Sget_simple_extent_ndims(space);
@@ -64,7 +64,7 @@ hsize_t shape(const Source& source, hid_t data, const std::string& where, Column
   return extent[0];
 }
 
-// Before memory is taken for so many numbers: does the file have them?
+// Checks, before memory is allocated, that the file is large enough for so many numbers.
 void check_size(const Source& source, hid_t data, hid_t type, hsize_t rows, hsize_t width, const std::string& where) {
   constexpr hsize_t most_compressed = 1032;  // deflate's limit
   const Handle how(H5Dget_create_plist(data), H5Pclose, source.unreadable(where));
@@ -78,7 +78,7 @@ void check_size(const Source& source, hid_t data, hid_t type, hsize_t rows, hsiz
     throw source.wrong(where, "more numbers than the file can hold", fmt::format("{} x {}", rows, width));
 }
 
-// All of it, or its first and last row; `per_value`: of what it is read into.
+// Reads all rows, or the first and the last one; `per_value` is the size of a number in memory.
 template <class Values>
 Values values_of(const Source& source, hid_t data, hid_t memory, hsize_t rows, Column& column,
                  std::size_t per_value = 1) {

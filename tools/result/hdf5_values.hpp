@@ -1,5 +1,5 @@
-// Attributes and columns of an HDF5 file, read without believing anything in it: names, types, shapes and sizes are
-// checked before they are used.
+// Attributes and columns of an HDF5 file. Nothing in the file is trusted: names, types, shapes and sizes are checked
+// before use.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace cradle::tools::hdf5 {
 
-/// What is being read; `where` in the functions below is an object in it: "series/energy".
+/// The file that is being read; `where` in the functions below is an object in it: "series/energy".
 struct Source {
   std::string path;
   std::uint64_t bytes = 0;  // of the file
@@ -25,7 +25,7 @@ struct Source {
   }
 };
 
-/// Names become names of files and stand in lines of text. Throws Error (Exit::io) for those that cannot.
+/// Throws Error (Exit::io) for a name that cannot be used as the name of a file or in a line of text.
 void check_name(const Source& source, const std::string& name, const std::string& where);
 
 /// Both throw Error (Exit::io).

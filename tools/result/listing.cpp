@@ -12,14 +12,14 @@ std::string text(const std::variant<std::string, double, std::uint64_t>& value) 
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
 }
 
-// Of ensembles, groups with statistics of one quantity, and what merging needs.
+// In ensembles: groups with the statistics of one quantity, and groups needed for merging.
 bool is_detail(const Group& group) {
   const bool mean = std::any_of(group.columns.begin(), group.columns.end(),
                                 [](const Column& column) { return column.name == "mean"; });
   return mean || group.name.ends_with("ensemble/nodes");
 }
 
-// Names of the quantities below a group that there are statistics of.
+// The names of the quantities below a group that have statistics.
 std::string quantities(const Result& result, const std::string& group) {
   std::string names;
   for (const Group& other : result.groups)

@@ -1,4 +1,4 @@
-// What a result holds, in words: scene, precision, times, counts.
+// A summary of a result: scene, precision, times, counts.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace cradle::tools {
 
-/// "key = value" line by line; `all`: also what does not differ from the defaults.
+/// "key = value" line by line; `all`: also keys at their defaults.
 std::string listing(const Scene& scene, bool all);
 
-/// Columns need no more than their first and last rows. Throws Error where `file` holds no scene.
+/// Needs only the first and last rows of the columns. Throws Error if `file` holds no scene.
 std::string listing(const Result& result, const std::string& file, bool all);
 
 }  // namespace cradle::tools

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <new>
 
 #include "cradle/tools/result/hdf5_values.hpp"
 #include "cradle/tools/result/seal.hpp"
@@ -16,13 +15,14 @@ using hdf5::check;
 using hdf5::Handle;
 using hdf5::Source;
 
-// Members in the order in which they were written; older versions did not keep it: by name then, and time first.
+// Members in the order in which they were written. Older versions did not record it; their members are sorted by name,
+// with time first.
 std::vector<std::string> members(const Source& source, hid_t group, const std::string& where) {
   const Handle how(H5Gget_create_plist(group), H5Pclose, source.unreadable(where));
   unsigned order = 0;
   check(H5Pget_link_creation_order(how, &order), source.unreadable(where));
   const bool kept = (order & H5P_CRT_ORDER_INDEXED) != 0;
-  // Soft links name again what is there already, and external ones what is not ours: they are passed over.
+  // Soft links repeat names in the file, and external links lead to other files: both are skipped.
   const auto collect = [](hid_t, const char* name, const H5L_info_t* link, void* list) -> herr_t {
     if (link->type == H5L_TYPE_HARD) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
     return 0;
@@ -35,7 +35,7 @@ std::vector<std::string> members(const Source& source, hid_t group, const std::s
   return names;
 }
 
-// Everything below a group. In a damaged file a group may be a member of itself.
+// Reads everything below a group. In a damaged file a group may be a member of itself.
 class Walk {
  public:
   Walk(const Source& source, Result& result) : source_(source), result_(result) {}
@@ -91,7 +91,7 @@ Result read_hdf5(const Source& source) {
   const auto version = attribute<std::uint64_t>(result.attributes, "format_version", source.path);
   if (version != format_version) throw of_version(source.path, version);
   const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose, source.unreadable(""));
-  Group none;  // columns outside of all groups: this program writes none
+  Group none;  // columns outside of groups: this program writes none
   Walk(source, result).members_of(root, "", none, 0);
   return result;
 }

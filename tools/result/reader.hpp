@@ -1,5 +1,5 @@
-// Result files read back. A damaged file is refused by its seal (seal.hpp). Nothing in a file is believed: names,
-// types, shapes and sizes are checked before anything is done with them.
+// Reads result files. The seal reveals damaged files (seal.hpp). Nothing in a file is trusted: names, types, shapes and
+// sizes are checked before use.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace cradle::tools {
 
 enum class Reading {
   everything,
-  ends,  // of every column the first and the last row only
+  ends,  // only the first and the last row of every column
 };
 
 /// Throws Error (Exit::io) naming the file: missing, damaged, or not written by this program.

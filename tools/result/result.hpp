@@ -1,6 +1,5 @@
-// A result in memory: named tables and attributes, in the order in which they are written. Whoever writes files
-// (writer.hpp, csv.hpp) or reads them (reader.hpp) uses this form only; its layout is that of the contract for result
-// files.
+// A result in memory: named tables and attributes, in the order in which they are written. All code that writes files
+// (writer.hpp, csv.hpp) or reads them (reader.hpp) uses this form. Its layout is that of result files.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +12,25 @@
 
 namespace cradle::tools {
 
-/// Text: numbers of more digits than a float64 has, as decimals.
+/// Texts hold decimals with more digits than a float64.
 using Numbers = std::variant<std::vector<double>, std::vector<std::uint64_t>, std::vector<std::string>>;
 
-/// One dataset: float64, uint64 or text, with unit and a line of description. A dataset of width 2 has two numbers a
-/// row.
+/// One dataset: float64, uint64 or text, with a unit and a line of description. A dataset of width 2 has two numbers
+/// per row.
 struct Column {
   std::string name;
   std::string unit;
   std::string description;
   Numbers values;              // row after row
   std::size_t width = 1;       // numbers in a row
-  bool names = false;          // they name something, particles for instance: a mean of them would mean nothing
-  std::uint64_t left_out = 0;  // rows of the file that were not read, between the first and the last one
-  std::size_t longest = 0;     // bytes, of texts among these
+  bool names = false;          // identifiers, for instance of particles: their mean has no meaning
+  std::uint64_t left_out = 0;  // rows of the file, between the first and the last, that were not read
+  std::size_t longest = 0;     // bytes of the longest text among these
 
   std::size_t rows() const {
     return std::visit([](const auto& v) { return v.size(); }, values) / width + left_out;
   }
-  /// Of a column that is there as a whole, not as in a file's outline.
+  /// For complete columns, not those of an outline.
   static auto state(auto& self) { return std::tie(self.name, self.unit, self.description, self.values, self.width); }
   void loaded() const;
 };
@@ -54,7 +53,7 @@ struct Result {
   const Group* find(std::string_view name) const;
 };
 
-/// The attribute of this name, which must be there and of this type; throws Error (Exit::io) naming `where` otherwise.
+/// The attribute of this name. Throws Error (Exit::io), naming `where`, if it is missing or of another type.
 template <class T>
 const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where);
 

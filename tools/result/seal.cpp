@@ -25,7 +25,7 @@ Error unreadable(const std::string& path, const char* found) {
   return {{path, 0, ""}, "not a file that can be read", found, "give a result file that cradle wrote", Exit::io};
 }
 
-// Of the first `size` bytes.
+// The checksum of the first `size` bytes.
 std::uint64_t checksum(std::ifstream& file, std::uint64_t size, const std::string& path) {
   std::vector<char> buffer(std::min<std::uint64_t>(size, std::uint64_t{1} << 20));
   std::uint64_t crc = 0;
@@ -59,7 +59,7 @@ void check_seal(const std::string& path) {
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
     throw Error({path, 0, ""}, "no such file", "", "give a result file that cradle wrote", Exit::io);
-  // A FIFO would make us wait for ever.
+  // Opening a FIFO would wait for ever.
   if (!std::filesystem::is_regular_file(status)) throw unreadable(path, "a folder, FIFO or device");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw unreadable(path, std::strerror(errno));
@@ -82,7 +82,7 @@ void check_seal(const std::string& path) {
       throw damaged("its bytes are not those that were written");
     return;
   }
-  // How long HDF5 says that the file is, in a superblock of version 0 with addresses of 8 bytes.
+  // The length of the file according to HDF5: a superblock of version 0 with addresses of 8 bytes.
   const std::string begin = read(0, superblock);
   if (!begin.starts_with("\x89HDF") || begin[8] != 0 || begin[13] != sizeof size) return;
   if (const auto length = from_bytes<std::uint64_t>(begin.substr(40)); length != size)

@@ -20,7 +20,7 @@ using hdf5::Handle;
 
 constexpr const char* no_room = "the result could not be laid out in memory";
 
-// Bytes must not depend on when they are written. Columns and groups come back in the order in which they were written.
+// Turns off time stamps, so that bytes do not depend on the date. Records the order of columns and groups.
 Handle properties(hid_t property_class) {
   Handle list(H5Pcreate(property_class), H5Pclose, no_room);
   check(H5Pset_obj_track_times(list, false), no_room);
@@ -30,7 +30,7 @@ Handle properties(hid_t property_class) {
 }
 
 void write_attribute(hid_t object, const Attribute& attribute) {
-  const std::string& name = attribute.first;  // no structured binding: clang 14 captures none
+  const std::string& name = attribute.first;  // no structured binding: lambdas of clang 14 cannot capture one
   const auto& value = attribute.second;
   const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, no_room);
   const auto put = [&](hid_t type, hid_t memory, const void* data) {
@@ -48,7 +48,7 @@ void write_attribute(hid_t object, const Attribute& attribute) {
   }
 }
 
-// Of text, all as long as the longest: what is laid out in the file does not depend on what else is in it.
+// Texts of a column have the length of the longest one: fixed lengths make the layout of the file reproducible.
 using Texts = std::vector<std::string>;
 std::size_t longest(const Texts& texts) {
   std::size_t bytes = 1;
@@ -61,11 +61,10 @@ std::string padded(const Texts& texts, std::size_t bytes) {
   return all;
 }
 
-// When a column's place in the file is chosen: with its first rows, or, where these come in an order that differs from
-// run to run, at once.
+// When a column gets its place in the file: with its first rows or, if their order differs from run to run, at once.
 enum class Placed { when_written, at_once };
 
-// A column with room for so many rows.
+// Makes a column for so many rows.
 Handle make_column(hid_t group, const Column& column, std::uint64_t rows, Placed placed = Placed::when_written) {
   const hsize_t shape[2] = {rows, column.width};
   const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, no_room);
@@ -80,7 +79,7 @@ Handle make_column(hid_t group, const Column& column, std::uint64_t rows, Placed
   return make(std::holds_alternative<std::vector<double>>(column.values) ? H5T_IEEE_F64LE : H5T_STD_U64LE);
 }
 
-// The column's rows, from the given one of the dataset on.
+// Writes the column's rows, beginning at row `from` of the dataset.
 void write_rows(hid_t data, const Column& column, std::uint64_t from) {
   if (column.rows() == 0) return;
   const hsize_t start[2] = {from, 0}, shape[2] = {column.rows(), column.width};
@@ -115,7 +114,7 @@ Handle file_in_memory() {
   return {H5Fcreate("cradle", H5F_ACC_TRUNC, properties(H5P_FILE_CREATE), access), H5Fclose, no_room};
 }
 
-// Calls each(group, table) with every group, made and with its attributes.
+// Makes every group with its attributes and calls each(group, table).
 template <class Each> void write_groups(hid_t file, const Result& result, const Each& each) {
   for (const auto& attribute : result.attributes) write_attribute(file, attribute);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, no_room);

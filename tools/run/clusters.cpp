@@ -17,7 +17,8 @@ namespace {
 
 namespace odeint = boost::numeric::odeint;
 
-// Of a step of the integrator, in units of L and u0; x is right to about 1000 of them at t = 1e4 (closed form of (17)).
+// Tolerance per step of the integrator, in units of L and u0. At t = 1e4 the error of x is about 1000 times that (from
+// the closed form of (17)).
 constexpr double tolerance = 1e-12;
 
 using Stepper = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<theory::ClusterState>>::type;
@@ -87,7 +88,7 @@ class Recorder {
 
   std::vector<double> time_, energy_, lost_, mass_, x_, v_;
   std::vector<std::uint64_t> collisions_, merges_, index_;
-  std::size_t seen_ = 0;  // meetings until now, and what they came to
+  std::size_t seen_ = 0;  // meetings until now, and their outcomes
   double total_lost_ = 0;
   std::uint64_t total_merges_ = 0;
 };

@@ -1,5 +1,5 @@
-// What a run requires of its engine, whatever law and chain that is made of: so that everything beside the event loop
-// is compiled once per scalar type, not once per engine. It costs a virtual call per sample, none per collision.
+// What a run requires of its engine, for every law and chain: so all code beside the event loop is compiled once per
+// scalar type, not once per engine. It costs a virtual call per sample, none per collision.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,6 @@ template <Real T> class Engine {
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
-  /// Those that make no collisions go from time to time without any.
-  virtual bool makes_collisions() const = 0;
   /// `observer` may be empty.
   virtual Status advance(const T& until, const Observer<T>& observer) = 0;
 
@@ -43,10 +41,10 @@ template <Real T> class Engine {
   virtual T kinetic_energy() const = 0;
   virtual T given_by_walls() const = 0;
   virtual T last_collision_time() const = 0;
-  virtual const CollapseReport<T>* collapse() const = 0;  // none where no collisions are made
+  virtual const CollapseReport<T>* collapse() const = 0;  // null if no collisions are made
 
-  /// Where rounding may decide whether there is one more collision up to a time not before the last one: the particle
-  /// on the left. None where nobody estimates it.
+  /// The left particle of a collision up to `time` that rounding may add or remove (`time` is not before the last
+  /// collision). None if nothing is uncertain, or if this engine does not estimate it.
   virtual std::optional<ParticleIndex> uncertain_at(const T& time) const = 0;
 
   virtual bool on_ring() const = 0;
@@ -56,13 +54,13 @@ template <Real T> class Engine {
   virtual Configuration<T> configuration(const T& time) const = 0;
   virtual Configuration<T> configuration_at_last_collision() const = 0;
 
-  /// The state (core/engine/state.hpp), and what its fields are.
+  /// Saves the state (core/engine/state.hpp); `shape` describes its fields.
   virtual void save(StateWriter& to) const = 0;
   virtual void load(StateReader& from) = 0;
   virtual std::string shape() const = 0;
 };
 
-// What takes a run through time slabs in segments; nothing for runs that cannot be cut.
+// The type that advances a run in segments; NoSegments for runs that cannot be cut.
 struct NoSegments {
   NoSegments(const Workers&, const Segmentation&) {}
 };
@@ -81,7 +79,6 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   explicit EngineOf(const Workers& workers, Arguments&&... arguments)
       : run_(std::forward<Arguments>(arguments)...), segments_(workers, {.steps = fastest_steps()}) {}
 
-  bool makes_collisions() const override { return has_chain; }
   Status advance(const T& until, const Observer<T>& observer) override {
     if constexpr (has_chain)
       if (observer) return run_.advance(until, observer);
@@ -130,9 +127,9 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   RunSegments segments_;
 };
 
-/// Digits that rounding leaves in the energy at the end, about. C collisions of N particles round a speed by eps each
-/// time, by eps sqrt(1 + C/N) in all, and the energy by twice that: of what they are then where closing speeds are
-/// held, of what they were at the start where velocities are.
+/// About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
+/// together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
+/// relative to the present ones; if it holds velocities, to those at the start.
 template <Real T> double energy_digits(const Engine<T>& engine, const Scene& scene, double at_start, double at_end) {
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
   const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double

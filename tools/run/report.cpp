@@ -25,13 +25,13 @@ std::string brief(const Figure& x) {
   return x.digits.substr(0, std::min<std::size_t>(exponent, 8)) + x.digits.substr(exponent);
 }
 
-// Two digits, rounded up; with the tenth of its first digit that is cut off a number printed beside it.
+// Two digits, rounded up, plus 20 % for the digits that are cut off from the number beside it.
 std::string error_text(const Figure& error) {
   const double more = error.value * 1.2;
   return more > 0 ? fmt::format("{:.1e}", more) : brief(error);
 }
 
-// The decimal exponent of a number's first digit, from its digits; none of 0.
+// The decimal exponent of a number's first digit; none for 0.
 std::optional<int> first_digit(const Figure& x) {
   const auto exponent = x.digits.find_first_of("eE");
   const std::string mantissa = x.digits.substr(0, exponent);
@@ -42,7 +42,7 @@ std::optional<int> first_digit(const Figure& x) {
   return place + (exponent == std::string::npos ? 0 : std::stoi(x.digits.substr(exponent + 1)));
 }
 
-// "1.71428571428571428 +- 3.8e-15": the number to a tenth of the error's first digit, and no further than it goes.
+// "1.71428571428571428 +- 3.8e-15": the number down to a tenth of the error's first digit, if it has so many digits.
 std::string within(const Figure& x, const Figure& error) {
   const auto of_number = first_digit(x), of_error = first_digit(error);
   if (!of_number || !of_error) return x.digits;
@@ -54,7 +54,7 @@ std::string within(const Figure& x, const Figure& error) {
   for (; end < mantissa.size() && wanted > 0; ++end) wanted -= mantissa[end] != '.';
   if (const auto point = mantissa.find('.'); point != std::string::npos) end = std::max(end, point);
   mantissa.resize(std::min(end, mantissa.size()));
-  // What is cut off is less than a tenth of the error, which is printed as more than it is by so much.
+  // The cut-off part is less than a tenth of the error; error_text adds more than that.
   return mantissa + (exponent == std::string::npos ? "" : x.digits.substr(exponent)) + " +- " + error_text(error);
 }
 

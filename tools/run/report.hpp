@@ -1,5 +1,5 @@
-// What a run prints when it is over: the collapse that stopped it, and what could not be resolved. Numbers of any
-// precision come here as texts with all their digits, beside the double nearest to them.
+// What a run prints at its end: the collapse that stopped it, and what it could not resolve. Numbers of any precision
+// are passed as texts with all their digits and as the nearest double.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace cradle::tools {
 struct Figure {
   double value = 0;
   std::string digits;
-  bool zero = true;  // exactly; the double may be 0 where the number is not
+  bool zero = true;  // whether the number is exactly 0; the double may be 0 for others
 };
 template <Real T> Figure figure(const T& x) { return {to_double(x), to_text(x), x == T(0)}; }
 
@@ -38,7 +38,7 @@ template <Real T> ReportedCollapse reported(const CollapseReport<T>& r) {
           figure(r.ratio),
           figure(r.ratio_uncertainty)};
 }
-/// For standard output: times with all digits that are known.
+/// The text for standard output; times have all digits that are known.
 std::string collapse_report(const ReportedCollapse& collapse, std::uint64_t collisions);
 Group collapse_table(const ReportedCollapse& collapse);
 
@@ -76,12 +76,12 @@ struct ReportedGuard {
 template <Real T> ReportedGuard reported(const GuardReport<T>& r, const T& time) {
   return {r.guard, to_double(r.found), to_double(r.bound), r.particle, to_text(time)};
 }
-/// Of a guard that stops a run.
+/// The message of a guard that stops a run.
 std::string guard_message(const ReportedGuard& guard);
 
-/// For standard error; empty where all was resolved.
+/// The text for standard error; empty if everything was resolved.
 std::string account_warning(const ReportedAccount& account, const Run& run);
-/// Where time or a gap can get no smaller.
+/// The warning when time or a gap cannot get smaller.
 std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Run& run);
 
 }  // namespace cradle::tools

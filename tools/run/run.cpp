@@ -11,7 +11,7 @@
 
 namespace cradle::tools {
 
-// Compiled once per scalar type, in a source of its own: instances/ of the build tree.
+// Compiled once per scalar type, in a separate source in instances/ of the build tree.
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options);
 template <class T> PlannedTimes planned_in(const Scene& scene);
 

@@ -18,43 +18,42 @@
 
 namespace cradle::tools {
 
-/// Of a run that the engine has ended so; `order_lost`: by its account.
+/// How a run ended, from the engine's status; `order_lost` is from the account.
 RunEnd end_of(Status status, bool order_lost);
 
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
   RunObserver* observer = nullptr;  // is notified of every collision
-  Interrupt* interrupt = nullptr;   // polled now and then whether to stop; heeded once there is something to keep
+  Interrupt* interrupt = nullptr;   // says whether to stop; heeded once there is something to keep
   Workers workers = {};             // for a run that is cut into segments
-  RunStore* store = nullptr;        // puts what is recorded where it is safe; without one it comes back in the result
+  RunStore* store = nullptr;        // stores the rows safely; without one the result has them
 };
 
 struct RunOutcome {
-  Result result;  // without the rows that a keeper has
+  Result result;  // without the rows that the store has
   RunEnd end = RunEnd::reached;
   std::string report;                        // of a collapse, for standard output; else empty
   std::string warning;                       // what was not resolved, for standard error; else empty
   std::string collapse_time;                 // where the run stopped at a collapse
-  std::uint64_t collisions = 0, merges = 0;  // at the end, as are time and energy
+  std::uint64_t collisions = 0, merges = 0;  // at the end, like time and energy
   double time = 0, energy = 0;
-  double energy_digits = 10;  // of those that the energy is given with, as rounding leaves them
+  double energy_digits = 10;                            // digits of the energy that rounding leaves right
   std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
 };
 
 /// "double", "mpfr, 50 digits", ...
 std::string precision_name(const Run& run);
 
-/// What every result says of where it is from: versions, the effective scene, its name and precision, how it ended.
+/// Where a result is from, for its attributes: versions, the effective scene, its name and precision, how it ended.
 std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome);
 
-/// The scene that a result is from, as it stands there. Throws Error (Exit::io) naming the file.
+/// The scene stored in a result. Throws Error (Exit::io) naming the file.
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file);
 
-/// Throws Error for a scene that this build cannot run, naming the key.
+/// Throws Error, naming the key, for a scene that this build cannot run.
 void check_built(const Scene& scene);
 
-/// The times at which a run samples its series, takes its profiles and ends, as it writes them: rounded from its
-/// precision.
+/// The times of the series and of the profiles, and the end, as results store them: rounded from the run's precision.
 struct PlannedTimes {
   std::vector<double> series, profiles;
   double until = 0;

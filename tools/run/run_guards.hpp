@@ -1,5 +1,5 @@
-// Checks during a run: of all particles once in so many collisions, and of every number before it is recorded. What
-// they find wrong ends the run by an Error (Exit::lost).
+// Checks during a run: of all particles after a number of collisions, and of every number before it is recorded. A
+// failed check ends the run by an Error (Exit::lost).
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,16 @@
 namespace cradle::tools {
 
 template <Real T> class RunGuards {
-  static constexpr std::uint64_t collisions_between = 256;  // of each particle; half as many before the end
-  static constexpr std::uint64_t most_guarded = 1 << 22;    // particles: beyond, a check would double the memory
+  static constexpr std::uint64_t collisions_between = 256;  // per particle; half as many before the end
+  static constexpr std::uint64_t most_guarded = 1 << 22;    // with more particles a check would double the memory
 
  public:
   RunGuards(const Scene& scene, const cradle::Particles<T>& particles, const Engine<T>& engine)
       : scene_(scene), particles_(particles), engine_(engine), energy_(particles.kinetic_energy()),
         start_(number<T>(scene.run.start)), last_before_(start_) {}
 
-  /// Checks all particles, if that is due: a hundredth of what their collisions take, by the count of collisions and
-  /// not by the clock, so that a run that stops here does so always.
+  /// Checks all particles if that is due. Checks take about a hundredth of the time of the collisions. Whether one is
+  /// due depends on the count of collisions, not on the clock, so that a failing run always stops at the same place.
   void check(const T& time, bool at_end) {
     const std::uint64_t collisions = engine_.counts().collisions;
     const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
@@ -36,14 +36,14 @@ template <Real T> class RunGuards {
                                               : collisions >= checked_at_ + between * active;
     if (!put_off && due && active <= most_guarded) check_all(time);
   }
-  /// The same at once, of a state that has been loaded: one that is well formed may still be of no run.
+  /// Checks a loaded state at once: a well-formed state may still not be one of this run.
   void check_loaded(const T& time) {
     const std::uint64_t before = checked_at_;
     if (static_cast<std::uint64_t>(engine_.collided_particles()) <= most_guarded) check_all(time);
     checked_at_ = before;
   }
 
-  /// What follows from a number beyond the type's range is noise.
+  /// Throws if the number is beyond the type's range: all that follows would be noise.
   void require_held(const T& number, const char* what, const T& time) const {
     if (is_finite(number)) return;
     throw Error({scene_.name, 0, ""}, fmt::format("{} beyond the range of {}", what, precision_name(scene_.run)),
@@ -55,7 +55,7 @@ template <Real T> class RunGuards {
     for (const T& v : now.v) require_held(v, "a velocity", now.time);
   }
 
-  /// With the smallest gap and the closure errors of the last check.
+  /// Has the smallest gap and the closure errors of the last check.
   const RunStatus& status() const { return status_; }
 
   static auto state(auto& self) { return std::tie(self.checked_at_, self.last_before_); }
@@ -69,7 +69,7 @@ template <Real T> class RunGuards {
         guarded(now, particles_, collisions, T(energy_ - engine_.energy_lost()), T(time - start_),
                 engine_.last_collision_time(), last_before_, account.order_lost + account.unresolved == 0);
     if (found.broken) throw Error(guard_message(reported(*found.broken, time)), Exit::lost);
-    // A check visits all particles that have merged, too: the next one, but for that at the end, is put off by as many.
+    // A check also visits merged particles, so the next one, except for that at the end, is delayed by their number.
     const auto merged = static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size();
     checked_at_ = collisions + collisions_between * merged;
     last_before_ = engine_.last_collision_time();
@@ -82,8 +82,8 @@ template <Real T> class RunGuards {
   const cradle::Particles<T>& particles_;
   const Engine<T>& engine_;
   T energy_, start_;
-  std::uint64_t checked_at_ = 0;  // collisions made, at the last check of all particles
-  T last_before_;                 // the time of the last of them
+  std::uint64_t checked_at_ = 0;  // at the last check of all particles
+  T last_before_;                 // the time of the last collision before that check
   RunStatus status_;
 };
 

@@ -1,11 +1,10 @@
-// From the names of a scene to the types that the hot loop is a template of: scalar, law, chain. Compiled once per
-// scalar type (see tools/CMakeLists.txt); run.cpp chooses.
+// Turns the names in a scene into the types of the hot loop: scalar, law, chain. Compiled once per scalar type (see
+// tools/CMakeLists.txt); run.cpp chooses.
 #pragma once
 
 #include <limits>
 #include <memory>
 #include <type_traits>
-#include <utility>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
@@ -21,7 +20,7 @@ namespace cradle::tools {
 
 template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& options, Progress& progress) {
   Policy<T> policy;
-  // Elastic particles do not collapse, unless against a wall that is not; those that stick cannot.
+  // Elastic particles collapse only against a wall that loses energy; particles that stick do not collapse.
   const auto loses = [](const WallAt& wall) {
     return wall.position && !wall.temperature && wall.restitution < Decimal("1");
   };
@@ -39,7 +38,7 @@ template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& opti
   return policy;
 }
 
-// Laws whose particles merge or pass through each other, and those whose particles bounce.
+// MergingLaw: particles merge or pass through each other. BouncingLaw: they bounce.
 template <Real T> using MergingLaw = OneOf<Wet<T>, InelasticMerging<T>>;
 template <Real T> using BouncingLaw = OneOf<Inelastic<T>, SpeedDependent<T>, ContactTime<T>>;
 
@@ -61,7 +60,7 @@ template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
   const T start = number<T>(scene.run.start);
-  if (!law_row(scene).needs_events && !observed)  // without an observer no collisions need be made
+  if (!law_row(scene).needs_events && !observed)  // without an observer no collisions are needed
     return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, particles, start, policy);
   const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
     return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
@@ -70,7 +69,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const BouncingLaw<T> law = bouncing_law<T>(scene);
   if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
   if (to_be_watched(*particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
-  // Only the law of most runs has engines of its own, one of them for identical masses, whose bits are the same.
+  // Only the most used law has engines of its own, one of them for identical masses; the bits are the same.
   const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};
   const auto* inelastic = law.template as<Inelastic<T>>();
   if (inelastic == nullptr) return on(individual, law);

@@ -1,5 +1,5 @@
-// Observes a run: is notified of every collision before it is made, and receives a sample of the run at every output
-// time. What an observer throws ends the run.
+// Observes a run: gets every collision before it is made, and a sample of the run at every output time. If an observer
+// throws, the run ends.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace cradle::tools {
 
-/// A time that a run is recorded at: the decimal that the scene asks for or, where it asks for none, that of the run.
+/// A time at which a run is recorded: the decimal in the scene, or the run's own time if the scene gives none.
 struct RequestedTime {
   Decimal time;
   bool of_series = false, of_snapshots = false;
-  bool last = false;  // the run is to reach it
+  bool last = false;  // the end of the run
 };
 
-/// Particles of a snapshot, from the one numbered `from` at the start to the one numbered `to`, as decimals with all
+/// The particles of a snapshot: `from` and `to` are the numbers of the outermost ones at the start. Decimals have all
 /// digits of the run's precision.
 struct SampledParticles {
   ParticleIndex from = 0, to = -1;
@@ -27,14 +27,14 @@ struct SampledParticles {
 
 struct RunSample {
   double time = 0;
-  std::string time_text;                 // with all digits of the run's precision, as are energy and fronts
+  std::string time_text;                 // this and the decimals below have all digits of the run's precision
   long double epsilon = 0;               // of that precision
-  std::vector<RequestedTime> requested;  // all that the run's precision cannot distinguish from its time
+  std::vector<RequestedTime> requested;  // all requested times that the run's precision cannot distinguish from `time`
   bool of_series = false;
-  bool at_collision = false;  // the run ends here, with the collision that it made last
+  bool at_collision = false;  // the run ends here, with its last collision
   Counts counts;
   std::string energy, front_left, front_right;  // fronts: empty before the first collision
-  SampledParticles particles;                   // of a snapshot
+  SampledParticles particles;                   // of a snapshot, else empty
 };
 
 class RunObserver {

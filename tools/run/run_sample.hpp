@@ -1,4 +1,5 @@
-// What an observer of a run receives at an output time (run_observer.hpp), as decimals of the run's scalar type.
+// The sample that an observer of a run receives at an output time (run_observer.hpp), as decimals of the run's scalar
+// type.
 #pragma once
 
 #include <limits>

@@ -1,11 +1,9 @@
-// A run in progress: the engine is advanced from one output time to the next, its state is recorded there, and in the
-// end the records become tables and texts.
+// A run in progress. It advances the engine from one output time to the next and records the state there; at the end
+// the records become tables and texts.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -26,7 +24,7 @@
 namespace cradle::tools {
 
 template <Real T> class SceneRun {
-  static constexpr std::size_t most_rows = 1 << 14;  // that wait for a keeper
+  static constexpr std::size_t most_rows = 1 << 14;  // rows that wait for the store
 
  public:
   SceneRun(const Scene& scene, std::shared_ptr<const cradle::Particles<T>> particles, Engine<T>& engine,
@@ -68,7 +66,7 @@ template <Real T> class SceneRun {
     return finish(status, end);
   }
 
-  // Beside the engine's state: what of the plan is done, and what observers have gathered.
+  // What is saved besides the engine's state: how much of the plan is done, and what observers have collected.
   static auto state(auto& self) {
     return std::tie(self.inspected_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
                     self.guards_);
@@ -77,7 +75,7 @@ template <Real T> class SceneRun {
   void loaded() const { require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone"); }
 
  private:
-  // ---- what is kept during the run
+  // ---- what is stored during the run
 
   void load(StateReader& from) {
     try {
@@ -98,7 +96,7 @@ template <Real T> class SceneRun {
   }
   std::string shape() const { return engine_.shape() + state_shape<SceneRun>() + std::string(exact_part<T>); }
 
-  // Rows that have been recorded go to the keeper, and now and then the state, which then follows from nothing else.
+  // Gives the recorded rows to the store and, from time to time, the state, from which alone the run can continue.
   void keep(const T& time, RunIs run_is = RunIs::in_progress) {
     put_rows();
     RunStatus now = guards_.status();
@@ -120,7 +118,7 @@ template <Real T> class SceneRun {
     events_.made(engine_.counts());
     put(events_.take());
   }
-  // Decimals only where somebody keeps them: ensembles and proofs have no use for them.
+  // Decimals are made only for a store: ensembles and proofs do not use them.
   void put(Recorded<T>&& rows) {
     for (Group& table : tables(std::move(rows), options_.store != nullptr)) put(std::move(table));
   }
@@ -142,8 +140,8 @@ template <Real T> class SceneRun {
   }
 
   // ---- what is recorded
-  // False where a signal has stopped a walk over rows that can be longer than anybody waits for: then nothing of this
-  // time is recorded yet.
+  // Returns false if a signal has stopped a loop over rows, which can be very long; then nothing of this time is
+  // recorded yet.
   bool sample_at(const T& time) {
     const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
                masses = holds(plan_.masses, time), zone = holds(plan_.zone, time);
@@ -186,7 +184,7 @@ template <Real T> class SceneRun {
       range = {wanted.range[0].value, wanted.range[1].value};
     else if (engine_.collided_particles() > 0 && !engine_.on_ring())
       range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
-    if (!(range.from < range.to)) range.to = range.from + 1;  // all in one place: one length around it
+    if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
     if (!std::isfinite(range.to - range.from))
       throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the particles are where no double reaches",
                   to_text(time), "give it, or remove output.profiles", Exit::lost);
@@ -208,7 +206,7 @@ template <Real T> class SceneRun {
   void notify_observer(const T& time, bool at_collision) {
     options_.observer->sample(run_sample(scene_, plan_, engine_, energy_, time, at_collision));
   }
-  // A run that ends early leaves its last state.
+  // Records the last state of a run that ends early.
   void record_end(const T& time) {
     if (options_.observer != nullptr) notify_observer(time, true);
     record_sample(time);
@@ -256,7 +254,7 @@ template <Real T> class SceneRun {
     put_rows();
     std::vector<Group>& groups = end.result.groups;
     groups = std::move(tables_).in_order();
-    // There also where there was no collision.
+    // The table is written even if there was no collision.
     if (scene_.output.events && options_.store != nullptr) append(groups, tables(events_.take(), true));
     if (scene_.output.events) {
       const Configuration<T> now = engine_.configuration_at_last_collision();
@@ -291,7 +289,7 @@ template <Real T> class SceneRun {
   EventRecorder<T> events_;
   Observer<T> observer_;
   RunGuards<T> guards_;
-  GrowingTables tables_;  // where there is no keeper
+  GrowingTables tables_;  // used if there is no store
 };
 
 }  // namespace cradle::tools

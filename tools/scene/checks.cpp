@@ -1,4 +1,4 @@
-// Each check is one function; all comparisons are exact, on the decimals.
+// Each check is one function. All comparisons are exact, on the decimals.
 #include "cradle/tools/scene/checks.hpp"
 
 #include <fmt/format.h>
@@ -99,7 +99,7 @@ class Checks {
                     "remove it");
   }
 
-  // Where particles are displaced at random, replicas are checked when they are set up (core/initial/walled.hpp).
+  // If particles are displaced at random, each replica is checked when it is set up (core/initial/walled.hpp).
   void walls_stand() const {
     const auto& [left, right] = scene_.walls;
     if (!scene_.walls.any()) return;
@@ -205,7 +205,7 @@ class Checks {
       const NumberRange& range = is_double_anyway(field.key) ? of_doubles : of_type;
       for (const Decimal& number : numbers_of(field, scene_)) {
         range.check(number.text, place(field.key));
-        // What is above 0 for the scene is so for the run; a particle between the rows may be none.
+        // A number above 0 in the scene must be above 0 in the run. The particle between the rows may have mass 0.
         const bool above_zero =
             field.range.starts_with("(0,") || (field.key == "initial.centre.mass" && number > Decimal("0"));
         if (above_zero) range.check_positive(number.text, place(field.key));
@@ -213,11 +213,11 @@ class Checks {
     }
   }
 
-  // Before memory for them is taken.
+  // Called before memory for the samples is allocated.
   void samples_can_be_kept() const {
-    constexpr double most = 1e7;  // as the table of keys has it for points
+    constexpr double most = 1e7;  // as for points in the table of keys
     const Series& series = scene_.output.series;
-    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };  // beyond double's range too
+    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };  // may exceed double's range
     const bin_float start = number(scene_.run.start), span = number(scene_.run.until) - start;
     const auto check = [&](const char* key, const Decimal& given, const bin_float& step) {
       const auto samples = static_cast<double>(bin_float(span / step));
@@ -230,13 +230,13 @@ class Checks {
     if (!series.over) return;
     const bin_float over = number(*series.over) - start, points(static_cast<std::int64_t>(*series.points - 1));
     if (series.spacing == Spacing::linear) return check("output.series.over", *series.over, over / points);
-    // A six decades' share of them for each decade more.
+    // Each additional decade adds a sixth of the points, which cover six decades.
     const double decades = std::log10(static_cast<double>(bin_float(span / over)));
     check("output.series.over", *series.over, span / (points * bin_float(1 + decades / 6)));
   }
 
  private:
-  // Whatever the working precision: random speeds of thermal walls and what is averaged have no more digits.
+  // Random speeds of thermal walls and averages are doubles in every working precision.
   static bool is_double_anyway(std::string_view key) {
     return key.ends_with(".temperature") || key == "output.zone.reach";
   }
@@ -251,8 +251,8 @@ class Checks {
     return entry == entries_.end() ? place(key) : entry->second.items.at(i).place;
   }
 
-  // Where the last particle on one side may be at the start; nothing where that is only known once particles are set
-  // up.
+  // The outermost possible position of a particle on one side at the start. Nothing if it is known only after particles
+  // are set up.
   std::optional<bin_float> outermost(int side) const {
     const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
     const Initial& initial = scene_.initial;

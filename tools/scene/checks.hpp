@@ -1,5 +1,5 @@
-// What one key alone does not show: rows that do not meet, particles out of order, two ways to say the same thing,
-// numbers that the working precision cannot hold.
+// Checks that involve several keys: rows that do not meet, particles out of order, two settings for the same thing,
+// numbers beyond the range of the working precision.
 #pragma once
 
 #include "cradle/tools/scene/scene.hpp"
@@ -7,7 +7,8 @@
 
 namespace cradle::tools {
 
-/// Throws Error at the place of the key to blame; `entries` say where the keys stand, `scene_file` where none does.
+/// Throws Error at the place of the wrong key. `entries` give the places of keys; `scene_file` names the file for keys
+/// that are missing.
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file);
 
 }  // namespace cradle::tools

@@ -1,4 +1,4 @@
-// Decimal literals taken apart: sign, significant digits, and the power of ten of the first of them.
+// Decimal literals in parts: sign, significant digits, and the power of ten of the first digit.
 #include "cradle/tools/scene/decimal.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::size_t count_digits(std::string_view text) {
   return static_cast<std::size_t>(end - text.begin());
 }
 
-// 0.d1 d2 d3 ... times 10^exponent, d1 and the last digit not 0; no digits for zero.
+// The number 0.d1 d2 d3 ... times 10^exponent; d1 and the last digit are not 0; zero has no digits.
 struct Parts {
   bool negative = false;
   std::string digits;
@@ -55,13 +55,13 @@ Parts parts_of(std::string_view text) {
 
 std::strong_ordering compare_magnitudes(const Parts& a, const Parts& b) {
   if (a.exponent != b.exponent) return a.exponent <=> b.exponent;
-  return a.digits <=> b.digits;  // both begin with the same power of ten and end without zeros
+  return a.digits <=> b.digits;  // both begin with the same power of ten and have no zeros at the end
 }
 
 }  // namespace
 
 std::optional<std::string> canonical_decimal(std::string_view written) {
-  // An underscore stands between two digits, as in TOML.
+  // An underscore must be between two digits, as in TOML.
   for (std::size_t i = 0; i < written.size(); ++i)
     if (written[i] == '_' &&
         (i == 0 || i + 1 == written.size() || !is_digit(written[i - 1]) || !is_digit(written[i + 1])))
@@ -75,7 +75,7 @@ std::optional<std::string> canonical_decimal(std::string_view written) {
   if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
 
   const std::size_t whole = count_digits(text);
-  // TOML refuses leading zeros in a number; a quoted one may have them.
+  // TOML refuses leading zeros in a number; a quoted number may have them.
   const std::size_t zeros = std::min(text.find_first_not_of('0'), whole);
   result += zeros == whole ? "0" : text.substr(zeros, whole - zeros);
   text.remove_prefix(whole);

@@ -1,6 +1,6 @@
-// Exact decimal literals. A number in a scene is a decimal in the working precision, so its text is kept as written:
-// read through a double, 0.999 would not be 0.999 in wider types, 1e-400 would be 0 and digits past the 17th lost.
-// Comparisons are exact, on the text, for any number of digits and any exponent of up to 18 digits.
+// Exact decimal literals. Numbers in a scene are decimals in the working precision, so their text is kept as written.
+// Read through a double, 0.999 would not be 0.999 in wider types, 1e-400 would be 0, and digits past the 17th would be
+// lost. Comparisons are exact; they compare the texts, with any number of digits and exponents of up to 18 digits.
 #pragma once
 
 #include <compare>
@@ -16,16 +16,17 @@
 namespace cradle::tools {
 
 /// The canonical form of a finite decimal literal: no underscores, no leading '+', a digit on both sides of the point
-/// ("+1_000" gives "1000", "0.5" gives "0.5"); else as written. Nothing where `text` is not one (inf and nan included).
+/// ("+1_000" gives "1000", ".5" gives "0.5"); the rest is unchanged. Nothing if `text` is not such a literal (inf and
+/// nan are not).
 std::optional<std::string> canonical_decimal(std::string_view text);
 
-/// The same where TOML has no say, in CSV and on the command line: without underscores.
+/// The same for CSV and the command line, where TOML's rules do not apply: no underscores.
 std::optional<std::string> plain_decimal(std::string_view text);
 
 /// Exact comparison of two canonical decimals.
 std::strong_ordering compare_decimals(std::string_view a, std::string_view b);
 
-/// The integer a canonical decimal stands for (2e7, 8000.0 too), where it is one and fits.
+/// The integer value of a canonical decimal (2e7, 8000.0 too), if it is an integer and fits.
 std::optional<std::uint64_t> decimal_integer(std::string_view text);
 
 /// Whether its value is a whole number, of any size and sign.
@@ -33,24 +34,24 @@ bool is_whole(std::string_view text);
 
 struct Decimal {
   std::string text = "0";  // canonical
-  double value = 0;        // nearest double; 0 or infinity where out of its range: never a source for wider types
+  double value = 0;        // nearest double; 0 or infinity if out of its range: never convert this to wider types
 
   Decimal() = default;
-  /// From a canonical or canonicalisable literal; throws std::invalid_argument otherwise.
+  /// Takes any literal that has a canonical form; throws std::invalid_argument otherwise.
   explicit Decimal(std::string_view literal);
 
-  // Equal in value: 1 and 1.0 are the same number in every working precision.
+  // Compares values: 1 and 1.0 are the same number in every working precision.
   friend bool operator==(const Decimal& a, const Decimal& b) { return std::is_eq(compare_decimals(a.text, b.text)); }
   friend std::strong_ordering operator<=>(const Decimal& a, const Decimal& b) {
     return compare_decimals(a.text, b.text);
   }
 };
 
-/// start + k step, exactly; nothing where that has thousands of digits.
+/// start + k step, exactly; nothing if that needs thousands of digits.
 std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step);
 
-/// Canonical decimals of many particles, end to end in one text, since 2e7 particles are as welcome as three. Copies
-/// share it until one of them grows.
+/// Canonical decimals of many particles, joined in one text, so that 2e7 particles fit in memory. Copies share it until
+/// one of them grows.
 class DecimalColumn {
  public:
   DecimalColumn() = default;
@@ -67,7 +68,7 @@ class DecimalColumn {
   }
   std::string_view back() const { return (*this)[size() - 1]; }
 
-  // In value, as of single decimals.
+  // Compares values, like Decimal.
   friend bool operator==(const DecimalColumn& a, const DecimalColumn& b);
 
  private:
@@ -78,8 +79,8 @@ class DecimalColumn {
   std::shared_ptr<Data> data_;
 };
 
-/// The exact sum of the products of two columns, of the first one alone where the second is empty. Nothing for more
-/// than 1e5 of them or where it would have thousands of digits.
+/// The exact sum of the products of two columns, or of the first column alone if the second is empty. Nothing for more
+/// than 1e5 rows or if it needs thousands of digits.
 std::optional<std::string> sum_of_products(const DecimalColumn& a, const DecimalColumn& b);
 
 }  // namespace cradle::tools

@@ -1,5 +1,5 @@
-// One value against one row of the table: type, range, storing it, writing it back. What differs between the types of
-// keys is here, one overload per type of member; nothing here knows a particular key.
+// Handles one value and its row of the table: checks type and range, stores it, writes it back. Differences between the
+// types of keys are here, one overload per type of member. Nothing here depends on a particular key.
 #include "cradle/tools/scene/fields.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ template <class T> constexpr bool is_choice = std::is_enum_v<T>;
 template <class T> constexpr bool is_optional = false;
 template <class T> constexpr bool is_optional<std::optional<T>> = true;
 
-// "[0, 0.5) even" taken apart.
+// The parts of "[0, 0.5) even".
 struct Interval {
   std::string lower, upper;
   bool lower_open = false, upper_open = false, even = false;
@@ -76,12 +76,12 @@ std::vector<std::string_view> choices_of(const Field& field) {
   return names;
 }
 
-// Numbers are shown without the quotation marks they may have.
+// Shows numbers without quotation marks.
 [[noreturn]] void refuse(const Field& field, const Value& value, const Scene& scene, std::string_view wrong) {
   throw Error(value.place, wrong, canonical_decimal(value.text) ? value.text : describe(value), advice(field, scene));
 }
 
-// The literal of a number in its range, quoted or not.
+// The literal of a number within its range, quoted or not.
 std::string number_text(const Field& field, const Value& value, const Scene& scene) {
   if (std::ranges::find(not_finite, value.text) != std::end(not_finite)) refuse(field, value, scene, "not finite");
   if (value.kind != Value::Kind::number && value.kind != Value::Kind::text) refuse(field, value, scene, "wrong type");
@@ -92,7 +92,7 @@ std::string number_text(const Field& field, const Value& value, const Scene& sce
 }
 
 void read(const Field& field, const Value& value, Scene& scene, std::string& target) {
-  // `--set title=2026`: a bare word, whatever it looks like.
+  // In `--set title=2026` any bare word is a text.
   const bool bare = value.place.source == "--set" && value.kind != Value::Kind::array;
   if (value.kind != Value::Kind::text && !(bare && !value.text.empty())) refuse(field, value, scene, "wrong type");
   target = value.text;
@@ -105,7 +105,7 @@ void read(const Field& field, const Value& value, Scene& scene, Decimal& target)
 void read(const Field& field, const Value& value, Scene& scene, std::uint64_t& target) {
   const auto number = number_text(field, value, scene);
   if (!is_whole(number)) refuse(field, value, scene, "not an integer");
-  target = decimal_integer(number).value();  // the range ends within 64 bits
+  target = decimal_integer(number).value();  // the range is within 64 bits
   if (interval_of(field).even && target % 2 != 0) refuse(field, value, scene, "odd");
 }
 
@@ -170,7 +170,7 @@ std::string in_quotes(std::string_view text) {
 std::optional<std::string> written(const Field&, const std::string& value) { return in_quotes(value); }
 std::optional<std::string> written(const Field&, const Decimal& value) { return value.text; }
 std::optional<std::string> written(const Field&, const std::uint64_t& value) {
-  // TOML integers end at 2^63 - 1.
+  // TOML integers are at most 2^63 - 1.
   const auto text = std::to_string(value);
   return value >> 63U == 0 ? text : in_quotes(text);
 }
@@ -211,7 +211,7 @@ template <class T> std::string_view name_of_type() {
   return "one of";
 }
 
-// Accessors only form a reference, so reading a constant scene through them is safe.
+// Accessors only form a reference, so it is safe to read a constant scene through them.
 template <class T> const T& member_of(Member<T> access, const Scene& scene) {
   return access(const_cast<Scene&>(scene));
 }

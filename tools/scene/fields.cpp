@@ -1,14 +1,12 @@
-// The table itself. Adding a key is adding a member in scene.hpp and a row here.
+// The table of keys. To add a key, add a member in scene.hpp and a row here.
 #include "cradle/tools/scene/fields.hpp"
-
-#include <algorithm>
 
 #include "cradle/tools/model/laws.hpp"
 
 namespace cradle::tools {
 namespace {
 
-// The member reached through these pointers to members, one after the other.
+// The member that these pointers to members lead to, one after the other.
 template <auto... Path> constexpr auto member = +[](Scene& scene) -> auto& { return (scene.*....*Path); };
 
 constexpr When always{"", "", "", [](const Scene&) { return true; }};

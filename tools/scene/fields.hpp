@@ -1,5 +1,5 @@
-// The one table of scene keys. From it come the reader, the effective scene, the manual listing and "only what differs
-// from the defaults". A row says where the value is stored; the type of that member is the type of the key.
+// The one table of scene keys. The reader, the effective scene, the manual and the list of keys that differ from their
+// defaults use it. A row says where the value is stored; the type of that member is the type of the key.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ using Storage =
                  Member<InitialType>, Member<scene::HotPlace>, Member<Velocities>, Member<Precision>,
                  Member<Coordinates>, Member<scene::CollapsePolicy>, Member<Spacing>, Member<scene::Meeting>>;
 
-/// To which scenes a key applies.
+/// The scenes to which a key applies.
 struct When {
-  std::string_view otherwise;   // what is wrong with the key in any other scene
-  std::string_view decided_by;  // the key that decides
+  std::string_view otherwise;   // what is wrong with the key in other scenes
+  std::string_view decided_by;  // the key that decides whether this one applies
   std::string_view text;        // `law.type = "wet"`; empty: every scene
   bool (*holds)(const Scene&);
 };
@@ -36,15 +36,15 @@ struct Field {
   std::string_view key;  // "law.restitution"
   Storage storage;
   std::string_view unit;      // in m, l (lengths), t (times); "" for pure numbers and texts
-  std::string_view fallback;  // TOML; "required"; "" for none; or words, where `computed` gives it
+  std::string_view fallback;  // TOML; "required"; "" for none; or a description of what `computed` gives
   std::string_view range;     // "[0, 1]", "(0, inf)", "[2, 1e15] even", bounds may be keys; or "a | b | c"
   const When* when;
   std::string_view doc;
   std::string (*computed)(const Scene&) = nullptr;
-  bool recorded = true;  // in the effective scene; what cannot change a result is not
+  bool recorded = true;  // in the effective scene; false for keys that cannot change a result
 };
 
-/// In an order in which every key stands after those that decide on its use, default or range.
+/// The rows in an order in which every key comes after the keys that its use, default or range depend on.
 std::span<const Field> scene_fields();
 
 /// The row of this key that applies to the scene, else any row of this key, else nullptr.
@@ -53,16 +53,18 @@ const Field* find_field(std::string_view key, const Scene& scene);
 /// "number", "integer", "text", "one of", "list of numbers", "list of texts", "true or false".
 std::string_view type_name(const Field& field);
 
-/// What may stand here, in words: `give a number from 0 to 1`. Bounds that are keys get their values in this scene.
+/// Says which values are allowed: `give a number from 0 to 1`. Bounds that are keys are replaced by their values in
+/// this scene.
 std::string advice(const Field& field, const Scene& scene);
 
-/// Checks type and range and stores; throws Error at the value's place. Bounds that are keys must have been stored.
+/// Checks type and range, then stores the value. Throws Error at the value's place. Bounds that are keys must be stored
+/// before.
 void store(const Field& field, const Value& value, Scene& scene);
 
-/// Stores the default, or leaves the member as it is where there is none.
+/// Stores the default; without one the member keeps its value.
 void store_default(const Field& field, Scene& scene);
 
-/// The value in TOML syntax; nothing where there is none.
+/// The value in TOML syntax; nothing if there is none.
 std::optional<std::string> value_text(const Field& field, const Scene& scene);
 
 /// All numbers stored at this field (none for texts, integers and choices).

@@ -12,7 +12,7 @@ namespace {
 
 std::string_view last_part(std::string_view key) { return key.substr(key.rfind('.') + 1); }
 
-// The known key most like this one, empty where none is alike. The right name in the wrong table counts as near.
+// The most similar known key; empty if none is similar. The right name in the wrong table counts as similar.
 std::string_view nearest_key(std::string_view key) {
   std::string_view nearest;
   std::size_t least = alike(key) + 1;
@@ -37,7 +37,7 @@ void refuse_unknown_key(std::string_view key, const Value& value, const Scene& s
       throw Error({value.place.source, value.place.line, std::string(field.key)}, "wrong type", "a table",
                   advice(field, scene));
     if (is_inside(field.key, key)) {
-      if (value.kind == Value::Kind::table) return;  // empty: says nothing
+      if (value.kind == Value::Kind::table) return;  // an empty table has no keys
       throw Error(value.place, "wrong type", describe(value), fmt::format("give a table, such as {} = ...", field.key));
     }
   }
@@ -46,7 +46,7 @@ void refuse_unknown_key(std::string_view key, const Value& value, const Scene& s
               nearest.empty() ? "remove it; the manual lists all keys" : fmt::format("did you mean {}?", nearest));
 }
 
-// Why a key does not apply: the deciding key with the value it has.
+// Why a key does not apply: names the deciding key and its value.
 std::string decided_by(const When& when, const Scene& scene) {
   const Field* field = find_field(when.decided_by, scene);
   while ((!field->when->holds(scene) || !value_text(*field, scene)) && !field->when->decided_by.empty())

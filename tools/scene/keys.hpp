@@ -1,4 +1,4 @@
-// Which keys may stand in a scene: known ones, and of these only those that apply to its law, initial state and policy.
+// Which keys a scene may contain: known keys that apply to its law, initial state and policy.
 #pragma once
 
 #include <string_view>
@@ -8,11 +8,11 @@
 
 namespace cradle::tools {
 
-/// Throws Error for the first key that is none, with the one most like it.
+/// Throws Error for the first unknown key, with the most similar known one.
 void refuse_unknown_keys(const Entries& entries, const Scene& scene);
 
-/// Throws Error for the first key that says nothing in this scene, with the reason: of the keys that `decider` decides
-/// on, or of all where it is empty.
+/// Throws Error for the first key that does not apply to this scene, with the reason. Checks the keys that depend on
+/// `decider`, or all keys if it is empty.
 void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::string_view decider = {});
 
 }  // namespace cradle::tools

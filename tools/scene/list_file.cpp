@@ -1,4 +1,4 @@
-// CSV of particles, line by line; every number is checked where it stands, so that messages can name the line.
+// Reads particles from CSV line by line. Every number is checked when it is read, so that messages can name the line.
 #include "cradle/tools/scene/list_file.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ bool is_not_finite(std::string_view cell) {
   return word == "inf" || word == "infinity" || word == "nan";
 }
 
-// The lines of a file, one after the other, into columns.
+// Reads the lines of a file into columns.
 class Reader {
  public:
   Reader(const std::string& file, const Run& run) : file_(file), range_(run) {}
@@ -86,7 +86,7 @@ class Reader {
 ListedParticles parse_list(std::istream& csv, const std::string& file_name, const Run& run) {
   Reader reader(file_name, run);
   Place place{file_name, 0, {}};
-  std::size_t columns = 0;  // 0: still to be named
+  std::size_t columns = 0;  // 0: not named yet
   std::string line;
   std::vector<std::string_view> cells;
   while (std::getline(csv, line)) {

@@ -1,5 +1,5 @@
-// Which numbers the working precision of a run holds. One beyond it would be infinite there, and what follows no number
-// at all; one too small is 0, which everything but a mass can be.
+// The numbers that the working precision of a run can hold. A larger number would become infinite and spoil the run; a
+// smaller one becomes 0, which is not allowed for masses.
 #pragma once
 
 #include <optional>
@@ -14,14 +14,14 @@ class NumberRange {
  public:
   explicit NumberRange(const Run& run);
 
-  /// Throws Error at `place` for a canonical decimal that is too large.
+  /// Throws Error at `place` if a canonical decimal is too large.
   void check(std::string_view literal, const Place& place) const;
-  /// The same for a positive one that is too small.
+  /// The same, also if a positive one is too small.
   void check_positive(std::string_view literal, const Place& place) const;
 
  private:
   std::string precision_;
-  // The largest number, its negative, the smallest above 0 with all digits; none: as large and small as one likes.
+  // The largest number, its negative, and the smallest positive number with all digits; none: no limit.
   std::optional<std::string> largest_, lowest_, least_;
 };
 

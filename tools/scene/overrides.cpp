@@ -1,6 +1,5 @@
 #include "cradle/tools/scene/overrides.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <string_view>
 
@@ -9,7 +8,7 @@
 namespace cradle::tools {
 namespace {
 
-// A way to sample the series replaces another one that the file chose.
+// If the command line chooses how to sample the series, removes the choice of the file.
 void drop_replaced_series(Entries& entries, std::string_view assignment) {
   constexpr std::string_view series = "output.series.";
   const auto key = assignment.substr(0, assignment.find_first_of("= \t"));
@@ -21,8 +20,8 @@ void drop_replaced_series(Entries& entries, std::string_view assignment) {
   });
 }
 
-// A run cut to another span on the command line keeps those of the file's output times that lie in it: what is
-// requested for on the command line itself is still refused there.
+// If the command line changes the span of a run, removes the file's output times outside of it. Output times on the
+// command line are kept, and refused later.
 void drop_times_cut_off(Entries& entries) {
   const auto bound = [&](const char* key) -> std::optional<Decimal> {
     const auto entry = entries.find(key);

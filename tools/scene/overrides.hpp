@@ -1,4 +1,4 @@
-// What the command line sets on top of a scene file: `--set` assignments, and what of the file gives way to them.
+// What the command line changes in a scene file: `--set` assignments, and the keys of the file that they replace.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace cradle::tools {
 
-/// Each override is `table.key=value`, see apply_override. Throws Error for what is no assignment.
+/// Each override is `table.key=value`, see apply_override. Throws Error for anything else.
 void apply_overrides(Entries& entries, const std::vector<std::string>& overrides);
 
 }  // namespace cradle::tools

@@ -1,14 +1,11 @@
-// Reading a scene: text to entries (source.cpp), those of the command line on top (overrides.cpp), entries through the
-// table of fields into the struct (fields.cpp), then the checks that need more than one key (checks.cpp) and the
-// particles of a list (list_file.cpp).
+// Reads a scene: text to entries (source.cpp), entries of the command line (overrides.cpp), entries to the struct by
+// the table of fields (fields.cpp), checks that involve several keys (checks.cpp), particles of a list (list_file.cpp).
 #include "cradle/tools/scene/scene.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-
-#include <fmt/format.h>
 
 #include "cradle/tools/scene/checks.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -29,14 +26,14 @@ bool has_row_tables(const Entries& entries) {
 
 void store_all(const Entries& entries, const std::string& scene_file, Scene& scene) {
   for (const Field& field : scene_fields()) {
-    // The tables decide which keys rows take, before the first of these keys is read.
+    // The tables decide which keys rows take, so they are inspected before these keys are read.
     if (field.key == "initial.left.particles" && scene.initial.type == InitialType::rows && has_row_tables(entries))
       scene.initial.left.particles = 1;
     if (!field.when->holds(scene)) continue;
     if (const auto entry = entries.find(field.key); entry != entries.end()) {
       store(field, entry->second, scene);
     } else if (field.fallback == "required") {
-      // A key of another law says more about what went wrong than the key that is missing for it.
+      // If a key of another law is present, it explains the error better than the missing key.
       if (!field.when->decided_by.empty()) refuse_inapplicable_keys(entries, scene, field.when->decided_by);
       throw Error({scene_file, 0, std::string(field.key)}, "missing", "", advice(field, scene));
     } else {

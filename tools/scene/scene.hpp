@@ -19,14 +19,14 @@
 
 namespace cradle::tools {
 
-// The enumerators stand in the order of the names in the table of fields.
+// The enumerators are in the order of the names in the table of fields.
 enum class LawType { inelastic, wet, sticky };
 enum class InitialType { rows, ring, list, clusters, cold };
 enum class Velocities { gaussian, uniform };
 enum class Coordinates { gaps, absolute };
 enum class Spacing { linear, log };
 
-// What the engine has too, as a scene says it.
+// Scene types whose names the engine uses too.
 namespace scene {
 
 enum class HotPlace { middle, left };
@@ -38,7 +38,7 @@ struct Law {
   Decimal restitution;  // inelastic
   Decimal cutoff;       // inelastic: closing speed below which collisions are elastic; 0: none
   std::optional<Decimal>
-      cutoff_exponent;  // inelastic: by what power of the speed the restitution falls there; none: sharp
+      cutoff_exponent;  // inelastic: the power of the speed with which the restitution falls; none: sharp
   Decimal loss;         // wet: E_loss
   bool operator==(const Law&) const = default;
 };
@@ -53,7 +53,7 @@ struct Row {
 
 }  // namespace scene
 
-/// The particle between two general rows, at x = 0; mass 0: there is none.
+/// The particle between two general rows, at x = 0; mass 0: none.
 struct Centre {
   Decimal mass;
   Decimal speed;
@@ -76,7 +76,7 @@ struct Initial {
   std::uint64_t hot = 0;                            // cold: particles that move at the start
   scene::HotPlace place = scene::HotPlace::middle;  // cold: where these are
   Decimal energy;                                   // cold: of several hot particles together
-  std::optional<std::string> file;  // list: where a scene file has its particles; a scene that was read has them here:
+  std::optional<std::string> file;  // list: the file with the particles; a scene that was read has them here:
   DecimalColumn x, v, m;            // list; m empty: all 1. clusters: two x, two v
   std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
   scene::Meeting meeting = scene::Meeting::energy;
@@ -88,7 +88,7 @@ struct Initial {
   bool operator==(const Initial&) const = default;
 };
 
-/// At one end of the line; without a position there is none.
+/// A wall at one end of the line; without a position there is none.
 struct WallAt {
   std::optional<Decimal> position;     // at run.start
   Decimal speed;                       // positive to the right
@@ -116,11 +116,11 @@ struct Run {
   bool operator==(const Run&) const = default;
 };
 
-/// When samples are taken: exactly one of points, every and times is there.
+/// When samples are taken; exactly one of points, every and times is given.
 struct Series {
   std::optional<std::uint64_t> points;
   Spacing spacing = Spacing::linear;  // of points
-  std::optional<Decimal> over;        // of points: up to when these are spread, if not up to the end
+  std::optional<Decimal> over;        // of points: end of the range in which they are spread; none: end of the run
   std::optional<Decimal> every;
   std::vector<Decimal> times;
   bool operator==(const Series&) const = default;
@@ -129,11 +129,11 @@ struct Series {
 struct Profiles {
   std::vector<Decimal> times;
   std::uint64_t bins = 0;
-  std::vector<Decimal> range;  // {from, to}, or empty: the interaction zone at that time
+  std::vector<Decimal> range;  // {from, to}; empty: the interaction zone at that time
   bool operator==(const Profiles&) const = default;
 };
 
-/// Average over the interaction zone of a wet shock, from a time on; without one there is none.
+/// Average over the interaction zone of a wet shock, from a given time on; without one there is no average.
 struct Zone {
   std::optional<Decimal> from;
   std::uint64_t samples = 0;
@@ -143,7 +143,7 @@ struct Zone {
 };
 
 struct Checkpoint {
-  Decimal every_seconds;  // of computing; 0: none during the run
+  Decimal every_seconds;  // of computing time; 0: none during the run
   bool operator==(const Checkpoint&) const = default;
 };
 
@@ -154,14 +154,14 @@ struct Output {
   Profiles profiles;
   std::vector<Decimal> masses;  // times at which the distribution of masses is written
   Zone zone;
-  bool scenario = false;  // wet rows: which of the two scenarios of Fig. 9
+  bool scenario = false;  // wet rows: whether to decide between the two scenarios of Fig. 9
   bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
   Checkpoint checkpoint;
   bool operator==(const Output&) const = default;
 };
 
-/// What `cradle sweep` makes of the scene where the command line says nothing else.
+/// What `cradle sweep` varies, unless the command line says otherwise.
 struct Sweep {
   std::vector<std::string> vary;    // KEY=FROM:TO:COUNT[:log] or KEY=VALUE,VALUE,...
   bool cuts = false;                // one key at a time, the others as in the scene, instead of all combinations
@@ -181,32 +181,32 @@ struct Scene {
   Sweep sweep;
 };
 
-/// Whether initial.masses gives the particles different masses, or one that is not 1: what formulas for particles of
-/// mass 1 do not hold for.
+/// Whether initial.masses gives different masses, or masses that are not 1: formulas for particles of mass 1 do not
+/// apply then.
 bool unequal_masses(const Scene& scene);
 
-/// The same scene, wherever it was read from (the name does not count).
+/// Whether the scenes are equal, wherever they were read from (names are not compared).
 bool operator==(const Scene& a, const Scene& b);
 
-/// Reads the scene file at this path or, where there is none, the bundled scene of this name. Each override is
-/// `table.key=value`, the value in TOML syntax (bare words are strings), and replaces what the file says; with an empty
-/// value it takes the key out. Throws Error: Exit::io where nothing can be read, Exit::bad_input for what is in it.
+/// Reads the scene file at this path or, if there is none, the bundled scene of this name. Each override is
+/// `table.key=value`, with the value in TOML syntax (bare words are strings), and replaces the value in the file; an
+/// empty value removes the key. Throws Error: Exit::io if nothing can be read, Exit::bad_input for wrong contents.
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
-/// The same from text; `source_name` is what messages call it, its stem the scene's name, and its folder where a list
-/// of particles is looked for.
+/// The same from text. Messages name `source_name`; its stem is the scene's name, and its folder is searched for a list
+/// of particles.
 Scene parse_scene(std::string_view text, const std::string& source_name,
                   const std::vector<std::string>& overrides = {});
 
-/// The whole scene with every default filled in, listed particles included, without what cannot change a result; the
-/// same text for the same scene, reads back as an equal scene wherever that is done.
+/// The whole scene with every default and the listed particles, without keys that cannot change a result. Equal scenes
+/// give the same text; reading the text gives an equal scene, on any machine.
 std::string effective_toml(const Scene& scene);
 
 /// Keys and values (TOML syntax) that apply to this scene, in the table's order: those that differ from their defaults,
-/// or all. Without what cannot change a result.
+/// or all. Keys that cannot change a result are left out.
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool all);
 
-/// A value as people want to see it: lists of very many numbers by their ends.
+/// A value for display: long lists of numbers are shortened to their ends.
 std::string shortened(const std::string& value);
 
 struct BundledScene {

@@ -1,8 +1,7 @@
-// toml++ does the parsing and says where each value begins; literals are taken from the text at that place.
+// toml++ parses and reports where each value begins; literals are taken from the text at that place.
 #include "cradle/tools/scene/source.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 
 #include <toml++/toml.h>
@@ -19,7 +18,7 @@ bool is_decimal_character(char c) {
   return is_digit(c) || std::string_view("+-_.eE").find(c) != std::string_view::npos;
 }
 
-// End of the comment or string that begins at `i`; `i` where none does.
+// The end of the comment or string that begins at `i`; `i` if none begins there.
 std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
   if (text[i] == '#') return std::min(text.find('\n', i), text.size());
   if (text[i] != '"' && text[i] != '\'') return i;
@@ -32,13 +31,14 @@ std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
     } else if (text.substr(j, close.size()) == close) {
       return j + close.size();
     } else if (text[j] == '\n' && !multiline) {
-      return j;  // unterminated: toml++ says so
+      return j;  // unterminated: toml++ reports it
     }
   }
   return text.size();
 }
 
-// Whether it is a decimal number in TOML: digits, underscores between them, on both sides of a point, no zero in front.
+// Whether it is a decimal number in TOML: underscores only between digits, digits on both sides of a point, no leading
+// zero.
 bool is_toml_number(std::string_view text) {
   const auto digits = [&text] {
     std::size_t n = 0;
@@ -58,11 +58,11 @@ bool is_toml_number(std::string_view text) {
          text.empty();
 }
 
-// toml++ refuses literals beyond int64, the range of double or its buffer: it gets those in quotation marks, which
-// moves columns but no lines. Only what stands where a value can stand and is not followed by '=' is a literal.
+// toml++ refuses numbers beyond int64, the range of double or its buffer. This puts them in quotation marks, which
+// changes columns but not lines. A literal is text at the place of a value that is not followed by '='.
 std::string quote_wide_literals(std::string_view text) {
   std::string result;
-  char before = '\n';  // last character that is not blank
+  char before = '\n';  // the last non-blank character
   for (std::size_t i = 0; i < text.size();) {
     std::size_t end = skip_comment_or_string(text, i);
     if (end > i) {
@@ -133,7 +133,7 @@ Value value_of(const toml::node& node, const Literals& literals, const Place& pl
   } else if (node.is_number()) {
     value.kind = Value::Kind::number;
     value.text = literals.at(node.source().begin);
-    // Hexadecimal, octal, binary: small by construction.
+    // Hexadecimal, octal and binary numbers are always small here.
     if (value.text.size() > 1 && std::string_view("xob").find(value.text[1]) != std::string_view::npos)
       value.text = std::to_string(node.as_integer()->get());
   } else if (const auto* array = node.as_array()) {
@@ -163,12 +163,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
 }
 
-// Entries of `value = TEXT` under `key`; nothing where TEXT is not TOML.
+// The entries of `value = TEXT`, under `key`; nothing if TEXT is not TOML.
 std::optional<Entries> assigned(std::string_view text, const Place& place) {
   const std::string document = quote_wide_literals("value = " + std::string(text));
   try {
     const toml::table table = toml::parse(document);
-    if (table.size() != 1) return {};  // a line end and a second key
+    if (table.size() != 1) return {};  // TEXT had a line end and a second key
     const Literals literals(document);
     Entries entries;
     const toml::node& node = *table.get("value");

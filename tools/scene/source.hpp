@@ -1,5 +1,5 @@
-// Scene text taken apart: TOML and `--set` assignments become one flat map from dotted keys to values, each with the
-// place it stands at. Numbers stay the literals that the user wrote; nothing is known here of what keys mean.
+// Splits the text of a scene: TOML and `--set` assignments become one flat map from dotted keys to values, each with
+// its place. Numbers remain the literals that the user wrote. The meaning of keys is not known here.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace cradle::tools {
 struct Value {
   enum class Kind { text, number, boolean, date, array, table };
   Kind kind = Kind::text;
-  std::string text;          // what a text says; any other scalar as it is written
+  std::string text;          // the contents of a text; other scalars as they are written
   std::vector<Value> items;  // of an array
   Place place;
 };
@@ -22,17 +22,17 @@ struct Value {
 /// A value as messages show it: `"wet"`, `1.5`, `an array of 3 values`.
 std::string describe(const Value& value);
 
-/// "law.restitution" -> 0.999. Tables appear only where they are empty.
+/// "law.restitution" -> 0.999. Tables appear only if they are empty.
 using Entries = std::map<std::string, Value, std::less<>>;
 
-/// Parses TOML; throws Error with file and line where it is none.
+/// Parses TOML. Throws Error with file and line if it is not valid.
 Entries read_entries(std::string_view toml, const std::string& source_name);
 
-/// One `table.key=value` on top of what is there: the value in TOML syntax, or else a bare word, which is a text; an
-/// empty value takes the key out. A table or array replaces all of the old one.
+/// Applies one `table.key=value`: the value is TOML or else a bare word, which is a text; an empty value removes the
+/// key. A table or array replaces the old one completely.
 void apply_override(Entries& entries, std::string_view assignment);
 
-/// A value by itself, in TOML syntax; must be valid.
+/// A single value in TOML syntax, which must be valid.
 Value parse_value(std::string_view toml);
 
 }  // namespace cradle::tools

@@ -9,7 +9,7 @@
 namespace cradle::tools {
 namespace {
 
-// Compared by value: 1.0 does not differ from a default of 1.
+// Compares values: 1.0 does not differ from a default of 1.
 bool is_default(const Field& field, const Scene& scene) {
   if (field.fallback == "required") return false;
   if (field.fallback.empty()) return !value_text(field, scene);

@@ -49,7 +49,7 @@ Error StateReader::damaged(const std::string& what) const {
 
 StateReader::StateReader(const std::string& path)
     : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-  stored_in(path);  // refuses other formats
+  stored_in(path);  // throws for other formats
   struct stat found {};
   if (file_ < 0 || ::fstat(file_, &found) != 0)
     throw Error({path, 0, ""}, "could not be read", std::strerror(errno), "check its name and rights", Exit::io);

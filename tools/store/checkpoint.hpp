@@ -1,6 +1,6 @@
-// A file that holds the state of a run at one moment (core/engine/state.hpp): written and read as a stream, however
-// large, with a checksum over all of it at the end. It is there whole or not at all (atomic_file.hpp), and nothing in
-// it is used before its checksum has been found right.
+// A file that holds the state of a run at one moment (core/engine/state.hpp). It is written and read as a stream,
+// however large, and ends with a checksum over all of it. It is written whole or not at all (atomic_file.hpp), and
+// nothing in it is used before its checksum has been verified.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace cradle::tools {
 
-/// What a checkpoint begins with.
+/// The beginning of a checkpoint.
 struct CheckpointHeader {
-  JournalHeader run;                     // of the journal that it belongs to, the one of the same identity
-  std::uint64_t records = 0, check = 0;  // of the journal then: how many, and the checksum of the last one
+  JournalHeader run;                     // of the journal that it belongs to, which has the same identity
+  std::uint64_t records = 0, check = 0;  // of the journal at that time: number of records, checksum of the last one
   double seconds = 0, time = 0;          // of computing; simulated
   std::uint64_t collisions = 0;
 
@@ -26,17 +26,17 @@ struct CheckpointHeader {
   }
 };
 
-/// Throws Error (Exit::io), as does the reader.
+/// Writes a checkpoint. Throws Error (Exit::io), as the reader does.
 class StateWriter {
  public:
-  /// What is to become the file at `path`, the state behind its header.
+  /// Writes the header; the state follows. The file appears at `path` when it is finished.
   StateWriter(const std::string& path, const CheckpointHeader& header);
 
   void put(const void* data, std::size_t size) {
     if (buffer_.size() + size > buffer_size) flush();
     buffer_.append(static_cast<const char*>(data), size);
   }
-  /// To the disk, and in place of what was there before.
+  /// Syncs the file and replaces the one that was there before.
   void finish();
 
  private:
@@ -50,7 +50,7 @@ class StateWriter {
 
 class StateReader {
  public:
-  /// Reads all of the file once, to see that it is whole, then its header.
+  /// Reads the whole file once to verify it, then its header.
   explicit StateReader(const std::string& path);
   const CheckpointHeader& header() const { return header_; }
 
@@ -59,9 +59,9 @@ class StateReader {
     std::memcpy(data, buffer_.data() + at_, size);
     at_ += size;
   }
-  /// Bytes that are still to come.
+  /// The number of bytes not read yet.
   std::uint64_t left() const { return after_buffer_ + (buffer_.size() - at_); }
-  /// Throws where bytes are left: the file is of something else.
+  /// Throws if bytes are left: then the file contains something else.
   void end() const;
 
  private:
@@ -73,8 +73,8 @@ class StateReader {
   CheckpointHeader header_;
   Descriptor file_;
   std::string buffer_;
-  std::size_t at_ = 0;              // in the buffer
-  std::uint64_t after_buffer_ = 0;  // bytes of the state that are not in it yet
+  std::size_t at_ = 0;              // position in the buffer
+  std::uint64_t after_buffer_ = 0;  // bytes of the state after the buffer
 };
 
 }  // namespace cradle::tools

@@ -46,7 +46,7 @@ EnsembleStates EnsembleStore::empty_states() const {
   return states;
 }
 
-// ---- what there is: the result, the journal, those of other ranks
+// ---- reading the result and the journals of all ranks
 
 void EnsembleStore::check_identity(std::uint64_t identity, const std::vector<std::string>& scenes,
                                    const std::string& path) const {
@@ -146,7 +146,7 @@ std::vector<std::string> EnsembleStore::rank_journals() const {
   return found;
 }
 
-// ---- while replicas are being run
+// ---- while replicas are run
 
 JournalHeader EnsembleStore::header() const {
   JournalHeader header{study_.kind, identity_, effective_toml(study_.scene), study_.scene.name};
@@ -163,7 +163,7 @@ void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint6
   journalling_ = true;
   if (rank > 0) return;
   if (journal_)
-    compact();  // whoever continues from it takes what is wanted now
+    compact();  // so that a program that continues from it reads what is wanted now
   else
     journal_.emplace(part_, header());
 }
@@ -185,7 +185,7 @@ void EnsembleStore::add(std::size_t point, const ReplicaRow& row, std::vector<do
   if (journalling_) keep_safe();
 }
 
-// To the disk now and then, and as nodes where a journal of replicas would grow too large.
+// Syncs the journal from time to time, and rewrites it as nodes of the tree when it has become large.
 void EnsembleStore::keep_safe() {
   using namespace std::chrono_literals;
   bool due = false, large = false;

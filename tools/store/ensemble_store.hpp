@@ -1,22 +1,20 @@
-// The ensembles of one result file, and the journals that keep them safe while replicas are being run:
+// The ensembles of one result file, and the journals that keep finished replicas safe during the work:
 //
-//   FILE         what was finished before: written at the end, in one go
-//   FILE.part    journal: replicas since, each appended when it is done; survives the end of the program at any moment
+//   FILE         the result of earlier calls, written at the end, in one step
+//   FILE.part    journal: replicas finished since then, each appended at once; it survives any end of the program
 //   FILE.part.R  the same by rank R of an MPI job
 //
-// Running the same scene on the same FILE continues from there. A journal that has grown large is written anew as the
-// nodes of the tree of replicas. Journals can be read in any order: each is a set of replicas, and what is in two of
-// them (the program was ended between writing one and removing the other) is in one of them whole.
+// Running the same scene on the same FILE continues from there. A journal that has become large is rewritten as nodes
+// of the tree of replicas. Journals can be read in any order: each is a set of replicas. If two of them share replicas
+// (the program was ended between writing one and removing the other), one contains the other.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cradle/tools/ensemble/study.hpp"
@@ -24,42 +22,43 @@
 
 namespace cradle::tools {
 
-/// What a journal of replicas is of. Throws Error (Exit::io) naming the journal.
+/// The study of a journal of replicas. Throws Error (Exit::io) naming the journal.
 Study study_in(const JournalHeader& journal, const std::string& path);
 
 class EnsembleStore {
  public:
-  /// Reads no files yet. Throws Error for a scene that no ensemble can be made of.
+  /// Reads no files yet. Throws Error if the scene cannot be run as an ensemble.
   EnsembleStore(Study study, std::string file);
 
-  /// Claims FILE for as long as this lives, and reads it and all journals. Throws Error:
-  /// Exit::bad_input where they belong to other scenes, Exit::io where they cannot be read or another program is at
-  /// work on them. Returns what there is to report about journals.
+  /// Claims FILE for the lifetime of this object, and reads it and all journals. Throws Error: Exit::bad_input if they
+  /// belong to other scenes, Exit::io if they cannot be read or another program is writing them. Returns warnings about
+  /// journals.
   std::string load();
-  /// Reads FILE alone, which must be there; to inspect it, or to merge it.
+  /// Reads FILE alone, which must exist: to inspect or to merge it.
   void load_result();
 
   const Study& study() const { return study_; }
   const EnsembleStates& states() const { return states_; }
   EnsembleStates& states() { return states_; }
-  bool result_there() const { return result_there_; }  // and holds all replicas that there are
+  bool result_there() const { return result_there_; }  // and holds all replicas
 
-  /// From now on replicas are journalled, those wanted: in FILE.part, which says so from the beginning, or in that of a
-  /// rank other than 0, which appears with the first. It is written anew where it grows beyond so many bytes.
+  /// Starts to write replicas to a journal. Rank 0 writes FILE.part, which states the wanted replicas from the
+  /// beginning; another rank writes its own, which appears with its first replica. A journal larger than `largest`
+  /// bytes is rewritten.
   void start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest);
   /// Both may be called from several threads.
   void add(std::size_t point, const ReplicaRow& row, std::vector<double> values);
   void fail(std::size_t point, ReplicaIndex replica, const std::string& message);
-  /// What was journalled survives the end of the machine, too.
+  /// Syncs the journal to the disk, so that it survives a crash of the machine.
   void sync();
 
-  /// All of this set, and putting it into another.
+  /// Puts all replicas as records, for another store.
   void put_records(const JournalWriter::Put& put) const;
   void apply(std::string_view record);
 
   /// Writes FILE, then removes the journals.
   void finish();
-  /// Where FILE holds all that they do.
+  /// Removes the journals if FILE holds all their replicas.
   void drop_journals();
   Result result() const;
   std::uint64_t replicas() const;  // of all points
@@ -87,8 +86,8 @@ class EnsembleStore {
   bool journalling_ = false;
   std::optional<JournalWriter> journal_;
   std::mutex appending_;        // to the journal
-  std::shared_mutex changing_;  // shared by whoever adds; alone while the journal is written anew
-  std::uint64_t largest_ = 0;   // bytes of the journal before that
+  std::shared_mutex changing_;  // shared while replicas are added, exclusive while the journal is rewritten
+  std::uint64_t largest_ = 0;   // bytes of a journal before it is rewritten
   std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();
 };
 

@@ -17,9 +17,9 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::uint64_t format = 4;  // of journals and checkpoints: the last letter of how they begin
+constexpr std::uint64_t format = 4;  // of journals and checkpoints: the last character of their first bytes
 constexpr std::size_t begin_size = 8;
-constexpr std::uint64_t frame = 16;  // bytes of a record beside itself
+constexpr std::uint64_t frame = 16;  // bytes that a record takes besides its contents
 
 [[noreturn]] void fail_journal(const std::string& path, const char* what) {
   throw Error({path, 0, ""}, what, std::strerror(errno), "check the folder and the space on its disk", Exit::io);
@@ -33,7 +33,7 @@ std::uint64_t checksum(const std::uint64_t& length, std::string_view record) {
   return crc64(record, crc64(bytes_of(length)));
 }
 
-// Length, record, checksum of both; returns how many bytes that is.
+// Writes length, record and the checksum of both; returns the number of bytes.
 std::uint64_t write_record(int file, std::string_view record, const std::string& path) {
   const std::uint64_t length = record.size(), check = checksum(length, record);
   write_all(file, {bytes_of(length), record, bytes_of(check)}, path);
@@ -46,14 +46,14 @@ std::uint64_t write_record(int file, std::string_view record, const std::string&
 
 Stored stored_in(const std::string& path) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return Stored::other;  // a FIFO would make us wait for ever
+  if (!std::filesystem::is_regular_file(path, none)) return Stored::other;  // opening a FIFO would wait for ever
   std::ifstream file(path, std::ios::binary);
   std::string begin(begin_size, '\0');
   if (!file.read(begin.data(), begin_size)) return Stored::other;
   for (const Stored kind : {Stored::journal, Stored::checkpoint})
     if (begin == begin_of(kind)) return kind;
   const auto digit = static_cast<std::uint64_t>(begin.back() - '0');
-  // Of formats before, R was the journal of a run.
+  // Earlier formats; R was the journal of a run.
   const bool ours = begin.starts_with("CRADLEJ") || begin.starts_with("CRADLER") || begin.starts_with("CRADLEC");
   if (ours && digit < 10) throw of_version(path, digit, format);
   return Stored::other;
@@ -137,7 +137,7 @@ void JournalWriter::append(std::string_view record) {
   try {
     bytes_ += write_record(file_, record, path_);
   } catch (const Error&) {
-    cut(bytes_);  // what comes after half a record could not be read
+    cut(bytes_);  // records after an incomplete one could not be read
     throw;
   }
 }

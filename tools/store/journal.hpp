@@ -1,9 +1,9 @@
-// A file to which records are appended during the work, of a run or of the replicas of a study, so that none is lost
-// when the program or the machine stops at any moment: every record carries its length and a checksum. After a kill the
-// last one may be torn; a reader stops there and reports how much it left out, and whoever continues to write cuts it
-// off. The first record is the header. Only the version of the program that wrote a journal reads it.
+// A file to which a run, or a study with replicas, appends records during the work, so that none is lost if the program
+// or the machine stops: every record carries its length and a checksum. After a kill the last record may be incomplete:
+// a reader stops there and reports how much it left out, and a writer that continues cuts it off. The first record is
+// the header. Only the version of the program that wrote a journal reads it.
 //
-// It has one writer because the result beside it has one (FileClaim).
+// A journal has one writer because the result beside it has one (FileClaim).
 #pragma once
 
 #include <cstdint>
@@ -34,18 +34,18 @@ struct SpreadRequest {
   bool operator==(const SpreadRequest&) const = default;
 };
 
-/// What the records are of.
+/// What the records belong to.
 struct JournalHeader {
   std::string kind;            // "run", "ensemble" or "sweep"
-  std::uint64_t identity = 0;  // of a run drawn anew, of a study its own
-  std::string scene, name;     // effective, as TOML
+  std::uint64_t identity = 0;  // of a run: random; of a study: its own
+  std::string scene, name;     // scene: effective, as TOML
   // Of a run:
   double every_seconds = 60;  // between checkpoints
-  bool extends = false;       // a run that was over, from its result and its checkpoint
+  bool extends = false;       // a finished run is extended, from its result and its checkpoint
   // Of a study:
-  ReplicaRange wanted = {};  // of each ensemble
+  ReplicaRange wanted = {};  // per ensemble
   std::vector<SpreadRequest> spreads = {};
-  std::vector<std::pair<std::string, std::string>> points = {};  // ensembles: their groups in the result, their scenes
+  std::vector<std::pair<std::string, std::string>> points = {};  // ensembles: groups in the result, and scenes
 
   bool of_run() const { return kind == "run"; }
   static auto state(auto& self) {
@@ -58,22 +58,22 @@ struct JournalHeader {
   }
 };
 
-/// What a file is by how it begins. Throws Error (Exit::io) for a journal or a checkpoint of another format.
+/// The kind of a file, from its first bytes. Throws Error (Exit::io) for a journal or a checkpoint of another format.
 enum class Stored { other, journal, checkpoint };
 Stored stored_in(const std::string& path);
-/// How files of that kind begin.
+/// The first bytes of files of that kind.
 constexpr std::string_view begin_of(Stored kind) { return kind == Stored::journal ? "CRADLEJ4" : "CRADLEC4"; }
 
 /// Throws Error (Exit::io) unless this version of the program wrote the file.
 void check_program(const std::string& found, const std::string& path);
 
-/// Reads record after record. Throws Error (Exit::io) for what is no such journal.
+/// Reads record after record. Throws Error (Exit::io) if the file is not such a journal.
 class JournalReader {
  public:
   explicit JournalReader(const std::string& path);
 
   const JournalHeader& header() const { return header_; }
-  /// False at the end, or at the first record that is not whole.
+  /// False at the end, or at the first incomplete record.
   bool next(std::string& record);
   template <class Record> std::optional<Record> next() {
     std::string record;
@@ -85,8 +85,8 @@ class JournalReader {
     }
   }
 
-  std::uint64_t whole_bytes() const { return whole_; }         // up to where records were read
-  std::uint64_t torn_bytes() const { return size_ - whole_; }  // what is left when next() has returned false
+  std::uint64_t whole_bytes() const { return whole_; }         // the length of the records read so far
+  std::uint64_t torn_bytes() const { return size_ - whole_; }  // the rest, when next() has returned false
 
  private:
   std::string path_;
@@ -103,15 +103,15 @@ class JournalWriter {
  public:
   using Put = std::function<void(std::string_view record)>;
 
-  /// A new journal in place of what is there. It appears under its name only when it is whole: with the header, and
-  /// the records that `records` puts, on the disk if that is to be waited for.
+  /// A new journal, which replaces an existing one. It appears under its name when it is complete: with the header and
+  /// the records that `records` puts, synced to the disk if requested.
   JournalWriter(const std::string& path, const JournalHeader& header,
                 const std::function<void(const Put&)>& records = {}, Sync sync = Sync::yes);
-  /// The journal that is there, without what is behind the first `whole_bytes`.
+  /// Continues an existing journal after its first `whole_bytes`; the rest is cut off.
   JournalWriter(const std::string& path, std::uint64_t whole_bytes);
 
-  /// The record is the system's when this returns: it survives the end of the program; that of the machine, only after
-  /// a sync. One that could not be written is not there in part either.
+  /// When this returns the record survives the end of the program; after a sync it also survives a crash of the
+  /// machine. A record that cannot be written leaves no part in the file.
   void append(std::string_view record);
   void sync() const;
   std::uint64_t bytes() const { return bytes_; }

@@ -1,5 +1,4 @@
-// What a run that was stopped continues from: its journal and its checkpoint, or its result and the checkpoint of its
-// end.
+// Finds what a stopped run continues from: its journal and its checkpoint, or its result and the checkpoint of its end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, none);
 }
 
-// Where the journal ends that has so many records; nothing where it has fewer of them whole.
+// The length of a journal up to and including this number of records; nothing if it has fewer complete records.
 std::optional<std::uint64_t> end_of_records(const std::string& path, std::uint64_t records, std::uint64_t& check,
                                             const JournalWriter::Put& put = {}) {
   JournalReader reader(path);
@@ -35,7 +34,7 @@ std::optional<std::uint64_t> end_of_records(const std::string& path, std::uint64
   return reader.whole_bytes();
 }
 
-// The same run up to a later time, its samples spaced as before.
+// The same run with a later end; its samples are spaced as before.
 Scene extended(Scene scene, const std::string& until, const std::string& file) {
   const Decimal later(until);
   if (later < scene.run.until)
@@ -47,20 +46,20 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
   Series& series = scene.output.series;
   if (series.points && !series.over && scene.run.start < scene.run.until) series.over = scene.run.until;
   scene.run.until = later;
-  return parse_scene(effective_toml(scene), file);  // as a scene with that end would be read
+  return parse_scene(effective_toml(scene), file);  // as a scene with that end is read
 }
 
-// Without an observer of collisions the sticky gas goes from time to time, and rounds by these: with other times it is
-// begun again, which takes it no time.
+// Without an observer of collisions the sticky gas is computed directly at each time, and its rounding depends on these
+// times. With other times it starts again, which costs almost nothing.
 bool begins_again(const Scene& scene) { return without_collisions(scene); }
 
-// What a result file holds of the run itself: rows, not what is said of the whole.
+// The rows in a result file, without the tables that summarise the whole run.
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   std::erase_if(groups, [](const Group& g) {
     const std::string_view name = rounded_name(g.name);
     return name == "zone" || name == "scenario" || name == "collapse" || name == "initial";
   });
-  // Attributes come back from the file in another order than that in which they are written.
+  // The file returns attributes in another order than they were written.
   const auto rank = [](const Attribute& attribute) {
     constexpr std::array<std::string_view, 3> first{"time", "gap_min", "gap_median"};
     return std::find(first.begin(), first.end(), attribute.first) - first.begin();
@@ -68,7 +67,7 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   for (Group& table : groups)
     std::stable_sort(table.attributes.begin(), table.attributes.end(),
                      [&](const Attribute& a, const Attribute& b) { return rank(a) < rank(b); });
-  // A sample at the end that the spacing does not require is one of that end only.
+  // Removes a sample at the end that is there only because the run ended.
   const std::vector<double> planned = planned_times(scene).series;
   const auto one_too_many = [&](const Group& table) {
     if (table.name != "series" || table.columns.empty()) return false;
@@ -100,8 +99,8 @@ void RunFiles::resume(const std::optional<std::string>& until) {
   header_ = JournalReader(path).header();
   scene_ = scene_of(header_, path);
   if (exists(state)) state_ = std::make_unique<StateReader>(state);
-  if (state_ && state_->header().run.identity != header_.identity) state_.reset();  // of a run before
-  // An extension without a checkpoint of its own begins again.
+  if (state_ && state_->header().run.identity != header_.identity) state_.reset();  // of an earlier run
+  // An extension that has no checkpoint yet starts again from the result.
   if (!state_ && header_.extends) return resume_from_result(until ? *until : scene_.run.until.text);
   const CheckpointHeader found = state_ ? state_->header() : CheckpointHeader();
   const bool later = until && Decimal(*until) != scene_.run.until;
@@ -110,7 +109,7 @@ void RunFiles::resume(const std::optional<std::string>& until) {
                 fmt::format("finish it first: `cradle resume {}`", file_));
   if (later && begins_again(scene_)) {
     state_.reset();
-    ++header_.identity;  // the checkpoint does not belong to it
+    ++header_.identity;  // the checkpoint then belongs to another identity
   }
   if (later) {
     scene_ = extended(scene_, *until, path);
@@ -154,7 +153,7 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
   }
   header_ = {"run", drawn_number(), "", scene_.name};
   header_.extends = true;
-  // A run that was over before it had anything to lose has left no checkpoint, and begins again.
+  // A run that ended before its journal began has left no checkpoint, and is computed again from the start.
   if (const std::string state = checkpoint_of(file_); exists(state)) {
     state_ = std::make_unique<StateReader>(state);
     const CheckpointHeader& found = state_->header();

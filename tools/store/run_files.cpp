@@ -15,10 +15,10 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::uint64_t collisions_between_checks = 1 << 13;  // at the clock
+constexpr std::uint64_t collisions_between_checks = 1 << 13;  // of the clock
 constexpr std::chrono::seconds between_statuses(2);
-constexpr double worth_keeping = 60;                            // seconds of computing that are not thrown away
-constexpr std::uint64_t most_waiting = std::uint64_t{1} << 22;  // numbers in memory that the journal has not
+constexpr double worth_keeping = 60;  // seconds of computing that a new run must not overwrite
+constexpr std::uint64_t most_waiting = std::uint64_t{1} << 22;  // numbers in memory that are not in the journal
 
 }  // namespace
 
@@ -41,13 +41,13 @@ RunFiles::RunFiles(std::string file, const Scene& scene) : file_(std::move(file)
       refuse("a run that is not finished",
              fmt::format("t = {:.6g}, {:.0f} s of computing", statuses.back().time, statuses.back().seconds));
   }
-  ::unlink(path.c_str());  // of a run that this one takes the place of
+  ::unlink(path.c_str());  // of an earlier run, which this one replaces
   header_ = {"run", drawn_number(), effective_toml(scene), scene.name, scene.output.checkpoint.every_seconds.value};
 }
 
 // ---- during the run
 
-// Does what may fail on a full disk, which is reported once.
+// Does work that may fail on a full disk, which is reported once.
 bool RunFiles::saved(const std::function<void()>& what) {
   try {
     what();
@@ -98,7 +98,7 @@ void RunFiles::check_clock() {
 }
 
 void RunFiles::keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs run_is) {
-  state_.reset();  // has been loaded
+  state_.reset();  // the run has loaded it
   due_ = false;
   if (run_is == RunIs::over && !journal_ && seconds_before_ == 0) return;  // nothing to lose
   reported_ = Clock::now();
@@ -136,7 +136,7 @@ void RunFiles::finish(Result&& end, RunEnd how) {
     pieces([&](Group&& rows) { tables.add(std::move(rows)); });
     return Result{end.attributes, std::move(tables).in_order()};
   };
-  // A number takes eight bytes of the journal or more: few runs need be read twice.
+  // A number takes at least eight bytes in the journal, so few journals must be read twice.
   const std::uint64_t most =
       (journal_ ? journal_->bytes() / 8 : 0) + numbers_in(waiting_.tables()) + numbers_in(end.groups);
   Result whole = gathered(most > most_in_memory ? Reading::ends : Reading::everything);
@@ -149,7 +149,7 @@ void RunFiles::finish(Result&& end, RunEnd how) {
   }
   journal_.reset();
   ::unlink(path.c_str());
-  // What ended otherwise is over, and another run's is of no use here.
+  // A run that ended otherwise cannot be extended, and a checkpoint of another run is useless here.
   if (how != RunEnd::reached || !saved_here_) ::unlink(checkpoint_of(file_).c_str());
 }
 

@@ -1,14 +1,15 @@
-// The files of an unfinished run of FILE, from which it continues after any end:
+// The files of an unfinished run of FILE, from which it continues after any interruption:
 //
-//   FILE.part        journal: what it has recorded so far, and how far it is (run_journal.hpp)
-//   FILE.checkpoint  the state of the run at one moment, and how many records the journal had then
+//   FILE.part        journal: the rows recorded so far, and the progress (run_journal.hpp)
+//   FILE.checkpoint  the state of the run at one moment, and the number of records in the journal then
 //
-// The journal begins when there is something to lose: after two seconds or the time between two checkpoints, whichever
-// is less, when the run is interrupted, or when its rows take much memory. A run that is over before has neither file.
+// The journal begins when there is something to lose: after two seconds or the time between two checkpoints (the
+// shorter of the two), when the run is interrupted, or when its rows take much memory. A run that ends earlier has
+// neither file.
 //
-// On resuming, the journal is cut to the records of the checkpoint: what followed is made again, with the same bits.
-// Without a checkpoint the run starts anew. When FILE is there, the journal goes and the last checkpoint stays: a later
-// `--until` continues from both, with a journal whose first record is what FILE holds.
+// On resuming, the journal is cut to the records of the checkpoint; the rest is computed again, with the same bits.
+// Without a checkpoint the run starts anew. When FILE is written, the journal is removed and the last checkpoint stays:
+// a later `--until` continues from both, with a journal whose first record is the contents of FILE.
 #pragma once
 
 #include <chrono>
@@ -17,7 +18,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
@@ -26,7 +26,7 @@
 
 namespace cradle::tools {
 
-/// Numbers of a result, beyond which it is not held in memory as a whole.
+/// A result with more numbers than this is not held in memory as a whole.
 inline constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;
 
 class RunFiles final : public RunStore {
@@ -34,20 +34,20 @@ class RunFiles final : public RunStore {
   static std::string journal_of(const std::string& file) { return file + ".part"; }
   static std::string checkpoint_of(const std::string& file) { return file + ".checkpoint"; }
 
-  /// A run that begins. FILE is claimed by whoever calls this. Throws Error (Exit::bad_input) where a long run that is
-  /// not finished would be lost, else (Exit::io).
+  /// A new run. The caller has claimed FILE. Throws Error (Exit::bad_input) if a long unfinished run would be lost,
+  /// else (Exit::io).
   RunFiles(std::string file, const Scene& scene);
-  /// A run that continues, up to `until` where that is given. Throws Error where there is none, or it is over.
+  /// Continues a run, up to `until` if given. Throws Error if there is none; a finished run gives a reason in `over`.
   RunFiles(std::string file, const std::optional<std::string>& until);
 
   const Scene& scene() const { return scene_; }
-  /// Where there is nothing to continue with, says why; else empty. With which status that run ended.
+  /// Why there is nothing to continue, else empty; and the status with which that run ended.
   const std::string& over() const { return over_; }
   Exit over_status() const { return over_status_; }
-  /// "t = 1200, 3.4e7 collisions" that it continues from; "the start".
+  /// Where the run continues from: "t = 1200, 3.4e7 collisions", or "the start".
   const std::string& resumed_from() const { return from_; }
   std::uint64_t collisions_before() const { return collisions_before_; }
-  /// Whether all that was computed up to the end of the run is in its files.
+  /// Whether the files have all that was computed up to the end of the run.
   bool up_to_date() const { return up_to_date_; }
 
   void add(Group&& rows) override;
@@ -57,7 +57,7 @@ class RunFiles final : public RunStore {
   void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs run_is) override;
   StateReader* loaded_from() override { return state_.get(); }
 
-  /// All that was recorded, with what the run reports at its end, becomes FILE; then the journal goes.
+  /// Writes FILE from all that was recorded and what the run reports at its end; then removes the journal.
   void finish(Result&& end, RunEnd how);
 
  private:
@@ -77,15 +77,15 @@ class RunFiles final : public RunStore {
   JournalHeader header_;
   std::optional<JournalWriter> journal_;
   std::uint64_t records_ = 0, check_ = 0;
-  GrowingTables waiting_;  // rows that are not in the journal: it has not begun, or there was no room
+  GrowingTables waiting_;  // rows not in the journal yet: it has not begun, or the disk was full
   std::unique_ptr<StateReader> state_;
   std::string over_, from_ = "the start";
   Exit over_status_ = Exit::done;
   std::uint64_t collisions_before_ = 0;  // made in earlier calls
 
   bool due_ = false, saved_here_ = false, complained_ = false;
-  bool up_to_date_ = false;       // the checkpoint, as of the last `keep` that was to write one
-  std::uint64_t next_check_ = 0;  // collisions, when the clock is checked again
+  bool up_to_date_ = false;       // the checkpoint, since the last call of `keep` that was to write one
+  std::uint64_t next_check_ = 0;  // number of collisions at which the clock is checked again
   double seconds_before_ = 0;     // of computing, in earlier calls
   Clock::time_point started_ = Clock::now(), reported_ = started_, saved_ = started_;
 };

@@ -15,7 +15,7 @@ namespace cradle::tools {
 
 namespace {
 
-// Leaves the first and the last row.
+// Keeps the first and the last row.
 void keep_ends(Column& column) {
   std::visit(
       [&](auto& values) {

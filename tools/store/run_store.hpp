@@ -1,5 +1,5 @@
-// Where a run puts what it records, and now and then its state: in files beside its result (run_files.hpp), or nowhere,
-// for replicas and proofs, which have no file of their own.
+// Stores what a run records and, from time to time, its state: in files beside the result (run_files.hpp), or not at
+// all for replicas and proofs, which have no files of their own.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace cradle::tools {
 
-/// How far a run is.
+/// The progress of a run.
 struct RunStatus {
   double seconds = 0;  // of computing
   double time = 0;
   std::uint64_t collisions = 0;
-  /// At the last check of all particles (guards.hpp); NaN before the first, or where there is no such thing.
+  /// At the last check of all particles (guards.hpp); NaN before the first, or if there is none.
   double gap_min = none, closure_gap = none, closure_speed = none;
 
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -26,26 +26,26 @@ struct RunStatus {
   }
 };
 
-/// What has become of a run whose state is to be kept.
+/// The situation in which the state is to be kept.
 enum class RunIs { in_progress, interrupted, over };
 
 class RunStore {
  public:
   virtual ~RunStore() = default;
 
-  /// Rows of the table of that name, after those that it has; columns as in the table.
+  /// Appends rows to the table of that name; the columns are those of the table.
   virtual void add(Group&& rows) = 0;
 
-  /// To be called often with the number of collisions that the run has made: cheap.
+  /// Call it often with the number of collisions that the run has made; it is cheap.
   virtual void count(std::uint64_t collisions) = 0;
   /// Checks the clock.
   virtual void check_clock() = 0;
-  /// Whether `keep` is to be called, with all rows that there are added: it has not been for some time.
+  /// Whether it is time to call `keep`, after all rows have been added.
   virtual bool due() const = 0;
-  /// Writes down how far the run is and, if it is time, interrupted or over, its state.
+  /// Writes the progress of the run and, if it is time, interrupted or over, its state.
   virtual void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs now) = 0;
 
-  /// What is to be loaded before the run continues; nothing for one that begins.
+  /// The state to load before the run continues; null for a new run.
   virtual StateReader* loaded_from() = 0;
 };
 

@@ -33,7 +33,7 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-// ".NAME.ending" beside the file.
+// ".NAME.ending" in the folder of the file.
 std::string hidden_beside(const std::string& path, const std::string& ending) {
   return (fs::path(path).parent_path() / ("." + fs::path(path).filename().string() + ending)).string();
 }
@@ -58,7 +58,7 @@ bool same_file(int descriptor, const std::string& name) {
          open.st_dev == named.st_dev;
 }
 
-// What a lock file says of its owner.
+// The owner named in a lock file.
 std::string owner(int lock) {
   std::array<char, 200> text{};
   const ssize_t size = ::pread(lock, text.data(), text.size(), 0);
@@ -69,18 +69,18 @@ void write_owner(int lock) {
   std::array<char, 100> host{};
   if (::gethostname(host.data(), host.size() - 1) != 0) return;
   const std::string text = fmt::format("process {} on {}", ::getpid(), host.data());
-  // Only for the message of whoever is refused.
+  // Names the owner, for the message of a program that is refused.
   if (::ftruncate(lock, 0) == 0) static_cast<void>(::pwrite(lock, text.data(), text.size(), 0) == 0);
 }
 
-// A name takes effect for good when its folder is on the disk. Some folders cannot be opened or synced.
+// Syncs the folder: a name is permanent only when its folder is on the disk. Some folders cannot be opened or synced.
 void sync_folder(const std::string& path) {
   const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folder < 0) return;
   sync_file(folder, path);
 }
 
-// New contents of this file, its journal or its checkpoint, whose writer was killed.
+// Removes temporary files for this file, its journal or its checkpoint whose writer was killed.
 void remove_leftovers(const std::string& target) {
   const std::string folder = folder_of(target), name = fs::path(target).filename().string();
   std::error_code none;
@@ -135,7 +135,7 @@ void write_all(int descriptor, std::array<std::string_view, 3> parts, const std:
 }
 
 void sync_file(int descriptor, const std::string& path) {
-  // Not every file system knows how: that is no loss.
+  // Some file systems do not support fsync; that is not an error.
   if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) fail(path, "could not be written to the disk");
 }
 
@@ -149,7 +149,7 @@ FileClaim::FileClaim(const std::string& path) : lock_(hidden_beside(file_behind(
       throw Error({path, 0, ""}, "another program is writing this file", owner(file),
                   "wait for it, or give another -o FILE", Exit::io);
     }
-    if (!same_file(file, lock_)) continue;  // its owner of before has just removed it
+    if (!same_file(file, lock_)) continue;  // the previous owner has just removed it
     write_owner(file);
     held_ = std::move(file);
     remove_leftovers(file_behind(path));
@@ -162,7 +162,7 @@ FileClaim::~FileClaim() {
 }
 
 NewFile::NewFile(const std::string& path) : path_(path), target_(file_behind(path)) {
-  // A name that is nobody's: of another process, of another node, or left over after a crash.
+  // Finds an unused name: others may belong to other processes or nodes, or be left over from a crash.
   for (int number = 0; file_ < 0; ++number) {
     name_ = hidden_beside(target_, fmt::format(".cradle-{}-{}", ::getpid(), number));
     file_ = Descriptor(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -189,7 +189,7 @@ void NewFile::take_name(Sync sync) {
 
 void NewFile::put_in_place(Sync sync) {
   if (sync == Sync::yes) sync_file(file_, path_);
-  // Some network file systems report only here that they could not keep what was written.
+  // Some network file systems report only at close that they could not store the data.
   if (::close(file_.release()) != 0) fail(path_, "could not be written");
   take_name(sync);
 }

@@ -12,7 +12,7 @@ namespace cradle::tools {
 
 template <class X> std::string to_bytes(const X& x) { return SavedState::of(x).bytes(); }
 
-/// Throws Error (Exit::io) for bytes that are no such value, or more than one.
+/// Throws Error (Exit::io) if the bytes are not exactly one such value.
 template <class X> X from_bytes(std::string bytes) {
   try {
     SavedState from(std::move(bytes));

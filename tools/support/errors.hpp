@@ -1,6 +1,6 @@
-// What goes wrong at the boundary: bad input, files, collapse. One exception carries the message and the exit status.
-// Messages have the form  `what is wrong (what was found): what to do`  and begin with the place where it was found:
-// `fig2.toml:7: law.restitution: ` in a scene file, `--set law.restitution: ` on the command line.
+// Errors that users can cause or meet: bad input, files, collapse. One exception carries the message and the exit
+// status. Messages have the form  `what is wrong (what was found): what to do`  and begin with a place: `fig2.toml:7:
+// law.restitution: ` in a scene file, `--set law.restitution: ` on the command line.
 #pragma once
 
 #include <cstddef>
@@ -18,12 +18,12 @@ enum class Exit : int {
   collapse = 3,       // stopped at inelastic collapse (policy `stop`)
   io = 4,             // a file could not be read or written
   lost = 5,           // resolution or order lost, a replica failed, or a proof is undecided
-  processor = 6,      // it lacks instructions that the program is compiled for
+  processor = 6,      // lacks instructions that the program is compiled for
   interrupted = 130,  // SIGINT
   terminated = 143,   // SIGTERM, SIGUSR1, SIGHUP
 };
 
-/// Where something was found; each part may be missing (empty, or line 0).
+/// A place in the input; each part may be missing (empty, or line 0).
 struct Place {
   std::string source;    // file as the user named it, or "--set"
   std::size_t line = 0;  // from 1; 0: unknown

@@ -11,15 +11,15 @@ namespace cradle::tools {
 
 namespace {
 
-// What a handler may touch is global, and lock-free.
+// Signal handlers may use only global, lock-free variables.
 std::atomic<Interrupt*> noting = nullptr;
 std::atomic<long> first_at = 0;  // milliseconds; 0: none yet
 std::atomic<long> same = 0;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free && std::atomic<Interrupt*>::is_always_lock_free);
 
-// Under nohup. Libraries take signals before main() does (UCX, which MPI uses, takes SIGHUP): how the program was
-// started is read before theirs is run, and in the plainest way, since nothing is set up yet.
+// Whether the program was started under nohup. Some libraries take over signals before main() (UCX, which MPI uses,
+// takes SIGHUP), so this is read before their code runs, with a plain system call, since nothing is initialised yet.
 bool hang_ups_ignored = false;
 #ifdef __linux__
 __attribute__((no_sanitize("address"), no_sanitize("undefined"), no_sanitize("thread"))) void check_hang_ups() {
@@ -38,7 +38,7 @@ long milliseconds() {
   return now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
-// Nothing but what a handler may call.
+// Uses only functions that a signal handler may call.
 [[noreturn]] void end_at_once(int signal, std::string_view message) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
   ::_exit(static_cast<int>(status_of_signal(signal)));
@@ -66,7 +66,7 @@ void note_signals(Interrupt& interrupt, long same_milliseconds) {
   same = same_milliseconds;
   for (const int signal : noted) {
     const auto before = std::signal(signal, signal == SIGHUP && hang_ups_ignored ? SIG_IGN : note);
-    if (signal == SIGHUP && before == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // systems where it is not read before
+    if (signal == SIGHUP && before == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // where it is not read earlier
   }
 }
 

@@ -1,5 +1,5 @@
-// Signals end a run at the next opportunity, in order, with what it has computed. Whoever computes is handed an
-// Interrupt and polls it; only a command connects one with the signals of the process.
+// Signals end a run at the next opportunity, and its results so far are kept. Code that computes gets an Interrupt and
+// polls it; only a command connects one with the signals of the process.
 #pragma once
 
 #include <atomic>
@@ -10,11 +10,11 @@ namespace cradle::tools {
 
 class Interrupt {
  public:
-  /// From now on somebody polls, and has something to keep.
+  /// Says that somebody polls from now on, and has something to keep.
   void heed() { heeded_ = true; }
   bool heeded() const { return heeded_; }
 
-  /// A signal has arrived, here or at another process of the same job. May be called from any thread.
+  /// Notes a signal, here or at another process of the same job. May be called from any thread.
   void note(int signal) { signal_ = signal; }
   /// The signal that has arrived, or 0. May be called from any thread.
   int signal() const { return signal_; }
@@ -24,15 +24,15 @@ class Interrupt {
   std::atomic<bool> heeded_ = false;
 };
 
-/// With which status a program ends that this signal has interrupted.
+/// The exit status of a program that this signal has interrupted.
 Exit status_of_signal(int signal);
 
-/// From now on SIGINT, SIGTERM, SIGUSR1 and SIGHUP are noted there, as long as the program runs. While nobody heeds
-/// them, and where a second one comes after the first, the program ends at once. SIGHUP stays ignored under nohup.
-/// Launchers, `timeout` and terminals that close send one signal in two ways: within so many milliseconds it is one.
+/// Notes SIGINT, SIGTERM, SIGUSR1 and SIGHUP in `interrupt` until the program ends. If nobody heeds them yet, or after
+/// a second signal, the program ends at once. SIGHUP stays ignored under nohup. Launchers, `timeout` and closing
+/// terminals send one signal in two ways: two signals within `same_milliseconds` count as one.
 void note_signals(Interrupt& interrupt, long same_milliseconds = 200);
 
-/// From now on they change nothing: the program ends by itself, and what is wrong has been said.
+/// Ignores these signals from now on: the program is about to end by itself, and the error has been reported.
 void ignore_signals();
 
 }  // namespace cradle::tools

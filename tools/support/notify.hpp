@@ -1,4 +1,4 @@
-// Messages and progress, on standard error. Where nobody is there to read them (the terminal is gone) work continues.
+// Messages and progress, on standard error. If nobody can read them (the terminal has closed) work continues.
 #pragma once
 
 #include <cstdio>

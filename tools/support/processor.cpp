@@ -1,5 +1,5 @@
-// Ends the program with one message on a processor that lacks the instructions the rest of it is compiled for
-// (CRADLE_ARCH). It runs before everything else in the program, and is itself compiled for any x86-64.
+// Ends the program with one message on a processor that lacks the instructions that the rest of the program is compiled
+// for (CRADLE_ARCH). It runs before everything else, and is itself compiled for any x86-64.
 #include <unistd.h>
 
 #include <string_view>
@@ -20,7 +20,7 @@ __attribute__((no_sanitize("address"), no_sanitize("undefined"), no_sanitize("th
   _exit(static_cast<int>(cradle::tools::Exit::processor));
 }
 
-// Before all initialisers, and before those of interrupt.cpp, which are linked later.
+// Runs before all initialisers, including those of interrupt.cpp, which are linked later.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = require_instructions;
 
 }  // namespace

@@ -44,7 +44,7 @@ std::optional<double> ProgressLine::due() const {
 }
 
 void ProgressLine::draw(double share, const std::string& state) {
-  if (socket_ >= 0) {  // a caller that has ended or does not listen misses it
+  if (socket_ >= 0) {  // a caller that has ended or does not read misses the line
     const std::string line = fmt::format("{:.4f}\t{}\n", share, state);
     [[maybe_unused]] const auto sent = ::send(socket_, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   } else if (terminal_) {

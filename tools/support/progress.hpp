@@ -1,7 +1,7 @@
-// Progress on standard error: a bar on a terminal, a plain line now and then elsewhere (where requested). Of a run:
-// simulated time, collisions, collisions/s, time left; of an ensemble: replicas, replicas/s, time left. For programs
-// that call this one: where CRADLE_PROGRESS_FD names a socket, each line goes there as `SHARE<tab>TEXT`, SHARE from 0
-// to 1.
+// Progress on standard error: a bar on a terminal, else, if requested, a plain line every ten seconds. For a run:
+// simulated time, collisions, collisions/s, time left; for an ensemble: replicas, replicas/s, time left. For programs
+// that call this one: if CRADLE_PROGRESS_FD names a socket, each line is also written there as `SHARE<tab>TEXT`, with
+// SHARE from 0 to 1.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace cradle::tools {
 /// "6 s", "3 min 20 s", "2 h 05 min".
 std::string duration(double seconds);
 
-/// One line, drawn over itself on a terminal and gone at the end.
+/// One line; on a terminal it is redrawn in place and removed at the end.
 class ProgressLine {
  public:
   enum class Show { never, on_terminal, always };
@@ -25,15 +25,15 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Seconds since the line was last drawn, where it is time to draw it again: a few times a second on a terminal,
-  /// every ten seconds elsewhere. Cheap to call often.
+  /// Seconds since the line was last drawn, if it is time to draw it again: a few times a second on a terminal, every
+  /// ten seconds elsewhere. Cheap to call often.
   std::optional<double> due() const;
   void draw(double share, const std::string& state);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  int socket_;  // below 0: none
+  int socket_;  // negative: none
   bool terminal_, active_, drawn_ = false;
   Clock::time_point last_ = Clock::now();
 };
@@ -44,7 +44,7 @@ class Progress {
 
   Progress(Show show, double start, double until);
 
-  /// The run has been there already.
+  /// Sets where a resumed run begins.
   void continue_from(double time, std::uint64_t collisions) { last_time_ = time, last_collisions_ = collisions; }
   /// Cheap to call often: prints at most a few times a second on a terminal, every ten seconds elsewhere.
   void report(double time, std::uint64_t collisions);
@@ -59,10 +59,10 @@ class Progress {
 
 class ReplicaProgress {
  public:
-  /// Of `total` replicas, `before` were there already.
+  /// `before` of the `total` replicas were there already.
   ReplicaProgress(ProgressLine::Show show, std::uint64_t before, std::uint64_t total);
 
-  /// So many more are done; may be called from several threads.
+  /// Counts finished replicas; may be called from several threads.
   void done(std::uint64_t replicas = 1);
 
  private:

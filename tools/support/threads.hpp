@@ -1,5 +1,5 @@
-// The threads of the program: those of oneTBB. Under ThreadSanitizer plain ones, since it sees races in Debian's oneTBB
-// that are none.
+// The threads of the program: those of oneTBB. Under ThreadSanitizer plain threads, since it reports false races in
+// Debian's oneTBB.
 #pragma once
 
 #include "cradle/core/ensemble/tbb_executor.hpp"

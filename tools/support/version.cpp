@@ -1,6 +1,5 @@
 #include "cradle/tools/support/version.hpp"
 
-#include <memory>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -12,7 +11,7 @@ namespace cradle::tools {
 std::string build_description() {
   std::string types;
   const auto name = [&]<class T>(std::type_identity<T>) {
-    if (types.ends_with(scalar_name<T>)) return;  // one name for all sizes of mpfr
+    if (types.ends_with(scalar_name<T>)) return;  // all sizes of mpfr have one name
     types.append(types.empty() ? "" : ", ").append(scalar_name<T>);
   };
   [&]<std::size_t... K>(std::index_sequence<K...>) {

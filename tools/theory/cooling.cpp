@@ -1,5 +1,5 @@
-// Free cooling on a ring: the law that the paper says all three gases share in the end, and Haff's for the early stage
-// of the inelastic one. Times are spread evenly in the logarithm.
+// Free cooling on a ring: the law that, according to the paper, all three gases follow in the end, and Haff's law for
+// the early stage of the inelastic gas. Times are evenly spaced in the logarithm.
 #include <cmath>
 
 #include "cradle/core/theory/free_cooling.hpp"

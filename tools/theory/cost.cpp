@@ -15,13 +15,13 @@ namespace {
 
 double span(const Scene& scene) { return scene.run.until.value - scene.run.start.value; }
 
-// Layers of either row that a particle of the other could have met by a time if they did not slow each other: K = 2 u0
+// The number of layers of one row that a particle of the other would meet if the rows did not slow each other: K = 2 u0
 // t/l.
 double layers(const Scene& scene, double time) {
   return 2 * scene.initial.speed.value * time / scene.initial.spacing.value;
 }
 
-// A bound for the particles of a cold gas that are reached: nothing is faster than one particle with all of the energy.
+// An upper bound for the particles of a cold gas that are reached: no particle is faster than one with all the energy.
 double reached_when_cold(const Scene& scene) {
   const Initial& initial = scene.initial;
   double least = initial.masses.empty() ? 1 : initial.masses.front().value, heaviest = least;
@@ -34,7 +34,7 @@ double reached_when_cold(const Scene& scene) {
   return std::min(static_cast<double>(initial.particles), hot + 2 * layers);
 }
 
-// Particles of two rows that have run into each other.
+// The number of particles of two rows that have met the other row.
 double reached(const Scene& scene) {
   return std::min(static_cast<double>(scene.initial.particles), layers(scene, span(scene)));
 }
@@ -46,18 +46,18 @@ double particles_at_end(const Scene& scene) {
   if (initial.general_rows()) return static_cast<double>(initial.left.particles + initial.right.particles);
   const bool streamed = initial.type == InitialType::rows && scene.run.coordinates == Coordinates::gaps;
   if (!streamed) return static_cast<double>(initial.particles);
-  // Wet particles end up in the clusters; 14 to 17 u0^2/E_loss of them are on their way in the scenes of Figs. 7 and
+  // Wet particles end in the clusters; 14 to 17 u0^2/E_loss of them have not arrived there in the scenes of Figs. 7 and
   // 11.
   const double speed = initial.speed.value;
   return scene.law.type == LawType::wet ? std::min(reached(scene), 20 * speed * speed / scene.law.loss.value)
                                         : reached(scene);
 }
 
-// Collisions of two rows that bounce, as a share of those of elastic rows without end, K(K + 1)/2, by
-// s = K (1-eps)/(1+eps). Counted, not derived: the points are those of eps = 0.999, N = 8000. Runs of N = 16000 there
-// and of eps = 0.992 follow them closely below s = 3, eps = 0.9 within a tenth or two; eps = 0.5 does not. At first the
-// share falls as particles lag behind, about ln(1+s)/s, which is what the first particle of a row meets; from s = 1.8
-// on particles of the dense core meet again and again, ever more often up to inelastic collapse at s = 3.25.
+// Collisions of two rows that bounce, as a share of the collisions of infinite elastic rows, K(K + 1)/2, as a function
+// of s = K (1-eps)/(1+eps). The points are counted in runs with eps = 0.999, N = 8000. Runs with N = 16000, and with
+// eps = 0.992, follow them closely below s = 3; eps = 0.9 does within 10 to 20 %; eps = 0.5 does not. At first the
+// share falls as ln(1+s)/s, since particles slow down: that is the share for the first particle of a row. From s = 1.8
+// particles of the dense core collide repeatedly, more and more often up to inelastic collapse at s = 3.25.
 struct Share {
   double s, share;
 };
@@ -100,20 +100,20 @@ void bouncing_rows(const Scene& scene, Cost& cost) {
     cost.collapse = scene.run.start.value + span(scene) * met / layers(scene, span(scene));
   }
   cost.collisions = met * (met + 1) / 2 * share_of_elastic(met * kappa);
-  // Rows that pass through each other before it comes to that: each particle meets every one of the other row once, and
-  // some more often the nearer their number is to that of a collapse.
+  // Rows may pass through each other before a collapse: then each particle meets every particle of the other row once,
+  // and some more often, the closer their number is to that of a collapse.
   if (!may_collapse) cost.collisions = std::min(*cost.collisions, half * half * (1 + (onset ? particles / *onset : 0)));
 }
 
-// Wet particles that the front has reached lose their energy m u0^2/2 by E_loss a collision and half of that in the
-// last one (3 collisions a particle at E_loss = 0.05, as counted in Fig. 11).
+// Wet particles reached by the front lose their energy m u0^2/2: E_loss per collision, and half of that in the last one
+// (3 collisions per particle at E_loss = 0.05, as counted in Fig. 11).
 void wet_rows(const Scene& scene, Cost& cost) {
   const double particles = reached(scene), met = std::min(particles, static_cast<double>(scene.initial.particles) / 2);
   const double energy = scene.initial.speed.value * scene.initial.speed.value / 2;
   cost.collisions = std::min(met * (met + 1) / 2, particles * (energy / scene.law.loss.value + 0.5));
 }
 
-// Each merges once.
+// Each particle merges once.
 void sticky_rows(const Scene& scene, Cost& cost) { cost.collisions = std::max(0.0, reached(scene) - 1); }
 
 Cost expected_cost(const Scene& scene) {
@@ -125,7 +125,7 @@ Cost expected_cost(const Scene& scene) {
   constexpr double fastest = 2e7;
   cost.collisions_per_second =
       fastest / (scene.run.coordinates == Coordinates::gaps ? type.gaps : type.absolute).at(digits);
-  // Some 15 numbers a particle; a sample is nine columns of doubles, and its time in the plan.
+  // About 15 numbers per particle; a sample has nine columns of doubles and its time in the plan.
   constexpr double program = 20e6, numbers = 15, bytes_per_event = 48, bytes_per_sample = 80;
   const Series& series = scene.output.series;
   const double samples = series.every    ? span(scene) / series.every->value
@@ -147,7 +147,7 @@ Threading expected_threading(const Scene& scene, const Cost& cost, unsigned thre
   if (!merge && scene.run.collapse == scene::CollapsePolicy::stop && scene.law.restitution < Decimal("1"))
     return alone("a collapse to be found");
   if (scene.output.events || scene.output.scenario) return alone("every collision is recorded, in order");
-  // Two segments in two threads: 1.8 to 2.1 times the plain loop, bench/results/speed.md.
+  // Two segments in two threads are 1.8 to 2.1 times as fast as the plain loop, bench/results/speed.md.
   constexpr double efficiency = 0.9;
   const double segments = std::min<double>(threads, std::floor(cost.particles / gaps_per_thread));
   if (segments < 2) return alone(threads < 2 ? "one thread" : "few particles");

@@ -10,7 +10,8 @@ namespace cradle::tools {
 namespace {
 
 void add_curves(Predictions& table, const theory::InelasticShock<double>& shock, double until) {
-  // The front is traced until it has turned; (7) a little beyond, where it departs from the run.
+  // The curve of the front ends when it has turned around; (7) continues a little further, where it departs from the
+  // run.
   const double end = std::min(until, 2 * theory::turnover_time(shock).value_or(until));
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(end, k);

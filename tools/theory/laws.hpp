@@ -1,4 +1,4 @@
-// The predictions law by law: what table.cpp puts together. Times are those since run.start.
+// The predictions of each law, which table.cpp combines. Times are counted from run.start.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@
 
 namespace cradle::tools {
 
-/// A table of predictions as it grows.
+/// A growing table of predictions.
 class Predictions {
  public:
-  /// A single number; nothing where there is no value.
+  /// Adds a single number; does nothing if there is no value.
   void number(const char* quantity, const char* equation, const char* form, std::optional<double> value) {
     if (value) rows_.push_back({quantity, equation, form, std::nullopt, *value});
   }
-  /// One point of a curve.
+  /// Adds one point of a curve.
   void point(const char* quantity, const char* equation, const char* form, double t, double value) {
     rows_.push_back({quantity, equation, form, t, value});
   }
@@ -30,7 +30,7 @@ class Predictions {
 inline constexpr int curve_points = 400;
 inline double curve_time(double end, int k) { return end * k / curve_points; }
 
-/// Two equal rows of particles of mass 1 and of constant restitution, to which the paper's formulas apply.
+/// Whether the paper's formulas apply: two equal rows of particles of mass 1 and of constant restitution.
 inline bool equal_rows(const Scene& scene) {
   return scene.initial.type == InitialType::rows && !scene.initial.general_rows() && !unequal_masses(scene) &&
          !scene.law.cutoff_exponent;
@@ -39,6 +39,6 @@ inline bool equal_rows(const Scene& scene) {
 void predict_inelastic(const Scene& scene, Predictions& table);
 void predict_wet(const Scene& scene, Predictions& table);
 void predict_sticky(const Scene& scene, Predictions& table);
-void predict_cooling(const Scene& scene, Predictions& table);  // on a ring, whatever the law
+void predict_cooling(const Scene& scene, Predictions& table);  // on a ring, for every law
 
 }  // namespace cradle::tools

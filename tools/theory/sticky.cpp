@@ -1,5 +1,5 @@
-// The sticky shock, section II (Fig. 1) and the limit of sections IV and VI: one cluster at the centre takes up all
-// that comes in.
+// The sticky shock, section II (Fig. 1), which is also the limit of sections IV and VI: one cluster at the centre
+// absorbs all incoming particles.
 #include "cradle/core/theory/sticky_shock.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
@@ -46,7 +46,7 @@ void predict_sticky(const Scene& scene, Predictions& table) {
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(until, k);
     const auto centre = theory::sticky_centre(rows.shock, t);
-    if (centre.from_left > rows.left || centre.from_right > rows.right) break;  // a row is used up
+    if (centre.from_left > rows.left || centre.from_right > rows.right) break;  // a row has been absorbed
     table.point("central_mass", "section II", "continuous", t, centre.mass);
     table.point("central_position", "section II", "continuous", t, centre.position);
     table.point("central_velocity", "section II", "continuous", t, centre.velocity);

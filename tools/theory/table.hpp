@@ -1,4 +1,4 @@
-// The paper's predictions for a scene as one table, from which `cradle theory` and the curves on the pictures come.
+// The paper's predictions for a scene as one table, for `cradle theory` and for the curves in pictures.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@ namespace cradle::tools {
 struct Prediction {
   std::string quantity;     // front_position, energy, ...
   std::string equation;     // in the paper: "(5)"
-  std::string form;         // continuous, discrete; printed: as the paper prints it, where that is a misprint
+  std::string form;         // continuous, discrete; printed: the paper's own form if it has a misprint
   std::optional<double> t;  // for curves
   double value;
 };
 
-/// Curves and numbers that apply to the scene; times are those since run.start. Empty where the paper says nothing.
+/// Curves and numbers that apply to the scene; times are counted from run.start. Empty if the paper predicts nothing.
 std::vector<Prediction> predictions(const Scene& scene);
 
-/// Which of the formulas used for this scene's law the paper misprints, in words; empty where none.
+/// Which of the paper's formulas for this scene's law have misprints, in words; empty if none.
 std::string misprints(const Scene& scene);
 
 /// Long-format CSV: quantity,equation,form,t,value; t empty for single numbers.

@@ -1,4 +1,4 @@
-// Sections V and VI: the front (8), energy before anything sticks, the linear model of the zone (9) to (17).
+// Sections V and VI: the front (8), the energy before particles stick, the linear model of the zone (9) to (17).
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace cradle::tools {
 
 namespace {
 
-// Discrete forms go collision by collision: up to here they take some tenths of a second.
+// Discrete forms are computed collision by collision: so many take some tenths of a second.
 constexpr double most_collisions = 3e7;
-// In s = E_loss t/(m u0 l): up to where the series for the energy is good (to 2e-4), and where particles have surely
-// stuck.
+// Values of s = E_loss t/(m u0 l): the series for the energy is good to 2e-4 up to the first; at the second all
+// particles have stuck.
 constexpr double last_progress = 1.1, sticking_progress = 1.2;
 
 void add_front(Predictions& table, const theory::WetShock<double>& shock, double until) {
@@ -67,7 +67,7 @@ void add_energy(Predictions& table, const theory::WetShock<double>& shock, doubl
 
   const double end = up_to(sticking_progress);
   if (theory::wet_collisions(shock, end) > most_collisions) return;
-  std::vector<std::uint64_t> counts(curve_points + 1);  // by the first point of the curve that has the collision
+  std::vector<std::uint64_t> counts(curve_points + 1);  // by the first point of the curve that includes the collision
   const auto stuck = theory::cross_rows(shock, end, [&](double time, int pairs) {
     const auto place = static_cast<std::size_t>(std::ceil(time / end * curve_points));
     counts[std::min<std::size_t>(place, curve_points)] += static_cast<std::uint64_t>(pairs);
@@ -84,7 +84,7 @@ void add_energy(Predictions& table, const theory::WetShock<double>& shock, doubl
 }
 
 void add_zone(Predictions& table, const theory::WetShock<double>& shock) {
-  if (!(shock.loss > 0) || shock.critical_speed() > shock.speed) return;  // the rows stick before they are slowed
+  if (!(shock.loss > 0) || shock.critical_speed() > shock.speed) return;  // the rows stick before they slow down
   const theory::WetZone<double> zone(shock);
   table.number("density_excess", "(12) = (13)", "continuous", zone.excess());
   table.number("zone_width", "(13)", "continuous", zone.width());

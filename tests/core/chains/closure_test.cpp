@@ -1,6 +1,6 @@
-// The closure error of laws by which particles merge or pass. Proves: as long as both rows have particles that have not
-// collided it is measured, against the flights that those are known to have; so it is on a ring; where it is not
-// measured there is no number. Two threads may read a chain at once.
+// The closure error with laws by which particles merge or pass. Proves: it is measured while both rows have particles
+// that have not collided, whose flights are known, and on a ring; otherwise there is no number. Two threads may read a
+// chain at once.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
-// The smaller gap beside a collision, which collapse is watched by. Proves: in every chain it is the gap of the two
-// neighbours to what comes of the collision, after a merger too, where the cell of the collision holds the gap on the
-// right.
+// The smaller gap beside a collision, which is used to detect collapse. Proves: in every chain it is the smaller of the
+// gaps between the colliding particles and their neighbours, also after a merger, when the cell of the collision holds
+// the gap on the right.
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"

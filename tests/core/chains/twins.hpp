@@ -1,5 +1,5 @@
 #pragma once
-// Two ways of holding the same particles, whose runs have the same bits.
+// Compares two ways of holding the same particles: the runs must have the same bits.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 namespace cradle::test {
 
-// Queues of other sizes may have other close calls.
+// Queues of different sizes may have different close calls.
 enum class CloseCalls { the_same, any };
 
 template <class First, class Second>
@@ -32,7 +32,7 @@ void expect_identical(First& first, Second& second, double t, CloseCalls close_c
   ASSERT_EQ(first.front_right(t), second.front_right(t));
 }
 
-// Output ten or ten thousand times up to `end`, and at its end only.
+// Compares output at ten or ten thousand times up to `end` with output at the end only.
 template <class Make> void expect_no_influence_of_cadence(const Make& make, double end) {
   auto once = make();
   for (const int outputs : {10, 10000}) {
@@ -46,7 +46,7 @@ template <class Make> void expect_no_influence_of_cadence(const Make& make, doub
   }
 }
 
-// Output at the very time of each collision, by another run of the same particles.
+// Makes output at the exact time of each collision, found by another run of the same particles.
 template <class Once, class Often>
 void expect_no_influence_of_output_at_collisions(Once once, Often&& often, double end, std::size_t least_collisions) {
   std::vector<double> times;

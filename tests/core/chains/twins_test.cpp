@@ -1,6 +1,6 @@
-// Every way of holding the same particles, one against the other. Proves: gaps and absolute positions make the same
-// collisions, and so does a loop without a queue; a chain that streams its rows in and one that holds them all have the
-// same bits, as have runs whose output is read once, ten times or ten thousand times, with and without an observer.
+// Compares every way of holding the same particles. Proves: gaps and absolute positions make the same collisions, and
+// so does a loop without a queue. A chain that streams its rows and one that holds them completely have the same bits,
+// and so have runs with output once, ten times or ten thousand times, with and without an observer.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,8 +1,7 @@
-// The wet law on a line, every way of holding the same particles one against the other. Proves: a chain that streams
-// its rows in and one that holds them all have the same bits, as have the same particles without any knowledge of rows,
-// runs whose output is read once, ten times or ten thousand times, with and without an observer, and with any number of
-// index bits in the queue's keys; a loop without a queue makes the same collisions, and so does one in absolute
-// positions that knows neither gaps nor streaming.
+// Compares every way of holding the same particles, with the wet law on a line. Proves: a chain that streams its rows
+// and one that holds them completely have the same bits, and so have particles given as a list, runs with output once,
+// ten times or ten thousand times, with and without an observer, and with any number of index bits in the queue's keys.
+// A loop without a queue makes the same collisions, and so does one in absolute positions, without gaps or streaming.
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

@@ -1,6 +1,6 @@
-// Time as origin and offset. Proves: a run that starts at 1e12, where a double resolves 1e-4 only, has the gaps and
-// closing speeds of one that starts at 0 bit for bit, and collision times that differ by 1e12 to far below any rounding
-// of it; the origin may move any number of times without a trace.
+// Time as origin and offset. Proves: a run that starts at 1e12, where a double resolves only 1e-4, has bit for bit the
+// gaps and closing speeds of a run that starts at 0, and its collision times differ by 1e12 with an error far below the
+// rounding of 1e12. Moving the origin any number of times changes nothing.
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

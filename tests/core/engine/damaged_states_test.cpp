@@ -1,6 +1,6 @@
-// States that are well formed and whose numbers no run has, as a file can have them behind a checksum that is right:
-// they are refused, or the run ends. All were found by fuzzing (tests/fuzz/checkpoint.cpp): they wrote or read beyond a
-// list, made collisions without end, or overflowed an integer.
+// Well-formed states with numbers that no run has, as in a damaged file with a correct checksum: they are refused, or
+// the run ends. All were found by fuzzing (tests/fuzz/checkpoint.cpp): they wrote or read beyond a list, made
+// collisions without end, or overflowed an integer.
 #include <bit>
 #include <functional>
 #include <limits>

@@ -1,5 +1,5 @@
-// The kinetic energy of a run (relative_motion.hpp, sample.hpp): that of what the chain holds, to the last digits,
-// however little is left.
+// The kinetic energy of a run (relative_motion.hpp, sample.hpp) is that of the numbers in the chain, to the last
+// digits, even if very little energy is left.
 //
 // References are sums of exact rationals over what chains hold: closing speeds, or velocities. The bound of
 // relative_motion.hpp is 8u of the energy of relative motion, and 4u are for the rest: 16u, u = 2^-53, holds in any

@@ -1,5 +1,5 @@
-// The ledger of energy. Proves: in native types the sum has the same bits in any order of its terms and however it is
-// divided, and is the exact sum but for half a unit of the finer grid per term; whatever the size of the energy, zero
+// The ledger of energy. Proves: in native types the sum has the same bits for any order and any division of its terms,
+// and differs from the exact sum by at most half a unit of the finer grid per term; for any size of the energy, zero
 // and the ends of the type's range included.
 #include <gtest/gtest.h>
 

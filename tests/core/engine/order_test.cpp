@@ -1,6 +1,6 @@
-// Collisions made out of order, by hand, in exact arithmetic. Proves: two collisions at either side of a gap commute
-// exactly, since a gap's local time never goes back; where the gap between them should have closed in between, the
-// violation is seen and counted at the gap concerned, its collision falls due in the past and is not clamped.
+// Collisions made out of order on purpose, in exact arithmetic. Proves: two collisions on either side of a gap commute
+// exactly, since a gap's local time never decreases. If the gap between them should have closed in between, the
+// violation is counted at that gap; its collision is then due in the past, and is not clamped.
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"

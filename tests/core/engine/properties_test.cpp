@@ -1,4 +1,4 @@
-// What no run may violate, whatever the initial state: momentum, the order of particles, energy = ledger, closure.
+// Conditions that hold in every run, for any initial state: momentum, the order of particles, energy = ledger, closure.
 //
 // Bounds. A collision rounds three closing speeds by u of themselves at most, u = 2^-53. Closing speeds differ from
 // collision to collision, so errors add up in squares: neighbours' being like the pair's own, allow 2 times 3 w^2 u^2 a

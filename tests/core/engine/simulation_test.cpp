@@ -1,6 +1,6 @@
-// The event loop at its boundaries. Proves: a time that is not finite, or lies in the past, is refused before anything
-// is changed; whatever the caller's functions throw, the run continues with the bits of an undisturbed one; no counter
-// and no time depends on how often a run is sampled, also where collisions are simultaneous.
+// The event loop at its limits. Proves: a time that is not finite, or in the past, is refused before anything changes;
+// after exceptions from the caller's functions the run continues with the bits of an undisturbed one; no counter and no
+// time depends on how often a run is sampled, even with simultaneous collisions.
 #include <gtest/gtest.h>
 
 #include <limits>

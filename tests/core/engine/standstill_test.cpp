@@ -1,7 +1,7 @@
-// When a run ends because it no longer advances, whatever exponents its type has. Proves: collisions at one time since
-// the start have a bound, by which a collapse that tends to that time is over, and a cut-off that ends one below the
-// clock's resolution is not; a gap that is to be followed has none. Particles of restitution 0 that meet at one time
-// part by a cut-off, after as many collisions as in exact rationals.
+// When a run ends because it no longer advances, in types with any range of exponents. Proves: the number of collisions
+// at one time since the start is bounded. The bound ends a collapse that tends to that time, but not one that a cut-off
+// ends below the clock's resolution. It does not apply if a gap size to reach is given. Particles of restitution 0 that
+// meet at one time separate by a cut-off, after as many collisions as in exact rationals.
 #include <gtest/gtest.h>
 
 #include "cradle/core/initial/walled.hpp"

@@ -1,5 +1,5 @@
 // The state of a run as a value: saved anywhere and loaded into a run of the same scene, it continues with the same
-// bits; what has been cut or does not fit together is refused, and takes no memory beforehand.
+// bits. Truncated or contradictory states are refused, before memory is allocated for them.
 #include <limits>
 #include <memory>
 

@@ -110,7 +110,7 @@ TEST(StickyGas, IsTheIsotonicRegressionOfFreeFlights) {
   }
 }
 
-// Asks for as few particles of the rows as are hit.
+// Takes from the rows only the particles that are hit.
 class CountingRows final : public Particles<double> {
  public:
   explicit CountingRows(Rows<double> rows) : rows_(std::move(rows)) {}

@@ -1,9 +1,9 @@
 // Symmetries of the dynamics that the arithmetic of gaps and velocities keeps to the last bit. Proves: mirrored initial
-// states give mirrored runs (of the wet law as long as no two particles of the same mass merge: which of two velocities
-// that differ by rounding a cluster of equal halves takes is decided from the left); a velocity added to all particles
-// changes nothing but where they are; lengths, speeds and masses may be measured in other units (powers of two: exact);
-// and that nothing prefers a direction or a scale, except the documented tie rule (the leftmost of simultaneous
-// collisions first), which these states do not meet.
+// states give mirrored runs (with the wet law as long as no two particles of the same mass merge: the left one decides
+// which of two slightly different velocities the cluster takes); a velocity added to all particles changes only
+// positions; lengths, speeds and masses may be measured in other units (powers of two: exact). So nothing prefers a
+// direction or a scale, except the documented tie rule (the leftmost of simultaneous collisions first), which these
+// states do not use.
 #include <gtest/gtest.h>
 
 #include <algorithm>

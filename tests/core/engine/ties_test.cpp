@@ -1,7 +1,7 @@
-// The order of collisions that the queue's keys cannot distinguish, hundreds of them at a time: (exact time, position
-// in the line) among all of them, so that no bit depends on the width of keys. Gases on a lattice, near the elastic
-// limit: particles at integers with integer speeds, where collisions come in crowds within the resolution of a key, and
-// are moved apart by 1 - eps, from exactly simultaneous to what a key resolves.
+// The order of collisions that the queue's keys cannot distinguish, hundreds of them at a time: it is (exact time,
+// position in the line) among all of them, so that no bit depends on the width of keys. The gases are on a lattice,
+// near the elastic limit: particles at integers with integer speeds, where many collisions are within the resolution of
+// a key. The factor 1 - eps separates them, from exactly simultaneous to what a key resolves.
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"

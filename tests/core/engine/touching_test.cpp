@@ -1,8 +1,8 @@
-// Restitution 0 leaves particles together, gap 0 and closing speed 0, until another one hits them. Proves: the
-// collisions that follow at one time and place are those of the exact system, as long as double holds its closing
-// speeds; where it does not, and collisions come within rounding of each other, no order is reported as lost; local
-// times that a late collision leaves ahead of the origin lose nothing when it moves; collisions that are later than
-// rounding explains are still counted.
+// Restitution 0 leaves particles together, with gap 0 and closing speed 0, until another one hits them. Proves: the
+// collisions that follow at one time and place are those of the exact system, as long as double represents the closing
+// speeds; otherwise, if collisions are within rounding of each other, no order is reported as lost. Local times that a
+// late collision leaves ahead of the origin lose nothing when it moves. Collisions that are later than rounding
+// explains are still counted.
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/fixtures.hpp"

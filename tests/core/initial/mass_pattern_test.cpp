@@ -4,8 +4,6 @@
 // cadence; gaps and positions make the same collisions.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"

@@ -1,7 +1,7 @@
-// A law and an observer from outside, as core/README.md describes them: restitution that depends on the closing speed,
-// eps = 1 - w/(2(w + w0)), 1 for slow collisions and 1/2 for fast ones. Proves: nothing in the engine needs to know of
-// a law; outcomes are those by hand, the ledger is the direct sum, momentum is kept, and gaps and positions make the
-// same collisions at every particle.
+// A law and an observer written by a user, as core/README.md describes them: a restitution that depends on the closing
+// speed, eps = 1 - w/(2(w + w0)), 1 for slow collisions and 1/2 for fast ones. Proves: the engine needs to know nothing
+// else of a law; outcomes are those computed by hand, the ledger is the direct sum, momentum is kept, and gaps and
+// positions make the same collisions at every particle.
 #include <gtest/gtest.h>
 
 #include "cradle/core/observe/configuration_statistics.hpp"

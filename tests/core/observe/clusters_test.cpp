@@ -1,4 +1,4 @@
-// What is read off a gas with clusters: the two heaviest, the cloud, the distribution of masses, and the width of the
+// Measurements of a gas with clusters: the two heaviest, the cloud, the distribution of masses, and the width of the
 // interaction zone.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Guards are silent on every correct run, up to very many collisions, and each one reports an error of its own quantity
-// that is far smaller than what a result shows.
+// Guards are silent in every correct run, also after very many collisions, and each guard reports an error of its own
+// quantity that is far too small to be seen in a result.
 #include <cmath>
 #include <limits>
 #include <memory>

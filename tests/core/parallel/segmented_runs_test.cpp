@@ -1,6 +1,6 @@
-// Runs that go in segments now and then. Proves: a run has the bits of the plain loop whatever comes between its
-// time slabs: plain advances, observers, single steps, interrupts, exceptions of the caller and of the threads; and it
-// does not go in segments where that would not pay. Part of what every build runs under ThreadSanitizer.
+// Runs that use segments for parts of the time. Proves: a run has the bits of the plain loop for anything that comes
+// between its time slabs: plain advances, observers, single steps, interrupts, exceptions of the caller and of the
+// threads; and it does not use segments if they are not faster. Every build runs part of this under ThreadSanitizer.
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/segmented.hpp"

@@ -1,7 +1,7 @@
-// Results of others, in small: a blast in a cold gas, dominoes, a splash, collapse on a ring, free cooling with a
-// restitution that depends on the speed. Proves: the closed forms hold together (integrals of energy and mass, values
-// at the front, known constants); particles follow them as far as small systems do. What larger ones do is in
-// bench/results/classics.md.
+// Results of other authors in small systems: a blast in a cold gas, dominoes, a splash, collapse on a ring, free
+// cooling with a restitution that depends on the speed. Proves: the closed forms are consistent (integrals of energy
+// and mass, values at the front, known constants), and particles follow them as closely as small systems do. For larger
+// systems see bench/results/classics.md.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The formulas for the collapse of few particles, and for when a shock comes to it.
+// The formulas for the collapse of few particles, and for the time at which a shock collapses.
 // Proves: closed forms to all digits of the reference values (evaluated to 40 digits elsewhere); limits of restitution
 // from both sides; that the collisions one after the other run into the time of collapse, and end where there is none.
 #include "cradle/core/theory/inelastic_collapse.hpp"

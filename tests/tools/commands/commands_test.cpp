@@ -1,4 +1,4 @@
-// The other commands, and what becomes of bad input: one message with file, line and key, and the documented status.
+// The other commands, and bad input: one message with file, line and key, and the documented status.
 
 #include <algorithm>
 #include <string>

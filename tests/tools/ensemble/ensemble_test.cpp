@@ -1,5 +1,5 @@
-// What the numbers in files of ensembles are: statistics against those of single runs, how replicas ended, replicas
-// that collapse or fail.
+// The numbers in files of ensembles: statistics compared with those of single runs, how replicas ended, replicas that
+// collapse or fail.
 
 #include "cradle/tools/ensemble/ensemble.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Small scenes to make ensembles of, and what their files hold.
+// Small scenes for ensembles, and functions that read their files.
 
 #include <cstdint>
 #include <string>
@@ -36,7 +36,7 @@ snapshots = [100]
 profiles = { times = [50, 100], bins = 20, range = [-30, 30] }
 )";
 
-// Two of the three particles collapse, at a time that depends on the replica, before until.
+// Two of the three particles collapse before `until`, at a time that depends on the replica.
 inline constexpr const char* collapse = R"(
 [law]
 type = "inelastic"
@@ -54,7 +54,8 @@ series = { points = 41 }
 profiles = { times = [0.5, 1.5], bins = 2, range = [-2, 2] }
 )";
 
-// Clusters in two columns (left and right), missing until there are any; an average over the interaction zone.
+// Has two columns for clusters (left and right), empty until there are clusters; and an average over the interaction
+// zone.
 inline constexpr const char* wet = R"(
 [law]
 type = "wet"
@@ -87,10 +88,10 @@ class Ensembles : public ProgramTest {
 
   void run(const std::string& command, int status = 0) const { shell("cradle " + command, status); }
 
-  // One more than the largest number of a replica in the journals of an ensemble without end: an ensemble of so many
-  // replicas contains all of them and one that is missing.
+  // One more than the largest index of a replica in the journals of an endless ensemble: an ensemble of that size
+  // contains all of them and one that is missing.
   std::string enough_for(const std::string& file) const {
-    // Of copies: reading the journals of ranks takes them in.
+    // Reads copies, since reading the journals of ranks removes them.
     std::filesystem::create_directory(folder / "copies");
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       if (entry.path().filename().string().starts_with(file + ".part"))
@@ -113,8 +114,7 @@ class Ensembles : public ProgramTest {
   }
 };
 
-// Runs an ensemble that does not end by itself, however quick the machine is, until its journal has grown by some
-// replicas; then sends it a signal.
+// Runs an endless ensemble until its journal has grown by some replicas; then sends it a signal.
 inline std::string until_journalled(const std::string& file, const std::string& signal, const std::string& more = "") {
   return "size() { stat -c %s " + file + ".part 2>/dev/null || echo 0; }; enough=$(($(size) + 300000)); " +
          "cradle ensemble shock.toml --replicas " + std::to_string(endless_replicas) + " --threads 2 -o " + file +

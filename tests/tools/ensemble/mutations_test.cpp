@@ -1,6 +1,6 @@
-// Random damage to result files: whatever is changed in one, the code behind info, export, plot and merge reads it
-// rightly or refuses it with a message and a documented status; it never crashes and never takes long.
-// CRADLE_MUTATIONS=2000 makes it more than the usual 100.
+// Random damage to result files: after any change the code behind info, export, plot and merge reads the file correctly
+// or refuses it with a message and a documented status; it never crashes and never takes long. CRADLE_MUTATIONS=2000
+// makes 2000 changes instead of 100.
 
 #include <sys/resource.h>
 

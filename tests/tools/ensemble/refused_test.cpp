@@ -1,4 +1,4 @@
-// What ensembles refuse: files, journals and scenes that are not theirs.
+// Ensembles refuse files, journals and scenes that do not belong to them.
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 

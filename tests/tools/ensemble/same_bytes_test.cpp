@@ -1,5 +1,5 @@
-// Ensembles give the same file however it came about: on any number of threads, continued, split and merged,
-// interrupted, killed, with damaged or left-over journals.
+// An ensemble gives the same file for any history: on any number of threads, continued, split and merged, interrupted,
+// killed, with damaged or left-over journals.
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"

@@ -1,4 +1,5 @@
-// Sweeps: which points the texts mean, what is refused, and the table of a small sweep against runs made one by one.
+// Sweeps: the points that texts describe, the texts that are refused, and the table of a small sweep compared with runs
+// made one by one.
 #include "cradle/tools/ensemble/sweep.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // Pictures: every kind is made from a small run, without a display, as PNG and as SVG, and twice with the same bytes.
-// Which pictures a file gets follows from what it holds: the names that the program prints are checked.
+// The contents of a file decide which pictures it has: the names that the program prints are checked.
 
 #include <algorithm>
 #include <string>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs a file of Python tests, or a script, with the first Python that has h5py and matplotlib, in a folder of its own;
-# status 77, with the reason, where there is none or where all of its cases were skipped.
+# Runs a file of Python tests, or a script, with the first Python that has h5py and matplotlib, in a temporary folder.
+# Status 77, with the reason, if there is no such Python or all cases were skipped.
 #   run.sh PROGRAM FILE
 set -euo pipefail
 CRADLE_PROGRAM=$(realpath "$1")

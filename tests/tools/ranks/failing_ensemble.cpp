@@ -1,5 +1,5 @@
-// An ensemble as `cradle ensemble` makes it, under MPI too, of whose replicas every fifth one fails: its particles are
-// out of order, which throws.
+// An ensemble as in `cradle ensemble`, also under MPI, in which every fifth replica fails: its particles are out of
+// order, which throws.
 //   failing_ensemble SCENE REPLICAS FILE
 
 #include <fmt/format.h>

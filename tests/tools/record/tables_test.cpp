@@ -1,4 +1,4 @@
-// What the tables of a scene are is known before it runs: what a run writes is exactly that.
+// The tables of a scene are known before it runs, and a run writes exactly these.
 #include "cradle/tools/record/tables.hpp"
 
 #include <gtest/gtest.h>

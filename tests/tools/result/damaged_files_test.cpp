@@ -1,5 +1,5 @@
-// Files that are not what they seem: each a message that names the file and the place, status 4, no crash, and nothing
-// written outside the folder that was given. All are made with HDF5 itself, so only the reader stands against them.
+// Malicious files: each gives a message that names the file and the place, and status 4; no crash, and nothing is
+// written outside the given folder. All are made with HDF5 itself, so that only the reader can refuse them.
 
 #include <functional>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Small result files to read, and files that HDF5 itself has changed.
+// Small result files to read, and files changed by HDF5.
 
 #include <hdf5.h>
 
@@ -31,7 +31,7 @@ inline tools::Result small_result() {
   return result;
 }
 
-// Lets HDF5 change a file, as h5py or a user's own program would.
+// Changes a file through HDF5, as h5py or a user's own program would.
 inline void change(const std::filesystem::path& path, const std::function<void(hid_t file)>& how) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);

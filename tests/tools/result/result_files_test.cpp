@@ -1,5 +1,5 @@
-// Results come back from their files as they were: in the order in which they were written, with every bit; files that
-// users or older versions have written are read too, and those that are damaged are not.
+// Results are read from their files unchanged: in the order in which they were written, with every bit. Files that
+// users or older versions have written are read too; damaged ones are not.
 
 #include "cradle/tests/tools/result/result_files.hpp"
 #include "cradle/tools/result/csv.hpp"

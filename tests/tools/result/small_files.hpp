@@ -1,5 +1,5 @@
 #pragma once
-// A full disk, for this process.
+// A full disk for this process.
 
 #include <sys/resource.h>
 
@@ -7,7 +7,7 @@
 
 namespace cradle::tests {
 
-// As long as it lives, files can grow no further than 10 kB: what is written beyond fails.
+// During its lifetime files cannot grow beyond 10 kB: further writes fail.
 class SmallFiles {
  public:
   SmallFiles() {

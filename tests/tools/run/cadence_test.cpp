@@ -1,6 +1,6 @@
-// How often a run is sampled changes nothing but the series: every other number in a result file, attributes included,
-// has the same bits. Also where very many collisions are simultaneous (a lattice), which is where the order of events
-// is hardest to keep.
+// How often a run is sampled changes only the series: every other number in a result file, attributes included, has the
+// same bits. This includes lattices, with very many simultaneous collisions, for which the order of events is hardest
+// to keep.
 #include <algorithm>
 #include <type_traits>
 

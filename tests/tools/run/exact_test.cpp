@@ -1,5 +1,5 @@
-// The decimals below /exact, for each type that is wider than double: they are all digits of the numbers whose doubles
-// stand in the tables, and these are known to the digits of the type.
+// The decimals below /exact, for each type wider than double: they have all digits of the numbers whose doubles are in
+// the tables, and these numbers are known to the digits of the type.
 #include <cmath>
 #include <map>
 #include <string>

@@ -1,5 +1,5 @@
-// `cradle run --threads`. Proves: result files are the same to the byte whatever the number of threads, where a run is
-// cut into segments, in double and in wider types; and `check` says beforehand whether threads will do anything.
+// `cradle run --threads`. Proves: result files have the same bytes for any number of threads, if a run is cut into
+// segments, in double and in wider types; and `check` says beforehand whether threads will be used.
 
 #include <string>
 

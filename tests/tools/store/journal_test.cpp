@@ -1,5 +1,5 @@
-// Journals after every way of ending: whatever is on the disk, a reader gives the records before the damage, whole and
-// nothing else.
+// Journals after any kind of end: for any contents of the disk a reader gives exactly the complete records before the
+// damage.
 
 #include "cradle/tools/store/journal.hpp"
 

@@ -2,7 +2,6 @@
 // x initial state x policy x threads x where it is cut.
 #include <csignal>
 #include <fstream>
-#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -139,7 +138,7 @@ class Resuming : public cradle::tests::ProgramTest {
   static RunOutcome run(RunFiles& files, Stopping::At at, std::size_t threads) {
     Interrupt interrupt;
     Stopping store(files, interrupt, at);
-    cradle::Workers workers;  // one after the other, as many as asked for
+    cradle::Workers workers;  // one after the other, as many as required
     workers.count = threads;
     RunOutcome end = run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, workers, &store});
     if (end.end != RunEnd::interrupted) files.finish(std::move(end.result), end.end);

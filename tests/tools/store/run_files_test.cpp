@@ -1,7 +1,6 @@
-// What lies beside a result during its run, as users meet it: inspected, damaged, of another version, in the way of
-// another run.
+// The files beside a result during its run, as users meet them: inspected, damaged, of another version, or of another
+// run that is in the way.
 #include <algorithm>
-#include <csignal>
 #include <cstring>
 
 #include <gtest/gtest.h>

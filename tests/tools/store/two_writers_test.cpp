@@ -1,4 +1,4 @@
-// Two programs that write to one name: the second is refused before it has done anything, whenever it comes.
+// Two programs write to one name: the second is refused before it has done anything, at any time.
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"

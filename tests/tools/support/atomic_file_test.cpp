@@ -1,4 +1,4 @@
-// Writing files: the old file stays until the new one is complete, whatever goes wrong; one program at a time writes a
+// Writing files: the old file stays until the new one is complete, after any failure; one program at a time writes a
 // file; links are followed; no other file is touched.
 
 #include "cradle/tools/support/atomic_file.hpp"

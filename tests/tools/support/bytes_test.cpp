@@ -1,4 +1,4 @@
-// Values as bytes come back as they were; the checksum against Boost's, bit by bit.
+// Values are read from their bytes unchanged; the checksum is compared with Boost's, bit by bit.
 
 #include "cradle/tools/support/bytes.hpp"
 

@@ -1,5 +1,5 @@
-// On a processor without AVX2 the program of the preset release says so and what to do, and ends with a status of its
-// own; it does not begin with an instruction that is not there. Such processors are emulated (Debian: qemu-user).
+// On a processor without AVX2 the program of the preset release says so and what to do, and ends with its own status,
+// before it executes an instruction that is missing. Such processors are emulated (Debian: qemu-user).
 #include <algorithm>
 
 #include "cradle/tests/tools/program.hpp"

@@ -1,5 +1,5 @@
-// Predictions as `cradle theory` gives them for the wet and the sticky gas: numbers of the validation table, curves
-// that meet in their known points, and misprints that fit the law.
+// Predictions of `cradle theory` for the wet and the sticky gas: numbers of the validation table, curves that meet in
+// their known points, and the misprints for each law.
 #include "cradle/tools/theory/table.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-"""Results of Cradle, event-driven granular gases in one dimension, in Python; and the program, called from there.
+"""Results of Cradle, event-driven granular gases in one dimension, in Python; also calls the program.
 
     import cradle
     shock = cradle.run("fig2", set={"run.until": 2000})     # or cradle.open("fig2.h5")
@@ -7,8 +7,8 @@
     cradle.plot.shock(shock)                                 # a matplotlib figure
     cradle.report(shock)                                     # one HTML page
 
-Whatever goes wrong is a cradle.Error with `message` and `status`. h5py and numpy are needed, matplotlib for pictures
-and reports; all are imported when they are used.
+Errors are cradle.Error with `message` and `status`. h5py and numpy are required, and matplotlib for pictures and
+reports; all are imported on first use.
 """
 from __future__ import annotations
 

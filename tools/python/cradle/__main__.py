@@ -1,4 +1,4 @@
-"""What the program runs: python -m cradle plot FILE -o OUT, or report FILE -o OUT.
+"""The program runs this: python -m cradle plot FILE -o OUT, or report FILE -o OUT.
 
 Exit status: 0 done, 2 bad arguments, 4 a file could not be read or written. No display is needed.
 """
@@ -32,7 +32,7 @@ def main(words: list[str]) -> int:
 
 
 def missing(error: ImportError) -> str:
-    """A module that is not there is named with its Debian package."""
+    """Raises Error for a missing module, with the name of its Debian package."""
     name = (error.name or "matplotlib").split(".")[0]
     return f"Python module {name} is missing ({sys.executable}: {error}): install the Debian package python3-{name}"
 

@@ -1,4 +1,4 @@
-"""The program's commands as functions: each calls it, shows its progress, and returns the opened result."""
+"""The program's commands as functions. Each calls the program, shows its progress and returns the opened result."""
 from __future__ import annotations
 
 import contextlib
@@ -19,27 +19,28 @@ Settings = Union[Mapping[str, Any], None]
 
 
 def run(scene: Scene, set: Settings = None, **common) -> Result:
-    """One run; returns its result, also where it ended at inelastic collapse (`result.status` is 3 then).
+    """Runs a scene and returns the result, also if it ended at inelastic collapse (`result.status` is then 3).
 
     scene: a scene file, the name of a bundled scene, nested dicts as result.scene has them, or the text of a scene
         (with line breaks), as result.scene_text.
-    set: keys and values instead of what the scene says, `{"law.restitution": 0.9, "run.until": 500}`.
+    set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`.
     Common to all commands, as keywords:
-    output: the result file; by default the scene's name with .h5 in the working folder, as the program has it.
-    seed: another one than the scene's.
-    threads: at most so many, all processors by default; never changes a result.
-    progress: True, False, or a function of the share done and a line of text; by default on terminals and in notebooks.
-    Raises Error with the program's message and status; where collisions were lost (5) its `result` is what there is.
+    output: the result file; by default the scene's name with .h5 in the working folder, as in the program.
+    seed: replaces the scene's.
+    threads: how many at most; by default all processors. It never changes a result.
+    progress: True, False, or a function of the finished share and a line of text; by default on terminals and in
+        notebooks.
+    Raises Error with the program's message and status; if collisions were lost (5) its `result` is the incomplete one.
     """
     return compute("run", ".h5", scene, set, [], **common)
 
 
 def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 0, spread: Sequence[str] = (),
              **common) -> Result:
-    """Replicas first to first + replicas - 1 and their statistics; a file of the same scene is continued.
+    """Runs replicas first to first + replicas - 1 and their statistics; continues an existing file of the same scene.
 
-    spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Others as in run().
-    Raises Error; where replicas failed (5) its `result` has the others.
+    spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Other arguments as in run().
+    Raises Error; if replicas failed (5) its `result` has the others.
     """
     options = ["--replicas", replicas, "--first", first, *(word for text in spread for word in ("--spread", text))]
     return compute("ensemble", "-ensemble.h5", scene, set, options, **common)
@@ -47,11 +48,11 @@ def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 
 
 def sweep(scene: Scene, vary: Settings = None, set: Settings = None, *, cuts: bool = False,
           points: Sequence[Mapping[str, Any]] = (), replicas: int | None = None, first: int = 0, **common) -> Result:
-    """One ensemble at each of many points; `result.points` are these, `result.sweep` has one row for each.
+    """Runs an ensemble at each of many points; `result.points` are the ensembles, `result.sweep` has one row for each.
 
     vary: values of keys, `{"law.loss": [0.005, 0.01], "initial.speed": "0.5:2:4:log"}`, in all combinations, or, with
-        cuts, one at a time. points: single ones, `{"law.loss": 0.01, "initial.speed": 1}` each.
-        Without both the sweep is the one of the scene. Others as in run().
+        cuts, one at a time. points: single points, `{"law.loss": 0.01, "initial.speed": 1}` each.
+        Without both, the scene says what to sweep. Other arguments as in run().
     """
     options = [word for key, values in (vary or {}).items() for word in ("--vary", f"{key}={bare(values, ',')}")]
     for point in points:
@@ -61,10 +62,10 @@ def sweep(scene: Scene, vary: Settings = None, set: Settings = None, *, cuts: bo
 
 
 def trust(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), both: bool = False, **common) -> Result:
-    """The same run at rising precision; `result.trust` has a table for each, compared with the last.
+    """Runs a scene at rising precision; `result.trust` has a table for each precision, compared with the last.
 
-    digits: those to compare, the reference last; by default rising until two runs agree. both: also in positions.
-    Others as in run().
+    digits: the precisions to compare, the reference last; by default they rise until two runs agree. both: also runs
+    in positions. Other arguments as in run().
     """
     options = option("--digits", ",".join(map(str, digits)) or None) + ["--both"] * both
     return compute("trust", "-trust.h5", scene, set, options, **common)
@@ -72,10 +73,10 @@ def trust(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), bot
 
 def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), replicas: int | None = None,
             **common) -> Result:
-    """The run with a proof of its collisions; `result.certificate.verdict` is "proved" or "undecided" (status 5).
+    """Runs a scene and proves its collisions; `result.certificate.verdict` is "proved" or "undecided" (status 5).
 
-    digits: of the proof, tried one after the other. replicas: proves so many and writes their statistics. Others as in
-    run().
+    digits: of the proof, tried one after the other. replicas: how many to prove; writes their statistics. Other
+    arguments as in run().
     """
     options = option("--digits", ",".join(map(str, digits)) or None) + option("--replicas", replicas)
     return compute("certify", "-certified.h5", scene, set, options, **common)
@@ -120,7 +121,7 @@ def called(words: list[str], output: str, threads: int | None, progress: bool | 
 
 @contextlib.contextmanager
 def scene_file(scene) -> Iterator[tuple[str, str]]:
-    """What the program is given as SCENE, and the name of its results."""
+    """What to give the program as SCENE, and the name for its results."""
     if isinstance(scene, Result):
         scene, name = scene.scene_text, str(scene.attributes.get("name", "scene"))
     else:
@@ -139,7 +140,7 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
 
 
 def bare(value: Any, between: str = "") -> str:
-    """As in --set, texts without quotes; of a list for --vary its values with commas `between` them."""
+    """A value as in --set, with texts unquoted; for --vary the values of a list are separated by commas (`between`)."""
     if isinstance(value, str):
         return value
     return between.join(map(bare, value)) if between else value_text(value)

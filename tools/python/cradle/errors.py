@@ -1,16 +1,16 @@
-"""What goes wrong, as one exception; and what the program's exit statuses mean."""
+"""The exception for all errors, and the meanings of the program's exit statuses."""
 from __future__ import annotations
 
 DONE, DIFFERS, BAD_INPUT, COLLAPSE, BAD_FILE, LOST = 0, 1, 2, 3, 4, 5
 
 
 class Error(Exception):
-    """What is wrong, as `what is wrong (what was found): what to do`.
+    """An error whose message says `what is wrong (what was found): what to do`.
 
-    message: the text, the program's own where it comes from there.
-    status: the exit status it stands for: 2 bad input, 4 a file could not be read or written, 5 resolution or order
+    message: the text, which may come from the program.
+    status: the exit status: 2 bad input, 4 a file could not be read or written, 5 resolution or order
         lost or a replica failed, 130 and 143 interrupted.
-    result: what was computed nevertheless, or None.
+    result: the incomplete result, or None.
     """
 
     def __init__(self, message: str, status: int = BAD_INPUT, result=None):

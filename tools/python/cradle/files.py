@@ -10,7 +10,7 @@ from .errors import BAD_FILE, Error
 
 @contextlib.contextmanager
 def whole(path: str) -> Iterator[str]:
-    """Where to write what becomes the file at path, beside its place, when the block ends; raises Error."""
+    """A temporary path beside the final one; the file is renamed when the block ends. Raises Error."""
     part = f"{path}.part"
     try:
         yield part

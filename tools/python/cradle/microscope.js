@@ -1,7 +1,7 @@
-// The microscope in a page: cradleMicroscope(element, data) builds it in a <div> from what microscope.py made of a run.
+// The microscope in a page: cradleMicroscope(element, data) builds it in a <div> from the data of microscope.py.
 //
-// Needs the other microscope_*.js before it. Returns what `element.cradleMicroscope` and window.cradleMicroscopeTest
-// are, too: a small handle for scripts and tests, whose `ready` is a promise of the first picture.
+// It needs the other microscope_*.js before it. It returns a small handle for scripts and tests, which is also in
+// `element.cradleMicroscope` and window.cradleMicroscopeTest; its `ready` is a promise of the first picture.
 
 function cradleMicroscope(element, data) {
   const make = (tag, name, parent, text) => {
@@ -52,23 +52,24 @@ function cradleMicroscope(element, data) {
     colours = Object.fromEntries(names.map(name => [name, style("--microscope-" + name)]));
     stores.strip = {};
     cancelAnimationFrame(due);
-    draw();  // at once: a canvas that has a new size is empty
+    draw();  // at once: resizing a canvas clears it
   }
   function request() {
     if (!due) due = requestAnimationFrame(draw);
   }
-  function changed() {  // by hand or in play: draw quickly now, and well when it has come to rest
+  function changed() {  // by hand or in play: draw quickly now, and in full detail when the view is at rest
     state.moving = 1;
     clearTimeout(restful);
     restful = setTimeout(() => { state.moving = 0; request(); }, 160);
     request();
   }
 
-  // The logarithms that colour collisions, and their range in sight, led slowly so that colours do not flicker.
+  // The logarithms that colour collisions, and their visible range, which changes slowly so that colours do not
+  // flicker.
   function colouring() {
     const value = state.quantity === "speed" ? world.logSpeed : world.lost, { chart, view } = camera, sample = [];
     if (chart) {
-      let before = -Infinity;  // of the collisions within a pixel one counts
+      let before = -Infinity;  // only one of the collisions within a pixel counts
       for (let i = 0, skip = Math.ceil(chart.collisions.length / 4000); i < chart.collisions.length; i += skip) {
         const tau = chart.tau[i], xi = chart.xi[i] - view.V * tau - view.xi;
         if (Math.abs(tau - view.tau) > view.T / 2 || Math.abs(xi) > view.X / 2) continue;
@@ -99,7 +100,7 @@ function cradleMicroscope(element, data) {
     pen.font = "12px system-ui, sans-serif";
     pen.fillStyle = colours.paper;
     pen.fillRect(0, 0, canvas.width, canvas.height);
-    const tilt = Math.abs(view.V + view.lab) * view.T / view.X;  // of the frame against the lab
+    const tilt = Math.abs(view.V + view.lab) * view.T / view.X;  // velocity of the frame in the lab, as a slope
     const name = e < 0 ? `particle ${number(view.anchor.a)}` : `collision ${e + 1}`;
     const origin = { ...microscopeOrigin(world, view.anchor), moving: tilt > 0.02 };
     const labels = microscopeAxes(pen, view, box, colours, origin, name);
@@ -135,7 +136,7 @@ function cradleMicroscope(element, data) {
     describe();
   }
 
-  // The readout: the collision or the gap under the pointer, else where the view is.
+  // The readout: the collision or the gap under the pointer, else the position of the view.
   function describe() {
     const { view } = camera, e = view.anchor.e;
     const where = e < 0 ? `t = ${world.start}, beside particle ${number(view.anchor.a)}` :
@@ -163,7 +164,7 @@ function cradleMicroscope(element, data) {
     `${(10 ** (log - Math.floor(log))).toFixed(2)}×${microscopePower(Math.floor(log))}`;
   const pairName = e => `${number(world.left[e])} and ${number(world.right[e])}`;
 
-  // Where a pointer is: [tau, xi] in the view's frame.
+  // The position of a pointer: [tau, xi] in the view's frame.
   function placeOf(x, y) {
     const inside = x >= box.left && x <= box.left + box.width && y >= box.top && y <= box.top + box.height;
     return inside ? unbounded(x, y) : null;
@@ -180,7 +181,7 @@ function cradleMicroscope(element, data) {
     return found && found.distance <= 1 ? found : null;
   }
 
-  // What hands do
+  // Mouse, keys and touch
 
   function zoom(factor, at, only) {
     const { view } = camera;
@@ -198,7 +199,7 @@ function cradleMicroscope(element, data) {
     camera.pan(-dx / box.width * view.T, dy / box.height * view.X);
     changed();
   }
-  // To collision e, with the spans as they are where they still suit it, else with what closed in it in sight.
+  // Moves to collision e. Keeps the spans if they still suit it, else takes the gap that closed in it.
   function visit(e) {
     if (e < 0 || e >= world.n) return;
     const deep = 10 ** Math.max(-300, world.depth[e]), { view } = camera;
@@ -233,7 +234,7 @@ function cradleMicroscope(element, data) {
 
   const handle = {
     view: () => ({ ...camera.view, exact: Boolean(camera.chart), box: { ...box }, depth: camera.view.X }),
-    // Shows collision `event`, or the first one as deep as that, with so much space (depth, in l) in sight.
+    // Shows collision `event`, or the first one of this depth, with so much space (depth, in l) in sight.
     zoomTo: ({ event, depth, time }) => {
       const found = world.depth.findIndex(d => d > -330 && d <= Math.log10(depth / 3));
       const e = event === undefined ? (found < 0 ? world.n - 1 : found) : event;
@@ -244,14 +245,14 @@ function cradleMicroscope(element, data) {
       draw();
       return handle.view();
     },
-    // Where a collision of a particle is drawn, in pixels of the canvas; null where it is not in the chart.
+    // The pixel on the canvas at which a particle's collision is drawn; null if it is not in the chart.
     position: (particle, event) => {
       const { chart, view } = camera, found = chart && microscopeThrough(chart, particle - world.first, event);
       if (!found) return null;
       const i = found[0].points[found[1]], scales = microscopeScales(view, box);
       return { x: scales.x(chart.tau[i]), y: scales.y(chart.xi[i], chart.tau[i]) };
     },
-    // Where a particle's world line is drawn at a pixel column.
+    // The height of a particle's world line at a pixel column.
     height: (particle, x) => {
       const line = camera.chart.byParticle.get(particle - world.first), { view } = camera;
       const [tau] = unbounded(x, 0);

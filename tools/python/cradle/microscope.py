@@ -1,11 +1,11 @@
-"""What the microscope shows of a run: its collisions and its initial state, or its snapshots, small enough for a page.
+"""The microscope's data of a run: its collisions and its initial state, or its snapshots, small enough for a page.
 
 The page draws world lines of particles, which are straight between collisions, at depths that neither positions nor
-times resolve. So it gets what defines a gap exactly: which particles collide, the interval to the collision before, the
-closing speed, the kind of the collision, and the gaps at the start. All else follows by sums near the place in view.
+times resolve. So its data define each gap exactly: which particles collide, the interval since the previous collision,
+the closing speed, the kind of the collision, and the gaps at the start. The rest follows by sums near the view.
 
-Arrays are typed, byte planes of equal weight stand together, and the whole is deflated: {"type", "length", "deflate"}.
-Up to `FULL_COLLISIONS` collisions every bit is kept; beyond, intervals and closing speeds keep 24 bits of mantissa.
+Arrays are typed, bytes of equal weight are stored together, and all is deflated: {"type", "length", "deflate"}.
+Up to `FULL_COLLISIONS` collisions every bit is kept; with more, intervals and closing speeds keep 24 bits of mantissa.
 """
 import base64
 import zlib
@@ -16,36 +16,36 @@ FULL_COLLISIONS = 400_000
 MOST_COLLISIONS = 1_200_000
 LEAST = 1e-290  # of speeds, in l/t
 
-# What a page needs beside the data, in this order.
+# What a page needs besides the data, in this order.
 SCRIPTS = tuple(f"microscope{name}.js" for name in ("_world", "_gaps", "_chart", "_camera", "_view", "_overview",
                                                     "_hands", ""))
 
 
 def data(result):
-    """What the microscope needs of a run, as a dict for JSON; None where there are neither events nor two snapshots."""
+    """The microscope's data of a run, as a dict for JSON; None if it has neither events nor two snapshots."""
     scene = result.scene
     if result.kind != "run" or not {"law", "initial"} <= set(scene) or scene["initial"].get("type") == "clusters":
         return None
     law = {"type": result.law} | {key: result.setting("law", key) for key in ("restitution", "loss")
                                   if key in scene["law"]}
-    # World lines between collisions follow from constant restitutions, and between particles, not walls.
+    # World lines between collisions follow from constant restitutions, but not with speed-dependent ones or walls.
     follows = "cutoff_exponent" not in scene["law"] and "walls" not in scene
     found = collisions(result) if follows and len(result.events.get("kind", ())) else snapshots(result)
     return found and {"law": law} | found
 
 
 def collisions(result):
-    """The collisions of a run and the state it started from."""
+    """The collisions of a run and its initial state."""
     events, initial = result.events, result.table("initial")
     total = len(events.left)
     left, right, kind, interval, speed = (events[name][:MOST_COLLISIONS]
                                           for name in ("left", "right", "kind", "interval", "closing_speed"))
-    # What doubles cannot hold any longer, late in a collapse of more digits, is left out too.
+    # Late collisions of runs with more digits, which doubles cannot represent, are left out too.
     lost = (speed < LEAST) | ((interval > 0) & (interval * speed < LEAST * 1e-10))
     count = max(1, int(np.argmax(lost))) if lost.any() else len(speed)
     left, right, kind, interval, speed = (column[:count] for column in (left, right, kind, interval, speed))
     held, particles, length = int(initial.index[0]), len(initial.index), initial.circumference
-    # Particles that have collided, and the next one on each side.
+    # The particles that have collided, and the next one on each side.
     first = 0 if length else max(held, int(min(left.min(), right.min())) - 1)
     end = particles if length else min(held + particles, int(max(left.max(), right.max())) + 2)
     x, v, mass, gap = (initial[name][first - held:end - held] for name in ("x", "v", "m", "gap"))
@@ -66,7 +66,7 @@ def collisions(result):
 
 
 def snapshots(result):
-    """The particles at each snapshot: gaps and closing speeds, place and velocity of the first one."""
+    """The particles at each snapshot: gaps and closing speeds, position and velocity of the first one."""
     found = []
     for shot in result.snapshots:
         particles = len(shot.x)
@@ -83,7 +83,7 @@ def snapshots(result):
 
 
 def pack(array, bits=52):
-    """A typed array as text; of the mantissas of float64 so many bits, rounded to nearest, 52 being all."""
+    """A typed array as text; mantissas of float64 are rounded to the given number of bits (52 keeps all)."""
     array = np.ascontiguousarray(array)
     if array.dtype == np.float64 and bits < 52:
         spare = np.uint64(52 - bits)

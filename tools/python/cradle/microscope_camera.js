@@ -1,6 +1,6 @@
-// The camera: where one looks. It pans and zooms, and moves its anchor to a collision in sight, so that what is drawn
-// is never far from the anchor in units of the picture. Spans of time and of space are zoomed apart or together;
-// together, the span of space follows what the particles around the middle do in the span of time.
+// The camera: the view. It pans and zooms, and moves its anchor to a visible collision, so that all that is drawn is
+// near the anchor in units of the picture. Spans of time and of space are zoomed separately or together; together, the
+// span of space follows the motion of the particles around the middle during the span of time.
 
 function microscopeCamera(world) {
   const camera = { world, chart: null, built: null };
@@ -25,10 +25,11 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Moves to collision e, with given spans; the frame moves with the particles there where the lab's would tilt it.
+  // Moves to collision e, with given spans. The frame moves with the particles there if they would be tilted in the
+  // lab's.
   camera.goTo = (e, T, X) => {
     const anchor = { e, a: world.left[e] };
-    // Where the run ends soon after, the end stands at four fifths of the picture.
+    // If the run ends soon after, the end is at four fifths of the picture.
     const ends = microscopeFlight(world, e, world.n - 1) + Math.max(0, world.end - world.time[world.n - 1]);
     const tau = Math.min(0, ends - 0.3 * T);
     camera.view = { anchor, lab: microscopeAnchor(world, anchor).lab, tau, xi: 0, T, X, V: 0 };
@@ -38,7 +39,7 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Span of space that shows what happens in a span of time around collision e.
+  // The span of space of the motion around collision e during a span of time.
   camera.natural = (e, T) => {
     if (e < 0) return T * limits.X / limits.T;
     const pair = microscopeAnchor(world, { e, a: world.left[e] }), order = microscopeOrder(world, e);
@@ -60,8 +61,8 @@ function microscopeCamera(world) {
     return Math.min(X, limits.X);
   };
 
-  // Velocity of the frame that suits the view: the lab's while that tilts little, else that of the centre of mass of
-  // the particles in sight at the anchor, which collisions among them leave alone.
+  // The velocity of the frame that suits the view: the lab's while tilts are small, else that of the centre of mass of
+  // the visible particles at the anchor, which collisions among them do not change.
   camera.frame = () => {
     const { view, chart } = camera;
     let momentum = 0, mass = 0;
@@ -75,14 +76,15 @@ function microscopeCamera(world) {
     return local + (tilt <= 0.5 ? 1 : (0.5 / tilt) ** 2) * (-view.lab - local);
   };
 
-  // Zooms time and space by factors about a place [tau, xi] of the picture (xi in the view's frame); more is nearer.
+  // Zooms time and space by factors about a point [tau, xi] of the picture (xi in the view's frame); larger factors
+  // zoom in.
   camera.zoom = (byTime, bySpace, pivot, follow) => {
     const view = camera.view, [tau, xi] = pivot;
     let T = view.T / byTime, X = view.X / bySpace;
     if (follow) X = follow(T, view.X);
     T = clamp(T, 1e-303, 4 * limits.T);
     X = clamp(X, 1e-303, 4 * limits.X);
-    // Nearer than that there is nothing but straight lines, and the offset from the anchor would lose its digits.
+    // At a closer zoom there are only straight lines, and the offset from the anchor would lose its digits.
     if (T < 1e-9 * Math.abs(view.tau) || X < 1e-9 * Math.abs(view.xi)) return;
     view.tau = tau + (view.tau - tau) * (T / view.T);
     view.xi = xi + (view.xi - xi) * (X / view.X);
@@ -95,8 +97,8 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // The span of space that goes with a new span of time: towards what is natural at collision e on the way in, straight
-  // (in logarithms) to the whole picture on the way out.
+  // The span of space for a new span of time: on zooming in it tends to the natural one at collision e; on zooming out
+  // it tends (linearly in logarithms) to the whole picture.
   camera.follow = e => (T, X) => {
     const change = Math.log(T / camera.view.T);
     if (change > 0) {
@@ -107,8 +109,8 @@ function microscopeCamera(world) {
     return X * Math.exp(change + clamp(0.3 * wanted, 0.9 * change, -0.9 * change));
   };
 
-  // The collision that says what space goes with the time in sight: near a place, but not so near that it is of the
-  // next scale in a collapse.
+  // The collision that sets the span of space for the visible span of time: near a point, but not so near that it
+  // belongs to the next scale of a collapse.
   camera.guide = ([tau, xi]) => {
     const { view, chart } = camera;
     if (!chart) return camera.nearestInPositions()?.e ?? view.anchor.e;
@@ -130,8 +132,8 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Makes the chart where it does not do any longer, and moves the anchor to the collision nearest to the middle where
-  // it has left the picture.
+  // Makes a new chart if the present one no longer suits, and moves the anchor to the collision nearest to the middle
+  // if it has left the picture.
   camera.settle = () => {
     camera.chartFor();
     const { view, chart } = camera;
@@ -142,13 +144,13 @@ function microscopeCamera(world) {
     camera.reanchor(to);
   };
 
-  // {e, tau, xi, distance} of the collision of the chart nearest to a place, null where there is none.
+  // {e, tau, xi, distance} of the collision of the chart nearest to a point, null if there is none.
   camera.nearest = (tau, xi, spanTau, spanXi) => {
     const { chart, view } = camera, { best, distance } = microscopeNearest(chart, tau, xi, spanTau, spanXi, view.V);
     return best < 0 ? null : { e: chart.collisions[best], tau: chart.tau[best], xi: chart.xi[best], distance };
   };
-  // The deepest collision within parts of the picture of a place: what is held fast on the way in, so that the wheel
-  // over the tip of a collapse follows it.
+  // The deepest collision near a point, within given parts of the picture. It stays in place on zooming in, so that the
+  // wheel over the tip of a collapse follows it.
   camera.deepest = ([tau, xi], partOfT, partOfX) => {
     const { chart, view } = camera;
     let best = -1;
@@ -171,10 +173,10 @@ function microscopeCamera(world) {
     return best;
   };
 
-  // The same picture, seen from another collision at (tau, xi).
+  // Keeps the picture but makes another collision, at (tau, xi), the anchor.
   camera.reanchor = ({ e, tau, xi }) => {
     const { view, chart } = camera, anchor = { e, a: world.left[e] }, pair = microscopeAnchor(world, anchor);
-    // Velocity of the new pair's frame against the old one's: from the chart, or from the lab where there is none.
+    // The velocity of the new pair's frame in the old one: from the chart, or from the lab if there is no chart.
     const u = chart ? microscopeSpeedAt(chart, world, anchor, pair) : pair.lab - view.lab;
     camera.view = { anchor, lab: pair.lab, T: view.T, X: view.X, V: view.V - u,
                     tau: view.tau - tau, xi: view.xi - (xi - view.V * tau) };
@@ -182,8 +184,8 @@ function microscopeCamera(world) {
     camera.chartFor();
   };
 
-  // Whether there are far too many collisions for a chart, estimated quickly from positions; false where these do not
-  // show it.
+  // Whether there are far too many collisions for a chart: a quick estimate from positions; false if positions do not
+  // resolve it.
   camera.crowded = () => {
     const { view } = camera, { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
     if (!world.n || !world.keepsOrder || world.ring || view.X < 1e-6 * limits.X) return false;
@@ -194,14 +196,14 @@ function microscopeCamera(world) {
     let count = 0;
     for (let particle = lowest; particle <= highest && count < 2 * MICROSCOPE_CHART.collisions; ++particle)
       count += before(particle, t0 + view.tau + view.T / 2) - before(particle, t0 + view.tau - view.T / 2);
-    return count >= MICROSCOPE_CHART.collisions / 4;  // a chart is for nine times what is in sight
+    return count >= MICROSCOPE_CHART.collisions / 4;  // a chart extends over nine times the visible area
   };
 
   camera.chartFor = () => {
     const { view, chart, built } = camera;
     const early = view.tau - view.T / 2, late = view.tau + view.T / 2;
     const low = view.xi - view.X / 2, high = view.xi + view.X / 2;
-    // Shear of the frame against that of the chart, over the picture.
+    // The shear between this frame and that of the chart, over the picture.
     const shear = built ? Math.abs(view.V - built.V) * (Math.abs(view.tau) + view.T / 2) : 0;
     if (built && built.anchor.e === view.anchor.e && built.anchor.a === view.anchor.a && built.early <= early &&
         built.late >= late && built.low <= low - shear && built.high >= high + shear &&
@@ -219,12 +221,12 @@ function microscopeCamera(world) {
   return camera;
 }
 
-// Signed time from collision i to collision j.
+// The signed time from collision i to collision j.
 function microscopeBetween(world, i, j) {
   return i <= j ? microscopeFlight(world, i, j) : -microscopeFlight(world, j, i);
 }
 
-// Place of a line at tau.
+// The position of a line at tau.
 function microscopeAlong(chart, line, tau) {
   const { points, from, to } = line, next = microscopeFirst(0, points.length, i => chart.tau[points[i]] <= tau);
   const point = i => [chart.tau[points[i]], chart.xi[points[i]]];
@@ -233,8 +235,8 @@ function microscopeAlong(chart, line, tau) {
   return span > 0 ? before[1] + (behind[1] - before[1]) * ((tau - before[0]) / span) : before[1];
 }
 
-// Velocity in the chart's frame of the pair of another collision in it: that of one of its particles right after it,
-// less what that one has against the pair.
+// The velocity of the pair of another collision, in the chart's frame: that of one of its particles right after it,
+// minus the velocity of this particle relative to the pair.
 function microscopeSpeedAt(chart, world, anchor, pair) {
   const [line, at] = microscopeThrough(chart, pair.a, anchor.e);
   return line.speeds[at] - pair.speedA;

@@ -1,14 +1,14 @@
-// Charts: world lines in coordinates anchored at a collision, and the same in positions where the whole is in view.
+// Charts: world lines in coordinates relative to a collision, and in positions when the whole run is in view.
 //
-// An anchor is {e, a}: collision e, or e = -1, the start, and the particle a with its right neighbour. In a chart tau
-// is the time since then and xi the distance from there in the frame in which these two have no momentum. Both are
+// An anchor is {e, a}: collision e (e = -1 is the start) and the particle a with its right neighbour. In a chart, tau
+// is the time since then, and xi the distance from there in the frame in which these two have no momentum. Both are
 // local sums.
 
-// Up to so many particles and collisions are followed: few where positions serve as well, many where they do not.
+// The most particles and collisions that are followed: few if positions serve as well, many if they do not.
 const MICROSCOPE_CHART = { particles: 1500, collisions: 8000, deep: 60000 };
 
-// The anchor's two particles and what is known of them: {a, b, after, speedA, speedB}: velocities right after it, in
-// its own frame, and the velocity of that frame in the lab.
+// The anchor's two particles: {a, b, after, speedA, speedB}: velocities right after it in its own frame, and the
+// velocity of that frame in the lab.
 function microscopeAnchor(world, anchor) {
   const { e } = anchor;
   if (e < 0) {
@@ -28,8 +28,8 @@ function microscopeAnchor(world, anchor) {
                 : { a: from, b: to, gap: 0, speedA: ofFrom, speedB: ofOther, lab };
 }
 
-// The particles around an anchor, right after it: [{particle, xi, u}] from left to right, as far as `reach` to either
-// side and `more` = [left, right] particles beyond; null where there are too many.
+// The particles around an anchor, right after it: [{particle, xi, u}] from left to right, up to `reach` on either side
+// and `more` = [left, right] particles beyond; null if there are too many.
 function microscopeAround(world, anchor, reach, more) {
   const pair = microscopeAnchor(world, anchor), order = microscopeOrder(world, anchor.e);
   const found = [{ particle: pair.a, xi: 0, u: pair.speedA }];
@@ -51,7 +51,7 @@ function microscopeAround(world, anchor, reach, more) {
   return found;
 }
 
-// The last collision at or before tau after the anchor's, -1 for none, and the time of it.
+// The last collision at or before tau after the anchor's, -1 for none, and its time.
 function microscopeCollisionAt(world, e, tau) {
   const { n, time, interval, start } = world, t = e < 0 ? start : time[e];
   let k = e, at = 0;
@@ -64,7 +64,7 @@ function microscopeCollisionAt(world, e, tau) {
   return k;
 }
 
-// Times since the anchor's collision of collisions in rising order: sums of intervals where they are close.
+// Times since the anchor's collision of collisions in rising order: sums of intervals if they are close.
 function microscopeTimes(world, e, collisions) {
   const tau = new Float64Array(collisions.length);
   let split = 0;
@@ -82,11 +82,11 @@ function microscopeTimes(world, e, collisions) {
   return tau;
 }
 
-// The chart for tau in [from, to] and the particles that come within [low, high] of xi - drift tau there; null where
-// there are too many particles or collisions for it.
-//   collisions  Int32Array, rising; tau, xi of each
-//   lines     [{particle, points: [place in collisions], speeds: [velocity after each], from: [tau, xi], to: [tau,
-//             xi]}]
+// The chart for tau in [from, to] and the particles that come within [low, high] of xi - drift tau there; null if there
+// are too many particles or collisions.
+//   collisions    Int32Array, rising; tau, xi of each
+//   lines         [{particle, points: [index in collisions], speeds: [velocity after each], from: [tau, xi],
+//                 to: [tau, xi]}]
 //   byParticle    the lines of the particles around the anchor, by particle
 function microscopeChart(world, anchor, from, to, low, high, drift) {
   const begins = -microscopeFlight(world, -1, anchor.e);
@@ -104,7 +104,7 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
     if (!around) return null;
     const chart = microscopeFollow(world, anchor, around, from, to, first, last, most);
     if (!chart) return null;
-    // Particles further out may come in where the outermost ones do.
+    // Particles further out may enter where the outermost ones do.
     const comesIn = (line, side) => [line.from, line.to, ...line.points.map(i => [chart.tau[i], chart.xi[i]])]
       .some(([tau, xi]) => side > 0 ? xi - drift * tau < high : xi - drift * tau > low);
     const order = microscopeOrder(world, anchor.e), ring = around.length >= world.particles;
@@ -119,9 +119,8 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
   return null;
 }
 
-// Follows the particles around an anchor through collisions first .. last, forwards and backwards. A particle that is
-// not among them is known where it meets one of them, from its collision before to its next one: a line of its own each
-// time.
+// Follows the particles around an anchor through collisions first .. last, forwards and backwards. Other particles are
+// known when they meet one of these, from their previous collision to their next one: each time as a separate line.
 function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   const { left, right, list, begin, event, slotLeft, slotRight } = world, e = anchor.e, all = [];
   for (const { particle } of around)
@@ -135,7 +134,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   const timeOf = (particle, slot) => slot < begin[particle] ? -Infinity : slot >= begin[particle + 1] ? Infinity :
     microscopeBetween(world, e, list[slot]);
   const at = (one, time) => one.xi + one.u * (time - one.tau);
-  // `slot`: of the collision that the line has come to, forwards or backwards.
+  // `slot`: of the last collision of the line so far, forwards or backwards.
   const line = (particle, slot, now, place, u) => {
     const made = { particle, points: [], speeds: [], slot, tau: now, xi: place, u, from: null, to: null };
     lines.push(made);
@@ -149,7 +148,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
     const start = Math.min(one.tau, Math.max(from, timeOf(one.particle, one.slot - 1)));
     one.from = [start, at(one, start)];
   };
-  // One way through the collisions. `known`: the lines that continue, by particle. `step`: 1 forwards, -1 backwards.
+  // One pass through the collisions. `known`: the lines that continue, by particle. `step`: 1 forwards, -1 backwards.
   const follow = (known, begins, ends, step, before, after, endHere, beginHere) => {
     for (let i = begins; i !== ends; i += step) {
       const k = collisions[i], now = tau[i];
@@ -159,7 +158,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
         endHere(one);  // it has met others meanwhile
         return null;
       });
-      // All around a ring a particle is in sight twice: the one further out is the one that is let go.
+      // Around a whole ring a particle is visible twice: drop the one further out.
       if (world.ring && a && b && Math.abs(at(a, now) - at(b, now)) > world.ring / 2) {
         const outer = Math.abs(at(a, now)) > Math.abs(at(b, now)) ? a : b;
         endHere(outer);
@@ -188,7 +187,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   while (split < collisions.length && collisions[split] <= e) ++split;
   const middle = around.map(({ particle, xi: place, u }) =>
     line(particle, microscopeSlotAfter(world, particle, e) - 1, 0, place, u));
-  const came = new Set();  // slots at which particles came in forwards: known from the collision before on
+  const came = new Set();  // slots at which particles entered on the way forwards: known from the previous collision on
   const merged = k => event[k] === MICROSCOPE.merge;
   const known = new Map(middle.map(one => [one.particle, one]));
   follow(known, split, collisions.length, 1, k => world.speed[k], (k, known) => {
@@ -200,7 +199,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
     beginLine(one);
     came.add(one.slot);
   });
-  // Backwards from the anchor; the points of both ways together.
+  // Then backwards from the anchor; the points of both passes are joined.
   const ahead = middle.map(({ points, speeds }) => ({ points, speeds }));
   around.forEach(({ particle, xi: place, u }, i) => Object.assign(middle[i], {
     points: [], speeds: [], slot: microscopeSlotAfter(world, particle, e), tau: 0, xi: place, u }));
@@ -222,7 +221,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   return { anchor, from, to, collisions, tau, xi, lines, byParticle: new Map(middle.map(one => [one.particle, one])) };
 }
 
-// The line of a chart that goes through collision k of a particle, and the place of k in its points: [line, place].
+// The line of a chart through collision k of a particle, and the index of k in its points: [line, index].
 function microscopeThrough(chart, particle, k) {
   for (const line of chart.lines) {
     const place = line.particle === particle ? line.points.findIndex(i => chart.collisions[i] === k) : -1;
@@ -231,7 +230,7 @@ function microscopeThrough(chart, particle, k) {
   return null;
 }
 
-// The collision of a chart that is nearest to a place, in spans of time and space; its number there, -1 for none.
+// The collision of a chart that is nearest to a point, in spans of time and space; its number there, -1 for none.
 function microscopeNearest(chart, tau, place, spanTau, spanXi, drift) {
   let best = -1, least = Infinity;
   for (let i = 0; i < chart.collisions.length; ++i) {

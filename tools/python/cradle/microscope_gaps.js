@@ -1,9 +1,9 @@
 // Gaps and the order of the particles right after any collision (see microscope_world.js).
 
-const MICROSCOPE_STEPS = 20000;  // collisions that are gone through at most to find a gap
+const MICROSCOPE_STEPS = 20000;  // the most collisions that are searched for a gap
 
-// Gap and closing speed of neighbours a (left) and b right after collision e (-1: the start), and by how much `path`
-// the gap changed since or until the collision that it is known from: its rounding is 1e-16 of that.
+// Gap and closing speed of neighbours a (left) and b right after collision e (-1: the start), and `path`, the change of
+// the gap since or until the collision from which it is known: the rounding error of the gap is 1e-16 path.
 function microscopeRelative(world, a, b, e) {
   const past = microscopeFromPast(world, a, b, e);
   if (past && past.path === 0) return past;
@@ -15,7 +15,7 @@ function microscopeRelative(world, a, b, e) {
            w: microscopeVelocity(world, a, e) - microscopeVelocity(world, b, e) };
 }
 
-// A distance to the right: on a ring, what is behind is also ahead.
+// The distance to the right; on a ring, particles behind are also ahead.
 function microscopeAhead({ ring }, distance) {
   return ring ? distance - ring * Math.floor(distance / ring) : distance;
 }
@@ -46,7 +46,7 @@ function microscopeFromPast(world, a, b, e) {
   return microscopeFlown(world, { gap, w, path: from < 0 && !kicks.length && e < 0 ? 0 : gap }, from, kicks, e, 1);
 }
 
-// Gap, closing speed and path at collision e from those at collision `at`, over the kicks between, the last one first;
+// Gap, closing speed and path at collision e from those at collision `at`, using the kicks between, the last one first;
 // sign: 1 forwards, -1 backwards.
 function microscopeFlown(world, { gap, w, path }, at, kicks, e, sign) {
   for (const [until, kick] of [...kicks.reverse(), [e, 0]]) {
@@ -75,7 +75,7 @@ function microscopeFromFuture(world, a, b, e) {
     kicks.push([next, isA ? microscopeKick(world, a, next) : -microscopeKick(world, b, next)]);
     if (isA) ++i; else ++j;
     if (world.event[next] === MICROSCOPE.merge && microscopeGone(world, next) === particle) {
-      // What it merged into takes its place.
+      // The particle that it merged into replaces it.
       const heir = microscopeOther(world, particle, next), slot = microscopeSlotAfter(world, heir, next);
       if (isA) { a = heir; i = slot; } else { b = heir; j = slot; }
     }
@@ -83,7 +83,7 @@ function microscopeFromFuture(world, a, b, e) {
   return microscopeFlown(world, { gap: 0, w, path: 0 }, at, kicks, e, -1);
 }
 
-// Place and velocity of a particle right after collision e, in the lab: as good as positions are.
+// Position and velocity of a particle right after collision e, in the lab, with the accuracy of positions.
 function microscopePlace(world, particle, e) {
   const slot = microscopeSlotAfter(world, particle, e) - 1;
   if (slot < world.begin[particle]) return world.x0[particle] + world.v0[particle] * microscopeFlight(world, -1, e);
@@ -96,12 +96,12 @@ function microscopeVelocity(world, particle, e) {
   return slot < world.begin[particle] ? world.v0[particle] : world.velocity[slot];
 }
 
-// Mass of a particle right after collision e.
+// The mass of a particle right after collision e.
 function microscopeMass(world, particle, e) {
   if (!world.share) return 1;
   if (world.keepsOrder) return world.mass0[particle];
   let mass = world.mass0 ? world.mass0[particle] : 1;
-  // The mass follows from the share that the particle has in the impulse at its next collision, or at its last one.
+  // The particle's share of the impulse at its next collision, or at its last one, gives its mass.
   for (let slot = world.begin[particle]; slot < world.begin[particle + 1] && world.list[slot] <= e; ++slot) {
     const collision = world.list[slot];
     if (world.event[collision] !== MICROSCOPE.merge) continue;
@@ -111,8 +111,8 @@ function microscopeMass(world, particle, e) {
   return mass;
 }
 
-// The order of the particles right after collision e: {next, previous}, functions of a particle, -1 beyond the ends.
-// Where particles merge or pass, it is made anew from the nearest of some orders that are kept.
+// The order of the particles right after collision e: {next, previous}, functions of a particle, -1 beyond the ends. If
+// particles merge or pass, the order is computed from the nearest of several stored ones.
 function microscopeOrder(world, e) {
   const { particles, ring } = world;
   if (world.keepsOrder)

@@ -1,4 +1,4 @@
-// Mouse, wheel, keys and touch; play; and which gap is at a place.
+// Mouse, wheel, keys and touch; play; and the gap at a point.
 
 const MICROSCOPE_KEYS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -9,7 +9,7 @@ function microscopeHands(canvas, scope) {
     const corner = canvas.getBoundingClientRect();
     return { x: event.clientX - corner.left, y: event.clientY - corner.top };
   };
-  // Over an axis only that one is zoomed.
+  // Over an axis only that axis is zoomed.
   const only = (event, { x, y }) => {
     const box = scope.box();
     if (event.shiftKey || y > box.top + box.height) return "time";
@@ -21,7 +21,7 @@ function microscopeHands(canvas, scope) {
   };
 
   canvas.addEventListener("wheel", event => {
-    // A page that is scrolled past continues to scroll: the wheel is the microscope's when that has been clicked.
+    // Scrolling past the microscope must scroll the page: the wheel zooms only after a click on it.
     if (document.activeElement !== canvas && !event.ctrlKey) return;
     event.preventDefault();
     const turned = (event.deltaY || event.deltaX) * (event.deltaMode === 1 ? 30 : event.deltaMode === 2 ? 300 : 1);
@@ -47,7 +47,7 @@ function microscopeHands(canvas, scope) {
     fingers.set(event.pointerId, place);
     if (fingers.size === 1) return pan(place.x - before.x, place.y - before.y);
     if (fingers.size > 2) return;
-    // Two fingers: what is under their middle goes with it, and each axis is zoomed as they part along it.
+    // Two fingers: the point between them follows them, and each axis is zoomed as they part along it.
     const other = [...fingers].find(([id]) => id !== event.pointerId)[1];
     pan((place.x - before.x) / 2, (place.y - before.y) / 2);
     const part = (a, b, c) => Math.abs(b - c) < 40 ? 1 : clamp(Math.abs(a - c) / Math.abs(b - c), 0.25, 4);
@@ -67,7 +67,7 @@ function microscopeHands(canvas, scope) {
     if (event.ctrlKey || event.metaKey) return;
     const box = scope.box(), step = MICROSCOPE_KEYS[event.key], here = scope.camera().view.anchor.e;
     const middle = state.pointer && inside(state.pointer), corner = { x: box.left, y: box.top };
-    // Alt and a key are other letters on some keyboards: the key's own name decides.
+    // With Alt some keyboards give other letters, so the name of the key decides.
     const key = event.code === "Equal" || event.code === "NumpadAdd" || event.key === "+" ? "+" :
       event.code === "Minus" || event.code === "NumpadSubtract" ? "-" : event.key;
     const acts = {
@@ -83,8 +83,8 @@ function microscopeHands(canvas, scope) {
   });
 }
 
-// Play. A collapse is flown into: zooming about its last collision at a steady rate, so that collisions pass by evenly.
-// Else time runs, a picture's width in ten seconds. `frame` draws, `stop` is called at the end.
+// Play. In a collapse it zooms about the last collision at a steady rate, so that collisions pass by evenly. Else time
+// runs, a picture's width in ten seconds. `frame` draws, `stop` is called at the end.
 function microscopePlay(camera, state, frame, stop) {
   const { world } = camera, last = world.n - 1;
   let before = performance.now();
@@ -104,7 +104,7 @@ function microscopePlay(camera, state, frame, stop) {
     before = now;
     const { view } = camera, aim = world.collapse ? inSight() : null;
     if (aim) {
-      // The collapse is led to where three quarters of the picture are behind it.
+      // Moves the collapse to three quarters of the picture.
       const part = Math.min(1, 2 * passed);
       camera.pan((aim[0] - view.tau - 0.25 * view.T) * part, (aim[1] - view.xi) * part);
       const to = inSight();
@@ -122,7 +122,7 @@ function microscopePlay(camera, state, frame, stop) {
   requestAnimationFrame(step);
 }
 
-// The two particles below and above a place [tau, xi] of the picture: {below, above, gap, w, next, until}: gap and
+// The two particles below and above a point [tau, xi] of the picture: {below, above, gap, w, next, until}: gap and
 // closing speed then, the next collision of either of them (-1: none) and the time to it. null beyond the outermost.
 function microscopeGapAt(camera, [tau, xi]) {
   const { world, chart, view } = camera, e = view.anchor.e, collision = microscopeCollisionAt(world, e, tau);

@@ -1,9 +1,9 @@
-// What stands for very many collisions: a picture made of one sample of a world line per column and of the mean colour
-// of the collisions in a pixel; and the strip that shows the depth of every collision, for finding one's way.
+// Replaces charts when there are very many collisions: a picture with one sample of a world line per column and the
+// mean colour of the collisions in a pixel; and a strip that shows the depth of every collision, for navigation.
 
 // The picture of a view in positions, as ImageData of width x height pixels: world lines in `ink` and collisions
-// coloured by `value` over `range`. At most about `budget` samples of lines, and of collisions. (Pixels are written as
-// words, in the order of bytes that all machines with a browser have.)
+// coloured by `value` over `range`. It takes at most about `budget` samples of lines, and of collisions. (Pixels are
+// written as words, in the byte order of all machines that have a browser.)
 function microscopeRaster(world, view, width, height, value, range, ink, budget, store) {
   if (!store.image || store.image.width !== width || store.image.height !== height) {
     Object.assign(store, { image: new ImageData(width, height), lines: new Float32Array(width * height),
@@ -15,7 +15,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   count.fill(0);
   const { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
   const begins = t0 + view.tau - view.T / 2, speed = view.lab + view.V, perX = height / view.X;
-  // Row of a place at a time: x in the view's frame.
+  // The row of a position at a time: x in the view's frame.
   const row = (place, t) => height / 2 - (place - x0 - speed * (t - t0) - view.xi) * perX;
   const [lowest, highest] = microscopeVisible(world, view, row, height);
   const step = Math.max(1, Math.ceil((highest - lowest + 1) * width / budget));
@@ -28,7 +28,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
     const gone = world.keepsOrder || end === none ? Infinity : microscopeGoneAt(world, particle);
     for (let column = firstColumn; column <= lastColumn; ++column) {
       const t = begins + column * perColumn;
-      // Steps that double find the next collision also where there are many to a column.
+      // Doubling the steps finds the next collision quickly even with many per column.
       for (let jump = 1; slot < end && slotTime[slot] <= t; jump *= 2) {
         if (slot + jump < end && slotTime[slot + jump] <= t) slot += jump;
         else {
@@ -52,8 +52,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
         lines[k * width + column] += 1;
     }
   }
-  // Collisions in sight: by time from the sorted list. Each is shared by two pixels, so that regular ones make no
-  // moiré.
+  // Visible collisions, from the list sorted by time. Each is shared by two pixels, so that regular ones make no moiré.
   const first = microscopeFirstAfter(time, begins), last = microscopeFirstAfter(time, begins + view.T);
   const skip = Math.max(1, Math.ceil((last - first) / budget));
   for (let k = first; k < last; k += skip) {
@@ -74,7 +73,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   return image;
 }
 
-// From sums to pixels: world lines in ink, up to `opacity`, and over them the mean colour of the collisions.
+// Converts sums to pixels: world lines in ink, up to `opacity`, and over them the mean colour of the collisions.
 function microscopeTone({ image, lines, tint, count }, range, [red, green, blue], step, opacity) {
   const pixels = new Uint32Array(image.data.buffer), table = new Uint32Array(256);
   const scale = 255 / (range[1] - range[0]), low = range[0], paint = blue << 16 | green << 8 | red;
@@ -94,8 +93,7 @@ function microscopeTone({ image, lines, tint, count }, range, [red, green, blue]
   }
 }
 
-// Range of the logarithms that a raster shows, by the share of the picture, not of the collisions; null where there are
-// none.
+// The range of the logarithms in a raster, weighted by area, not by the number of collisions; null if there are none.
 function microscopeShown({ count, tint }) {
   const shown = [];
   for (let k = 0, skip = Math.max(1, Math.floor(count.length / 40000)); k < count.length; k += skip)
@@ -105,19 +103,19 @@ function microscopeShown({ count, tint }) {
   return [shown[Math.floor(0.02 * shown.length)], shown[Math.floor(0.98 * shown.length)]];
 }
 
-// First collision after a time.
+// The first collision after a time.
 function microscopeFirstAfter(time, t) {
   return microscopeFirst(0, time.length, k => time[k] <= t);
 }
 
-// When a particle merges into another one; infinite where it does not.
+// The time at which a particle merges into another one; infinite if it does not.
 function microscopeGoneAt(world, particle) {
   const last = world.list[world.begin[particle + 1] - 1];
   const gone = world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === particle;
   return gone ? world.time[last] : Infinity;
 }
 
-// The particles that come into sight. As long as they keep their order some columns suffice, else all are needed.
+// The particles that are visible. While they keep their order some columns suffice, else all are needed.
 function microscopeVisible(world, view, row, height) {
   if (!world.keepsOrder || world.ring) return [0, world.particles - 1];
   let lowest = world.particles - 1, highest = 0;
@@ -126,7 +124,7 @@ function microscopeVisible(world, view, row, height) {
     const t = Math.min(world.end, Math.max(world.start, t0 + view.tau + view.T * (k / 24 - 0.5)));
     const collision = microscopeFirstAfter(world.time, t) - 1;
     const since = t - (collision < 0 ? world.start : world.time[collision]);
-    // How many particles are left of what is shown at this row.
+    // The number of particles left of the part shown at this row.
     const above = edge => microscopeFirst(0, world.particles, k => row(
       microscopePlace(world, k, collision) + microscopeVelocity(world, k, collision) * since, t) > edge);
     lowest = Math.min(lowest, above(1.2 * height));
@@ -135,7 +133,8 @@ function microscopeVisible(world, view, row, height) {
   return [Math.max(0, lowest - 2), Math.min(world.particles - 1, highest + 2)];
 }
 
-// The strip: depth of the collisions against their number, least and greatest of each column; where the view is.
+// The strip: depth of the collisions against their number, with minimum and maximum of each column; and the position of
+// the view.
 function microscopeStrip(pen, world, view, box, colours, store) {
   const { n, depth } = world, columns = Math.max(1, Math.floor(box.width));
   if (store.columns !== columns) {
@@ -167,7 +166,7 @@ function microscopeStrip(pen, world, view, box, colours, store) {
     if (store.deepest[column] >= 0)
       pen.fillRect(box.left + column, y(store.high[column]) - 0.75, Math.max(1, 1.2 * columns / n),
                    Math.max(1.5, y(store.low[column]) - y(store.high[column])));
-  // Where the view is: its collision and its span of space.
+  // The position of the view: its collision and its span of space.
   const at = box.left + box.width * Math.max(0, view.anchor.e + 0.5) / n;
   const level = Math.min(box.top + box.height, Math.max(box.top, y(Math.log10(view.X))));
   microscopeStroke(pen, colours.accent, 1, [[[box.left, level], [box.left + box.width, level]],

@@ -1,8 +1,8 @@
-// Drawing: world lines and collisions of a chart, axes whose labels hold at any depth, and the strip of all depths.
+// Drawing: world lines and collisions of a chart, axes with labels for any depth, and the strip of all depths.
 //
 // The view is {anchor, lab, tau, xi, T, X, V}: the middle of the picture at tau after the anchor's collision and xi
-// from it, its spans of time and space, and the velocity V of its frame against the anchor's (lab: the anchor's in the
-// lab).
+// from it, its spans of time and space, and the velocity V of its frame relative to the anchor's (lab: the anchor's in
+// the lab).
 
 const MICROSCOPE_MARGIN = { left: 72, right: 14, top: 12, bottom: 42, strip: 92 };
 const MICROSCOPE_PALETTE = [[58, 82, 164], [41, 138, 171], [86, 175, 128], [226, 170, 52], [214, 73, 58]];
@@ -13,7 +13,7 @@ function microscopeColour(part) {
   return MICROSCOPE_PALETTE[k].map((c, i) => Math.round(c + (at - k) * (MICROSCOPE_PALETTE[k + 1][i] - c)));
 }
 
-// The numbers 2.5e-148 as people write them: 2.5×10⁻¹⁴⁸.
+// A number such as 2.5e-148 for display: 2.5×10⁻¹⁴⁸.
 function microscopeNumber(value, digits = 4) {
   if (value === 0) return "0";
   if (!Number.isFinite(value)) return "–";
@@ -27,15 +27,15 @@ function microscopePower(exponent) {
   return "10" + String(exponent).replace(/./g, c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]);
 }
 
-// Round steps that divide a span in up to `count` parts.
+// Round steps that divide a span into up to `count` parts.
 function microscopeStep(span, count) {
   const raw = span / count, power = 10 ** Math.floor(Math.log10(raw));
   const [one, scaled] = power > 0 ? [power, raw / power] : [raw, 1];
   return one * (scaled <= 1 ? 1 : scaled <= 2 ? 2 : scaled <= 5 ? 5 : 10);
 }
 
-// Where an axis has its ticks: values from the middle at `centre` over `span`, with an absolute `origin` where that is
-// resolved, else in powers of ten from the anchor. {ticks: [[offset from the centre, label]], power}.
+// The ticks of an axis: values from the middle at `centre` over `span`, with an absolute `origin` if that is resolved,
+// else in powers of ten from the anchor. {ticks: [[offset from the centre, label]], power}.
 function microscopeTicks(centre, span, count, origin) {
   const step = microscopeStep(span, count), absolute = Math.abs(origin) + span < 2e4 * span;
   const base = absolute ? origin + centre : centre, power = Math.floor(Math.log10(span));
@@ -49,7 +49,7 @@ function microscopeTicks(centre, span, count, origin) {
   return { ticks, power: plain ? 0 : power, absolute };
 }
 
-// Text, aligned: where x is (left, center, right) and y (top, middle).
+// Text; x is its left, center or right, y its top or middle.
 function microscopeText(pen, align, baseline, text, x, y) {
   pen.textAlign = align;
   pen.textBaseline = baseline;
@@ -68,7 +68,7 @@ function microscopeStroke(pen, colour, width, lines) {
   pen.stroke();
 }
 
-// Segments of the polyline through points, cut at the box [0, width] x [0, height] with some margin, into the path.
+// Adds the segments of a polyline to the path, clipped to the box [0, width] x [0, height] with some margin.
 function microscopeSegment(path, x0, y0, x1, y1, box) {
   let from = 0, to = 1;
   const dx = x1 - x0, dy = y1 - y0;
@@ -88,13 +88,13 @@ function microscopeSegment(path, x0, y0, x1, y1, box) {
   path.lastY = y1;
 }
 
-// Maps of a view onto a box {left, top, width, height}: of tau, and of xi at tau.
+// Maps from a view to a box {left, top, width, height}: of tau, and of xi at tau.
 function microscopeScales(view, box) {
   return { x: tau => box.left + box.width * ((tau - view.tau) / view.T + 0.5),
            y: (xi, tau) => box.top + box.height * (0.5 - (xi - view.V * tau - view.xi) / view.X) };
 }
 
-// World lines of a chart. What is out of sight, and vertices in one and the same place, are left out.
+// World lines of a chart, without invisible parts and repeated vertices.
 function microscopeLines(pen, chart, view, box, colours) {
   const { x, y } = microscopeScales(view, box), path = new Path2D();
   const cut = [box.left - 20, box.left + box.width + 20, box.top - 20, box.top + box.height + 20];
@@ -146,7 +146,7 @@ function microscopeDots(pen, chart, view, box, value, range) {
   }
 }
 
-// The numbers of the particles, where there are few: at the left edge, or where a line comes into sight.
+// The numbers of the particles, if there are few: at the left edge, or where a line becomes visible.
 function microscopeNames(pen, chart, view, box, colours, number) {
   const { x, y } = microscopeScales(view, box), places = [];
   for (const line of chart.lines) {
@@ -170,7 +170,7 @@ function microscopeNames(pen, chart, view, box, colours, number) {
   }
 }
 
-// Axes with ticks and what they mean, from `origin`, {t, x} of the anchor; gives what draws their labels.
+// Axes with ticks and their quantities, from `origin`, {t, x} of the anchor; returns a function that draws the labels.
 function microscopeAxes(pen, view, box, colours, origin, anchorName) {
   const time = microscopeTicks(view.tau, view.T, Math.max(3, box.width / 110), origin.t);
   const space = microscopeTicks(view.xi, view.X, Math.max(3, box.height / 70), origin.moving ? Infinity : origin.x);
@@ -180,7 +180,7 @@ function microscopeAxes(pen, view, box, colours, origin, anchorName) {
   microscopeStroke(pen, colours.grid, 1, [
     ...time.ticks.map(([offset]) => between(across(offset))).map(px => [[px, box.top], [px, bottom]]),
     ...space.ticks.map(([offset]) => between(up(offset))).map(py => [[box.left, py], [right, py]])]);
-  return () => {  // the labels, after what is drawn
+  return () => {  // the labels, drawn last
     pen.strokeStyle = colours.frame;
     pen.strokeRect(box.left + 0.5, box.top + 0.5, box.width - 1, box.height - 1);
     pen.fillStyle = colours.text;
@@ -198,7 +198,7 @@ function microscopeAxes(pen, view, box, colours, origin, anchorName) {
   };
 }
 
-// Bars of a round length of time and of space, and what the colours mean.
+// Bars of a round length of time and of space, and the meaning of the colours.
 function microscopeLegend(pen, view, box, colours, range, quantity) {
   const right = box.left + box.width - 12, bottom = box.top + box.height - 12;
   const time = microscopeStep(view.T, 12), space = microscopeStep(view.X, 8);

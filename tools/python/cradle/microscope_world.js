@@ -1,12 +1,13 @@
-// The microscope's world: collisions and initial state of a run, and coordinates that stay exact at any depth.
+// The microscope's world: collisions and initial state of a run, and coordinates that are exact at any depth.
 //
-// Nothing here is a difference of positions. A gap is the integral of the closing speed from the collision of its two
-// particles that is nearer by path, a time the sum of intervals between collisions, a place in a chart
-// (microscope_chart.js) the sum of such gaps from the collision that the chart is anchored at. Doubles then have their
+// Nothing here is a difference of positions. A gap is the integral of the closing speed from a collision of its two
+// particles: the one with the shorter path. A time is the sum of intervals between collisions. A position in a chart
+// (microscope_chart.js) is the sum of such gaps from the collision that the chart is anchored at. So doubles keep their
 // relative precision down to 1e-308.
 
 const microscopeTypes = { f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
-// What a collision is: by the law, elastic, a merge (as in the result, `kind`), or by the law through each other.
+// The kinds of collisions: by the law, elastic, a merge (numbered as `kind` in results), or particles pass through each
+// other by the law.
 const MICROSCOPE = { byLaw: 0, elastic: 1, merge: 2, pass: 3 };
 
 // The typed array of {type, length, deflate}: byte planes, deflated, as base64.
@@ -23,7 +24,7 @@ async function microscopeArray(packed) {
   return new Type(bytes.buffer);
 }
 
-// The world of data of kind "collisions".
+// The world for data of kind "collisions".
 async function microscopeCollisions(data) {
   const open = name => data[name] ? microscopeArray(data[name]) : null;
   const names = ["x", "v", "gap", "mass", "left", "right", "interval", "speed", "event"];
@@ -41,7 +42,7 @@ async function microscopeCollisions(data) {
   return world;
 }
 
-// The world at a snapshot: no collisions, and world lines that are known until the next one (`valid`, by particle).
+// The world at a snapshot: it has no collisions, and world lines are known until the next one (`valid`, by particle).
 async function microscopeSnapshot(data, snapshot) {
   const open = name => snapshot[name] ? microscopeArray(snapshot[name]) : null;
   const [gap, w, mass, index] = await Promise.all(["gap", "speed", "mass", "index"].map(open));
@@ -62,15 +63,15 @@ async function microscopeSnapshot(data, snapshot) {
     first: snapshot.first, index, valid, start: snapshot.time, total: 0, digits: 9, collapse: false,
   };
   microscopeReplay(world);
-  // As far as nine in ten of the world lines are known.
+  // The time until which nine in ten of the world lines are known.
   const known = valid.filter(Number.isFinite).sort();
   world.end = snapshot.time + (known.length ? known[Math.floor(0.9 * (known.length - 1))] : 1);
   return world;
 }
 
-// Goes through the collisions once: times (as unevaluated sums), places, velocities, what each collision does, and the
-// collisions of each particle: particle b has list[begin[b]] .. list[begin[b + 1] - 1], the left particle of collision
-// e is there at slotLeft[e], the right one at slotRight[e].
+// Replays the collisions once: times (as unevaluated sums), positions, velocities, the effect of each collision, and
+// the collisions of each particle: particle b has list[begin[b]] .. list[begin[b + 1] - 1]; collision e has the slots
+// slotLeft[e] (left particle) and slotRight[e] there.
 function microscopeReplay(world) {
   const { n, particles, left, right, speed, event, interval, law, ring } = world;
   const begin = new Int32Array(particles + 1), list = new Int32Array(2 * n);
@@ -79,7 +80,7 @@ function microscopeReplay(world) {
   const fill = begin.slice(), slotLeft = new Int32Array(n), slotRight = new Int32Array(n);
   const time = new Float64Array(n), low = new Float64Array(n), x = new Float64Array(n), after = new Float64Array(n);
   const kickLeft = new Float64Array(n), depth = new Float32Array(n), velocity = new Float64Array(2 * n);
-  const slotTime = new Float64Array(2 * n), slotPlace = new Float64Array(2 * n);  // together, for quick pictures
+  const slotTime = new Float64Array(2 * n), slotPlace = new Float64Array(2 * n);  // in one place, for quick pictures
   const mass = world.mass0 ? world.mass0.slice() : new Float64Array(particles).fill(1);
   const merges = event.includes(MICROSCOPE.merge) || law.type !== "inelastic";
   const equal = !world.mass0 && !merges;
@@ -133,7 +134,7 @@ function microscopeReplay(world) {
     slotPlace[slotRight[e]] = place[b];
     velocity[slotLeft[e]] = v[a];
     velocity[slotRight[e]] = v[b];
-    // Depth: the gap that has closed since one of the two had its last collision.
+    // The depth: the gap that has closed since one of the two had its last collision.
     const before = Math.max(slotLeft[e] > begin[a] ? list[slotLeft[e] - 1] : -1,
                             slotRight[e] > begin[b] ? list[slotRight[e] - 1] : -1);
     depth[e] = microscopeLog(w) + microscopeLog(microscopeFlight(world, before, e));
@@ -142,19 +143,20 @@ function microscopeReplay(world) {
 
 function microscopeLog(x) { return x > 0 ? Math.log10(x) : -400; }
 
-// Time from right after collision i (-1: the start) to collision j >= i.
+// The time from right after collision i (-1: the start) to collision j >= i.
 function microscopeFlight(world, i, j) {
   if (j <= i) return 0;
   if (i < 0) return (world.time[j] - world.start) + world.low[j];
   const difference = (world.time[j] - world.time[i]) + (world.low[j] - world.low[i]);
-  // The sums have 1e-32 of the time; below a hundred millionth of a unit in its last place intervals say it better.
+  // The sums are accurate to 1e-32 of the time; for shorter differences the sum of intervals is more accurate.
   if (difference > 1e-22 * Math.abs(world.time[j])) return difference;
   let sum = 0;
   for (let k = i + 1; k <= j; ++k) sum += world.interval[k];
   return sum;
 }
 
-// The first of low .. high - 1 that is not `before`, as all from there on are; high where all are.
+// The first of low .. high - 1 for which `before` is false (it is then false for all later ones); high if there is
+// none.
 function microscopeFirst(low, high, before) {
   while (low < high) {
     const middle = (low + high) >> 1;
@@ -168,17 +170,17 @@ function microscopeSlotAfter({ begin, list }, particle, e) {
   return microscopeFirst(begin[particle], begin[particle + 1], slot => list[slot] <= e);
 }
 
-// Time and place of an anchor in the lab.
+// Time and position of an anchor in the lab.
 function microscopeOrigin(world, { e, a }) {
   return e < 0 ? { t: world.start, x: world.x0[a] } : { t: world.time[e], x: world.x[e] };
 }
 
-// The other particle of a collision, and what a collision adds to a particle's velocity.
+// The other particle of a collision, and the change of a particle's velocity in a collision.
 function microscopeOther(world, particle, e) { return world.left[e] === particle ? world.right[e] : world.left[e]; }
 function microscopeKick(world, particle, e) {
   return world.left[e] === particle ? -world.kickLeft[e] : world.kickRight[e];
 }
-// The particle that is gone after a merge: the lighter one, of two equal ones the right one.
+// The particle that disappears in a merger: the lighter one or, of two equal ones, the right one.
 function microscopeGone(world, e) {
   return world.share[e] > 0.5 ? world.left[e] : world.right[e];
 }

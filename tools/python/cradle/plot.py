@@ -1,15 +1,15 @@
 """The pictures of results, as functions: `cradle.plot.shock(result)` draws one and returns its matplotlib figure.
 
-Which pictures a result has follows from what it holds: `cradle.plot.names(result)` lists them, the main one first;
+The contents of a result decide which pictures it has: `cradle.plot.names(result)` lists them, the main one first;
 `cradle.plot.save(result, "fig2.pdf")` writes all, as the program's `cradle plot` does. Two equal rows are drawn in the
-paper's units, x/l, v/2u0, t 2u0/l, E/(m (2u0)^2) (m = 1); other scenes as they are.
+paper's units, x/l, v/2u0, t 2u0/l, E/(m (2u0)^2) (m = 1); other scenes in their own units.
 
 Every function takes
     result   an opened result, or a path
-    axes     where to draw: as many matplotlib axes as the picture has panels (else Error says how many); by default
-             a new figure in the style of the program
-    theory   False leaves predictions of the paper out, which else the program is asked for (`cradle theory`)
-and raises Error where the result does not hold what the picture shows.
+    axes     matplotlib axes, one for each panel of the picture (Error says how many); by default a new figure in the
+             style of the program
+    theory   False leaves out the paper's predictions, which come from the program (`cradle theory`)
+and raises Error if the result does not have the data.
 """
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def predictions(result: Result) -> str:
 
 
 def names(result: Result | str | os.PathLike) -> list[str]:
-    """Of the pictures that a result has, the main one first."""
+    """The names of the pictures of a result, the main one first."""
     return list(drawings(result, theory=False))
 
 

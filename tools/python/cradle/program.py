@@ -1,4 +1,4 @@
-"""The program `cradle`: where it is, and calling it: what it prints, its message and its progress."""
+"""Finds and calls the program `cradle`: its output, its message and its progress."""
 from __future__ import annotations
 
 import contextlib
@@ -18,9 +18,9 @@ WHERE = ((*[".."] * 3, "build", "release", "tools", "cradle"), (*[".."] * 4, "bi
 
 
 def find() -> str:
-    """The program: $CRADLE_PROGRAM, that of the build or installation that this package is of, or `cradle` on the path.
+    """The program: $CRADLE_PROGRAM, that of this package's build or installation, or `cradle` on the path.
 
-    Raises Error where there is none.
+    Raises Error if there is none.
     """
     chosen = os.environ.get("CRADLE_PROGRAM")
     here = os.path.dirname(os.path.abspath(__file__))
@@ -35,7 +35,7 @@ def find() -> str:
 
 @dataclass
 class Call:
-    """What a call came to: standard output, messages on standard error, exit status."""
+    """The outcome of a call: standard output, messages on standard error, exit status."""
     out: str
     messages: str
     status: int
@@ -45,8 +45,8 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
          show: Callable[[float, str], None] | None = None) -> Call:
     """Calls the program with these arguments.
 
-    show: gets the share that is done, 0 to 1, and a line of text, some times a second.
-    Raises Error with the program's message and status where the status is none of those accepted. Ctrl-C interrupts
+    show: called some times a second with the finished share, 0 to 1, and a line of text.
+    Raises Error with the program's message and status if the status is not among the accepted ones. Ctrl-C interrupts
     the program, which writes its checkpoint, and then the caller.
     """
     command = [find(), *map(str, arguments)]
@@ -55,7 +55,8 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     child = None
     with ours, theirs, tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         try:
-            # A session of its own: else a terminal's Ctrl-C would reach it twice, and the second ends it at once.
+            # The call gets a session of its own: else Ctrl-C in a terminal would send it two signals, and the second
+            # ends it.
             with interrupts_later():
                 child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
                                          start_new_session=True, **(extra if show else {}))
@@ -85,7 +86,7 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
 
 @contextlib.contextmanager
 def interrupts_later():
-    """Ctrl-C waits for the end of the block: one that came while a program is started would leave it running."""
+    """Delays Ctrl-C to the end of the block: one that came while a program is being started would leave it running."""
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or before is None:
         yield

@@ -12,9 +12,9 @@ WIDTH = 30
 
 @contextlib.contextmanager
 def shown(progress: bool | Show | None) -> Iterator[Show | None]:
-    """What to call with the share done and a line of text; None where nothing is to be shown.
+    """The function to call with the finished share and a line of text; None if nothing is to be shown.
 
-    progress: a function of these two; True and False; None shows where there is a terminal or a notebook.
+    progress: a function of these two; True or False; None shows progress on terminals and in notebooks.
     """
     shell = sys.modules.get("IPython") and sys.modules["IPython"].get_ipython()
     if callable(progress) or progress is False:

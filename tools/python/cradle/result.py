@@ -22,11 +22,11 @@ STORED_FORMAT = 4  # the last letter of how these files begin
 
 
 def open(path: str | os.PathLike, check: bool | None = None) -> Result:
-    """Opens a result, or what there is of a run in progress, FILE.part, which the program then reads (`cradle export`).
+    """Opens a result, or the rows so far of a run in progress (FILE.part, which the program reads: `cradle export`).
 
-    check: read the whole file and compare it with the checksum that it was sealed with; by default files of up to
-    64 MiB, so that large ones open at once. Columns are read when they are used.
-    Raises Error (status 4) for what is missing, empty, half-written, damaged, or no result of this program.
+    check: read the whole file and compare it with its checksum; by default only files of up to
+    64 MiB, so that large ones open at once. Columns are read on first use.
+    Raises Error (status 4) if the file is missing, empty, incomplete, damaged, or not a result of this program.
     """
     path = os.fspath(path)
     try:
@@ -77,7 +77,8 @@ def open_file(path: str) -> h5py.File:
 
 
 def opened(path: str) -> h5py.File:
-    """Without locks, which some cluster file systems do not have; but as the caller has it open already, if so."""
+    """Opens the file without locks, which some cluster file systems do not have; or, if the caller has it open, in
+    the same way as there."""
     try:
         return h5py.File(path, "r", locking=False)
     except OSError as error:
@@ -87,7 +88,8 @@ def opened(path: str) -> h5py.File:
 
 
 def so_far(path: str) -> Result:
-    """Of a run in progress, what is recorded, as the program writes it into a file that is gone when it is opened."""
+    """The rows recorded by a run in progress: the program writes them to a temporary file, which is removed once
+    open."""
     with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
         copy = os.path.join(folder, "so_far.h5")
         program.call(["export", path, "--result", copy])
@@ -96,7 +98,7 @@ def so_far(path: str) -> Result:
 
 
 def part(kind, text: str, *names: str) -> cached_property:
-    """A property of a result: the first of these groups that is there, as a table of this kind."""
+    """A property of a result: the first of these groups that exists, as a table of this kind."""
     def read(result: Result):
         return kind(result._group(*names), f"{result.path}: {names[0]}")
     read.__doc__ = text
@@ -107,10 +109,10 @@ class Result:
     """A run, an ensemble, a sweep, or one point of a sweep. Use it in `with`, or close() it.
 
     path: of the file.
-    file: the h5py.File, or of a point its h5py.Group.
+    file: the h5py.File; for a point its h5py.Group.
     in_progress: the run had not ended when the file was read.
-    sealed: the file has the program's seal, and so is as it was written (see open).
-    text, status: what the program printed and its exit status, where run() or its like made it; else "" and 0.
+    sealed: the file has the program's seal, so it is unchanged (see open).
+    text, status: the program's output and exit status if run() or a similar function made it; else "" and 0.
     """
 
     def __init__(self, path: str, root: h5py.Group, sealed: bool = False, in_progress: bool = False, label: str = ""):
@@ -127,7 +129,7 @@ class Result:
     __exit__ = close
 
     def _group(self, *names: str) -> h5py.Group | None:
-        """The first that is there."""
+        """The first of these groups that exists."""
         for name in names:
             found = reading(self.path, lambda name=name: self.file.get(name))
             if isinstance(found, h5py.Group):
@@ -138,7 +140,7 @@ class Result:
 
     @cached_property
     def attributes(self) -> dict[str, Any]:
-        """Those of the file: cradle_version, name, precision, outcome, simultaneous_collisions, ..."""
+        """The attributes of the file: cradle_version, name, precision, outcome, simultaneous_collisions, ..."""
         whole = Table(self.file, self.path).attributes
         return Table(self._group("ensemble"), self.path).attributes | whole
 
@@ -160,7 +162,7 @@ class Result:
         return reading(self.path, lambda: parse_toml(self.scene_text))
 
     def word(self, table: str, key: str) -> str:
-        """A value of the scene, "" where it has none."""
+        """A value of the scene, "" if it has none."""
         return str(self.scene.get(table, {}).get(key, ""))
 
     def setting(self, table: str, key: str, default: float | None = None) -> Any:
@@ -209,7 +211,7 @@ class Result:
 
     @cached_property
     def points(self) -> list[Result]:
-        """Of a sweep, an ensemble each."""
+        """The points of a sweep, an ensemble each."""
         groups = self._group("points")
         if groups is None:
             return []
@@ -219,17 +221,17 @@ class Result:
 
     @cached_property
     def collapse(self) -> dict[str, Any]:
-        """`time`, `uncertainty`, `gap`, ... where the run ended at inelastic collapse; else empty."""
+        """`time`, `uncertainty`, `gap`, ... if the run ended at inelastic collapse; else empty."""
         return self.table("collapse").attributes
 
     def table(self, name: str) -> Table:
-        """Any group by its path, `"zone"`, `"scenario"`, `"meetings"`; empty where there is none."""
+        """Any group by its path, `"zone"`, `"scenario"`, `"meetings"`; empty if it does not exist."""
         return Table(self._group(name), f"{self.path}: {name}")
 
     def enclosure(self, name: str) -> tuple[list, list]:
-        """Lower and upper bounds of a quantity of the series, proved, as two lists of Fractions.
+        """Proved lower and upper bounds of a quantity of the series, as two lists of Fractions.
 
-        name: "energy", "front_left" or "front_right". Raises Error where the file has no proof of it.
+        name: "energy", "front_left" or "front_right". Raises Error if the file has no proof of it.
         """
         exact = self.exact.get("series", {})
         if f"{name}_low" not in exact:

@@ -1,4 +1,4 @@
-"""Scenes: the text that a result carries as nested dicts, and dicts as the text that the program reads."""
+"""Scenes: the text in a result as nested dicts, and nested dicts as text for the program."""
 from __future__ import annotations
 
 import re
@@ -29,7 +29,8 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def value_text(value: Any) -> str:
-    """A value as TOML: numbers with all their digits (Decimal and Fraction-free), texts quoted, lists in brackets."""
+    """A value as TOML: numbers with all their digits (a Decimal too, not a Fraction), texts quoted, lists in
+    brackets."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,8 +1,8 @@
-"""Whether a result is as it was written, checked before HDF5, which may crash on damaged files, reads it.
+"""Checks that a result is unchanged before HDF5 reads it: HDF5 may crash on damaged files.
 
-Behind HDF5's last byte stand 24 bytes more: `CRADLES1`, the length of HDF5's part and the CRC-64/XZ of all before it.
-Python has no such CRC, but liblzma checks it behind a block of an .xz file: so the file is handed to it as one,
-in chunks that it only copies.
+After HDF5's part a file has 24 more bytes: `CRADLES1`, the length of HDF5's part and the CRC-64/XZ of everything before
+it. Python has no such CRC, but liblzma checks it after a block of an .xz file: so the file is passed to liblzma as such
+a block, in uncompressed chunks.
 """
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ CHUNK = 1 << 16  # of LZMA2, at most
 
 
 def read_seal(path: str) -> tuple[int, int] | None:
-    """Length of what is sealed and its CRC-64, None without a seal. Raises Error where it does not fit."""
+    """The length of the sealed part and its CRC-64; None without a seal. Raises Error if the seal does not fit the
+    file."""
     with open(path, "rb") as file:
         length = file.seek(0, os.SEEK_END)
         file.seek(max(0, length - SIZE))
@@ -31,7 +32,7 @@ def read_seal(path: str) -> tuple[int, int] | None:
 
 
 def hdf5_length(path: str) -> int | None:
-    """How long HDF5 says that the file is, in a superblock of version 0, as the program and h5py write it, or None."""
+    """The length of the file according to HDF5 (superblock of version 0, as the program and h5py write it), or None."""
     with open(path, "rb") as file:
         head = file.read(48)
     return struct.unpack_from("<Q", head, 40)[0] if len(head) == 48 and head[8] == 0 and head[13] == 8 else None
@@ -43,7 +44,7 @@ def damaged(path: str, found: str) -> Error:
 
 
 def check_seal(path: str) -> bool:
-    """Reads the file once, at some GB/s; False without a seal. Raises Error for one that is damaged."""
+    """Reads the file once, at some GB/s; False without a seal. Raises Error if the file is damaged."""
     seal = read_seal(path)
     if seal is None:
         return False

@@ -1,4 +1,4 @@
-"""Groups and datasets of a result as tables and columns: with names, units, descriptions, read when they are used."""
+"""Groups and datasets of a result as tables and columns with names, units and descriptions, read on first use."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +15,7 @@ UNREADABLE = (OSError, KeyError, ValueError, RuntimeError, TypeError)  # of h5py
 
 
 def reading(place: str, read):
-    """What read() gives; what h5py stumbles over as an Error that names the place."""
+    """Runs read(); turns exceptions of h5py into an Error that names the place."""
     try:
         return read()
     except UNREADABLE as error:
@@ -28,7 +28,7 @@ def missing(module: str) -> Error:
 
 
 def text_of(value: Any) -> Any:
-    """Attributes as Python has them: texts, whole numbers, floats."""
+    """Attributes as Python types: texts, whole numbers, floats."""
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
     return value.item() if isinstance(value, np.generic) else value
@@ -37,8 +37,8 @@ def text_of(value: Any) -> Any:
 class Column(np.lib.mixins.NDArrayOperatorsMixin):
     """A dataset: an array of float64 or uint64, or of texts, with a name, a unit and a description.
 
-    It is read when it is used: `column[:10]` reads ten rows, arithmetic and numpy all of it, once. What comes out of
-    arithmetic are plain arrays, since their units are not the column's. Raises Error where it cannot be read.
+    It is read on first use: `column[:10]` reads ten rows; arithmetic and numpy read all of it, once. Results of
+    arithmetic are plain arrays, since their units are not the column's. Raises Error if it cannot be read.
     """
 
     def __init__(self, dataset: h5py.Dataset, place: str):
@@ -71,7 +71,7 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
 
     @cached_property
     def values(self) -> np.ndarray:
-        """All of it; the array cannot be changed."""
+        """All values, as a read-only array."""
         values = reading(self._place, lambda: self._texts(self._dataset[()]))
         values.flags.writeable = False
         return values
@@ -102,16 +102,16 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
         return iter(self.values)
 
     def fractions(self) -> list[Fraction]:
-        """Every number exactly: of texts the decimal as it stands, of float64 the binary number that is stored.
+        """Every number exactly: the decimal of a text, the stored binary number of a float64.
 
-        Of columns of width two a list for each row. NaN is no fraction: ValueError, as Python has it.
+        Columns of width two give a list for each row. NaN raises ValueError, as in Python.
         """
         return [[Fraction(v) for v in row] if np.ndim(row) else Fraction(row) for row in self.values.tolist()]
 
     def mpmath(self, digits: int | None = None) -> list:
-        """The same as mpmath.mpf, with so many digits, by default those of the longest text (17 for float64).
+        """The same as mpmath.mpf with the given digits, by default those of the longest text (17 for float64).
 
-        They are rounded when they are made; mpmath rounds sums and products to mpmath.mp.dps, which stays as it is.
+        They are rounded here; mpmath rounds sums and products to mpmath.mp.dps, which is not changed.
         """
         try:
             import mpmath
@@ -131,7 +131,7 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
 class Table(Mapping):
     """A group: columns, inner tables and attributes by name, `table["energy"]` or `table.energy`.
 
-    Iterates over the names of columns and tables; `table.columns` are those of the columns only.
+    Iterates over the names of columns and tables; `table.columns` has only those of the columns.
     """
 
     def __init__(self, group: h5py.Group | None, place: str):
@@ -208,7 +208,7 @@ class Table(Mapping):
 
 
 class Means(Table):
-    """The same of an ensemble with the mean of each quantity as its column, as a run has it."""
+    """A table of an ensemble with the means of its quantities as columns, like the table of a run."""
 
     def __getitem__(self, name: str) -> Any:
         item = super().__getitem__(name)
@@ -216,7 +216,7 @@ class Means(Table):
 
 
 class Tables(Sequence):
-    """Tables in order, of snapshots, profiles, masses in that of time: `tables[0]`, `tables.times`, `tables.at(t)`."""
+    """Tables in order; snapshots, profiles and masses in order of time: `tables[0]`, `tables.times`, `tables.at(t)`."""
 
     def __init__(self, group: h5py.Group | None, place: str, kind: type[Table] = Table):
         names = () if group is None else reading(place, lambda: sorted(group, key=lambda name: (len(name), name)))
@@ -229,7 +229,7 @@ class Tables(Sequence):
         return np.array([table.attributes.get("time", np.nan) for table in self._tables], float)
 
     def at(self, time: float) -> Table:
-        """The one whose time is nearest. Raises Error where there is none at all."""
+        """The table with the nearest time. Raises Error if there are no tables."""
         if not self._tables:
             raise Error(f"{self._place} is empty: the scene asked for none (see output.* of `cradle scenes --keys`)",
                         BAD_INPUT)

@@ -2,7 +2,7 @@
 
     python ensemble_statistics.py [REPLICAS]
 
-Started again with more replicas it runs only those that are not there yet.
+When it is started again with more replicas, it runs only the new ones.
 """
 import sys
 

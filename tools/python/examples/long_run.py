@@ -3,7 +3,7 @@
     python long_run.py [PARTICLES] [UNTIL]
 
 Rows of 400 particles by default, which takes a second; 8000 particles to t = 9000 are the paper's shock past its
-collapse (some minutes). The run may be stopped with Ctrl-C and the script started again: it continues where it was.
+collapse (some minutes). You may stop the run with Ctrl-C and start the script again: it continues the run.
 """
 import os
 import sys
@@ -19,7 +19,7 @@ output = "long.h5"
 if os.path.exists(output + ".part"):
     result = cradle.resume(output)
 else:
-    # A restitution at which so many particles are beyond the critical number N_c of section III.
+    # A restitution at which N is larger than the critical number N_c of section III.
     result = cradle.run("beyond", output=output, set={
         "initial.particles": particles, "law.restitution": 0.999 if particles >= 8000 else 0.97, "run.until": until,
         "output.snapshots": [0.6 * until, 0.8 * until, until]})

@@ -2,7 +2,7 @@
 
     python precision_cost.py [PARTICLES]
 
-The reference are proved bounds of the energy (cradle.certify), as exact fractions; the times are this machine's.
+The reference is the proved bounds of the energy (cradle.certify), as exact fractions; times are of this machine.
 """
 import sys
 import time
@@ -31,7 +31,7 @@ for precision, coordinates in (("double", "gaps"), ("double", "absolute"), ("lon
         print(f"{precision:>15} {coordinates:>10} {'':>8} {error.message.splitlines()[0]}")
         continue
     seconds = time.perf_counter() - started
-    # Results hold float64: beyond 16 digits compare with `cradle trust`, which has all of them.
+    # Results hold float64; `cradle trust` compares more than 16 digits.
     energy = Fraction(float(run.series.energy[-1]))
     wrong = max(abs(energy - low), abs(energy - high)) / high
     digits = min(16.0, -log10(wrong)) if wrong else 16.0

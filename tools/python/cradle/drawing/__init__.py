@@ -1,1 +1,1 @@
-"""How the pictures are drawn: a module for each kind, from a Result of the package, in the looks of style.py."""
+"""The pictures: a module for each kind draws from a Result of the package, in the style of style.py."""

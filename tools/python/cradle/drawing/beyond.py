@@ -1,5 +1,5 @@
-"""Past the collapse: energy beside that of the sticky gas, the dense core (core/observe/dense_core.hpp), how often
-particles meet in it. Of a run, or of a sweep of cut-offs and of what replaces them."""
+"""After the collapse of a run, or of a sweep of cut-offs and of what replaces them: the energy and that of the
+sticky gas, the dense core (core/observe/dense_core.hpp), and the rate of collisions in it."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, lettered, plt, shades, stacked, subplots
@@ -35,7 +35,7 @@ def has_core(result):
 
 
 def slowest(result):
-    """The closing speed below which a collision loses nothing (or all: merge_speed); 0 where there is none."""
+    """The closing speed below which a collision loses nothing (or everything: merge_speed); 0 if there is none."""
     merging = result.word("run", "collapse") == "merge"
     return result.setting("run", "merge_speed", 0.0) if merging else result.setting("law", "cutoff", 0.0)
 
@@ -48,7 +48,7 @@ def label_of(result):
 
 
 def onset(result):
-    """The first of the samples up to the narrowest core in which half of the mass is in less than NARROW."""
+    """The first of the samples, up to the narrowest core, in which less than NARROW contains half of the mass."""
     width = result.means["core_width"]
     if not np.isfinite(width).any():
         return np.inf
@@ -59,21 +59,21 @@ def onset(result):
 
 
 def excess(result, kind="mean"):
-    """Of the energy over that of the sticky gas, in units of the energy at the start."""
+    """The energy minus that of the sticky gas, in units of the energy at the start."""
     start = result.means["energy"][0] + result.means["energy_lost"][0]
     return (result.means["sticky_excess"] if kind == "mean" else result.series["sticky_excess"][kind]) / start
 
 
 def rate(result, name):
-    """Per unit of time, between samples; and the times in their middle."""
+    """The rate per unit of time between samples, and the times midway between them."""
     time, counts = result.means["time"], np.asarray(result.means[name], float)
     apart = np.diff(time) > 0
     return ((time[1:] + time[:-1]) / 2)[apart], np.diff(counts)[apart] / np.diff(time)[apart]
 
 
 def rates(result, since, units):
-    """Collisions per l/2u0 that dissipate, and elastic ones: mean and standard deviation between samples, from SETTLED
-    after a time until the rows end."""
+    """Collisions per l/2u0, dissipative and elastic: mean and standard deviation between samples, from SETTLED after
+    a given time until the rows end."""
     time, every = rate(result, "collisions")
     elastic = rate(result, "collisions_below_cutoff")[1]
     used_up = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
@@ -83,8 +83,8 @@ def rates(result, since, units):
 
 
 def most_frequent(result, cutoff):
-    """Dissipative collisions per l/2u0 if each of them closed at the cut-off: one particle arrives, with m u0^2/2, and
-    each collision takes (1 - eps^2) m delta^2/4."""
+    """Dissipative collisions per l/2u0 if all of them have the closing speed of the cut-off: one particle arrives
+    with m u0^2/2, and each collision dissipates (1 - eps^2) m delta^2/4."""
     restitution, speed = result.setting("law", "restitution", 1.0), result.setting("initial", "speed", 0.5)
     return 2 * speed ** 2 / ((1 - restitution ** 2) * cutoff ** 2) if restitution < 1 else np.inf
 
@@ -101,7 +101,7 @@ def draw_excess(ax, result, since, units, colour, label=None, line="-"):
 
 
 def positive(ax, time, values, **how):
-    """On a logarithmic axis, where there is something to show."""
+    """A logarithmic axis, if there are positive values."""
     shown = values > 0
     if shown.any():
         ax.plot(time[shown], values[shown], **how)
@@ -137,7 +137,7 @@ def draw_run(result, units, axes=None):
 
 
 def core_of(snapshot):
-    """Slice of the particles in the core, as dense_core.hpp has it, and their gaps."""
+    """The slice of the particles in the core, as in dense_core.hpp, and their gaps."""
     x, m = snapshot["x"], snapshot["m"]
     held = np.concatenate([[0.0], np.cumsum(m)])
     last = np.searchsorted(held, held[:-1] + held[-1] / 2 * (1 + 1e-12), side="right") - 1  # from each particle on
@@ -172,8 +172,8 @@ def draw_distributions(snapshots, scale, units, axes=None):
 
 
 def draw_spacetime(snapshots, units, axes=None):
-    """Paths of particles spread evenly over the core as it is at the end, from the one in its middle; identical
-    particles keep their order."""
+    """Paths of particles that are evenly spread over the core at the end, relative to the one in its middle.
+    Identical particles keep their order."""
     core, _ = core_of(snapshots[-1])
     particles = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
     figure, ax = subplots(axes, figsize=(5.8, 4.6))

@@ -1,4 +1,4 @@
-"""A blast in a cold gas: places of the front against (A E t^2/rho)^(1/3), and profiles over x/R beside the exact
+"""A blast in a cold gas: the positions of the fronts and (A E t^2/rho)^(1/3), and profiles over x/R with the exact
 solution of Euler's equations for gamma = 3 (derived in core/theory/blast.hpp; arXiv:2010.15868)."""
 import numpy as np
 
@@ -22,7 +22,7 @@ def gas(result):
 
 
 def solution(size=400):
-    """xi, density, velocity over that of the front and temperature over its square, from V = 1/3 to 1/2."""
+    """xi, density, velocity relative to the front's, and temperature relative to its square, for V from 1/3 to 1/2."""
     v = 1 / 3 + np.linspace(1e-3, 1, size) ** 3 / 6
     xi = (6 * v - 2) ** 0.4 * (2 * v) ** (-2 / 3) * (3 - 4 * v) ** (-11 / 15)
     density = 2 * (2 - 2 * v) ** 2 * (6 * v - 2) ** 0.2 * (3 - 4 * v) ** (-11 / 5)
@@ -60,7 +60,7 @@ def draw(result, axes=None):
 
 
 def draw_front(ax, result, energy, rho):
-    """R^3 rho/(E t^2) from both fronts, which is A when the gas has forgotten how it began."""
+    """R^3 rho/(E t^2) of both fronts; it tends to A as the gas forgets its initial state."""
     series = result.means
     later = series["time"] > 0
     time = series["time"][later]

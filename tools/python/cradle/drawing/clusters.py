@@ -1,5 +1,5 @@
-"""Figs. 9, 10 and 11: the two heaviest clusters of the late wet shock, which swing through each other; and how the
-swing grows: separation as t^(1/3), speed as t^(-1/3) (section VI). Lines follow a cluster, not a side."""
+"""Figs. 9, 10 and 11: the two heaviest clusters of the late wet shock, which pass through each other back and forth.
+Their separation grows as t^(1/3), their speed falls as t^(-1/3) (section VI). A line follows a cluster, not a side."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, beside, plt, power, shades, stacked, subplots, thinned
@@ -21,7 +21,8 @@ def pictures(result, _theory, units):
 
 
 def hold_the_mass(result):
-    """Do the two hold most of what has collided, in the end? Before that they are the first particles that stuck."""
+    """Whether the two clusters contain most of the mass that has collided at the end; before they do, they are
+    merely the first particles that have merged."""
     mass = result.means["heaviest"]["mass"].sum(axis=1)
     cloud = result.means.get("cloud_mass", mass)
     known = np.isfinite(mass) & (cloud > 0)
@@ -29,7 +30,8 @@ def hold_the_mass(result):
 
 
 def followed(heaviest):
-    """Columns reordered so that each follows one cluster; where another takes its place there is a gap in the line."""
+    """The columns, reordered so that each follows one cluster; the line is interrupted when another cluster takes
+    its place."""
     order = np.tile([0, 1], (len(heaviest["x"]), 1))
     broken = np.zeros(order.shape, bool)
     index = heaviest.get("index")
@@ -47,7 +49,7 @@ def followed(heaviest):
 
 
 def with_gaps(time, values, broken):
-    """A line that is not drawn to a point where another cluster takes over."""
+    """A line that is interrupted when another cluster takes over."""
     at = np.flatnonzero(broken)
     return np.insert(time, at, time[at]), np.insert(values.astype(float), at, np.nan)
 
@@ -85,7 +87,7 @@ def draw_clusters(result, units, axes=None):
 
 
 def largest(values, left_out):
-    """Largest magnitude, but for the first part of the samples; of all where there is none after it."""
+    """The largest magnitude after the first part of the samples; of all samples if none come after it."""
     late = np.abs(values[int(left_out * len(values)):])
     return np.nanmax(late if np.isfinite(late).any() else np.abs(values)) or 1.0
 
@@ -109,7 +111,7 @@ def room_above(ax, box, x_label, y_label):
 
 
 def draw_force(ax, force, units):
-    """Equation (15): corrected, and dotted as printed."""
+    """The force (15): corrected, and dotted as printed."""
     for name, line in (("force", "k-"), ("force_printed", ":")):
         if name in force:
             ax.plot(force["x"] / units.x, force[name] * units.x / units.energy, line, lw=0.9)
@@ -117,8 +119,9 @@ def draw_force(ax, force, units):
 
 
 def envelope(time, values, begin=0.0):
-    """Samples; centre and largest value of each bin of the logarithm of time; which of them are fitted, bins FIRST and
-    later that begin after `begin` and hold ENOUGH samples; the fit in logarithms, exponent first."""
+    """The envelope: the samples; centre and largest value of each bin of the logarithm of time; the bins that are
+    fitted (bins FIRST and later that begin after `begin` and have ENOUGH samples); the fit in logarithms, exponent
+    first."""
     known = np.isfinite(values) & (values > 0) & (time > 0)
     time, values = time[known], values[known]
     edges = np.log10(time[-1]) - DECADES + DECADES * np.arange(BINS + 1) / BINS
@@ -164,7 +167,7 @@ def draw_envelope(ax, time, values, theory, colour, begin):
 
 
 def draw_masses(ax, masses, units):
-    """How many clusters are of a mass or heavier: few of them make no histogram."""
+    """The number of clusters with at least a given mass: there are too few clusters for a histogram."""
     groups = thinned(masses, 6)
     for group, colour in zip(groups, shades(len(groups))):
         above = np.cumsum(group["clusters"][::-1].astype(float))[::-1]

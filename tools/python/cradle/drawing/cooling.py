@@ -25,7 +25,7 @@ def ring_of(result):
 
 
 def sticky_law(result, time):
-    """Energy per particle."""
+    """The energy per particle."""
     _, speed, spacing = ring_of(result)
     with np.errstate(divide="ignore"):
         return ENERGY * speed ** 2 * (speed * time / spacing) ** (-2 / 3)
@@ -69,7 +69,7 @@ def draw_cooling(result, theory, axes=None):
 
 
 def draw_field(result, axes=None):
-    """Velocity against position on a stretch of the ring: clusters as large as they are heavy, and the saw-tooth."""
+    """Velocity against position in a part of the ring: larger clusters are heavier, and velocities form a saw-tooth."""
     snapshots = thinned(result.snapshots, 4)
     figure, axes = stacked(axes, len(snapshots), height=1.8, sharex=True)
     last = snapshots[-1]

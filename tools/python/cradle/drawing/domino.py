@@ -1,6 +1,5 @@
-"""Dominoes of two masses: when each heavy particle is first hit, against the closed form t = n - 1 + 1/(2c), c =
-m/(m + mu), where the ratio of the masses makes the front ballistic (derived in core/theory/domino.hpp;
-arXiv:2605.16125)."""
+"""Dominoes of two masses: when each heavy particle is first hit, and the closed form t = n - 1 + 1/(2c), c = m/(m +
+mu), for the mass ratios whose front is ballistic (derived in core/theory/domino.hpp; arXiv:2605.16125)."""
 from decimal import Decimal, getcontext
 
 import numpy as np
@@ -18,7 +17,7 @@ def pictures(result, _theory, _units):
 
 
 def order(result):
-    """k with m/mu = c/(1 - c), c = cos(pi/(2k + 1)); 0 where there is none."""
+    """k with m/mu = c/(1 - c), c = cos(pi/(2k + 1)); 0 if there is no such k."""
     heavy, light = (float(mass) for mass in result.scene["initial"]["masses"])
     turns = np.pi / np.arccos(heavy / (heavy + light))
     k = int(turns // 2)
@@ -26,7 +25,8 @@ def order(result):
 
 
 def first_hits(result):
-    """Heavy particles and how much later than the closed form each is first hit, in times of a particle to the next."""
+    """Heavy particles, and how much later than in the closed form each is first hit, in units of the time between
+    hits."""
     getcontext().prec = 120
     events, initial = result.events, result.scene["initial"]
     heavy, light = (Decimal(str(mass)) for mass in initial["masses"])

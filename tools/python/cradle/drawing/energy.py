@@ -12,7 +12,7 @@ def pictures(result, theory, units):
 
 
 def draw_energy(result, theory, units, axes=None):
-    """Energy, with equation (7) dotted and the sticky gas dashed; below it the number of collisions."""
+    """Energy, with equation (7) dotted and the sticky gas dashed; below, the number of collisions."""
     series = result.means
     time = series["time"] / units.t
     figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))

@@ -1,5 +1,5 @@
-"""Ensembles: mean over the replicas with its standard error (dark band; often no wider than the line) and the extremes
-(light band); profiles; and when inelastic collapse came, where replicas stopped there."""
+"""Ensembles: the mean over the replicas with its standard error (dark band; often no wider than the line) and the
+extremes (light band); profiles; and the times of inelastic collapse if replicas stopped there."""
 import numpy as np
 
 from .cooling import ring_of, sticky_law
@@ -24,7 +24,7 @@ def pictures(result, theory, units):
 
 
 def band(ax, x, quantity, unit, colour, **line):
-    """Mean, standard error and extremes of one quantity."""
+    """The mean, the standard error and the extremes of one quantity."""
     mean, sem, low, high = (np.asarray(quantity[name], float) / unit for name in ("mean", "sem", "min", "max"))
     ax.fill_between(x, low, high, color=colour, alpha=0.18, lw=0)
     ax.fill_between(x, mean - sem, mean + sem, color=colour, alpha=0.45, lw=0)
@@ -61,7 +61,7 @@ def draw_series(result, theory, units, axes=None):
 
 
 def show_cooling(axes, result, time):
-    """Logarithmic times from the first collisions on, and the law of the sticky gas."""
+    """A logarithmic time axis from the first collisions, with the law of the sticky gas."""
     particles, speed, spacing = ring_of(result)
     later = time * speed / spacing > 0.03
     law = particles * sticky_law(result, time[later])

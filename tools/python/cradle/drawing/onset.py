@@ -1,6 +1,6 @@
-"""How many particles collapse: the part of the replicas of a ring that does, against their number, for each restitution
-of a sweep; and where half of them do, beside McNamara and Young's estimate and the exact number of particles in free
-space."""
+"""How many particles collapse: the share of the replicas of a ring that collapse against the number of particles,
+for each restitution of a sweep. Half of them collapse at a number that is compared with McNamara and Young's
+estimate and with the exact number of particles in free space."""
 import numpy as np
 
 from .scenarios import wilson
@@ -15,7 +15,7 @@ def pictures(result, _theory, _units):
 
 
 def curves_of(result):
-    """(N, collapsed, replicas) by increasing N, for each restitution; of rings that stop at a collapse."""
+    """(N, collapsed, replicas) by increasing N for each restitution; for rings that stop at a collapse."""
     found = {}
     for point in result.points:
         if point.word("initial", "type") != "ring" or point.word("run", "collapse") != "stop":
@@ -33,7 +33,7 @@ def free(eps):
 
 
 def half(points):
-    """N at which half of the replicas collapse, between the last two points that say so; none where they do not."""
+    """N at which half of the replicas collapse, interpolated at the first crossing; NaN if there is none."""
     share = np.array([hits / count for _, hits, count in points])
     at = np.array([number for number, _, _ in points])
     above = np.flatnonzero(share >= 0.5)

@@ -1,5 +1,5 @@
-"""Which pictures a result gets, and their files. Every kind is a module with pictures(result, theory, units): pairs of
-a name and a function that draws it, none where the result does not hold what the picture shows."""
+"""Which pictures a result has, and writing them. Every kind is a module with pictures(result, theory, units): pairs
+of a name and a function that draws the picture; none if the result does not have the data."""
 import contextlib
 import os
 
@@ -19,7 +19,7 @@ TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 
 
 def pictures_of(result, theory, units):
-    """The main picture first; a proof comes last."""
+    """The pictures, the main one first and a proof last."""
     last = proof.certificates(result, units)
     for kind in ALONE:
         if found := kind.pictures(result, theory, units):
@@ -28,8 +28,8 @@ def pictures_of(result, theory, units):
 
 
 def available(result, predictions):
-    """Names and functions of the pictures of an opened result, the main one first: each draws on new axes, or on those
-    that it is given, and returns the figure. predictions: as `cradle theory --csv` prints them. Raises Error."""
+    """Names and functions of the pictures of an opened result, the main one first. A function draws on new or given
+    axes and returns the figure. predictions: the output of `cradle theory --csv`. Raises Error."""
     with lacking(result.path):
         return {name: drawing(result.path, name, draw)
                 for name, draw in pictures_of(result, Theory(predictions), Units.of(result))}
@@ -44,7 +44,7 @@ def drawing(path, name, draw):
 
 @contextlib.contextmanager
 def lacking(path, purpose=""):
-    """What pictures stumble over where a group or dataset is not there, as the message."""
+    """Turns the exceptions for missing groups and datasets into a message."""
     try:
         yield
     except (KeyError, IndexError, ValueError) as error:
@@ -54,7 +54,7 @@ def lacking(path, purpose=""):
 
 
 def write_file(figure, path):
-    """Written beside its place and renamed, so that no half a picture is left; closes the figure."""
+    """Writes beside the final place, then renames, so that no incomplete picture is left; closes the figure."""
     try:
         with whole(path) as part:
             write(figure, part, os.path.splitext(path)[1][1:].lower())
@@ -63,7 +63,7 @@ def write_file(figure, path):
 
 
 def write(figure, file, extension):
-    """As PNG, PDF or SVG, into a file or what can be written like one: same figure, same bytes, no time stamps."""
+    """Writes PNG, PDF or SVG to a file or a file-like object. The same figure gives the same bytes: no time stamps."""
     stamps = {"png": {"Software": None}, "pdf": {"CreationDate": None, "ModDate": None}, "svg": {"Date": None}}
     with style():
         figure.savefig(file, format=extension, metadata=stamps[extension])

@@ -1,5 +1,5 @@
-"""What is known of the numbers of a run: digits that runs of rising precision share with the last one, against time;
-and a proof in time: how small gaps get, and how well places and gaps are known."""
+"""The reliability of a run: the digits that runs of rising precision share with the last one, against time; and a
+proof in time: the smallest gap, and the radii of positions and gaps."""
 import numpy as np
 
 from .style import BLUE, GREEN, ORANGE, plt, subplots
@@ -15,7 +15,7 @@ def certificates(result, units):
 
 
 def draw_trust(result, axes=None):
-    """Digits of energy and front, and until when the sequence of collisions is right."""
+    """Digits of energy and front, and the time until which the sequence of collisions is right."""
     figure, panels = subplots(axes, 2, 1, sharex=True, figsize=(6.4, 6.4))
     for ax, name in zip(panels, ("energy", "front")):
         for run, colour in zip(result.trust[:-1], plt.rcParams["axes.prop_cycle"].by_key()["color"] * 4):
@@ -32,7 +32,8 @@ def draw_trust(result, axes=None):
 
 
 def draw_certificate(result, units, axes=None):
-    """The smallest gap, the largest radius of a place, and that of a gap against the gap, which must stay below 1."""
+    """The smallest gap, the largest radius of a position, and the ratio of a gap's radius to the gap; it must stay
+    below 1."""
     proof = result.certificate
     time = proof["time"] / units.t
     figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))

@@ -31,7 +31,7 @@ def wilson(hits, count):
 
 
 def curves(result):
-    """The points by perturbation, each by increasing loss."""
+    """The points for each perturbation, by increasing loss."""
     groups = {}
     for point in result.points:
         groups.setdefault(point.setting("initial", "perturbation", 0.0), []).append(point)
@@ -39,7 +39,8 @@ def curves(result):
 
 
 def estimated(points, name, estimate):
-    """Losses and what estimate makes of a number of the replicas, over points that know it of ENOUGH of them."""
+    """Losses, and the estimate for each from the numbers of its replicas; points with fewer than ENOUGH are left
+    out."""
     known = [(point.setting("law", "loss"), finite(point.replicas[name])) for point in points]
     rows = [(loss, *estimate(values)) for loss, values in known if len(values) >= ENOUGH]
     return np.array(rows).reshape(-1, 4).T
@@ -81,7 +82,7 @@ def draw_scenarios(result, axes=None):
 
 
 def draw_regimes(result, axes=None):
-    """What the replicas have come to at the end, in shares, for each loss and size of perturbation."""
+    """The outcomes of the replicas as shares, for each loss and size of perturbation."""
     groups = curves(result)
     figure, axes = stacked(axes, len(groups), height=1.9, sharex=True)
     for ax, (size, points) in zip(np.atleast_1d(axes), groups.items()):

@@ -1,6 +1,6 @@
-"""Fig. 2, Fig. 6: velocities, mean velocity and density of a shock at several times.
+"""Figs. 2 and 6: velocities, mean velocity and density of a shock at several times.
 
-Where particles stick, density of particles and density of mass differ; then it is that of mass that is drawn.
+If particles merge, the density of mass is drawn, not that of particles.
 """
 import numpy as np
 
@@ -19,7 +19,7 @@ def pictures(result, theory, units):
 
 
 def profiles_of(result):
-    """A single bin averages over all: no picture of that."""
+    """The profiles; one with a single bin averages over everything and is not drawn."""
     return [profile for profile in result.mean_profiles if len(profile["x"]) > 1]
 
 
@@ -37,7 +37,8 @@ def averaged(snapshot, bins=50):
 
 
 def merged(profile):
-    """Bin centres and mean velocities, bins merged until half of them hold BIN_PARTICLES, but not below five bins."""
+    """Bin centres and mean velocities. Bins are merged until half of them have BIN_PARTICLES, to no fewer than five
+    bins."""
     x, count = profile["x"], profile["density"] * (profile["x"][1] - profile["x"][0])
     if not (count > 0).any():
         return x[:0], x[:0]

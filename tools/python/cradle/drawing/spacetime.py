@@ -1,6 +1,5 @@
-"""Fig. 5: a few particles that stick or pass through each other. Paths in space and time, the wider the heavier the
-particle, with collisions marked; and Newton's cradle: the same seen by the single particles that the clusters are made
-of."""
+"""Fig. 5: a few particles that merge or pass through each other. Paths in space and time, wider for heavier
+particles, with the collisions marked; and Newton's cradle: the paths of the single particles in the clusters."""
 import numpy as np
 
 from .particles import few
@@ -16,9 +15,9 @@ def pictures(result, _theory, units):
 
 
 def legs_of(result):
-    """Per particle a list of (times, positions, mass, known). Between snapshots a particle flies with the first one's
-    velocity until its first collision and with the last one's after its last; between these two collisions its path is
-    not known."""
+    """For each particle a list of (times, positions, mass, known). Between two snapshots a particle has the first
+    one's velocity until its first collision, and the last one's after its last collision; between these two
+    collisions its path is not known."""
     events = result.events
     collisions = {}
     for particle, time in zip(np.concatenate([events.get("left", []), events.get("right", [])]),
@@ -80,7 +79,8 @@ def particle_colours(count):
 
 
 def draw_cradle(ax, snapshots, units):
-    """Single particles never change places: each cluster is the next so many of them. Circles are not to scale."""
+    """Single particles never change places: the clusters from left to right take them in order. Circles are not to
+    scale."""
     x = np.concatenate([s["x"] for s in snapshots]) / units.x
     size = 0.032 * max(np.ptp(x), 1e-12)
     owner = np.repeat(np.arange(len(snapshots[0]["m"])), snapshots[0]["m"].round().astype(int))

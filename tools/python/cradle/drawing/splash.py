@@ -1,5 +1,5 @@
-"""A splash: a cold gas on a half-line whose outermost particle is kicked. Front and energy left at x > 0 against time,
-the exponents fitted for every point of a sweep over seeds, and those of Euler's equations (core/theory/splash.hpp)."""
+"""A splash: the outermost particle of a cold gas on a half-line is kicked. Front and energy at x > 0 against time,
+with exponents fitted for every point of a sweep over seeds, and those of Euler's equations (core/theory/splash.hpp)."""
 import numpy as np
 
 from .style import BLUE, ORANGE, subplots
@@ -20,7 +20,7 @@ def is_splash(point):
 
 
 def energies(point):
-    """Times and M (theta + u^2)/2 of all that is in the one bin, from x = 0 on."""
+    """Times, and M (theta + u^2)/2 of the single bin, which begins at x = 0."""
     time = np.array([p["time"] for p in point.mean_profiles])
     width = np.array([2 * p["x"][0] for p in point.mean_profiles])
     mass, speed, temperature = (np.array([p[name][0] for p in point.mean_profiles])

@@ -1,5 +1,6 @@
-"""Fig. 1: rows of sticky particles and the weak solution. Velocity stands still as a step u_l, 0, u_r; density is that
-of the rows and a delta peak, which grows at sqrt(rho_l rho_r) (u_l - u_r), 2 rho_0 u_0 for equal rows, from m_0 on."""
+"""Fig. 1: rows of sticky particles and the weak solution. The velocity is a fixed step u_l, 0, u_r. The density is
+that of the rows and a delta peak, which begins at m_0 and grows at sqrt(rho_l rho_r) (u_l - u_r), or 2 rho_0 u_0 for
+equal rows."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
@@ -12,7 +13,7 @@ def pictures(result, _theory, units):
 
 
 def rows_of(result):
-    """Density and velocity of the left and of the right row, and what is between them: mass and velocity."""
+    """Density and velocity of the left and of the right row; mass and velocity of the particle between them."""
     if "left" not in result.scene["initial"]:
         density, speed = 1 / result.setting("initial", "spacing", 1.0), result.setting("initial", "speed", 0.5)
         return (density, speed), (density, -speed), (0.0, 0.0)
@@ -94,7 +95,7 @@ def draw_sticky(result, units, axes=None):
 
 
 def draw_mass(ax, result, units, formula, core, growth):
-    """Mass of what has stuck together beside the line of the weak solution."""
+    """The merged mass, and the line of the weak solution."""
     time, cloud = result.means["time"], result.means["cloud_mass"]
     collided = cloud > 0
     ax.plot(time / units.t, core + growth * time, color=GREY, lw=5, alpha=0.5,

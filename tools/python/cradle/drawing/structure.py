@@ -23,18 +23,17 @@ def core_of(result, units):
 
 
 def distances(gap, particle):
-    """Distance of every particle from one of them, summed gap by gap outwards: below any resolution of the
-    positions."""
+    """The distance of every particle from one of them: sums of gaps outwards, which are more precise than positions."""
     right = np.concatenate([[0.0], np.cumsum(gap[particle:])])
     left = np.cumsum(gap[:particle][::-1])[::-1]
     return np.concatenate([-left, right])
 
 
 def densest(gap, particles):
-    """The particle in the middle of the narrowest run of so many particles (at least 2), and that run's width.
+    """The particle in the middle of the narrowest group of so many neighbours (at least 2), and the width of the group.
 
-    Differences of one running sum would lose the small gaps behind the large: each window is the end of one block plus
-    the beginning of the next, both summed from small terms only.
+    Differences of one running sum would lose the small gaps beside large ones. So each group is the end of one block
+    plus the beginning of the next, and both sums are of small terms only.
     """
     size = particles - 1
     blocks = np.concatenate([gap, np.zeros(-len(gap) % size)]).reshape(-1, size)
@@ -47,7 +46,7 @@ def densest(gap, particles):
 
 
 def draw_structure(snapshot, units, axes=None):
-    """Each panel is the rectangle of the one before; all distances are from one particle of the core."""
+    """Each panel is the rectangle in the one before; all distances are from one particle of the core."""
     gap, v = snapshot["gap"], snapshot["v"]
     inmost = max(CORE_PARTICLES, len(v) // CORE_SHARE)
     particle, width = densest(gap, inmost)

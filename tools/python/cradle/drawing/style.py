@@ -1,4 +1,4 @@
-"""How all pictures look: colours, fonts, units, panel letters, legends. Nothing here needs a display."""
+"""The style of all pictures: colours, fonts, units, panel letters, legends. Nothing here needs a display."""
 import contextlib
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ SETTINGS = {
 
 @contextlib.contextmanager
 def style():
-    """Within it pictures are drawn and written; after it all settings are the caller's again."""
+    """Applies the style while pictures are drawn and written; then restores the caller's settings."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(SETTINGS)
@@ -32,7 +32,7 @@ def style():
 
 @dataclass
 class Units:
-    """What to divide by, and the axis labels that say so."""
+    """The numbers to divide by, and the axis labels for them."""
     x: float = 1.0
     v: float = 1.0
     rows: bool = False
@@ -67,7 +67,7 @@ class Units:
 
 
 def subplots(axes, rows=1, columns=1, squeeze=True, **options):
-    """Figure and axes of a picture: new ones as plt.subplots makes them, or the given ones, one for each panel."""
+    """The figure and axes of a picture: new ones as plt.subplots makes them, or the given ones, one for each panel."""
     if axes is None:
         return plt.subplots(rows, columns, squeeze=squeeze, layout="constrained", **options)
     given = np.array(axes, dtype=object).ravel()
@@ -92,7 +92,8 @@ def lettered(axes):
 
 
 def shades(count):
-    """Dark to light with time: also readable in grey and by colour-blind eyes; the palest yellow is left out."""
+    """Colours from dark to light with time, readable in grey and by colour-blind eyes; the palest yellow is left
+    out."""
     return plt.get_cmap("viridis")(np.linspace(0.0, 0.88, max(count, 2)))[:count]
 
 
@@ -105,14 +106,14 @@ def power(value, digits=5):
 
 
 def thinned(items, most=7):
-    """At most so many, evenly chosen, first and last kept."""
+    """At most so many, evenly chosen, with the first and the last."""
     if len(items) <= most:
         return list(items)
     return [items[i] for i in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 
 def beside(axes, **options):
-    """A legend to the right of the panel; returns it, or None where there is nothing to name."""
+    """Adds a legend to the right of the panel; returns it, or None if there is nothing to name."""
     if axes.get_legend_handles_labels()[0]:
         return axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), **options)
     return None

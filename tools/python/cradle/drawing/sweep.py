@@ -1,5 +1,6 @@
-"""Sweeps: what depends on the parameters that were varied. Rings: energies of all points in one panel, and their ratio
-to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). Else every number of the summary."""
+"""Sweeps: results against the parameters that were varied. Rings: the energies of all points in one panel, and their
+ratio to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). Others: every number of the
+summary."""
 import numpy as np
 
 from . import beyond
@@ -28,13 +29,13 @@ def pictures(result, theory, units):
 
 
 def is_grid(keys):
-    """Two keys in all combinations."""
+    """Whether two keys are varied in all combinations."""
     points = set(zip(*keys.values()))
     return len(keys) == 2 and len(points) == np.prod([len(np.unique(values)) for values in keys.values()])
 
 
 def varied(result):
-    """Values of each key of the scene that takes more than one; where a point does not set it, its scene's."""
+    """The values of each key that varies; a point that does not set it has the scene's value."""
     keys = {name: np.array(column, float) for name, column in result.sweep.items() if "." in name}
     for name, values in keys.items():
         for number in np.flatnonzero(np.isnan(values)):
@@ -44,7 +45,7 @@ def varied(result):
 
 
 def numbers(result):
-    """Columns that came out of the runs and differ: those that every run has last."""
+    """The columns with results that differ; those that every run has come last."""
     found = [name for name, column in result.sweep.items()
              if "." not in name and name not in ("point", "replicas") and not name.endswith(BESIDE)
              and len(np.unique(column[np.isfinite(column)])) > 1]
@@ -52,7 +53,7 @@ def numbers(result):
 
 
 def error_of(result, name):
-    """Bars; none where they are not known, as that of a mean over one replica."""
+    """Error bars; none if errors are not known, as for a mean over one replica."""
     error = result.sweep.get(name + "_error")
     return None if error is None else np.nan_to_num(error)
 
@@ -106,7 +107,8 @@ def draw_cooling(result, axes=None):
 # ---- the width of the interaction zone
 
 def draw_widths(result, keys, axes=None):
-    """Fig. 8. The width is counted to u_crit; the upper bar extends to u0/|slope|, where u+ would be 0 as in (13)."""
+    """Fig. 8. The bar shows the width to u_crit; the upper bar extends to u0/|slope|, where u+ would be 0 as in
+    (13)."""
     width = result.sweep["zone_width"]
     first = result.points[0] if result.points else result
     speed = keys.get(SPEED, np.full(len(width), first.setting("initial", "speed", 0.5)))
@@ -152,7 +154,8 @@ def commonest(values):
 # ---- anything else
 
 def draw_cuts(result, keys, axes=None):
-    """Each number of the summary against each key, the others at their commonest; without keys, point by point."""
+    """Each number of the summary against each key, with the other keys at their most frequent values; without keys,
+    against the number of the point."""
     names = numbers(result)
     columns = dict(list(keys.items())[:3]) or {"point": np.arange(len(result.sweep[names[0]]))}
     size = (max(5.6, 3 * len(columns)), 1.9 * len(names) + 0.3)
@@ -184,7 +187,7 @@ def spread(scale, values, ratio=30):
 
 
 def draw_map(result, keys, axes=None):
-    """Numbers over the plane of two keys; a cross where there is none."""
+    """Numbers in the plane of two keys; a cross marks a missing one."""
     names, (x_key, y_key) = numbers(result), sorted(keys, key=lambda key: -len(np.unique(keys[key])))
     columns = min(2 if len(names) < 5 else 3, len(names))
     rows = -(-len(names) // columns)

@@ -31,7 +31,7 @@ class Theory:
         return points[0][1] if points else None
 
     def equation(self, *quantities):
-        """How the table cites them, as `Eq. (7)` or `Eqs. (4), (5)`; without a number, as it stands."""
+        """The form in which the table is cited, `Eq. (7)` or `Eqs. (4), (5)`; without a number, the text itself."""
         cited = [next((row[4] for row in self.rows if row[0] == quantity), "") or quantity for quantity in quantities]
         numbers = [re.search(r"\d+", text) for text in cited]
         if not all(numbers):

@@ -1,4 +1,4 @@
-"""A gas between walls: where its particles are, who has the energy, and how much the walls have given (Du, Li and
+"""A gas between walls: the positions of its particles, their energies, and the energy from the walls (Du, Li and
 Kadanoff, Phys. Rev. Lett. 74, 1268, 1995)."""
 import numpy as np
 

@@ -1,6 +1,6 @@
 """Fig. 7: densities and velocities of right- and left-movers in the interaction zone of the late wet shock, averaged
-over time, beside the linear model of section VI: equations (9) and (10) with 2L of (13) and k = sqrt 6. The measured
-width is the length over which u+ falls from u0 to u_crit at its steepness; (13) counts the fall to 0."""
+over time, and the linear model of section VI: equations (9) and (10) with 2L of (13) and k = sqrt 6. The measured
+width is the length over which u+ falls from u0 to u_crit at its steepest slope; (13) counts the fall to 0."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, beside, stacked
@@ -66,7 +66,7 @@ def draw_zone(result, units, axes=None):
 
 
 def draw_width(ax, measured, error, longer, model, top):
-    """The measured width as a bar above the curves, dotted to where u+ would be 0."""
+    """The measured width as a bar above the curves, dotted to the point at which u+ would be 0."""
     ax.errorbar([-measured / 2, measured / 2], [1.3 * top] * 2, xerr=error / 2, color="k", lw=1, capsize=3)
     ax.plot([-longer / 2, longer / 2], [1.3 * top] * 2, "k:", lw=1)
     ax.text(0, 1.45 * top, rf"$2L={measured:.3g}\pm{error:.2g}$ from $u_0$ to $u_\mathrm{{crit}}$" + "\n"

@@ -1,4 +1,4 @@
-"""Reports: `cradle.report(result)` writes what a run was and came to as one HTML page that can be sent."""
+"""Reports: `cradle.report(result)` writes the settings and results of a run as one HTML page that can be sent."""
 from __future__ import annotations
 
 import os
@@ -12,9 +12,9 @@ def report(result: Result | str | os.PathLike, output: str | os.PathLike | None 
     """Writes one self-contained HTML file and returns its path: no network, light and dark, prints; same file, same
     bytes.
 
-    result: an opened result, or the path of one, or FILE.part of a run in progress.
+    result: an opened result, its path, or FILE.part of a run in progress.
     output: by default the result's path with .html. Written beside its place and renamed.
-    Raises Error where the result cannot be read or the page not be written.
+    Raises Error if the result cannot be read or the page cannot be written.
     """
     opened = result if isinstance(result, Result) else open(result)
     output = os.fspath(output or os.path.splitext(opened.path.removesuffix(".part"))[0] + ".html")

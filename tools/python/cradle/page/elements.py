@@ -1,4 +1,4 @@
-"""The pieces that the page is made of: texts, numbers, tables that sort."""
+"""The elements of the page: texts, numbers, sortable tables."""
 from __future__ import annotations
 
 import html
@@ -32,7 +32,7 @@ def number(value: Any, digits: int = 12) -> str:
 
 
 def measured(value: float, error: float) -> str:
-    """A mean with its standard error: both to the same place, two digits of the error."""
+    """A mean with its standard error: both to the same place, with two digits of the error."""
     if not (math.isfinite(value) and math.isfinite(error) and error > 0):
         return number(value, 8)
     place = 1 - math.floor(math.log10(error))
@@ -43,14 +43,14 @@ def measured(value: float, error: float) -> str:
 
 
 def powers(decimal: str) -> str:
-    """The exponent as a power of ten, and minus signs as such."""
+    """Formats exponents as powers of ten, and uses true minus signs."""
     mantissa, _, exponent = decimal.lower().partition("e")
     mantissa = mantissa.replace("-", "−")
     return f"{mantissa} × 10<sup>{int(exponent)}</sup>".replace("-", "−") if exponent else mantissa
 
 
 def enclosed(low: str, high: str) -> tuple[str, int]:
-    """A number of which bounds are proved, as decimals: the digits that are right and the radius; how many they are."""
+    """A number with proved bounds, as decimals: the right digits and the radius, and the number of right digits."""
     with localcontext() as context:
         context.prec = 2 * max(len(low), len(high)) + 10
         below, above = Decimal(low), Decimal(high)
@@ -80,7 +80,7 @@ def rows(entries: Iterable[tuple[str, str, str]]) -> str:
 
 
 def sortable(caption: str, heads: Sequence[str], rows: Iterable[Sequence[tuple[Any, str]]]) -> str:
-    """A table that sorts by a column when its head is pressed. Cells are pairs: what is sorted by, HTML."""
+    """A table that is sorted by a column when its head is pressed. Cells are pairs: sort key, HTML."""
     lines = [f'<div class="wide"><table class="sortable"><caption>{caption}</caption>\n<thead><tr>'
              + "".join(f'<th scope=col aria-sort="none"><button type="button">{head}</button>' for head in heads)
              + "</thead>\n<tbody>"]

@@ -1,4 +1,4 @@
-"""The numbers that matter of a result, with the digits that are proved or trusted, and what is to be warned of."""
+"""The important numbers of a result, with the digits that are proved or trusted, and warnings."""
 from __future__ import annotations
 
 import os
@@ -17,7 +17,7 @@ COLLAPSE = {"time": "collapse", "last_collision": "last collision", "gap": "smal
 
 
 def numbers(result: Result) -> str:
-    """HTML; of ensembles and sweeps see tables.py."""
+    """The HTML of the numbers; for ensembles and sweeps see tables.py."""
     known = proved(result)
     entries = [*known, *(entry for entry in ends(result) if entry[0] not in {label for label, *_ in known}),
                *collapse(result), *snapshots(result), *zone(result), *scenario(result)]
@@ -37,7 +37,7 @@ def last(table: Table, name: str):
 
 
 def ends(result: Result) -> list[tuple[str, str, str]]:
-    """First and last samples of the series of a run."""
+    """The first and the last samples of the series of a run."""
     series = result.series
     if "time" not in series or not len(series["time"]) or isinstance(series["energy"], Table):  # of an ensemble
         return []
@@ -67,7 +67,7 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
 
 
 def resolved(value: float, error: float) -> int:
-    """Digits of a double that mean something beside its error: two of the error, 17 at most."""
+    """The significant digits of a double with this error: two digits of the error, 17 at most."""
     if not (np.isfinite(error) and error > 0 and value):
         return 17
     return int(np.clip(np.floor(np.log10(abs(value))) - np.floor(np.log10(error)) + 2, 2, 17))
@@ -87,7 +87,7 @@ def collapse(result: Result) -> list[tuple[str, str, str]]:
 
 
 def snapshots(result: Result) -> list[tuple[str, str, str]]:
-    """The smallest gap of all, and the rounding accumulated by the last."""
+    """The smallest gap of all, and the rounding errors accumulated up to the last snapshot."""
     gaps = [(table.attributes["gap_min"], table.attributes["time"]) for table in result.snapshots
             if "gap_min" in table.attributes]
     if not gaps:
@@ -128,7 +128,7 @@ def certificate(result: Result) -> str:
 
 
 def proved(result: Result) -> list[tuple[str, str, str]]:
-    """Energy and fronts at the end, with the digits that are right."""
+    """Energy and fronts at the end, with the digits that are proved."""
     exact = result.exact.get("series", {})
     entries = []
     for name, label in END.items():
@@ -143,7 +143,7 @@ def proved(result: Result) -> list[tuple[str, str, str]]:
 
 
 def failures(result: Result, place: str = "") -> list[str]:
-    """Of an ensemble, or of a point at `place` in its file: which replicas failed, why, and how to run one again."""
+    """For an ensemble, or a point at `place` in its file: which replicas failed, why, and how to run one again."""
     failed = result.table("replicas/failed")
     if not len(failed.get("index", ())):
         return []
@@ -160,7 +160,7 @@ def failures(result: Result, place: str = "") -> list[str]:
 
 
 def warnings(result: Result, version: str) -> list[str]:
-    """What makes numbers of this result doubtful or incomplete, HTML each; version: of the program, "" if unknown."""
+    """The reasons to doubt numbers of this result, as HTML; version: of the program, "" if unknown."""
     about = result.attributes
     found = []
     if result.in_progress:

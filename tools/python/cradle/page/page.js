@@ -1,4 +1,5 @@
-// Tables sort by the column whose head is pressed, once more in reverse; what is folded is printed unfolded.
+// Tables are sorted by the column whose head is pressed, and reversed when it is pressed again. Folded parts are
+// unfolded for printing.
 "use strict";
 (function () {
   function compare(a, b) {

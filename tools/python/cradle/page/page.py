@@ -1,4 +1,4 @@
-"""The page: which sections a result gets, and what they hold. Everything is in it, nothing is asked of any network."""
+"""The page: the sections of a result's report and their contents. It contains everything and needs no network."""
 from __future__ import annotations
 
 import base64
@@ -18,7 +18,7 @@ from .numbers import last, numbers, warnings
 from .svg import picture
 from .tables import tables
 
-# What the browser is allowed: nothing that is not in the page.
+# The browser may load nothing that is not in the page.
 POLICY = ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
           "connect-src data: blob:; worker-src blob:")
 LONGEST_SCENE = 100_000  # characters; listed particles may be many
@@ -27,7 +27,7 @@ LONGEST_SCENE = 100_000  # characters; listed particles may be many
 def page(result: Result) -> str:
     """The HTML text of a result's report."""
     version = of_program(["--version"])
-    # Warnings first: else a reader has taken the numbers for granted.
+    # Warnings come first, before a reader takes the numbers for granted.
     sections = [("numbers", "Numbers", numbers(result)), ("tables", "Tables", tables(result)),
                 ("pictures", "Pictures", pictures(result)), ("microscope", "Microscope", microscope(result)),
                 ("again", "Run it again", again(result)), ("cost", "Cost", rows(cost(result))),
@@ -48,13 +48,13 @@ def page(result: Result) -> str:
 
 
 def beside(name: str) -> str:
-    """A file of this folder; within a script or a style nothing may end it."""
+    """The text of a file in this folder; the closing tags of scripts and styles are escaped in it."""
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), name), encoding="utf-8") as file:
         return re.sub("</(?=script|style)", r"<\\/", file.read(), flags=re.IGNORECASE)
 
 
 def of_program(words: list[str]) -> str:
-    """What the program prints; nothing where it is not there."""
+    """The program's output; empty if there is no program."""
     try:
         return program.call(words).out.strip()
     except Error:
@@ -62,7 +62,7 @@ def of_program(words: list[str]) -> str:
 
 
 def lead(result: Result) -> str:
-    """One line on what it is."""
+    """One line that describes the result."""
     scene, about = result.scene, result.attributes
     law, initial = scene.get("law", {}), scene.get("initial", {})
     parts = [result.kind if result.kind != "trust" else "comparison of precisions"]
@@ -89,7 +89,7 @@ def pictures(result: Result) -> str:
 
 
 def microscope(result: Result) -> str:
-    """The canvas in which world lines are flown through, where the result has what it takes."""
+    """The canvas in which world lines are explored, if the result has the data."""
     from .. import microscope as module
     data = module.data(result)
     if data is None:
@@ -104,7 +104,7 @@ def microscope(result: Result) -> str:
 
 
 def command_of(result: Result) -> list[str]:
-    """The words after `cradle` that make this result from the scene beside it."""
+    """The words after `cradle` that make this result from its scene."""
     name = str(result.attributes.get("name", "scene"))
     output = os.path.basename(result.path.removesuffix(".part"))
     about = result.attributes
@@ -129,7 +129,7 @@ def command_of(result: Result) -> list[str]:
 
 
 def again(result: Result) -> str:
-    """The command and the scene, which gives the same bytes."""
+    """The command and the scene, which give the same bytes."""
     scene, name = result.scene_text, str(result.attributes.get("name", "scene"))
     command = "cradle " + " ".join(command_of(result))
     version = text(result.attributes.get("cradle_version", ""))
@@ -145,7 +145,7 @@ def again(result: Result) -> str:
 
 
 def cost(result: Result) -> list[tuple[str, str, str]]:
-    """What was done, and what the program expects of it; wall times are in no result."""
+    """The work that was done, and the program's estimate; results do not store wall times."""
     collisions = last(result.series, "collisions")
     if collisions is None and "collisions" in result.replicas:
         collisions = int(result.replicas["collisions"].values.sum())

@@ -1,4 +1,4 @@
-"""Pictures inside the page, as images that need no file: SVG, or PNG where that is smaller."""
+"""Pictures inside the page: SVG, or PNG if that is smaller."""
 from __future__ import annotations
 
 import base64

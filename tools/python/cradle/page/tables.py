@@ -1,4 +1,4 @@
-"""Tables of ensembles, sweeps and comparisons of precision, which sort by the column that is pressed."""
+"""Sortable tables of ensembles, sweeps and comparisons of precision."""
 from __future__ import annotations
 
 import numpy as np
@@ -13,7 +13,7 @@ QUANTILES = (0, 0.05, 0.25, 0.5, 0.75, 0.95, 1)
 
 
 def tables(result: Result) -> str:
-    """HTML, empty where there is nothing of the kind."""
+    """The HTML of the tables, empty if there are none."""
     if len(result.trust):
         return precisions(result)
     if len(result.sweep):
@@ -33,7 +33,7 @@ def head(name: str, symbols: str) -> str:
 
 
 def means(result: Result) -> str:
-    """Of an ensemble every quantity at the end: mean and standard error over the replicas."""
+    """Every quantity of an ensemble at the end: mean and standard error over the replicas."""
     entries = []
     for name in result.series:
         quantity = result.series[name]
@@ -69,13 +69,13 @@ def replicas(result: Result) -> str:
 
 
 def outcome_texts(table: Table) -> dict[int, str]:
-    """How a replica ended, by the numbers of the column: "0 reached the end, 1 inelastic collapse, ..."."""
+    """The texts for the numbers in the column of outcomes: "0 reached the end, 1 inelastic collapse, ..."."""
     said = table["outcome"].description.split(", ") if "outcome" in table else []
     return {int(word): meaning for word, _, meaning in (one.partition(" ") for one in said) if word.isdigit()}
 
 
 def points(result: Result) -> str:
-    """One row per point: what varies, then means with their standard errors."""
+    """One row per point: the varied values, then means with their standard errors."""
     table = result.sweep
     names = [name for name in table.columns if not name.endswith(BESIDE)]
     labels = [point.label for point in result.points]
@@ -95,7 +95,7 @@ def points(result: Result) -> str:
 
 
 def precisions(result: Result) -> str:
-    """One row per precision: until when it was right, and digits at the end."""
+    """One row per precision: the time until which it was right, and digits at the end."""
     heads = ["precision", "coordinates", "outcome", "collisions right", "until t", "counts right until t",
              "proved until t", "digits of energy at the end", "digits of front at the end"]
     rows = []

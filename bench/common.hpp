@@ -1,0 +1,54 @@
+#pragma once
+// Shared by the benchmarks: the clock, and the initial states of the published collision counts.
+
+#include <ctime>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/rows.hpp"
+
+namespace bench {
+
+using cradle::ParticleIndex;
+using ParticlesPointer = std::shared_ptr<const cradle::Particles<double>>;
+
+// By default processor time of the thread, which other work on the machine disturbs less.
+inline double seconds_now(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
+  std::timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Finaliser of splitmix64.
+inline std::uint64_t hash(std::uint64_t i) {
+  std::uint64_t z = i + 0x9E3779B97F4A7C15;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
+  return z ^ (z >> 31);
+}
+
+// The paper's two rows, displaced by hashes.
+template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex n) {
+  const auto displacement = [](ParticleIndex i) {
+    return static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072;
+  };
+  return std::make_shared<cradle::Rows<T>>(cradle::symmetric_rows<T>(n, T(1) / T(2), T(1), displacement));
+}
+
+// Random velocities; masses are 1 and `other_mass` in turn.
+inline ParticlesPointer gas(ParticleIndex n, double other_mass = 1) {
+  std::vector<double> x, v, m;
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
+    const std::uint64_t bits = hash(i);
+    x.push_back(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29);
+    v.push_back(static_cast<double>(bits >> 28) * 0x1p-35 - 1);
+    if (other_mass != 1) m.push_back(i % 2 == 0 ? 1 : other_mass);
+  }
+  return std::make_shared<cradle::List<double>>(std::move(x), std::move(v), std::move(m));
+}
+
+}  // namespace bench

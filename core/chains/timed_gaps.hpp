@@ -81,7 +81,10 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     std::copy_n(&other.cells_[from], gaps, &cells_[to]);
     std::copy_n(&other.lag_[from], gaps, &lag_[to]);
   }
-  void take_lags(Slot first, const T* lags, std::size_t gaps) { std::copy_n(lags, gaps, &lag_[first]); }
+  // Local times have changed; those that are not negative any more have no lag.
+  void drop_lags(Slot first, std::size_t gaps) {
+    for (Slot s = first; s < first + gaps; ++s) lag_[s] = is_negative(cells_[s].time) ? lag_[s] : T(0);
+  }
   void set_ledger(const Ledger<T>& ledger) { lost_ = ledger; }
   void resize(std::size_t slots) {  // gaps are then put into so many slots
     cells_.resize(slots);

@@ -4,10 +4,10 @@
 
 namespace cradle {
 
-// Steps are as long as some four passes take: the densest part decides. Where a step fails, those since the last undo
-// copy are undone and made again, shorter ones, up to where it failed.
-bool run_steps(Step step, Step step_with_lags, StepLine& line, const StepTask& task, StepScalars& scalars,
-               StepPace& pace, StepResult& result) {
+// Steps are as long as some five passes take: the densest part decides. If a step fails, those since the last undo copy
+// are undone and made again, as shorter ones, up to where it failed.
+bool run_steps(Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,
+               StepResult& result) {
   constexpr int most_failures = 6, least_stretch = 4, most_stretch = 512;
   constexpr std::uint64_t least_collisions = 6;  // in a step, for steps to pay
   double now = line.least_due(), kept_at = now, failed_at = now, shorter = 1;
@@ -20,13 +20,13 @@ bool run_steps(Step step, Step step_with_lags, StepLine& line, const StepTask& t
       kept = result, kept_at = now;
       if (failures == 0) {
         pace.stretch = std::min(pace.stretch + pace.stretch / 16 + 1, most_stretch);
-        pace.passes = std::min(pace.passes * 1.01, 4.);
+        pace.passes = std::min(pace.passes * 1.01, 5.);
       }
       left = pace.stretch, failures = 0;
     }
     if (!(now < failed_at)) shorter = 1;
     const double end = std::min(now + pace.length * shorter, task.stop);
-    const int passes = (line.lags ? step_with_lags : step)(line, task, scalars, end, result);
+    const int passes = step(line, task, scalars, end, result);
     if (passes < 0) {
       if (++failures > most_failures || !(now + pace.length * shorter / 4 > now)) return false;
       line.restore(), scalars.restore();

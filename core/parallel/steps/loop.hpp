@@ -9,7 +9,7 @@ namespace cradle {
 // them is for the event loop.
 using Step = int (*)(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result);
 
-bool run_steps(Step step, Step step_with_lags, StepLine& line, const StepTask& task, StepScalars& scalars,
-               StepPace& pace, StepResult& result);
+bool run_steps(Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,
+               StepResult& result);
 
 }  // namespace cradle

@@ -1,7 +1,6 @@
 #pragma once
-// How a segment of a chain in gaps uses steps (steps.hpp): it puts its copy into a line of arrays, makes the collisions
-// at cuts, fronts and walls itself, and takes back gaps, counts and losses. Where steps cannot, it is as before, but
-// for what the segment's part has logged: the segment takes its copy anew and goes through its event loop.
+// How a segment of a chain in gaps uses steps (steps.hpp): steps work on the segment's copy, and leave collisions at
+// cuts, fronts and walls to it. If steps fail, the segment takes its copy anew and goes through its event loop.
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +47,8 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     report.last_collision = std::max(made_.last, inner.last);
     if (report.counts.collisions >= most) return false;
     ledger_.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
-    take_back();
+    part.line_.gaps.set_ledger(ledger_);
+    part.line_.gaps.drop_lags(Part::first(), line_.gaps());
     return true;
   }
 
@@ -81,16 +81,9 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   }
 
   void fill() {
-    const auto& gaps = part_->line_.gaps;
+    auto& gaps = part_->line_.gaps;
     constexpr Slot first = Part::first();
-    line_.resize(part_->last() + 1 - first);
-    line_.lags = false;
-    for (std::size_t i = 0; i < line_.gaps(); ++i) {
-      const auto& cell = gaps[first + i];
-      line_.gap[i] = cell.gap, line_.closing[i] = cell.closing, line_.time[i] = cell.time, line_.due[i] = cell.due;
-      line_.lag[i] = gaps.lag(first + i);
-      line_.lags |= line_.lag[i] != 0;
-    }
+    line_.take(&gaps[first], &gaps.lag(first), part_->last() + 1 - first);
     if constexpr (!equal)
       for (std::size_t i = 0; i < line_.gaps(); ++i) {
         const TwoMasses<double> masses = part_->line_.masses.of_pair(first + i);
@@ -99,37 +92,27 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
         line_.fraction[i] = left_lighter ? -fraction : fraction;
         line_.reduced[i] = masses.reduced();
       }
-    line_.bound_tiles();
     set_inner();
   }
   void set_inner() {
     line_.inner_first = static_cast<std::uint32_t>(part_->inner_first_ - Part::first());
     line_.inner = static_cast<std::uint32_t>(part_->inner_);
   }
-  void take_back() {
-    auto& gaps = part_->line_.gaps;
-    for (std::size_t i = 0; i < line_.gaps(); ++i) {
-      auto& cell = gaps[Part::first() + i];
-      cell.gap = line_.gap[i], cell.closing = line_.closing[i], cell.time = line_.time[i], cell.due = line_.due[i];
-    }
-    gaps.take_lags(Part::first(), line_.lag, line_.gaps());
-    gaps.set_ledger(ledger_);
-  }
 
   // ---- the plain loop's collision (GapLine::strike), where all that is not plain is refused
   bool collide(std::size_t i) override {
-    const double time = line_.due[i], closing = line_.closing[i], since = flown(i, time);
+    Gap<double>& cell = line_.cells[i];
+    const double time = cell.due, closing = cell.closing, since = flown(i, time);
     if (since <= time * 0x1p-40 || is_negative(since)) return false;
     const Slot s = Part::first() + i;
     const Outcome<double> outcome = part_->outcome_at_edge(*law_, s, closing);
     const auto edge = part_->at_edge(s, time, closing, outcome, *report_);
     set_inner();
     if (edge.notice != Notice::none) return false;
-    line_.gap[i] = 0;
-    line_.closing[i] = outcome.closing;
-    line_.time[i] = time;
-    line_.due[i] = StepLine::never;
-    line_.lag[i] = 0;
+    cell.gap = 0;
+    cell.closing = outcome.closing;
+    cell.time = time;
+    cell.due = line_.due[i] = StepLine::never;
     if (i > 0 && !kick(i - 1, outcome.to_left, time)) return false;
     if (i + 1 < line_.gaps() && !kick(i + 1, outcome.to_right, time)) return false;
     if (!edge.own) return true;
@@ -140,25 +123,25 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     return true;
   }
   bool kick(std::size_t i, double gain, double time) {
+    Gap<double>& cell = line_.cells[i];
     const double since = flown(i, time);
     if (!(since > 0)) return false;
-    line_.gap[i] -= line_.closing[i] * since;
-    line_.time[i] = time;
-    line_.lag[i] = 0;
-    line_.closing[i] += gain;
-    if (line_.gap[i] < part_->line_.gaps.floor()) return false;
-    line_.due[i] = line_.closing[i] > 0 ? time + line_.gap[i] / line_.closing[i] : StepLine::never;
+    cell.gap -= cell.closing * since;
+    cell.time = time;
+    cell.closing += gain;
+    if (cell.gap < part_->line_.gaps.floor()) return false;
+    cell.due = line_.due[i] = cell.closing > 0 ? time + cell.gap / cell.closing : StepLine::never;
     return true;
   }
   double flown(std::size_t i, double time) const {
-    const double since = time - line_.time[i];
-    return line_.lags ? since - line_.lag[i] : since;
+    const double then = line_.cells[i].time, since = time - then;
+    return is_negative(then) ? since - line_.lag[i] : since;
   }
 
   void outcomes(const std::uint32_t* gaps, std::size_t count) override {
     for (std::size_t k = 0; k < count; ++k) {
       const Outcome<double> outcome =
-          (*law_)(line_.closing[gaps[k]], part_->line_.masses.of_pair(Part::first() + gaps[k]));
+          (*law_)(line_.cells[gaps[k]].closing, part_->line_.masses.of_pair(Part::first() + gaps[k]));
       line_.after[k] = outcome.closing, line_.to_left[k] = outcome.to_left, line_.to_right[k] = outcome.to_right;
       ledger_.add(outcome.energy_lost);
       made_.counts.below_cutoff += outcome.below_cutoff;

@@ -21,79 +21,96 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr bool planted(int error) { return error == CRADLE_PLANTED_ERROR; }
 
 using Lanes = hn::ScalableTag<double>;  // of neighbours that are compared
-using Few = hn::CappedTag<double, 4>;   // of the three gaps of a collision and the next one
-using Indices = hn::CappedTag<std::uint32_t, hn::MaxLanes(Lanes())>;
-constexpr std::size_t lanes = hn::MaxLanes(Lanes()), few = hn::MaxLanes(Few());
+constexpr std::size_t lanes = hn::MaxLanes(Lanes());
 
-// The places of a mask's bits, one after the other: Highway's own Compress copies a large table each time.
+// Gaps are looked at in groups of eight.
+constexpr std::size_t group = 8;
+using Group = hn::CappedTag<std::uint32_t, group>;
+
+// The places of a byte's bits, one after the other: Highway's own Compress copies a large table each time.
 struct Places {
-  alignas(64) std::uint32_t of[256][8] = {};
+  alignas(64) std::uint32_t of[256][group] = {};
   constexpr Places() {
     for (unsigned bits = 0; bits < 256; ++bits)
-      for (unsigned k = 0, n = 0; k < 8; ++k)
+      for (unsigned k = 0, n = 0; k < group; ++k)
         if (bits >> k & 1) of[bits][n++] = k;
   }
 };
 constexpr Places places;
 
-// Appends the numbers of the mask's lanes, counted from `base`, to a list.
-template <class Mask> HWY_INLINE void append(Mask mask, std::size_t base, std::uint32_t* list, std::size_t& length) {
+template <class D> HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
   std::uint8_t bits[8];
-  hn::StoreMaskBits(Lanes(), mask, bits);
-  const unsigned set = bits[0] & ((1U << lanes) - 1);
-  const Indices indices;
-  hn::StoreU(hn::Add(hn::LoadU(indices, places.of[set]), hn::Set(indices, static_cast<std::uint32_t>(base))), indices,
-             list + length);
+  hn::StoreMaskBits(d, mask, bits);
+  return bits[0] & ((1U << hn::MaxLanes(d)) - 1);
+}
+
+// Appends the numbers of a group's gaps that are set, counted from `base`, to a list.
+HWY_INLINE void append(unsigned set, std::size_t base, std::uint32_t* list, std::size_t& length) {
+  const Group d;
+  for (std::size_t k = 0; k < group; k += hn::MaxLanes(d))
+    hn::StoreU(hn::Add(hn::LoadU(d, places.of[set] + k), hn::Set(d, static_cast<std::uint32_t>(base))), d,
+               list + length + k);
   length += static_cast<std::size_t>(__builtin_popcount(set));
 }
 
 // The arrays and lists of a line, where the compiler keeps them in registers.
 struct Local {
   explicit HWY_INLINE Local(StepLine& line)
-      : gap(line.gap), closing(line.closing), time(line.time), due(line.due), lag(line.lag), bound(line.bound),
-        fraction(line.fraction), reduced(line.reduced), struck(line.struck.data()),
-        struck_mass(line.struck_mass.data()), inner_first(line.inner_first), inner(line.inner),
-        candidates(line.candidates.data()), waiting(line.waiting.data()), first(line.first.data()),
-        edges(line.edges.data()) {}
+      : cells(line.cells), lag(line.lag), due(line.due), bound(line.bound), fraction(line.fraction),
+        reduced(line.reduced), struck(line.struck.data()), struck_mass(line.struck_mass.data()),
+        inner_first(line.inner_first), inner(line.inner), candidates(line.candidates.data()),
+        waiting(line.waiting.data()), first(line.first.data()), edges(line.edges.data()), visited(line.visited.data()) {
+  }
 
-  double *gap, *closing, *time, *due, *lag, *bound, *fraction, *reduced, *struck, *struck_mass;
+  Gap<double>* cells;
+  const double* lag;
+  double *due, *bound, *fraction, *reduced, *struck, *struck_mass;
   std::size_t inner_first, inner;
-  std::uint32_t *candidates, *waiting, *first, *edges;
-  std::size_t count = 0, later = 0, firsts = 0, at_edges = 0;  // in these lists
+  std::uint32_t *candidates, *waiting, *first, *edges, *visited;
+  std::size_t count = 0, later = 0, firsts = 0, at_edges = 0, visits = 0;  // in these lists
 };
 
-// Lists all gaps that are due up to `end`, from the tiles that may have some; renews the bounds of these.
-HWY_INLINE void scan(StepLine& line, Local& l, double end) {
+// Which of a group are due up to `last`.
+HWY_INLINE unsigned due_of_group(const double* due, hn::Vec<Lanes> last) {
   const Lanes d;
-  std::uint32_t* tiles = l.waiting;
-  const auto last = hn::Set(d, end), never = hn::Set(d, StepLine::never);
-  std::size_t visited = 0;
-  for (std::size_t k = 0, all = line.tiles(); k < all; k += lanes)
-    append(hn::Le(hn::LoadU(d, l.bound + k), last), k, tiles, visited);
-  for (std::size_t v = 0; v < visited; ++v) {
-    const std::size_t from = StepLine::tile * tiles[v];
-    line.guard(tiles[v]);
-    auto later = never;
-    for (std::size_t k = from; k < from + StepLine::tile; k += lanes) {
-      const auto due = hn::Load(d, l.due + k);
-      const auto now = hn::Le(due, last);
-      later = hn::Min(later, hn::IfThenElse(now, never, due));
-      append(now, k, l.candidates, l.count);
-    }
-    l.bound[tiles[v]] = hn::GetLane(hn::MinOfLanes(d, later));
+  unsigned set = 0;
+  for (std::size_t k = 0; k < group; k += lanes) set |= bits_of(d, hn::Le(hn::Load(d, due + k), last)) << k;
+  return set;
+}
+
+// Lists all gaps that are due up to `end`, and the tiles that have some.
+HWY_INLINE void scan(StepLine& line, Local& l, double end) {
+  const auto last = hn::Set(Lanes(), end);
+  for (std::size_t k = 0, all = line.tiles(); k < all; k += group)
+    append(due_of_group(l.bound + k, last), k, l.visited, l.visits);
+  for (std::size_t v = 0; v < l.visits; ++v) {
+    line.guard(l.visited[v]);
+    const std::size_t from = StepLine::tile * l.visited[v];
+    for (std::size_t k = from; k < from + StepLine::tile; k += group)
+      append(due_of_group(l.due + k, last), k, l.candidates, l.count);
   }
 }
 
-// Whether a gap is due before its neighbours, 7 on the left and 8 on the right.
+// The bounds of the tiles in which collisions were made, or beside them.
+HWY_INLINE void renew_bounds(const Local& l) {
+  const Lanes d;
+  if (planted(4)) return;
+  for (std::size_t v = 0; v < l.visits; ++v) {
+    const double* due = l.due + StepLine::tile * l.visited[v];
+    auto least = hn::Load(d, due);
+    for (std::size_t k = lanes; k < StepLine::tile; k += lanes) least = hn::Min(least, hn::Load(d, due + k));
+    l.bound[l.visited[v]] = hn::GetLane(hn::MinOfLanes(d, least));
+  }
+}
+
+// Whether a gap is due before its neighbours, eight on either side.
 HWY_INLINE bool is_first(const double* due) {
   if (planted(1)) return true;
   const Lanes d;
-  const auto own = hn::Set(d, *due);
-  std::size_t no_later = 0;
-  for (std::size_t k = 0; k < 8; k += lanes)
-    no_later += hn::CountTrue(d, hn::Le(hn::LoadU(d, due - 7 + k), own)) +
-                hn::CountTrue(d, hn::Le(hn::LoadU(d, due + 1 + k), own));
-  return no_later == 1;
+  auto least = hn::Min(hn::LoadU(d, due - group), hn::LoadU(d, due + 1));
+  for (std::size_t k = lanes; k < group; k += lanes)
+    least = hn::Min(least, hn::Min(hn::LoadU(d, due - group + k), hn::LoadU(d, due + 1 + k)));
+  return hn::AllTrue(d, hn::Lt(hn::Set(d, *due), least));
 }
 
 // Which of the candidates are first in their neighbourhoods, and which must wait.
@@ -113,110 +130,87 @@ HWY_INLINE void decide(Local& l, double end) {
   }
 }
 
-// A neighbour of a collision has a new time of collision: it is a candidate if it is due now and was not before.
-HWY_INLINE void renew(Local& l, double end, std::size_t i, double due_before, double due_now) {
-  double& bound = l.bound[i / StepLine::tile];
-  if (!planted(4)) bound = bound < due_now ? bound : due_now;
-  l.waiting[l.later] = static_cast<std::uint32_t>(i);
-  l.later += (due_now <= end) & (due_before > end);
+// The gaps beside a collision may lie in other tiles, and they are candidates if they are due now and were not before.
+HWY_INLINE void follow(Local& l, std::size_t left, unsigned left_soon, std::size_t right, unsigned right_soon) {
+  const std::size_t left_tile = left / StepLine::tile, right_tile = right / StepLine::tile;
+  l.visited[l.visits] = static_cast<std::uint32_t>(left_tile);
+  l.visited[l.visits + 1] = static_cast<std::uint32_t>(right_tile);
+  l.visits += left_tile != right_tile ? 2 : 0;
+  l.waiting[l.later] = static_cast<std::uint32_t>(left);
+  l.later += left_soon;
+  l.waiting[l.later] = static_cast<std::uint32_t>(right);
+  l.later += right_soon;
 }
 
-// Numbers for the gaps left, at, and right of a collision, and for the next one, which does not change.
-struct Four {
-  alignas(32) double of[4];
-  HWY_INLINE auto from(std::size_t k) const { return hn::Load(Few(), of + k); }
-};
-
-// The gap right of a collision, in a vector of all four or of the last ones.
-HWY_INLINE double third(hn::Vec<Few> last) {
-#if HWY_MAX_BYTES >= 32
-  return hn::GetLane(hn::UpperHalf(hn::Half<Few>(), last));
-#else
-  return hn::GetLane(last);
-#endif
-}
-
-// The task's numbers, read before anything is stored.
-struct Constants {
-  explicit HWY_INLINE Constants(const StepTask& task)
-      : cutoff(hn::Set(Few(), task.cutoff)), half_sum(hn::Set(Few(), task.half_sum)),
-        restitution(hn::Set(Few(), task.restitution)), floor{task.floor, -StepLine::never, task.floor,
-                                                             -StepLine::never} {}
-  hn::Vec<Few> cutoff, half_sum, restitution;
-  Four floor;
-};
+// Two numbers that are computed at once, by any processor: those of the gaps left and right of a collision, or two of
+// one gap.
+typedef double Both __attribute__((vector_size(16), may_alias));
+HWY_INLINE Both both(double x) { return Both{x, x}; }
+HWY_INLINE Both lower(Both a, Both b) { return Both{a[0], b[0]}; }
+HWY_INLINE Both upper(Both a, Both b) { return Both{a[1], b[1]}; }
+HWY_INLINE Both least(Both a, Both b) { return a < b ? a : b; }
+// The numbers of a gap as they lie in memory: gap and local time, then time of collision and closing speed.
+HWY_INLINE Both* pairs(Gap<double>& cell) { return reinterpret_cast<Both*>(&cell.gap); }
+static_assert(sizeof(Gap<double>) == 2 * sizeof(Both) && alignof(Gap<double>) % alignof(Both) == 0);
 
 // What is known of all collisions of a step.
 struct Made {
-  hn::Mask<Few> wrong;        // out of order, or for the event loop
-  hn::Vec<Few> latest;        // time
-  hn::Vec<Lanes> lost, rest;  // for the ledger
+  Both flown = both(StepLine::never), own_flown = flown;  // least times since the collision before: beside, and own
+  Both gap = flown;                                       // least gaps beside
+  double latest;
+  hn::Vec<Lanes> lost = hn::Zero(Lanes()), rest = hn::Zero(Lanes());  // for the ledger
   std::uint64_t below_cutoff = 0;
-};
 
-struct Dues {
-  double left, right;
-};
-
-// Makes the collision at the gap i, number k of its pass: g -= w since, w += gain, and what follows. Returns when the
-// gaps beside it are due now.
-template <StepLaw law, bool unequal, bool lags>
-HWY_INLINE Dues collide(const StepLine& line, const Local& l, const Constants& task, std::size_t i, std::size_t k,
-                        Made& made) {
-  constexpr double never = StepLine::never;
-  const Few f;
-  const Four is_side{1, 0, planted(3) ? 0. : 1., planted(3) ? 1. : 0.}, is_own{0, 1, 0, 0}, is_next{0, 0, 0, 1},
-      of_left{-1, 0, 1, 0};
-  const Four soon{0, 0x1p-40, 0, -never};
-  const auto zero = hn::Zero(f), one = hn::Set(f, 1.);
-  const auto x = hn::Set(f, l.due[i]), w = hn::Set(f, l.closing[i]);
-  const double fraction = unequal ? l.fraction[i] : 0;
-  if (law != StepLaw::any) l.struck[k] = l.closing[i];
-  if (unequal) l.struck_mass[k] = l.reduced[i];
-  made.latest = hn::Max(made.latest, x);
-  Dues dues{never, never};
-  for (std::size_t h = 0; h < 4; h += few) {
-    const std::size_t at = i - 1 + h;
-    const auto side = hn::Eq(is_side.from(h), one), own = hn::Eq(is_own.from(h), one),
-               next = hn::Eq(is_next.from(h), one);
-    const auto g = hn::LoadU(f, l.gap + at), u = hn::LoadU(f, l.closing + at), then = hn::LoadU(f, l.time + at),
-               was_due = hn::LoadU(f, l.due + at);
-    auto after = w, gain = w;
-    if constexpr (law == StepLaw::any) {
-      after = hn::Set(f, line.after[k]);
-      gain = hn::IfThenElse(hn::Lt(of_left.from(h), zero), hn::Set(f, line.to_left[k]), hn::Set(f, line.to_right[k]));
-    } else {
-      const auto elastic = hn::Lt(w, task.cutoff);
-      if constexpr (law == StepLaw::hard) {
-        gain = hn::Mul(hn::IfThenElse(elastic, one, task.half_sum), w);
-        after = hn::Sub(w, hn::Add(gain, gain));
-      } else {
-        after = hn::Neg(hn::Mul(hn::IfThenElse(elastic, one, task.restitution), w));
-        gain = hn::Mul(hn::Sub(w, after), hn::Set(f, 0.5));
-      }
-      if constexpr (unequal) {
-        const auto handed = hn::Add(gain, gain), share = hn::Set(f, fraction);
-        const auto small = hn::Mul(handed, hn::Abs(share)), large = hn::Sub(handed, small);
-        gain = hn::IfThenElse(hn::Gt(hn::Mul(share, of_left.from(h)), zero), large, small);
-      }
-    }
-    auto since = hn::Sub(x, then);
-    if constexpr (lags) since = hn::Sub(since, hn::LoadU(f, l.lag + at));
-    made.wrong = hn::Or(made.wrong, hn::Le(since, hn::Mul(x, soon.from(h))));
-    const auto g_now = hn::Sub(g, hn::Mul(u, since)), u_now = hn::Add(u, gain);
-    made.wrong = hn::Or(made.wrong, hn::Lt(g_now, task.floor.from(h)));
-    const auto due_now =
-        hn::IfThenElse(hn::And(side, hn::Gt(u_now, zero)), hn::Add(x, hn::Div(g_now, u_now)), hn::Set(f, never));
-    // What was just stored takes a while to be loaded in another width: dues come from the vector.
-    if (h == 0) dues.left = hn::GetLane(due_now);
-    if (h == (few > 2 ? 0 : 2)) dues.right = third(due_now);
-    hn::StoreU(hn::IfThenElse(next, g, hn::IfThenElseZero(side, g_now)), f, l.gap + at);
-    hn::StoreU(hn::IfThenElse(next, u, hn::IfThenElse(own, after, u_now)), f, l.closing + at);
-    hn::StoreU(hn::IfThenElse(next, then, x), f, l.time + at);
-    hn::StoreU(hn::IfThenElse(next, was_due, due_now), f, l.due + at);
-    if constexpr (lags) hn::StoreU(hn::IfThenElseZero(next, hn::LoadU(f, l.lag + at)), f, l.lag + at);
+  // Whether every collision came after the last ones at its gaps and left no gap below the floor.
+  HWY_INLINE bool in_order(double floor, double end) const {
+    return std::min(flown[0], flown[1]) > 0 && own_flown[0] > end * 0x1p-40 && std::min(gap[0], gap[1]) >= floor;
   }
-  return dues;
+};
+
+// Makes the collision at the gap i, number k of its pass: beside it g -= w since, w += gain, and what follows.
+template <StepLaw law, bool unequal>
+HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, double end, std::size_t i, std::size_t k,
+                        Made& made) {
+  Both *const left = pairs(l.cells[i - 1]), *const own = pairs(l.cells[i]), *const right = pairs(l.cells[i + 1]);
+  const double time = l.due[i], w = own[1][1];
+  const Both x = both(time), g = lower(left[0], right[0]), then = upper(left[0], right[0]),
+             was_due = lower(left[1], right[1]), u = upper(left[1], right[1]);
+  double after = 0;
+  Both gain{};
+  if constexpr (law == StepLaw::any) {
+    after = line.after[k], gain = Both{line.to_left[k], line.to_right[k]};
+  } else {
+    double handed = 0;  // to each side, as far as masses are equal
+    if constexpr (law == StepLaw::hard) {
+      handed = (w < task.cutoff ? 1 : task.half_sum) * w;
+      after = w - (handed + handed);
+    } else {
+      after = -((w < task.cutoff ? 1 : task.restitution) * w);
+      handed = (w - after) * 0.5;
+    }
+    gain = both(handed);
+    if constexpr (unequal) {
+      const double share = l.fraction[i], all = handed + handed, small = all * std::abs(share), large = all - small;
+      gain = Both{share, -share} < 0 ? both(large) : both(small);
+      l.struck_mass[k] = l.reduced[i];
+    }
+    l.struck[k] = w;
+  }
+  Both since = x - then;
+  if (std::min(then[0], then[1]) < 0) [[unlikely]]
+    since -= then < 0 ? Both{l.lag[i - 1], l.lag[i + 1]} : both(0);
+  const Both g_now = g - u * since, u_now = u + gain;
+  made.flown = least(since, made.flown);
+  made.own_flown = least(x - upper(own[0], own[0]), made.own_flown);
+  made.gap = least(g_now, made.gap);
+  made.latest = time > made.latest ? time : made.latest;
+  const Both due = u_now > 0 ? x + g_now / u_now : both(StepLine::never);
+  left[0] = lower(g_now, x), left[1] = lower(due, u_now);
+  own[0] = Both{0, time}, own[1] = Both{StepLine::never, after};
+  right[0] = upper(g_now, x), right[1] = planted(3) ? lower(due, u_now) : upper(due, u_now);
+  l.due[i - 1] = due[0], l.due[i] = StepLine::never, l.due[i + 1] = due[1];
+  const auto soon = (due <= end) & (was_due > end);
+  follow(l, i - 1, soon[0] & 1, i + 1, soon[1] & 1);
 }
 
 // Enters the collisions of a pass in the ledger (ledger.hpp), by their closing speeds in `struck`.
@@ -241,47 +235,42 @@ template <bool unequal> HWY_INLINE void enter(const Local& l, const StepTask& ta
 }
 
 // A step (loop.hpp).
-template <StepLaw law, bool unequal, bool lags>
+template <StepLaw law, bool unequal>
 int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result) {
-  constexpr int most_passes = 24;
-  static_assert(most_passes < StepLine::tile);  // StepLine::guard
+  constexpr int most_passes = 128, reach = StepLine::tile - 1;  // StepLine::guard
   Local l(line);
-  const Constants constants(task);
-  Made made{hn::FirstN(Few(), 0), hn::Set(Few(), result.last), hn::Zero(Lanes()), hn::Zero(Lanes())};
+  Made made{.latest = result.last};
   int passes = 0;
   for (scan(line, l, end); l.count > 0; ++passes, std::swap(l.candidates, l.waiting), l.count = l.later) {
-    if (passes == most_passes || l.count > line.gaps()) return -1;
+    if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return -1;
+    if (passes % reach == reach - 1) [[unlikely]]
+      for (std::size_t k = 0; k < l.count; ++k) line.guard(l.candidates[k] / StepLine::tile);
     decide(l, end);
     if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
     if (law == StepLaw::any) scalars.outcomes(l.first, l.firsts);
-    for (std::size_t k = 0; k < l.firsts; ++k) {
-      const std::size_t i = l.first[k];
-      const Dues before{l.due[i - 1], l.due[i + 1]}, now = collide<law, unequal, lags>(line, l, constants, i, k, made);
-      renew(l, end, i - 1, before.left, now.left);
-      renew(l, end, i + 1, before.right, now.right);
-    }
+    for (std::size_t k = 0; k < l.firsts; ++k) collide<law, unequal>(line, l, task, end, l.first[k], k, made);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
-      const std::size_t i = l.edges[k];
-      const Dues before{i > 0 ? l.due[i - 1] : 0, l.due[i + 1]};
+      const std::size_t i = l.edges[k], left = i > 0 ? i - 1 : 0, right = i + 1;
+      const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
       if (!scalars.collide(i)) return -1;
-      if (i > 0) renew(l, end, i - 1, before.left, l.due[i - 1]);
-      renew(l, end, i + 1, before.right, l.due[i + 1]);
+      follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
     }
     if (law != StepLaw::any) enter<unequal>(l, task, made);
     result.collisions += l.firsts;
   }
-  result.last = hn::GetLane(made.latest);
+  renew_bounds(l);
+  result.last = made.latest;
   result.lost += hn::GetLane(hn::SumOfLanes(Lanes(), made.lost));
   result.rest += hn::GetLane(hn::SumOfLanes(Lanes(), made.rest));
   result.below_cutoff += made.below_cutoff;
-  return planted(2) || (hn::AllFalse(Few(), made.wrong) && result.last <= end) ? passes : -1;
+  return planted(2) || made.in_order(task.floor, end) ? passes : -1;
 }
 
 std::size_t width() { return lanes; }
 
 bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result) {
   const auto run_by = [&]<StepLaw law, bool unequal>() {
-    return run_steps(step<law, unequal, false>, step<law, unequal, true>, line, task, scalars, pace, result);
+    return run_steps(step<law, unequal>, line, task, scalars, pace, result);
   };
   if (task.law == StepLaw::hard)
     return task.unequal ? run_by.template operator()<StepLaw::hard, true>()

@@ -1,7 +1,7 @@
 #pragma once
 // Collisions without a queue, in steps of time and as vectors: the plain interface of a compiled unit. It takes a line
-// of gaps (line.hpp), a law and a time, and makes all collisions up to it, or says that it could not: then what it was
-// given is for the event loop (segment.hpp). Without the unit, or where it was built without Highway, there are no
+// of gaps (line.hpp), a law and a time, and makes all collisions up to it, or says that it could not: then the event
+// loop makes them (segment.hpp). Without the unit, or where it was built without Highway, there are no
 // steps and the event loop does everything. core/README.md, Steps, has the argument why the result is the same.
 
 #include <cstddef>
@@ -52,23 +52,24 @@ struct StepResult {
   double lost = 0, rest = 0;       // for Ledger::add_sums
 };
 
-// How a segment goes: steps of this length (0: unknown), such that about so many passes make one; an undo copy after so
-// many steps. After slabs in which steps did not do, so many are left to the event loop at once.
+// How a segment is computed: the length of a step (0: unknown), chosen such that it takes about so many passes; the
+// number of steps between undo copies. After time slabs in which steps failed, the next ones are left to the event
+// loop: `rest` is how many still are, `next_rest` how many will be after the next failure.
 struct StepPace {
-  double length = 0, passes = 4;
+  double length = 0, passes = 5;
   int stretch = 32;
   int rest = 0, next_rest = 1;
 };
 
 struct Steps {
   const char* target;  // the vectors for which it is compiled
-  // Makes all collisions of the task, or returns false and leaves anything in the line.
+  // Makes all collisions of the task; or returns false, and then the line may hold anything.
   bool (*run)(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result);
 };
 
 // Those for the vectors of this processor that are compiled, widest first.
 const std::vector<Steps>& all_steps();
-// The first one if it is faster than the event loop, else null.
+// The first of them if it is faster than the event loop, else null.
 const Steps* fastest_steps();
 
 }  // namespace cradle

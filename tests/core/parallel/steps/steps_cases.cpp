@@ -6,6 +6,7 @@
 // The same program is built with errors planted in the vectors (CMakeLists.txt): it must fail with each of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cstdio>
@@ -156,22 +157,27 @@ struct NoEdges final : StepScalars {
   void restore() override { ++undone; }
 };
 
+struct Gas {
+  std::vector<Gap<double>> gaps;
+  std::vector<double> lags;
+};
+
 // The middle is `dense` times as dense, and cold: a fast particle sends its impulse far through it.
-void fill_with_gas(StepLine& line, std::size_t gaps, double dense, std::uint64_t seed) {
+Gas random_gas(std::size_t gaps, double dense, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> speed;
-  line.resize(gaps);
+  Gas gas{std::vector<Gap<double>>(gaps), std::vector<double>(gaps)};
   double before = speed(random);
   for (std::size_t i = 0; i < gaps; ++i) {
     const bool middle = i / 100 == 2;
     const double next = speed(random) / (middle ? dense / 10 : 1), w = i == 0 || i + 1 == gaps ? -1e6 : before - next;
-    line.gap[i] = (0.5 + static_cast<double>(random() >> 11) * 0x1p-53) / (middle ? dense : 1);
-    line.closing[i] = w, line.time[i] = 0, line.lag[i] = 0;
-    line.due[i] = w > 0 ? line.gap[i] / w : StepLine::never;
+    Gap<double>& gap = gas.gaps[i];
+    gap.gap = (0.5 + static_cast<double>(random() >> 11) * 0x1p-53) / (middle ? dense : 1);
+    gap.closing = w;
+    gap.due = w > 0 ? gap.gap / w : StepLine::never;
     before = next;
   }
-  line.bound_tiles();
-  line.inner_first = 1, line.inner = static_cast<std::uint32_t>(gaps - 2);
+  return gas;
 }
 
 StepTask elastic_until(double stop) {
@@ -183,18 +189,18 @@ StepTask elastic_until(double stop) {
 }
 
 // Elastic collisions in the order of their times.
-std::uint64_t plain_loop(StepLine& line, double stop) {
+std::uint64_t plain_loop(std::vector<Gap<double>>& gaps, double stop) {
   for (std::uint64_t made = 0;; ++made) {
-    const auto i = static_cast<std::size_t>(std::min_element(line.due, line.due + line.gaps()) - line.due);
-    const double time = line.due[i], w = line.closing[i];
+    const auto next = std::ranges::min_element(gaps, {}, &Gap<double>::due);
+    const double time = next->due, w = next->closing;
     if (!(time <= stop)) return made;
-    for (const std::size_t k : {i - 1, i + 1}) {
-      line.gap[k] -= line.closing[k] * (time - line.time[k]);
-      line.time[k] = time;
-      line.closing[k] += w;
-      line.due[k] = line.closing[k] > 0 ? time + line.gap[k] / line.closing[k] : StepLine::never;
+    for (const auto beside : {next - 1, next + 1}) {
+      beside->gap -= beside->closing * (time - beside->time);
+      beside->time = time;
+      beside->closing += w;
+      beside->due = beside->closing > 0 ? time + beside->gap / beside->closing : StepLine::never;
     }
-    line.gap[i] = 0, line.closing[i] = -w, line.time[i] = time, line.due[i] = StepLine::never;
+    next->gap = 0, next->closing = -w, next->time = time, next->due = StepLine::never;
   }
 }
 
@@ -207,9 +213,10 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
     for (const double dense : {1., 300.})
       for (std::uint64_t seed = 1; seed < 20; ++seed) {
         SCOPED_TRACE(std::string(steps->target) + ", seed " + std::to_string(seed));
-        StepLine plain, line;
-        fill_with_gas(plain, gaps, dense, seed);
-        fill_with_gas(line, gaps, dense, seed);
+        Gas plain = random_gas(gaps, dense, seed), gas = plain;
+        StepLine line;
+        line.take(gas.gaps.data(), gas.lags.data(), gaps);
+        line.inner_first = 1, line.inner = static_cast<std::uint32_t>(gaps - 2);
         NoEdges scalars;
         StepResult result;
         StepPace pace{.length = 0.003};
@@ -218,12 +225,12 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
           continue;  // too few collisions in a step to pay
         }
         ++done;
-        EXPECT_EQ(result.collisions, plain_loop(plain, stop));
+        EXPECT_EQ(result.collisions, plain_loop(plain.gaps, stop));
         for (std::size_t i = 0; i < gaps; ++i) {
-          ASSERT_EQ(bits(line.gap[i]), bits(plain.gap[i])) << i;
-          ASSERT_EQ(bits(line.closing[i]), bits(plain.closing[i])) << i;
-          ASSERT_EQ(bits(line.time[i]), bits(plain.time[i])) << i;
-          ASSERT_EQ(bits(line.due[i]), bits(plain.due[i])) << i;
+          ASSERT_EQ(bits(gas.gaps[i].gap), bits(plain.gaps[i].gap)) << i;
+          ASSERT_EQ(bits(gas.gaps[i].closing), bits(plain.gaps[i].closing)) << i;
+          ASSERT_EQ(bits(gas.gaps[i].time), bits(plain.gaps[i].time)) << i;
+          ASSERT_EQ(bits(gas.gaps[i].due), bits(plain.gaps[i].due)) << i;
         }
         (dense > 1 ? undone_in_core : undone_in_gas) += scalars.undone;
       }

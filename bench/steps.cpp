@@ -4,6 +4,10 @@
 //
 //   cmake --preset release && cmake --build --preset release --target bench_steps
 //   build/release/bench/bench_steps [CASE...]
+//   build/release/bench/bench_steps threads
+//
+// The second one compares steps on two threads with steps on one, by the clock; beside it stands what the memory of the
+// machine allows: both copy as many gaps.
 //
 // Cases are those of bench/engine.cpp, and gases with masses 1 and 3, between walls, and with a restitution that
 // depends on the speed. Times are processor time of the thread. `late` is the last thirteenth of the time: 6000 to 6500
@@ -23,6 +27,7 @@
 #include "common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
@@ -67,6 +72,54 @@ bool compare(const char* name, const ParticlesPointer& scene, const Law& law, do
   return same;
 }
 
+// How many times as fast two threads are as one: pieces of the two runs alternate.
+bool compare_threads(const char* name, const ParticlesPointer& scene, double until, int pieces) {
+  using Chain = GapChain<double>;
+  using Law = Inelastic<double>;
+  const Law law(0.999, 1e-5);
+  TbbExecutor one(1), two(2);
+  Simulation<double, Law, Chain> alone(law, Chain(scene, 0.)), together(law, Chain(scene, 0.));
+  Segments<Law, Chain> by_one(workers(one), {.steps = fastest_steps()}),
+      by_two(workers(two), {.steps = fastest_steps()});
+  double of_one = 0, of_two = 0;
+  for (int k = 1; k <= pieces; ++k) {
+    const double to = until * k / pieces, start = seconds_now(CLOCK_MONOTONIC);
+    alone.advance(to, by_one);
+    const double between = seconds_now(CLOCK_MONOTONIC);
+    together.advance(to, by_two);
+    of_one += between - start, of_two += seconds_now(CLOCK_MONOTONIC) - between;
+  }
+  const bool same = alone.counts().collisions == together.counts().collisions;
+  const auto collisions = static_cast<double>(alone.counts().collisions);
+  std::printf("%-12s %10.0f collisions, million/s: one thread %5.1f, two %5.1f, ratio %.2f%s\n", name, collisions,
+              collisions / of_one / 1e6, collisions / of_two / 1e6, of_one / of_two,
+              same ? "" : " DIFFERENT COLLISIONS");
+  std::fflush(stdout);
+  return same;
+}
+
+// Each thread copies its half of so many gaps.
+void compare_copies(std::size_t gaps) {
+  std::vector<Gap<double>> from(gaps), to(gaps);
+  const auto copied_per_second = [&](std::size_t threads) {
+    TbbExecutor executor(static_cast<unsigned>(threads));
+    const Workers workers = cradle::workers(executor);
+    const std::size_t times = 100'000'000 / gaps;
+    const double start = seconds_now(CLOCK_MONOTONIC);
+    for (std::size_t k = 0; k < times; ++k, std::swap(from, to))
+      workers.run(threads, [&](std::size_t job, std::size_t) {
+        const std::size_t first = gaps * job / threads, last = gaps * (job + 1) / threads;
+        std::copy(from.begin() + static_cast<std::ptrdiff_t>(first), from.begin() + static_cast<std::ptrdiff_t>(last),
+                  to.begin() + static_cast<std::ptrdiff_t>(first));
+      });
+    return static_cast<double>(times * gaps) / (seconds_now(CLOCK_MONOTONIC) - start);
+  };
+  copied_per_second(2);
+  const double one = copied_per_second(1), two = copied_per_second(2);
+  std::printf("copies of %8zu gaps, million gaps/s: one thread %5.0f, two %5.0f, ratio %.2f\n", gaps, one / 1e6,
+              two / 1e6, two / one);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -76,15 +129,26 @@ int main(int argc, char** argv) {
   const SpeedDependent<double> of_speed(0.9, 0.1, 0.2);
   const std::vector<std::pair<const char*, std::function<bool(const char*)>>> cases{
       {"shock/8000", [&](const char* name) { return compare<Equal>(name, rows<double>(8000), law, 6500, 13); }},
+      {"gas/300", [&](const char* name) { return compare<Equal>(name, gas(300), law, 10000, 13); }},
       {"gas/1000", [&](const char* name) { return compare<Equal>(name, gas(1000), law, 3000, 13); }},
       {"gas/8000", [&](const char* name) { return compare<Equal>(name, gas(8000), law, 1000, 13); }},
       {"gas/1e5", [&](const char* name) { return compare<Equal>(name, gas(100'000), law, 100, 2); }},
       {"gas/1e6", [&](const char* name) { return compare<Equal>(name, gas(1'000'000), law, 40, 1); }},
+      {"gas/1e7", [&](const char* name) { return compare<Equal>(name, gas(10'000'000), law, 10, 1); }},
       {"masses/8000", [&](const char* name) { return compare<Unequal>(name, gas(8000, 3), law, 1000, 13); }},
       {"walls/8000", [&](const char* name) { return compare<Equal>(name, between_walls(8000), law, 1000, 13); }},
       {"speed/8000", [&](const char* name) { return compare<Unequal>(name, gas(8000), of_speed, 1000, 13); }}};
   std::printf("vectors: %s\n", fastest_steps() != nullptr ? fastest_steps()->target : "none");
   bool same = true;
+  if (argc == 2 && argv[1] == std::string("threads")) {
+    same &= compare_threads("shock/8000", rows<double>(8000), 6500, 13);
+    same &= compare_threads("gas/8000", gas(8000), 1000, 13);
+    same &= compare_threads("gas/1e5", gas(100'000), 100, 4);
+    same &= compare_threads("gas/1e6", gas(1'000'000), 40, 4);
+    same &= compare_threads("gas/1e7", gas(10'000'000), 10, 2);
+    for (const std::size_t gaps : {8000U, 1000000U, 10000000U}) compare_copies(gaps);
+    return same ? 0 : 1;
+  }
   for (const auto& [name, run] : cases)
     if (argc == 1 || std::find(argv + 1, argv + argc, std::string(name)) != argv + argc) same &= run(name);
   return same ? 0 : 1;

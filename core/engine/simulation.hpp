@@ -59,20 +59,21 @@ class Simulation {
   requires requires { typename Segments::Slab; }
   Status advance(const T& until, Segments& segments) {
     head_for(until);
-    const bool plain = policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_);
-    return plain ? make_collisions() : make_slabs(segments);
+    return plain_only() ? make_collisions() : make_slabs(segments);
   }
-  // The same, with observer(const Collision<T>&) called before every collision. If it throws, the collision has not
-  // been made.
+  // The same, with observer(const Collision<T>&) called before every collision, in their order. If it throws, the
+  // collision has not been made.
   template <class Observer> Status advance(const T& until, Observer&& observer) {
-    head_for(until);
-    const struct Forget {
-      Simulation& run;
-      ~Forget() { run.observer_ = nullptr; }
-    } forget{*this};
-    observer_ = std::ref(observer);
-    aim();
+    const Observed observed(*this, until, observer);
     return make_collisions();
+  }
+  // The same in segments. The observer may read the counts, but not the particles: they are as they were before the
+  // time slab.
+  template <class Segments, class Observer>
+  requires requires { typename Segments::Slab; }
+  Status advance(const T& until, Segments& segments, Observer&& observer) {
+    const Observed observed(*this, until, observer);
+    return plain_only() ? make_collisions() : make_slabs(segments);
   }
 
   // The same collision by collision, for several simulations side by side in one thread:
@@ -138,6 +139,21 @@ class Simulation {
   }
 
  private:
+  // An advance that is observed.
+  struct Observed {
+    template <class Observer> Observed(Simulation& of, const T& until, Observer& observer) : run(of) {
+      run.head_for(until);
+      run.observer_ = std::ref(observer);
+      run.aim();
+    }
+    ~Observed() { run.observer_ = nullptr; }
+    Observed(const Observed&) = delete;
+    Observed& operator=(const Observed&) = delete;
+    Simulation& run;
+  };
+
+  bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_); }
+
   void fill_queue() {
     queue_ = EventQueue(chain_.slots(), Chain::keys_are_exact, least_queue_bits_);
     queue_holds_ = true;
@@ -160,6 +176,8 @@ class Simulation {
 
   // The slab loop: time slabs in segments; where these cannot be used, collisions in the plain loop.
   template <class Segments> Status make_slabs(Segments& segments) {
+    typename Segments::Observer observer;
+    if (observer_) observer = [this](const auto& collisions) { notify_observer<typename Segments::Part>(collisions); };
     for (T from = last_collision_;;) {
       const double ahead = pacing_.ahead(counts_.collisions, from, target_.stop);
       if (auto plain = segments.plain_collisions(chain_, ahead)) {
@@ -168,9 +186,9 @@ class Simulation {
         from = last_collision_;
         continue;
       }
-      const T end = segments.end(chain_, from, target_.stop, ahead);
+      const T end = segments.end(chain_, from, target_.stop, ahead, static_cast<bool>(observer));
       release_queue();
-      const auto slab = segments.make(chain_, law_, end, pacing_.left(counts_.collisions));
+      const auto slab = segments.make(chain_, law_, end, pacing_.left(counts_.collisions), observer);
       if (!slab) continue;
       counts_ += slab->counts;
       if (slab->counts.collisions > 0) last_collision_ = slab->last_collision;
@@ -220,6 +238,28 @@ class Simulation {
     const T time = chain_.due(s);
     observer_({chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_,
                chain_.closing(s)});
+  }
+  // The same for all collisions of a time slab, before the chain takes them over. If the observer throws, the plain
+  // loop makes those before.
+  template <class Part> void notify_observer(const std::vector<typename Part::Observed>& collisions) {
+    const Counts counts = counts_;
+    const T last = last_collision_;
+    const auto undo = [&] { counts_ = counts, last_collision_ = last; };
+    std::uint64_t reported = 0;
+    try {
+      for (const auto& c : collisions) {
+        const auto [left, right] = Part::particles(chain_, c);
+        observer_({left, right, chain_.stamp(c.time), c.time - last_collision_, c.closing_speed});
+        last_collision_ = c.time;
+        counts_.below_cutoff += c.below_cutoff, counts_.merges += c.merges, ++counts_.collisions, ++reported;
+      }
+    } catch (...) {
+      undo();
+      observer_ = nullptr;
+      for (aim(); reported > 0; --reported) step();
+      throw;
+    }
+    undo();
   }
   // Counts every collision once, even if it is the next one several times before it is made.
   void count_close_call() {

@@ -43,7 +43,10 @@ template <Real T> class ClusterSegment {
   using Scalar = T;
   using Chain = ClusterChain<T>;
   using Gaps = typename ClusterLine<T>::Gaps;
-  struct Report : SegmentReport<T, ClusterCollision<T>> {
+  struct Observed : ObservedCollision<T> {
+    ParticleIndex left, right;
+  };
+  struct Report : SegmentReport<T, ClusterCollision<T>, Observed> {
     std::vector<CellsInARow> cells;  // of the segment's own that there are still, in `after`
     std::vector<T> carried;          // mass across the seam
   };
@@ -60,6 +63,14 @@ template <Real T> class ClusterSegment {
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
   bool across_seam() const { return seam_ > 0; }
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
+  // The collision at a gap of the segment's own, before it is made.
+  Observed observed(Slot s, const T& time) const {
+    return {{time, line_.closing(s), place_[s]}, line_.gaps[s].particle, line_.gaps[right(s)].particle};
+  }
+  // The particles on its left and right.
+  static std::pair<ParticleIndex, ParticleIndex> particles(const Chain&, const Observed& collision) {
+    return {collision.left, collision.right};
+  }
 
   // Copies what belongs to the segment; false where that is nothing, or where there are not enough particles around it.
   bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
@@ -82,9 +93,11 @@ template <Real T> class ClusterSegment {
     last_ = own_last_ + beside;
     seam_ = 0;
     line_.gaps.resemble(cells.gaps, last_ + 3);
+    if (report.observe) place_.resize(last_ + 1);
     for (std::size_t k = 0; k < beside; ++k) there = cells.left(there);
     for (Slot s = first_; s <= last_; ++s, there = cells.right(there)) {
       line_.gaps.copy(cells.gaps, there, s, 1);
+      if (report.observe) place_[s] = chain.place(there);
       line_.link(s - 1, s);
       if (cells.right(there) <= there && s < last_) seam_ = s;
     }
@@ -130,16 +143,17 @@ template <Real T> class ClusterSegment {
   }
 
   // False where the time slab is for the plain loop.
-  static bool continue_with(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
+  static bool fit(const std::vector<Report>& reports) {
+    return std::count_if(reports.begin(), reports.end(), [](const Report& r) { return !r.carried.empty(); }) < 2;
+  }
+  static void continue_with(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
     std::vector<CellsInARow> cells;
     std::vector<T> carried;
     for (const Report& report : reports) {
-      if (!carried.empty() && !report.carried.empty()) return false;
       cells.insert(cells.end(), report.cells.begin(), report.cells.end());
       if (carried.empty()) carried = report.carried;
     }
     chain.continue_with(after, std::move(cells), carried);
-    return true;
   }
 
  private:
@@ -184,6 +198,7 @@ template <Real T> class ClusterSegment {
   }
 
   ClusterLine<T> line_;
+  std::vector<ParticleIndex> place_;  // in the chain, of slots here, for observers
   Slot own_first_ = 0, own_last_ = 0, last_ = 0;
   Slot seam_ = 0;  // the last cell of the chain, if it is here and the first one too
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/gap_chain.hpp"
@@ -22,7 +23,8 @@ template <Real T, class Masses> class GapSegment {
   using Scalar = T;
   using Chain = GapChain<T, Masses>;
   using Gaps = typename Chain::Line::Gaps;
-  struct Report : SegmentReport<T, GapCollision<T>> {
+  using Observed = ObservedCollision<T>;
+  struct Report : SegmentReport<T, GapCollision<T>, Observed> {
     FrontMove<T> to_left, to_right;  // at the ends of a line
   };
 
@@ -38,6 +40,16 @@ template <Real T, class Masses> class GapSegment {
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
   bool across_seam() const { return across_seam_; }
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
+  // The collision at a gap of the segment's own, before it is made.
+  Observed observed(Slot s, const T& time) const {
+    return {time, line_.closing(s),
+            ring_ > 0 ? static_cast<ParticleIndex>(in_chain(s)) - ring_first_ : line_.particle(s)};
+  }
+  // The particles on its left and right.
+  static std::pair<ParticleIndex, ParticleIndex> particles(const Chain& chain, const Observed& collision) {
+    const ParticleIndex left = collision.place;
+    return {left, chain.on_ring() && left + 1 == chain.count() ? 0 : left + 1};
+  }
 
   // Copies what belongs to the segment. Never false: gaps do not go.
   bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
@@ -100,9 +112,9 @@ template <Real T, class Masses> class GapSegment {
     report.to_right.wall = walls_.tally(End::right);
   }
 
-  static bool continue_with(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
+  static bool fit(const std::vector<Report>&) { return true; }
+  static void continue_with(Chain& chain, Gaps& after, const std::vector<Report>& reports) {
     chain.continue_with(after, reports.front().to_left, reports.back().to_right);
-    return true;
   }
 
  private:

@@ -17,6 +17,7 @@
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/engine/ties.hpp"
+#include "cradle/core/parallel/observed.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
 
 namespace cradle {
@@ -28,7 +29,7 @@ struct Own {
 };
 
 // What a segment has made of a time slab. Parts add what they hand back to their chain.
-template <Real T, class CutCollision> struct SegmentReport {
+template <Real T, class CutCollision, class Observed> struct SegmentReport {
   bool plain = false;         // a time slab for the plain loop
   bool nothing_left = false;  // what the segment owned has merged with what others own
   Counts counts;
@@ -37,6 +38,8 @@ template <Real T, class CutCollision> struct SegmentReport {
   StepPace pace;
   Ledger<T> lost;
   std::vector<CutCollision> left, right;  // at the cuts on either side
+  bool observe = false;                   // whether collisions of the segment's own are logged
+  std::vector<Observed> observed;
 };
 
 // A collision in a segment, and whether it is at a gap of the segment's own.
@@ -70,7 +73,9 @@ template <class Law, class Chain> class Segment {
         if (report.in_steps) return part_.give(chain, own, after, report);
       }
     if (!begin(chain, own, ghosts, report)) return;
-    Made made = make_collisions<false>(law, stop, most, report);
+    // Observers are given exact times; without one nobody pays for the log.
+    Made made = report.observe ? make_collisions<true>(law, stop, most, report)
+                               : make_collisions<false>(law, stop, most, report);
     if (made == Made::contested) {
       begin(chain, own, ghosts, report);
       made = make_collisions<true>(law, stop, most, report);
@@ -84,7 +89,7 @@ template <class Law, class Chain> class Segment {
 
   // Takes what is to be computed; false if there is nothing.
   bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
-    report.left.clear(), report.right.clear();
+    report.left.clear(), report.right.clear(), report.observed.clear();
     report.nothing_left = report.plain = report.in_steps = false;
     report.counts = {};
     return part_.take(chain, own, ghosts, report);
@@ -106,6 +111,13 @@ template <class Law, class Chain> class Segment {
   static bool is_for_plain(Notice notice) {
     return includes(notice, Notice::origin_must_move) || includes(notice, Notice::gap_below_floor) ||
            includes(notice, Notice::needs_slots);
+  }
+
+  // What has become of the collision logged last.
+  static void log(const Outcome<T>& outcome, bool own, Report& report) {
+    if (!own) return report.observed.pop_back();
+    report.observed.back().below_cutoff = outcome.below_cutoff;
+    report.observed.back().merges = outcome.event == Event::merge;
   }
 
   // The event loop of a segment.
@@ -146,12 +158,14 @@ template <class Law, class Chain> class Segment {
         passed = queue_.no_later_than(next);
         time = part_.due(s);
       }
+      if (exact && report.observe) report.observed.push_back(part_.observed(s, time));
       const auto [collision, own] = part_.collide(law, s, time, report);
       queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
       const Outcome<T>& outcome = collision.outcome;
       if (collision.notice != Notice::none && is_for_plain(collision.notice)) [[unlikely]]
         return Made::for_plain;
       if (own || !Ledger<T>::in_any_order) part_.lose(s, outcome.energy_lost);
+      if (exact && report.observe) log(outcome, own, report);
       if (!own) [[unlikely]] {
         if (report.nothing_left) return end(Made::all);
         continue;

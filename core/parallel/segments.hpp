@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -87,17 +88,24 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64 + 1;
     return std::exchange(plain_, 0);
   }
-  // Where the next time slab should end, with so many collisions ahead up to `stop`.
-  T end(const Chain& chain, const T& from, const T& stop, double ahead) const {
-    const std::size_t held = chain.last() + 1 - chain.first();
-    const double slabs = std::ceil(ahead / (per_gap_ * static_cast<double>(held)));
+  // Where the next time slab should end, with so many collisions ahead up to `stop`. Those that are observed are held
+  // in memory.
+  T end(const Chain& chain, const T& from, const T& stop, double ahead, bool observed) const {
+    const auto held = static_cast<double>(chain.last() + 1 - chain.first());
+    const double most = observed ? std::max(held, least_observed) : std::numeric_limits<double>::infinity();
+    const double slabs = std::ceil(ahead / std::min(per_gap_ * held, most));
     if (!(slabs > 1)) return stop;
     return from + (stop - from) / T(static_cast<std::int64_t>(std::min(slabs, 0x1p40)));
   }
 
+  using Part = typename Segment<Law, Chain>::Part;
+  // Is given all collisions of a time slab, in the order of the plain loop, before the chain is what they make of it.
+  // What it throws leaves the chain as it was.
+  using Observer = std::function<void(const std::vector<typename Part::Observed>&)>;
+
   // Makes all collisions up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain
-  // loop.
-  std::optional<Slab> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most) {
+  // loop. `observer` may be empty.
+  std::optional<Slab> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most, const Observer& observer) {
     if (chain.cramped(how_.ghosts)) {
       chain.make_room();
       weights_.clear();
@@ -113,8 +121,9 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     for (bool first = true; !todo.empty(); first = false) {
       workers_.run(todo.size(), [&](std::size_t job, std::size_t worker) {
         if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<Law, Chain>>(chain);
-        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, most, how_.steps, *after_,
-                               reports_[todo[job]]);
+        Report& report = reports_[todo[job]];
+        report.observe = static_cast<bool>(observer);
+        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, most, how_.steps, *after_, report);
       });
       for (const std::size_t k : todo) {
         if (reports_[k].plain) return give_up(chain);
@@ -135,8 +144,9 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
         first = false;
       }
     }
-    if (slab.counts.collisions >= most || !Segment<Law, Chain>::Part::continue_with(chain, *after_, reports_))
-      return give_up(chain);
+    if (slab.counts.collisions >= most || !Part::fit(reports_)) return give_up(chain);
+    if (observer) observer(in_order_.of(reports_));
+    Part::continue_with(chain, *after_, reports_);
     for (const Report& report : reports_) chain.lose(report.lost);
     statistics_.slabs += 1;
     statistics_.collisions += slab.counts.collisions;
@@ -150,8 +160,9 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
  private:
   using Report = typename Segment<Law, Chain>::Report;
-  bool in_steps() const { return how_.steps != nullptr && Stepped<Law, typename Segment<Law, Chain>::Part>::possible; }
+  bool in_steps() const { return how_.steps != nullptr && Stepped<Law, Part>::possible; }
   static constexpr double least_per_gap = 1. / 8;
+  static constexpr double least_observed = 1 << 14;  // collisions in a time slab, if there are as many
 
   std::optional<Slab> give_up(const Chain& chain) {
     const std::size_t held = chain.last() + 1 - chain.first();
@@ -269,6 +280,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   std::vector<Own> own_;
   std::vector<Report> reports_;
   std::optional<typename Chain::Line::Gaps> after_;  // the chain's gaps after the time slab
+  ObservedInOrder<typename Part::Observed> in_order_;
 };
 
 }  // namespace cradle

@@ -1,7 +1,11 @@
 #pragma once
-// Compares runs in segments with the plain loop, bit for bit: state, counts, energy, account, at several times.
+// Compares runs in segments with the plain loop, bit for bit: state, counts, energy, account, at several times; and, of
+// runs with an observer, every collision.
 
 #include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
 
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/core/parallel/segments.hpp"
@@ -61,18 +65,53 @@ template <class Run, class T> void expect_same_state(const Run& a, const Run& b,
   EXPECT_EQ(a.collided_particles(), b.collided_particles());
 }
 
-// Advances a run in segments and a run in the plain loop through the same times.
+// All that an observer of a run receives, in its order, and the counts that it reads then: a hash of it, since a run
+// has millions of collisions.
+template <class T> class Observed {
+ public:
+  template <class Run> auto by(const Run& run) {
+    return [this, &run](const Collision<T>& c) {
+      ++collisions_;
+      for (const T& number : {c.time.high, c.time.low, c.interval, c.closing_speed}) {
+        const double rounded = to_double(number);
+        add(std::bit_cast<std::uint64_t>(rounded));
+        add(std::bit_cast<std::uint64_t>(to_double(T(number - T(rounded)))));
+      }
+      const Counts& counts = run.counts();
+      add(static_cast<std::uint64_t>(c.left)), add(static_cast<std::uint64_t>(c.right));
+      add(counts.collisions), add(counts.below_cutoff), add(counts.merges);
+    };
+  }
+  std::uint64_t collisions() const { return collisions_; }
+  friend bool operator==(const Observed&, const Observed&) = default;
+
+ private:
+  void add(std::uint64_t number) {
+    hash_ = (hash_ ^ number) * 0x9E3779B97F4A7C15;
+    hash_ ^= hash_ >> 32;
+  }
+  std::uint64_t collisions_ = 0, hash_ = 0;
+};
+
+// Advances a run in segments, the same with an observer, and one in the plain loop, through the same times.
 template <class Chain, class T, class Law>
 SlabsMade expect_same_in_segments(const Scene<T>& scene, const Law& law, const SegmentsAs& as,
                                   const std::vector<T>& times) {
-  Simulation<T, Law, Chain> plain(law, Chain(scene, T(0))), segmented(law, Chain(scene, T(0)));
-  Segments<Law, Chain> segments(threads(as.threads), as.how);
+  using Run = Simulation<T, Law, Chain>;
+  Run plain(law, Chain(scene, T(0))), segmented(law, Chain(scene, T(0))), observed(law, Chain(scene, T(0)));
+  Segments<Law, Chain> segments(threads(as.threads), as.how), observed_segments(threads(as.threads), as.how);
+  Observed<T> in_plain, in_segments;
   for (const T& time : times) {
-    const Status status = plain.advance(time);
+    const Status status = plain.advance(time, in_plain.by(plain));
     EXPECT_EQ(segmented.advance(time, segments), status);
     expect_same_state(plain, segmented, time);
+    EXPECT_EQ(observed.advance(time, observed_segments, in_segments.by(observed)), status);
+    expect_same_state(plain, observed, time);
+    EXPECT_TRUE(in_segments == in_plain) << "other collisions, or in another order";
+    EXPECT_EQ(in_plain.collisions(), plain.counts().collisions);
     if (status != Status::reached) break;
   }
+  EXPECT_EQ(observed_segments.statistics().given_up > 0, segments.statistics().given_up > 0);
   return {segments.statistics().slabs, segments.statistics().given_up, segments.statistics().again};
 }
 

@@ -94,24 +94,27 @@ inline Group profile_table(Profile&& p, const std::string& name) {
 template <Real T> class EventRecorder {
  public:
   void operator()(const Collision<T>& c) {
-    left_.push_back(static_cast<std::uint64_t>(c.left));
-    right_.push_back(static_cast<std::uint64_t>(c.right));
+    // Room for many at once: a test for each column would take longer than all else here.
+    if (rows_ == left_.size()) resize(std::max<std::size_t>(2 * rows_, 1 << 10));
+    left_[rows_] = static_cast<std::uint64_t>(c.left);
+    right_[rows_] = static_cast<std::uint64_t>(c.right);
     const T time = c.time.value();
-    time_.push_back(time);
-    low_.push_back(to_double(difference(c.time, Pair<T>{T(rounded(time)), T(0)})));
-    interval_.push_back(c.interval);
-    speed_.push_back(c.closing_speed);
+    time_[rows_] = time;
+    low_[rows_] = to_double(difference(c.time, Pair<T>{T(rounded(time)), T(0)}));
+    interval_[rows_] = c.interval;
+    speed_[rows_] = c.closing_speed;
+    ++rows_;
   }
   /// Records the kind of the last collision, from the engine's counts after it. Call it before the next collision.
   void made(const Counts& now) {
-    if (kind_.size() < left_.size())
-      kind_.push_back(now.merges > before_.merges ? 2 : now.below_cutoff > before_.below_cutoff ? 1 : 0);
-    before_ = now;
+    if (rows_ > 0) kind_[rows_ - 1] = now.merges > merges_ ? 2 : now.below_cutoff > below_cutoff_ ? 1 : 0;
+    merges_ = now.merges, below_cutoff_ = now.below_cutoff;
   }
 
-  std::size_t rows() const { return left_.size(); }
+  std::size_t rows() const { return rows_; }
   /// The rows since the last call.
   Recorded<T> take() {
+    resize(std::exchange(rows_, 0));
     return {events_table(),
             columns<T>(taken(left_), taken(right_), taken(time_), taken(low_), taken(interval_), taken(speed_),
                        taken(kind_)),
@@ -127,8 +130,15 @@ template <Real T> class EventRecorder {
       return T(to_double(time));
   }
 
+  void resize(std::size_t rows) {
+    for (auto* column : {&left_, &right_, &kind_}) column->resize(rows);
+    for (auto* column : {&time_, &interval_, &speed_}) column->resize(rows);
+    low_.resize(rows);
+  }
+
+  std::size_t rows_ = 0;
   std::vector<std::uint64_t> left_, right_, kind_;
-  Counts before_;
+  std::uint64_t merges_ = 0, below_cutoff_ = 0;  // before the last collision
   std::vector<T> time_, interval_, speed_;
   std::vector<double> low_;
 };

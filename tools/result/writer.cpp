@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <memory>
 
 #include "cradle/tools/result/hdf5.hpp"
 #include "cradle/tools/result/seal.hpp"
@@ -127,24 +128,35 @@ template <class Each> void write_groups(hid_t file, const Result& result, const 
   }
 }
 
+// The bytes of a file, its seal included. (A string would be filled with zeros first.)
+class Image {
+ public:
+  explicit Image(const Result& result) {
+    hdf5::silence();
+    const Handle file = file_in_memory();
+    write_groups(file, result, [](hid_t group, const Group& table) {
+      for (const auto& column : table.columns) write_column(group, column);
+    });
+    check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
+    const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+    if (size <= 0) throw hdf5::failure(no_room);
+    const auto length = static_cast<std::size_t>(size);
+    memory_ = std::make_unique_for_overwrite<char[]>(length + seal_size);
+    if (H5Fget_file_image(file, memory_.get(), length) != size) throw hdf5::failure(no_room);
+    const std::string seal = seal_of({memory_.get(), length});
+    std::copy(seal.begin(), seal.end(), memory_.get() + length);
+    bytes_ = {memory_.get(), length + seal_size};
+  }
+  std::string_view bytes() const { return bytes_; }
+
+ private:
+  std::unique_ptr<char[]> memory_;
+  std::string_view bytes_;
+};
+
 }  // namespace
 
-std::string file_image(const Result& result) {
-  hdf5::silence();
-  const Handle file = file_in_memory();
-  write_groups(file, result, [](hid_t group, const Group& table) {
-    for (const auto& column : table.columns) write_column(group, column);
-  });
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
-  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  if (size <= 0) throw hdf5::failure(no_room);
-  std::string image;
-  image.reserve(static_cast<std::size_t>(size) + seal_size);
-  image.resize(static_cast<std::size_t>(size));
-  if (H5Fget_file_image(file, image.data(), image.size()) != size) throw hdf5::failure(no_room);
-  image += seal_of(image);
-  return image;
-}
+std::string file_image(const Result& result) { return std::string(Image(result).bytes()); }
 
 void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string& path) {
   hdf5::silence();
@@ -183,13 +195,13 @@ void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string
   whole.put_in_place();
 }
 
-void write_result(const Result& result, const std::string& path) { replace_file(path, file_image(result)); }
+void write_result(const Result& result, const std::string& path) { replace_file(path, Image(result).bytes()); }
 
 void write_or_keep(const Result& result, const std::string& path) {
-  const std::string image = file_image(result);
+  const Image image(result);
   std::string trouble;
   try {
-    return replace_file(path, image);
+    return replace_file(path, image.bytes());
   } catch (const Error& error) {
     trouble = error.what();
   }
@@ -198,7 +210,7 @@ void write_or_keep(const Result& result, const std::string& path) {
     if (::mkdtemp(folder.data()) == nullptr)
       throw Error({folder, 0, ""}, "could not be made", "", "make room", Exit::io);
     const auto elsewhere = (folder / std::filesystem::path(path).filename()).string();
-    replace_file(elsewhere, image);
+    replace_file(elsewhere, image.bytes());
     trouble += "; what was computed is in " + elsewhere + ", move it from there";
   } catch (const std::exception& error) {
     trouble += std::string("; it could not be kept elsewhere either: ") + error.what();

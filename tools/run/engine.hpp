@@ -80,12 +80,13 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
       : run_(std::forward<Arguments>(arguments)...), segments_(workers, {.steps = fastest_steps()}) {}
 
   Status advance(const T& until, const Observer<T>& observer) override {
-    if constexpr (has_chain)
-      if (observer) return run_.advance(until, observer);
-    if constexpr (!std::same_as<RunSegments, NoSegments>)
-      return run_.advance(until, segments_);
-    else
+    if constexpr (!std::same_as<RunSegments, NoSegments>) {
+      return observer ? run_.advance(until, segments_, observer) : run_.advance(until, segments_);
+    } else {
+      if constexpr (has_chain)
+        if (observer) return run_.advance(until, observer);
       return run_.advance(until);
+    }
   }
 
   const Counts& counts() const override { return run_.counts(); }

@@ -18,7 +18,8 @@ namespace {
 constexpr std::uint64_t collisions_between_checks = 1 << 13;  // of the clock
 constexpr std::chrono::seconds between_statuses(2);
 constexpr double worth_keeping = 60;  // seconds of computing that a new run must not overwrite
-constexpr std::uint64_t most_waiting = std::uint64_t{1} << 22;  // numbers in memory that are not in the journal
+constexpr std::uint64_t most_waiting = std::uint64_t{1}
+                                       << 22;  // numbers in memory that are not in a journal that has begun
 
 }  // namespace
 
@@ -69,7 +70,13 @@ void RunFiles::append(const RunRecord& record) {
 void RunFiles::write_waiting() {
   if (!journal_) journal_.emplace(journal_of(file_), header_, nullptr, Sync::no);
   if (waiting_.tables().empty()) return;
-  append(waiting_.tables());
+  RunRecord record(std::move(waiting_.tables()));
+  try {
+    append(record);
+  } catch (...) {
+    waiting_.tables() = std::move(std::get<std::vector<Group>>(record));
+    throw;
+  }
   waiting_ = GrowingTables();
 }
 
@@ -78,7 +85,8 @@ void RunFiles::add(Group&& rows) {
       std::all_of(rows.columns.begin(), rows.columns.end(), [](const Column& c) { return c.rows() == 0; });
   if (none && !rows.columns.empty() && rows.attributes.empty()) return;
   waiting_.add(std::move(rows));
-  if (!complained_ && numbers_in(waiting_.tables()) > most_waiting) saved([this] { write_waiting(); });
+  const std::uint64_t most = journal_ ? most_waiting : most_in_memory;
+  if (!complained_ && numbers_in(waiting_.tables()) > most) saved([this] { write_waiting(); });
 }
 
 void RunFiles::count(std::uint64_t collisions) {
@@ -124,16 +132,20 @@ void RunFiles::keep(const RunStatus& status, const std::function<void(StateWrite
 
 void RunFiles::finish(Result&& end, RunEnd how) {
   const std::string path = journal_of(file_);
-  const auto pieces = [&](const std::function<void(Group &&)>& each) {
+  // Rows in memory are gone after the last time.
+  const auto pieces = [&](bool last_time, const std::function<void(Group &&)>& each) {
     if (journal_ && for_each_piece(path, each) != records_)
       throw Error({path, 0, ""}, "not what was written", "records are missing",
                   "check the disk; `cradle resume` continues from the last checkpoint", Exit::io);
-    for (const std::vector<Group>* more : {&waiting_.tables(), &std::as_const(end.groups)})
-      for (const Group& rows : *more) each(Group(rows));
+    const auto all = [&](std::vector<Group>& groups) {
+      for (Group& rows : groups) last_time ? each(std::move(rows)) : each(Group(rows));
+    };
+    all(waiting_.tables());
+    all(end.groups);
   };
   const auto gathered = [&](Reading reading) {
     GrowingTables tables(reading);
-    pieces([&](Group&& rows) { tables.add(std::move(rows)); });
+    pieces(reading == Reading::everything, [&](Group&& rows) { tables.add(std::move(rows)); });
     return Result{end.attributes, std::move(tables).in_order()};
   };
   // A number takes at least eight bytes in the journal, so few journals must be read twice.
@@ -142,7 +154,7 @@ void RunFiles::finish(Result&& end, RunEnd how) {
   Result whole = gathered(most > most_in_memory ? Reading::ends : Reading::everything);
   if (numbers_in(whole.groups) > most_in_memory) {
     write_in_pieces(
-        whole, [&](const auto& put) { pieces([&](Group&& rows) { put(rows); }); }, file_);
+        whole, [&](const auto& put) { pieces(true, [&](Group&& rows) { put(rows); }); }, file_);
   } else {
     if (most > most_in_memory) whole = gathered(Reading::everything);
     write_or_keep(whole, file_);

@@ -26,6 +26,7 @@ class GrowingTables {
   /// Throws Error (Exit::io) if the columns differ from those of the table.
   void add(Group&& rows);
   const std::vector<Group>& tables() const { return tables_; }
+  std::vector<Group>& tables() { return tables_; }
   /// The tables in the order of results.
   std::vector<Group> in_order() &&;
 

@@ -63,15 +63,16 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   StepTask task_of(double stop, std::uint64_t most) const {
     const auto& gaps = part_->line_.gaps;
     StepTask task;
-    if constexpr (std::same_as<Law, Inelastic<double>>) {
-      task.law = law_->soft() ? StepLaw::soft : StepLaw::hard;
-      task.restitution = law_->restitution();
-      task.half_sum = law_->half_sum();
-      task.cutoff = law_->cutoff();
-      task.lost = law_->lost_share();
-      if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
-      task.unequal = !equal;
-    }
+    if constexpr (std::same_as<Law, Inelastic<double>>)
+      if (!report_->observe) {  // else `outcomes` is to log every collision
+        task.law = law_->soft() ? StepLaw::soft : StepLaw::hard;
+        task.restitution = law_->restitution();
+        task.half_sum = law_->half_sum();
+        task.cutoff = law_->cutoff();
+        task.lost = law_->lost_share();
+        if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
+        task.unequal = !equal;
+      }
     task.floor = gaps.floor();
     task.rounder = gaps.ledger().rounder();
     task.per_fine = gaps.ledger().per_fine();
@@ -109,6 +110,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     const auto edge = part_->at_edge(s, time, closing, outcome, *report_);
     set_inner();
     if (edge.notice != Notice::none) return false;
+    if (edge.own) log(i, outcome.below_cutoff);
     cell.gap = 0;
     cell.closing = outcome.closing;
     cell.time = time;
@@ -138,6 +140,14 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     return is_negative(then) ? since - line_.lag[i] : since;
   }
 
+  // Logs a collision before it is made, if it is observed.
+  void log(std::size_t i, bool below_cutoff) {
+    if (!report_->observe) return;
+    auto observed = part_->observed(Part::first() + i, line_.cells[i].due);
+    observed.below_cutoff = below_cutoff;
+    report_->observed.push_back(observed);
+  }
+
   void outcomes(const std::uint32_t* gaps, std::size_t count) override {
     for (std::size_t k = 0; k < count; ++k) {
       const Outcome<double> outcome =
@@ -145,6 +155,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
       line_.after[k] = outcome.closing, line_.to_left[k] = outcome.to_left, line_.to_right[k] = outcome.to_right;
       ledger_.add(outcome.energy_lost);
       made_.counts.below_cutoff += outcome.below_cutoff;
+      log(gaps[k], outcome.below_cutoff);
     }
   }
 
@@ -155,13 +166,15 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
              report_->left.size(),
              report_->right.size(),
              report_->to_left.at_end.size(),
-             report_->to_right.at_end.size()};
+             report_->to_right.at_end.size(),
+             report_->observed.size()};
   }
   void restore() override {
     made_ = kept_.made, ledger_ = kept_.ledger;
     part_->set_edges(kept_.edges);
     report_->left.resize(kept_.left), report_->right.resize(kept_.right);
     report_->to_left.at_end.resize(kept_.at_left), report_->to_right.at_end.resize(kept_.at_right);
+    report_->observed.resize(kept_.observed);
     set_inner();
   }
 
@@ -169,7 +182,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     Made made;
     Ledger<double> ledger;
     typename Part::Edges edges;
-    std::size_t left, right, at_left, at_right;  // lengths of logs
+    std::size_t left, right, at_left, at_right, observed;  // lengths of logs
   };
 
   StepLine line_;

@@ -22,7 +22,8 @@ class StepScalars {
 
   // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order.
   virtual bool collide(std::size_t gap) = 0;
-  // StepLaw::any: what comes of collisions at so many inner gaps; enters them in counts and ledger.
+  // StepLaw::any: what comes of collisions at so many inner gaps; enters them in counts and ledger, and logs them where
+  // they are observed.
   virtual void outcomes(const std::uint32_t* gaps, std::size_t count) = 0;
   // An undo copy of what all of this has entered anywhere.
   virtual void keep() = 0;

@@ -108,6 +108,30 @@ TEST(Segments, SingleStepsAfterAnInterrupt) {
   expect_same_state(plain, stepped, 560.);
 }
 
+// Each collision is observed once, whatever the observer throws.
+TEST(Segments, ObserversThatThrowLeaveTheCollisionToBeMade) {
+  struct Thrown {};
+  auto plain = gap_run(rshock<double>(1400), law), run = gap_run(rshock<double>(1400), law);
+  Observed<double> in_plain, in_segments;
+  plain.advance(540, in_plain.by(plain));
+  GapSegments segments(threads(2), quick);
+  std::uint64_t calls = 0, thrown = 0;
+  const auto observer = [&, see = in_segments.by(run)](const Collision<double>& c) {
+    if (++calls % 7001 == 0) throw Thrown();
+    see(c);
+  };
+  for (bool over = false; !over;) try {
+      over = run.advance(540, segments, observer) == Status::reached;
+    } catch (const Thrown&) {
+      ++thrown;
+      EXPECT_EQ(run.counts().collisions, in_segments.collisions());
+    }
+  EXPECT_TRUE(in_segments == in_plain);
+  expect_same_state(plain, run, 540.);
+  EXPECT_GT(thrown, 5U);
+  EXPECT_GT(segments.statistics().slabs, 10U);
+}
+
 TEST(Segments, WhatAThreadThrowsIsThrownOn) {
   GapSegments segments({2,
                         [](std::size_t jobs, const Workers::Work& work) {

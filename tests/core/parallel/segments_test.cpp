@@ -1,6 +1,6 @@
 // One run in segments. Proves: for all cuts, ghosts, time slabs and threads, a run has the bits of the plain loop at
-// every time at which it stops; with laws, masses, lines, rows and rings, simultaneous collisions, collapsed cores and
-// time slabs that fail at every cut.
+// every time at which it stops, and an observer receives the same collisions in the same order; with laws, masses,
+// lines, rows and rings, simultaneous collisions, collapsed cores and time slabs that fail at every cut.
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/segmented.hpp"

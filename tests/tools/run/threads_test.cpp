@@ -1,11 +1,15 @@
 // `cradle run --threads`. Proves: result files have the same bytes for any number of threads, if a run is cut into
-// segments, in double and in wider types; and `check` says beforehand whether threads will be used.
+// segments, in double and in wider types; events are those of the plain loop; and `check` says beforehand whether
+// threads will be used.
 
 #include <string>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/reader.hpp"
 
 namespace cradle::tests::run_threads_test {
+
+using tools::read_result;
 
 class RunThreads : public ProgramTest {
  protected:
@@ -27,6 +31,32 @@ TEST_F(RunThreads, NeverChangeAResult) {
         EXPECT_EQ(contents(folder / file), first) << file;
       }
     }
+}
+
+// Those of a run that stops for so many samples that it goes one by one.
+TEST_F(RunThreads, NeverChangeTheEvents) {
+  const std::string dry = "fig2 --set initial.particles=4000 --set output.snapshots=[] --set run.until=",
+                    walls = "fig2 --set initial.particles=1200 --set walls.left.position=-600 --set "
+                            "walls.right.position=600 --set walls.right.temperature=0.1 --set run.until=300",
+                    wet = "ring.toml --set run.until=10 --set output.snapshots=[]";
+  for (const auto& [scene, precision] :
+       {std::pair(dry + "1200", "double"), {dry + "650", "mpfr"}, {walls, "double"}, {wet, "double"}, {wet, "mpfr"}}) {
+    SCOPED_TRACE(scene + " in " + precision);
+    const std::string run =
+        "cradle run " + scene + " --quiet --set output.events=true --set run.precision=" + precision;
+    std::string first;
+    for (const std::string threads : {"1", "2", "3", "8"}) {
+      shell(run + " --threads " + threads + " -o " + threads + ".h5", 0);
+      if (first.empty()) first = contents(folder / "1.h5");
+      EXPECT_EQ(contents(folder / (threads + ".h5")), first) << threads << " threads";
+    }
+    shell(run + " --set output.series.points=4000 -o plain.h5", 0);
+    const auto events = [&](const char* file) { return read_result((folder / file).string()).find("events")->columns; };
+    const auto found = events("1.h5"), wanted = events("plain.h5");
+    ASSERT_GT(found.front().rows(), 5000U);
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      EXPECT_TRUE(found.at(k).values == wanted[k].values) << wanted[k].name;
+  }
 }
 
 TEST_F(RunThreads, AreWhatCheckPrintsBeforehand) {

@@ -118,17 +118,18 @@ const std::string scenes[] = {
 Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }
 
 const std::string large = "output = { series.points = 12, profiles = { times = [5], bins = 8 } }\n[run]\nuntil = 8\n";
-const std::string large_dry = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\ninitial = { type = "
-                              "'ring', particles = 2500, perturbation = 0.1 }\n" +
-                              large;
-const std::string large_walls =
+const std::string large_events = "output = { series.points = 5, events = true }\n[run]\nuntil = 8\n";
+const std::string of_large_dry = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\ninitial = { type = "
+                                 "'ring', particles = 2500, perturbation = 0.1 }\n";
+const std::string of_large_walls =
     "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.05 }\ninitial = { type = 'rows', particles = 2500, "
     "perturbation = 0.1 }\nwalls = { left = { position = -1252, speed = 0.8 }, right = { position = 1252, temperature "
-    "= 1 } }\n" +
-    large;
-const std::string large_wet = "law = { type = 'wet', loss = 0.01 }\ninitial = { type = 'ring', particles = 2500, "
-                              "perturbation = 0.1 }\n" +
-                              large;
+    "= 1 } }\n";
+const std::string of_large_wet = "law = { type = 'wet', loss = 0.01 }\ninitial = { type = 'ring', particles = 2500, "
+                                 "perturbation = 0.1 }\n";
+const std::string large_dry = of_large_dry + large, large_walls = of_large_walls + large,
+                  large_wet = of_large_wet + large, large_dry_events = of_large_dry + large_events,
+                  large_walls_events = of_large_walls + large_events, large_wet_events = of_large_wet + large_events;
 
 class Resuming : public cradle::tests::ProgramTest {
  protected:
@@ -209,7 +210,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"LargeDry", large_dry.c_str(), {"double", "double-double"}, 1, 1},
                     Case{"LargeDryFromTwoThreadsToOne", large_dry.c_str(), {"double", "long double", "mpfr"}, 2, 1},
                     Case{"LargeDryFromOneThreadToThree", large_dry.c_str(), {"double", "float128"}, 1, 3},
-                    Case{"LargeWetFromThreeThreadsToTwo", large_wet.c_str(), {"double", "double-double"}, 3, 2}),
+                    Case{"LargeWetFromThreeThreadsToTwo", large_wet.c_str(), {"double", "double-double"}, 3, 2},
+                    Case{"LargeWallsEvents", large_walls_events.c_str(), {"double"}, 2, 3},
+                    Case{"LargeDryEvents", large_dry_events.c_str(), {"double", "double-double"}, 2, 1},
+                    Case{"LargeWetEvents", large_wet_events.c_str(), {"double"}, 1, 3}),
     [](const auto& of) { return std::string(of.param.name); });
 
 // ---- extended

@@ -1,5 +1,6 @@
 // Steps (core/parallel/steps). Proves: with steps, on each kind of vectors, runs in segments have the bits of the plain
-// loop: every gap, closing speed, local time and lag, counts, losses and what walls gave; for all laws that bounce, on
+// loop: every gap, closing speed, local time and lag, counts, losses and what walls gave, and every collision that is
+// observed; for all laws that bounce, on
 // lines, rows and rings, with equal and unequal masses, on lattices and through collapses. Nearly all collisions of
 // gases are made in steps.
 //
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <random>
 #include <string>
 
@@ -63,15 +65,17 @@ Made expect_same(const Scene<double>& scene, const Law& law, const std::vector<d
                  const std::vector<SegmentsAs>& ways) {
   using Run = Simulation<double, Law, Chain>;
   Made made;
-  std::vector<Run> segmented;
-  std::vector<Segments<Law, Chain>> segments;
+  std::vector<Run> segmented, watched;
+  std::vector<Segments<Law, Chain>> segments, of_watched;
   for (const SegmentsAs& as : ways) {
-    segmented.emplace_back(law, Chain(scene, 0.));
-    segments.emplace_back(threads(as.threads), as.how);
+    for (auto* runs : {&segmented, &watched}) runs->emplace_back(law, Chain(scene, 0.));
+    for (auto* each : {&segments, &of_watched}) each->emplace_back(threads(as.threads), as.how);
   }
+  std::vector<Observed<double>> observed(ways.size());
+  Observed<double> in_plain;
   Run plain(law, Chain(scene, 0.));
   for (const double time : times) {
-    const Status status = plain.advance(time);
+    const Status status = plain.advance(time, in_plain.by(plain));
     for (std::size_t k = 0; k < ways.size(); ++k) {
       SCOPED_TRACE(std::string(ways[k].how.steps->target) + ", " + std::to_string(ways[k].how.gaps) + " gaps, " +
                    std::to_string(ways[k].how.ghosts) + " ghosts, " + std::to_string(ways[k].threads) +
@@ -79,15 +83,20 @@ Made expect_same(const Scene<double>& scene, const Law& law, const std::vector<d
       EXPECT_EQ(segmented[k].advance(time, segments[k]), status);
       expect_same_state(plain, segmented[k], time);
       expect_same_bits(plain.chain(), segmented[k].chain());
+      EXPECT_EQ(watched[k].advance(time, of_watched[k], observed[k].by(watched[k])), status);
+      expect_same_state(plain, watched[k], time);
+      expect_same_bits(plain.chain(), watched[k].chain());
+      EXPECT_TRUE(observed[k] == in_plain) << "other collisions, or in another order";
       if (::testing::Test::HasFailure()) return made;
     }
     if (status != Status::reached) break;
   }
-  for (const auto& one : segments) {
-    made.collisions += one.statistics().collisions;
-    made.in_steps += one.statistics().in_steps;
-    made.slabs += one.statistics().slabs;
-  }
+  for (const auto& each : {std::cref(segments), std::cref(of_watched)})
+    for (const auto& one : each.get()) {
+      made.collisions += one.statistics().collisions;
+      made.in_steps += one.statistics().in_steps;
+      made.slabs += one.statistics().slabs;
+    }
   return made;
 }
 

@@ -40,15 +40,15 @@ template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex n) 
 }
 
 // Random velocities; masses are 1 and `other_mass` in turn.
-inline ParticlesPointer gas(ParticleIndex n, double other_mass = 1) {
-  std::vector<double> x, v, m;
+template <class T = double> std::shared_ptr<const cradle::Particles<T>> gas(ParticleIndex n, double other_mass = 1) {
+  std::vector<T> x, v, m;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
     const std::uint64_t bits = hash(i);
-    x.push_back(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29);
-    v.push_back(static_cast<double>(bits >> 28) * 0x1p-35 - 1);
-    if (other_mass != 1) m.push_back(i % 2 == 0 ? 1 : other_mass);
+    x.push_back(T(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29));
+    v.push_back(T(static_cast<double>(bits >> 28) * 0x1p-35 - 1));
+    if (other_mass != 1) m.push_back(T(i % 2 == 0 ? 1 : other_mass));
   }
-  return std::make_shared<cradle::List<double>>(std::move(x), std::move(v), std::move(m));
+  return std::make_shared<cradle::List<T>>(std::move(x), std::move(v), std::move(m));
 }
 
 }  // namespace bench

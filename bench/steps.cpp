@@ -10,14 +10,13 @@
 // machine allows: both copy as many gaps.
 //
 // Cases are those of bench/engine.cpp, and gases with masses 1 and 3, between walls, and with a restitution that
-// depends on the speed. Times are processor time of the thread. `late` is the last thirteenth of the time: 6000 to 6500
-// for the shock.
+// depends on the speed; `wide` ones are in double-double. Times are processor time of the thread. `late` is the last
+// thirteenth of the time: 6000 to 6500 for the shock.
 
 #include <cstdio>
 #include <ctime>
 
 #include <algorithm>
-#include <bit>
 #include <functional>
 #include <memory>
 #include <string>
@@ -32,6 +31,7 @@
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
+#include "cradle/precision/double_double.hpp"
 
 namespace {
 
@@ -44,13 +44,16 @@ ParticlesPointer between_walls(ParticleIndex n) {
 }
 
 template <class Chain, class Law>
-bool compare(const char* name, const ParticlesPointer& scene, const Law& law, double until, int pieces) {
-  using Run = Simulation<double, Law, Chain>;
-  Run loop(law, Chain(scene, 0.)), steps(law, Chain(scene, 0.));
+bool compare(const char* name, const std::shared_ptr<const Particles<typename Chain::Scalar>>& scene, const Law& law,
+             double until, int pieces) {
+  using T = typename Chain::Scalar;
+  using Run = Simulation<T, Law, Chain>;
+  Run loop(law, Chain(scene, T(0))), steps(law, Chain(scene, T(0)));
   Segments<Law, Chain> by_loop, by_steps({}, {.steps = fastest_steps()});
   double of_loop = 0, of_steps = 0, late_loop = 0, late_steps = 0;
   for (int k = 1; k <= pieces; ++k) {
-    const double to = until * k / pieces, start = seconds_now();
+    const T to(until * k / pieces);
+    const double start = seconds_now();
     loop.advance(to, by_loop);
     const double between = seconds_now();
     steps.advance(to, by_steps);
@@ -58,11 +61,9 @@ bool compare(const char* name, const ParticlesPointer& scene, const Law& law, do
     of_loop += between - start, of_steps += end - between;
     late_loop = between - start, late_steps = end - between;
   }
-  const bool same =
-      loop.counts().collisions == steps.counts().collisions &&
-      std::bit_cast<std::uint64_t>(loop.energy_lost()) == std::bit_cast<std::uint64_t>(steps.energy_lost());
+  const bool same = loop.counts().collisions == steps.counts().collisions && loop.energy_lost() == steps.energy_lost();
   const auto collisions = static_cast<double>(steps.counts().collisions);
-  std::printf("%-12s %10.0f collisions, million/s: loop %5.1f, steps %5.1f, ratio %.2f (late %.2f); in steps %.4f%s\n",
+  std::printf("%-13s %10.0f collisions, million/s: loop %5.1f, steps %5.1f, ratio %.2f (late %.2f); in steps %.4f%s\n",
               name, collisions, collisions / of_loop / 1e6, collisions / of_steps / 1e6, of_loop / of_steps,
               late_loop / late_steps,
               static_cast<double>(by_steps.statistics().in_steps) /
@@ -124,8 +125,10 @@ void compare_copies(std::size_t gaps) {
 
 int main(int argc, char** argv) {
   using Equal = GapChain<double>;
+  using Wide = GapChain<double_double>;
   using Unequal = GapChain<double, IndividualMasses<double>>;
   const Inelastic<double> law(0.999, 1e-5);
+  const Inelastic<double_double> wide_law(double_double(0.999), double_double(1e-5));
   const SpeedDependent<double> of_speed(0.9, 0.1, 0.2);
   const std::vector<std::pair<const char*, std::function<bool(const char*)>>> cases{
       {"shock/8000", [&](const char* name) { return compare<Equal>(name, rows<double>(8000), law, 6500, 13); }},
@@ -137,7 +140,15 @@ int main(int argc, char** argv) {
       {"gas/1e7", [&](const char* name) { return compare<Equal>(name, gas(10'000'000), law, 10, 1); }},
       {"masses/8000", [&](const char* name) { return compare<Unequal>(name, gas(8000, 3), law, 1000, 13); }},
       {"walls/8000", [&](const char* name) { return compare<Equal>(name, between_walls(8000), law, 1000, 13); }},
-      {"speed/8000", [&](const char* name) { return compare<Unequal>(name, gas(8000), of_speed, 1000, 13); }}};
+      {"speed/8000", [&](const char* name) { return compare<Unequal>(name, gas(8000), of_speed, 1000, 13); }},
+      {"wide shock",
+       [&](const char* name) { return compare<Wide>(name, rows<double_double>(8000), wide_law, 6500, 13); }},
+      {"wide gas/1000",
+       [&](const char* name) { return compare<Wide>(name, gas<double_double>(1000), wide_law, 3000, 13); }},
+      {"wide gas/8000",
+       [&](const char* name) { return compare<Wide>(name, gas<double_double>(8000), wide_law, 1000, 13); }},
+      {"wide gas/1e5",
+       [&](const char* name) { return compare<Wide>(name, gas<double_double>(100'000), wide_law, 100, 2); }}};
   std::printf("vectors: %s\n", fastest_steps() != nullptr ? fastest_steps()->target : "none");
   bool same = true;
   if (argc == 2 && argv[1] == std::string("threads")) {

@@ -25,6 +25,9 @@ namespace cradle {
 
 class double_double {
  public:
+  // core/parallel/steps/pairs.inl has the same operations on vectors.
+  static constexpr bool is_double_double = true;
+
   constexpr double_double() = default;
   constexpr explicit double_double(int i) : high_(i) {}
   constexpr explicit double_double(std::int64_t i)

@@ -85,6 +85,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   void drop_lags(Slot first, std::size_t gaps) {
     for (Slot s = first; s < first + gaps; ++s) lag_[s] = is_negative(cells_[s].time) ? lag_[s] : T(0);
   }
+  void set_lag(Slot s, const T& lag) { lag_[s] = lag; }
   void set_ledger(const Ledger<T>& ledger) { lost_ = ledger; }
   void resize(std::size_t slots) {  // gaps are then put into so many slots
     cells_.resize(slots);

@@ -25,6 +25,14 @@ class StepLine {
   double* bound = nullptr;                         // for each tile: none of its gaps is due before
   double *fraction = nullptr, *reduced = nullptr;  // unequal masses: see StepTask::unequal
 
+  // Where numbers are sums of two doubles (pairs.inl) there are no cells, but an array for each number's greater and
+  // lesser double. `lost` is the energy lost at each gap.
+  struct Halves {
+    double *gap = nullptr, *closing = nullptr, *time = nullptr, *due = nullptr, *lost = nullptr, *lag = nullptr;
+    double *fraction = nullptr, *reduced = nullptr;
+  };
+  Halves high, low;
+
   // Gaps whose collisions are made as vectors; those at others are left to StepScalars.
   std::uint32_t inner_first = 0, inner = 0;
 
@@ -32,6 +40,7 @@ class StepLine {
   std::vector<std::uint32_t> candidates, waiting, first, edges;
   std::vector<std::uint32_t> visited;  // tiles with collisions
   std::vector<double> struck, struck_mass, to_left, to_right, after;
+  std::vector<double> low_struck, low_to_left, low_to_right, low_after, work;  // of pairs
 
   std::size_t gaps() const { return gaps_; }
   std::size_t tiles() const { return (gaps_ + tile - 1) / tile; }
@@ -39,11 +48,16 @@ class StepLine {
   // Takes so many gaps.
   void take(Gap<double>* first_cell, const double* first_lag, std::size_t gaps) {
     cells = first_cell, lag = first_lag;
-    resize(gaps);
-    std::fill(due - tile, due, never);
+    resize(gaps, false);
     for (std::size_t i = 0; i < gaps; ++i) due[i] = cells[i].due;
-    std::fill(due + gaps, due + tile * (tiles() + 1), never);
-    std::fill(bound, bound + tiles() + tile, never);
+    bound_tiles();
+  }
+  // Takes so many gaps, the arrays of which the caller fills.
+  void take_pairs(std::size_t gaps) {
+    cells = nullptr;
+    resize(gaps, true);
+  }
+  void bound_tiles() {
     for (std::size_t k = 0; k < tiles(); ++k) bound[k] = *std::min_element(due + tile * k, due + tile * (k + 1));
   }
   double least_due() const { return *std::min_element(bound, bound + tiles()); }
@@ -63,11 +77,18 @@ class StepLine {
   }
   void restore() {
     const Gap<double>* from = kept_.data();
+    const double* number = kept_numbers_.data();
     for (const std::uint32_t k : kept_tiles_) {
-      std::copy_n(from, in_tile(k), cells + tile * k);
-      for (std::size_t i = tile * k; i < tile * k + in_tile(k); ++i) due[i] = cells[i].due;
+      for (double* array : arrays_) {
+        std::copy_n(number, tile, array + tile * k);
+        number += tile;
+      }
+      if (cells != nullptr) {
+        std::copy_n(from, in_tile(k), cells + tile * k);
+        for (std::size_t i = tile * k; i < tile * k + in_tile(k); ++i) due[i] = cells[i].due;
+        from += tile;
+      }
       bound[k] = *std::min_element(due + tile * k, due + tile * (k + 1));
-      from += tile;
     }
   }
 
@@ -75,13 +96,36 @@ class StepLine {
   static constexpr std::size_t alignment = 8;  // in doubles: a cache line
 
   std::size_t in_tile(std::size_t k) const { return std::min(tile, gaps_ - tile * k); }
-  void resize(std::size_t gaps) {
+  void resize(std::size_t gaps, bool pairs) {
     gaps_ = gaps;
-    const std::size_t stride = (gaps + tile - 1) / tile * tile + 2 * tile, needed = 4 * stride + alignment;
+    const std::size_t stride = (gaps + tile - 1) / tile * tile + 2 * tile,
+                      needed = (pairs ? 17 : 4) * stride + alignment;
     if (numbers_.size() < needed) numbers_.resize(needed + needed / 4);
     const auto misplaced = reinterpret_cast<std::uintptr_t>(numbers_.data()) / sizeof(double) % alignment;
     double* array = numbers_.data() + (alignment - misplaced) % alignment + tile;
     for (double** one : {&due, &bound, &fraction, &reduced}) *one = array, array += stride;
+    std::fill(due - tile, due, never);
+    std::fill(due + gaps, due + tile * (tiles() + 1), never);
+    std::fill(bound, bound + tiles() + tile, never);
+    arrays_.clear();
+    if (pairs) {
+      high.due = due, high.fraction = fraction, high.reduced = reduced;
+      arrays_ = {due};
+      for (double** one :
+           {&high.gap, &high.closing, &high.time, &high.lost, &low.gap, &low.closing, &low.time, &low.due, &low.lost}) {
+        *one = array, array += stride;
+        arrays_.push_back(*one);
+        for (std::size_t k = 0; k < 2; ++k) (*one)[-1 - static_cast<std::ptrdiff_t>(k)] = (*one)[gaps + k] = 0;
+      }
+      for (double** one : {&high.lag, &low.lag, &low.fraction}) {
+        *one = array, array += stride;
+        for (std::size_t k = 0; k < 2; ++k) (*one)[-1 - static_cast<std::ptrdiff_t>(k)] = (*one)[gaps + k] = 0;
+      }
+      low.reduced = array;
+      kept_numbers_.resize(std::max(kept_numbers_.size(), arrays_.size() * tile * tiles()));
+      for (auto* list : {&low_struck, &low_to_left, &low_to_right, &low_after}) list->resize(gaps + tile);
+      work.resize(16 * (gaps + tile));
+    }
     if (guarded_.size() < tiles()) {
       guarded_.resize(tiles()), kept_at_.resize(tiles());
       kept_.resize(tile * tiles());
@@ -94,7 +138,9 @@ class StepLine {
   }
   void keep_tile(std::size_t k) {
     kept_at_[k] = stretch_;
-    std::copy_n(cells + tile * k, in_tile(k), kept_.data() + tile * kept_tiles_.size());
+    if (cells != nullptr) std::copy_n(cells + tile * k, in_tile(k), kept_.data() + tile * kept_tiles_.size());
+    double* to = kept_numbers_.data() + arrays_.size() * tile * kept_tiles_.size();
+    for (const double* array : arrays_) to = std::copy_n(array + tile * k, tile, to);
     kept_tiles_.push_back(static_cast<std::uint32_t>(k));
   }
 
@@ -103,6 +149,8 @@ class StepLine {
   std::uint64_t stretch_ = 0;                     // number of the undo copy
   std::vector<std::uint64_t> guarded_, kept_at_;  // the last one that a tile was guarded for, and kept in
   std::vector<Gap<double>> kept_;
+  std::vector<double*> arrays_;  // of pairs: what collisions change
+  std::vector<double> kept_numbers_;
   std::vector<std::uint32_t> kept_tiles_;
 };
 

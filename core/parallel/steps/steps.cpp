@@ -234,12 +234,42 @@ template <bool unequal> HWY_INLINE void enter(const Local& l, const StepTask& ta
   }
 }
 
+// The collisions of a step, where numbers are doubles.
+template <StepLaw law, bool unequal> struct Doubles {
+  Made made;
+
+  HWY_INLINE Doubles(const StepTask&, const StepResult& before) : made{.latest = before.last} {}
+
+  // Makes those that are first in a pass.
+  HWY_INLINE void make(StepLine& line, Local& l, const StepTask& task, StepScalars& scalars, double end) {
+    if (law == StepLaw::any) scalars.outcomes(l.first, l.firsts);
+    for (std::size_t k = 0; k < l.firsts; ++k) collide<law, unequal>(line, l, task, end, l.first[k], k, made);
+    if (law != StepLaw::any) enter<unequal>(l, task, made);
+  }
+  // Whether all of them were in order.
+  HWY_INLINE bool report(const StepTask& task, double end, StepResult& result) const {
+    result.last = made.latest;
+    result.lost += hn::GetLane(hn::SumOfLanes(Lanes(), made.lost));
+    result.rest += hn::GetLane(hn::SumOfLanes(Lanes(), made.rest));
+    result.below_cutoff += made.below_cutoff;
+    return made.in_order(task.floor, end);
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace cradle
+
+#include "cradle/core/parallel/steps/pairs.inl"
+
+namespace cradle {
+namespace HWY_NAMESPACE {
+
 // A step (loop.hpp).
-template <StepLaw law, bool unequal>
+template <class Collisions>
 int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result) {
   constexpr int most_passes = 128, reach = StepLine::tile - 1;  // StepLine::guard
   Local l(line);
-  Made made{.latest = result.last};
+  Collisions collisions(task, result);
   int passes = 0;
   for (scan(line, l, end); l.count > 0; ++passes, std::swap(l.candidates, l.waiting), l.count = l.later) {
     if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return -1;
@@ -247,38 +277,37 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
       for (std::size_t k = 0; k < l.count; ++k) line.guard(l.candidates[k] / StepLine::tile);
     decide(l, end);
     if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
-    if (law == StepLaw::any) scalars.outcomes(l.first, l.firsts);
-    for (std::size_t k = 0; k < l.firsts; ++k) collide<law, unequal>(line, l, task, end, l.first[k], k, made);
+    collisions.make(line, l, task, scalars, end);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
       const std::size_t i = l.edges[k], left = i > 0 ? i - 1 : 0, right = i + 1;
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
       if (!scalars.collide(i)) return -1;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
     }
-    if (law != StepLaw::any) enter<unequal>(l, task, made);
     result.collisions += l.firsts;
   }
   renew_bounds(l);
-  result.last = made.latest;
-  result.lost += hn::GetLane(hn::SumOfLanes(Lanes(), made.lost));
-  result.rest += hn::GetLane(hn::SumOfLanes(Lanes(), made.rest));
-  result.below_cutoff += made.below_cutoff;
-  return planted(2) || made.in_order(task.floor, end) ? passes : -1;
+  return collisions.report(task, end, result) || planted(2) ? passes : -1;
 }
 
 std::size_t width() { return lanes; }
 
+template <template <StepLaw law, bool unequal> class Collisions, class... Arguments>
+bool run_by(const StepTask& task, StepLine& line, Arguments&... arguments) {
+  constexpr StepLaw hard = StepLaw::hard, soft = StepLaw::soft;
+  if (task.law == hard)
+    return task.unequal ? run_steps(step<Collisions<hard, true>>, line, task, arguments...)
+                        : run_steps(step<Collisions<hard, false>>, line, task, arguments...);
+  return task.unequal ? run_steps(step<Collisions<soft, true>>, line, task, arguments...)
+                      : run_steps(step<Collisions<soft, false>>, line, task, arguments...);
+}
 bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result) {
-  const auto run_by = [&]<StepLaw law, bool unequal>() {
-    return run_steps(step<law, unequal>, line, task, scalars, pace, result);
-  };
-  if (task.law == StepLaw::hard)
-    return task.unequal ? run_by.template operator()<StepLaw::hard, true>()
-                        : run_by.template operator()<StepLaw::hard, false>();
-  if (task.law == StepLaw::soft)
-    return task.unequal ? run_by.template operator()<StepLaw::soft, true>()
-                        : run_by.template operator()<StepLaw::soft, false>();
-  return run_by.template operator()<StepLaw::any, false>();
+#if CRADLE_PAIRS
+  if (task.pairs) return run_by<Pairs>(task, line, scalars, pace, result);
+#endif
+  if (task.pairs) return false;
+  if (task.law == StepLaw::any) return run_steps(step<Doubles<StepLaw::any, false>>, line, task, scalars, pace, result);
+  return run_by<Doubles>(task, line, scalars, pace, result);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -37,6 +37,12 @@ struct StepTask {
   StepLaw law = StepLaw::any;
   double restitution = 1, half_sum = 1, cutoff = 0;
   double lost = 0;  // of w^2; with unequal masses of reduced mass times w^2
+  // Whether numbers are sums of two doubles (pairs.inl); then these are the lesser ones of those above.
+  bool pairs = false;
+  struct Low {
+    double restitution = 0, half_sum = 0, cutoff = 0, lost = 0;
+  };
+  Low low;
   // Unequal masses: StepLine::fraction is the lighter mass over the sum, negative where the left particle is the
   // lighter one, StepLine::reduced the reduced mass.
   bool unequal = false;
@@ -50,6 +56,7 @@ struct StepTask {
 struct StepResult {
   std::uint64_t collisions = 0, below_cutoff = 0;
   double last = -StepLine::never;  // time of the last one
+  double low_last = 0;             // of pairs
   double lost = 0, rest = 0;       // for Ledger::add_sums
 };
 

@@ -10,6 +10,7 @@
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 
@@ -144,6 +145,9 @@ std::string Certified::not_proved() const {
 Certified certify(const Scene& requested, const CertifyOptions& options) {
   Scene scene = requested;
   std::vector<Attempt> attempts;
+  // One of them checks what the others propose.
+  const unsigned threads = thread_count(options.threads);
+  const Threads of_run(std::max(threads, 2U) - 1);
   auto digits = options.digits.begin();
   // One number of digits per process: a run in MPFR and its balls have the same.
   const auto in_step = [&] {
@@ -156,9 +160,10 @@ Certified certify(const Scene& requested, const CertifyOptions& options) {
     const auto started = std::chrono::steady_clock::now();
     const unsigned of_balls = in_step();
     const auto observer = options.make(scene, of_balls);
+    if (threads > 1) observer->check_beside();
     RunOutcome outcome;
     try {
-      outcome = run_scene(scene, {options.progress, observer.get(), options.interrupt});
+      outcome = run_scene(scene, {options.progress, observer.get(), options.interrupt, workers(of_run)});
     } catch (const ProofEnds&) {
     } catch (const Error& error) {  // a guard of the run: it was wrong, as if a collision of it had been
       if (error.status != Exit::lost || !raise(scene, of_balls)) throw;

@@ -65,6 +65,8 @@ class Certifier : public RunObserver {
  public:
   /// From now on collisions are checked on a thread of their own, while the run makes the next ones.
   virtual void check_beside() {}
+  /// Checks all collisions that are not checked yet, as a sample does. Throws ProofEnds.
+  virtual void check_all() {}
   virtual Certificate certificate() const = 0;
 };
 

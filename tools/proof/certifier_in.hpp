@@ -69,14 +69,14 @@ template <class M> class CertifierIn final : public Certifier {
     if (proposed_.pairs.size() == most_proposed) check();
   }
 
-  void advanced() override {
+  void check_all() override {
     check();
     await_check();
   }
 
   void sample(const RunSample& sample) override {
-    advanced();
     if (certificate_.doubt) throw ProofEnds();
+    check_all();
     for (const RequestedTime& asked : sample.requested) inspect(asked, sample);
   }
 

@@ -97,6 +97,16 @@ bool raise(Scene& scene, unsigned digits) {
   }
 }
 
+// Whether the proof ends at a collision that the run has made.
+bool ends(Certifier& proof) {
+  try {
+    proof.check_all();
+    return false;
+  } catch (const ProofEnds&) {
+    return true;
+  }
+}
+
 std::string near(const std::string& number) { return number.size() > 24 ? number.substr(0, 24) + "..." : number; }
 
 // The digits that both ends share, and how much is known; both ends where they do not share many.
@@ -166,8 +176,9 @@ Certified certify(const Scene& requested, const CertifyOptions& options) {
       outcome = run_scene(scene, {options.progress, observer.get(), options.interrupt, workers(of_run)});
     } catch (const ProofEnds&) {
     } catch (const Error& error) {  // a guard of the run: it was wrong, as if a collision of it had been
-      if (error.status != Exit::lost || !raise(scene, of_balls)) throw;
-      continue;
+      const bool ended = ends(*observer);
+      if (!ended && (error.status != Exit::lost || !raise(scene, of_balls))) throw;
+      if (!ended) continue;
     }
     if (outcome.end == RunEnd::interrupted)
       throw Error({}, "interrupted", "", "run it again; nothing is kept of a proof that did not finish",

@@ -41,8 +41,6 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void collision(ParticleIndex left, ParticleIndex right, double time) = 0;
-  /// The run has made all collisions up to the next time at which it is inspected.
-  virtual void advanced() {}
   virtual void sample(const RunSample& sample) = 0;
 };
 

@@ -134,7 +134,6 @@ template <Real T> class SceneRun {
     if (stopped()) return Status::interrupted;
     for (;;) {
       const Status status = engine_.advance(until, observer_);
-      if (options_.observer != nullptr) options_.observer->advanced();
       if (status != Status::interrupted || stopped()) return status;
       keep(engine_.last_collision_time());
     }

@@ -493,6 +493,15 @@ TEST(Certify, SideBySideASpeedThatMayBeZeroIsOpen) {
   compare_side_by_side(particles, law, {{0, 1}, {2, 3}}, 2, false);
 }
 
+TEST(Certify, SideBySideASpeedJustAtTheCutoffIsOpen) {
+  const auto particles =
+      std::make_shared<List<B>>(std::vector<B>{B(0), B(1), B(10), B(11)}, std::vector<B>{B(1), B(0), B(2), B(0)});
+  CertainLaw<B> law;
+  law.restitution = from_text<B>("0.9");
+  law.cutoff = B(1);
+  compare_side_by_side(particles, law, {{0, 1}, {2, 3}}, 2, false);
+}
+
 TEST(Certify, SideBySideCollisionsOfDrawnScenes) {
   for (std::uint64_t number = 0; number < 500; ++number) {
     SCOPED_TRACE(number);

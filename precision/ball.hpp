@@ -21,7 +21,9 @@
 // Two computations from the same ball are not known to be the same number: x - x is a ball around 0. There are separate
 // operations for combinations whose radii must not grow (combined).
 
+#include <array>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -94,25 +96,30 @@ template <class M> class Ball {
   explicit operator double() const { return to_double(middle_); }
 
   friend Ball operator-(const Ball& x) { return {-x.middle_, x.radius_}; }
+  // Midpoints are not const: g++ 12 would hold such objects in memory, and make no vectors of loops over balls.
   friend Ball operator+(const Ball& x, const Ball& y) {
-    const M middle = x.middle_ + y.middle_;
+    M middle = x.middle_ + y.middle_;
     return {middle, up(x.radius_ + y.radius_ + Of::sum_error() * Of::size(middle) + Of::lost_in_sum())};
   }
   friend Ball operator-(const Ball& x, const Ball& y) {
-    const M middle = x.middle_ - y.middle_;
+    M middle = x.middle_ - y.middle_;
     return {middle, up(x.radius_ + y.radius_ + Of::sum_error() * Of::size(middle) + Of::lost_in_sum())};
   }
   friend Ball operator*(const Ball& x, const Ball& y) {
-    const M middle = x.middle_ * y.middle_;
+    M middle = x.middle_ * y.middle_;
     return {middle, up(Of::size(x.middle_) * y.radius_ + (Of::size(y.middle_) + y.radius_) * x.radius_ +
                        Of::product_error() * Of::size(middle) + Of::lost())};
   }
   // The radius is infinite if the divisor may be 0.
   friend Ball operator/(const Ball& x, const Ball& y) {
-    const M middle = x.middle_ / y.middle_;
-    const Radius least = y.least_size();
-    if (!(least > 0)) return {middle, std::numeric_limits<Radius>::infinity()};
-    const Radius size = Of::size(middle);
+    const Ball quotient = quotient_by_positive(x, y);
+    if (!(y.least_size() > 0)) return {quotient.middle_, std::numeric_limits<Radius>::infinity()};
+    return quotient;
+  }
+  // The same where the divisor is certainly not 0; else it means nothing.
+  friend Ball quotient_by_positive(const Ball& x, const Ball& y) {
+    M middle = x.middle_ / y.middle_;
+    const Radius least = y.least_size(), size = Of::size(middle);
     return {middle, up((x.radius_ + size * y.radius_) / least + Of::quotient_error() * size * (1 + y.radius_ / least) +
                        Of::lost() / least + Of::lost())};
   }
@@ -139,10 +146,13 @@ template <class M> class Ball {
 
   // Compares in plain doubles; open if they do not decide.
   friend Order order_in_doubles(const Ball& x, const Ball& y) {
-    const double a = Of::near(x.middle_), b = Of::near(y.middle_), apart = b - a;
+    return less_in_doubles(x, y) ? Order::less : less_in_doubles(y, x) ? Order::greater : Order::open;
+  }
+  friend bool less_in_doubles(const Ball& x, const Ball& y) {
+    const double a = Of::near(x.middle_), b = Of::near(y.middle_);
     const double error = (upper_double(x.radius_) + upper_double(y.radius_)) * (1 + 0x1p-50) +
                          0x1p-50 * (std::abs(a) + std::abs(b)) + 0x1p-980;
-    return apart > error ? Order::less : apart < -error ? Order::greater : Order::open;
+    return b - a > error;
   }
   friend Order order_in_balls(const Ball& x, const Ball& y) {
     const Ball apart = y - x;
@@ -163,9 +173,20 @@ template <class M> class Ball {
   }
 
   friend bool is_positive(const Ball& x) { return is_positive(x.middle_) && x.least_size() > 0; }
+  // Without a jump.
+  friend bool certainly_positive(const Ball& x) { return is_positive(x.middle_) & (x.least_size() > 0); }
   friend bool is_negative(const Ball& x) { return is_negative(x.middle_) && x.least_size() > 0; }
   friend bool is_finite(const Ball& x) {
     return is_finite(x.middle_) && x.radius_ <= std::numeric_limits<Radius>::max();
+  }
+
+  // What it is made of, where that is doubles.
+  static constexpr std::size_t doubles = 3;
+  std::array<double, doubles> in_doubles() const requires std::same_as<M, double_double> {
+    return {middle_.high(), middle_.low(), radius_};
+  }
+  static Ball of_doubles(const std::array<double, doubles>& of) requires std::same_as<M, double_double> {
+    return {double_double::of(of[0], of[1]), of[2]};
   }
 
   // The share c of a combination, with the sizes of c and 1 - c.
@@ -188,7 +209,7 @@ template <class M> class Ball {
     Ball left, right;
   };
   static Both combined(const Ball& x, const Ball& y, const Ball& apart, const Share& c, const Share& d) {
-    const M by_c = c.c_.middle_ * apart.middle_;
+    M by_c = c.c_.middle_ * apart.middle_;
     const Radius off_c = off(x, y, apart, c);
     if (&c == &d) return {moved(x, y, x.middle_ - by_c, c, off_c), moved(y, x, y.middle_ + by_c, c, off_c)};
     return {moved(x, y, x.middle_ - by_c, c, off_c),
@@ -230,7 +251,7 @@ template <class M> struct CompensatedSum<Ball<M>> {
 // Encloses a decimal literal; integers that every midpoint type holds are exact.
 template <class M> struct Text<Ball<M>> {
   static Ball<M> from(std::string_view literal) {
-    const M middle = from_text<M>(literal);
+    M middle = from_text<M>(literal);
     using Of = Midpoint<M>;
     const std::size_t sign = literal.starts_with('-') || literal.starts_with('+');
     if (literal.size() <= sign + 15 && literal.find_first_not_of("0123456789", sign) == literal.npos)

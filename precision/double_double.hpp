@@ -36,6 +36,9 @@ class double_double {
   // The sum of two doubles of any sizes.
   static constexpr double_double sum(double a, double b) { return two_sum(a, b); }
 
+  // The same of what high() and low() have been.
+  static constexpr double_double of(double high, double low) { return {high, low}; }
+
   constexpr double high() const { return high_; }
   constexpr double low() const { return low_; }
   explicit constexpr operator double() const { return high_; }

@@ -47,9 +47,12 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "cradle/core/certify/certain_law.hpp"
+#include "cradle/core/certify/side_by_side.hpp"
 #include "cradle/core/certify/world_lines.hpp"
 
 namespace cradle {
@@ -96,20 +99,42 @@ template <Enclosing N> class Checker {
 
   Checker(std::shared_ptr<const Particles<N>> particles, const CertainLaw<N>& law)
       : laws_(law), lines_(std::move(particles), !law.bounces_only()), length_(lines_.particles().circumference()),
-        half_(N(1) / N(2)), of_collisions_(law.kind == CertainLaw<N>::Kind::wet) {}
+        half_(N(1) / N(2)), of_collisions_(law.kind == CertainLaw<N>::Kind::wet) {
+    if constexpr (SideBySide<N>)
+      if (law.bounces_only() && lines_.identical_masses() && !law.contact_time)
+        bounces_.emplace(laws_.bouncing, law.cutoff ? *law.cutoff : N(-1), law.elastic);
+  }
 
   // The particles at the start.
   std::optional<Doubt<N>> begin() const { return state_at(N(0)).doubt; }
 
   // The next collision of the run. Where it is in doubt, no world line is changed.
   std::optional<Doubt<N>> collision(ParticleIndex left, ParticleIndex right) {
-    if (!lines_.holds(left) || !lines_.holds(right)) return Doubt<N>{Check::neighbours, true, left, right};
-    const ParticleIndex l = lines_.cluster(left), r = lines_.cluster(right);
-    if (lines_.right(l) != r || l == r) return Doubt<N>{Check::neighbours, true, left, right};
-    lines_.reach(l, r);
-    auto doubt = strike(l, r);
+    if (!are_neighbours(left, right)) return Doubt<N>{Check::neighbours, true, left, right};
+    auto doubt = strike(lines_.cluster(left), lines_.cluster(right));
     if (doubt) doubt->left = left, doubt->right = right;
     return doubt;
+  }
+
+  // The next collisions of the run, as one after the other. Those before the one that is in doubt are proved; after it
+  // nothing more can be checked.
+  using Pair = std::pair<ParticleIndex, ParticleIndex>;
+  struct DoubtAt {
+    std::size_t number;  // of the collision
+    Doubt<N> doubt;
+  };
+  std::optional<DoubtAt> collisions(std::span<const Pair> pairs) {
+    if constexpr (SideBySide<N>) {
+      for (std::size_t begin = 0; bounces_ && begin < pairs.size(); begin += most_at_once)
+        if (auto doubt = side_by_side(pairs.subspan(begin, std::min(most_at_once, pairs.size() - begin)))) {
+          doubt->number += begin;
+          return doubt;
+        }
+      if (bounces_) return std::nullopt;
+    }
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      if (auto doubt = collision(pairs[k].first, pairs[k].second)) return {{k, std::move(*doubt)}};
+    return std::nullopt;
   }
 
   // All that is certain at a time since the start, up to which the run has made all collisions.
@@ -175,6 +200,69 @@ template <Enclosing N> class Checker {
     state.energy = twice * half_;
     return state;
   }
+  // Takes in what stands beside them, too.
+  bool are_neighbours(ParticleIndex left, ParticleIndex right) {
+    if (!lines_.holds(left) || !lines_.holds(right)) return false;
+    const ParticleIndex l = lines_.cluster(left), r = lines_.cluster(right);
+    if (lines_.right(l) != r || l == r) return false;
+    lines_.reach(l, r);
+    return true;
+  }
+
+  // Level by level: those of one share no particle. What plain doubles leave open is for strike(), and so is the last
+  // collision, since a run may end with it.
+  std::optional<DoubtAt> side_by_side(std::span<const Pair> pairs) {
+    const std::size_t last = pairs.size() - 1;
+    const Proved before = proved_;
+    std::uint64_t together = 0;
+    std::optional<DoubtAt> first;
+    levels_.begin(last);
+    for (std::size_t k = 0; k < last && !first; ++k) {
+      const auto [left, right] = pairs[k];
+      if (lines_.inside(left, right) || are_neighbours(left, right))
+        levels_.add(lines_[left], lines_[right], left);
+      else
+        first = {k, {Check::neighbours, true, left, right}};
+    }
+    levels_.sort(lines_.first(), lines_.last());
+    how_.assign(pairs.size(), in_doubles);
+    const auto alone = [&](std::size_t k) {
+      const Proved so_far = proved_;
+      auto doubt = collision(pairs[k].first, pairs[k].second);
+      if (doubt && (!first || k < first->number)) first = {k, std::move(*doubt)};
+      how_[k] = (proved_.in_doubles > so_far.in_doubles ? in_doubles : 0) |
+                (proved_.below_cutoff > so_far.below_cutoff ? below_cutoff : 0);
+    };
+    Line* lines = &lines_[lines_.first()];
+    for (std::size_t level = 0; level < levels_.count(); ++level)
+      for (auto rest = levels_[level]; !rest.empty();) {
+        const auto some = rest.first(std::min(rest.size(), Bounces<N>::most));
+        rest = rest.subspan(some.size());
+        for (std::size_t k = 0; k < some.size(); ++k) bounces_->put(k, lines[some[k].left], lines[some[k].right]);
+        bounces_->make(some.size());
+        for (std::size_t k = 0; k < some.size(); ++k) {
+          const auto [left, right, number] = some[k];
+          if (!bounces_->certain(k) || right == 0) {  // 0: over the seam
+            alone(number);
+            continue;
+          }
+          bounces_->get(k, lines[left], lines[right]);
+          ++together;
+          if (bounces_->below_cutoff(k)) ++proved_.below_cutoff, how_[number] |= below_cutoff;
+        }
+      }
+    proved_.collisions += together, proved_.in_doubles += together;
+    if (!first) alone(last);
+    if (!first) return std::nullopt;
+    proved_ = before;
+    proved_.collisions += first->number;
+    for (std::size_t k = 0; k < first->number; ++k) {
+      proved_.in_doubles += (how_[k] & in_doubles) != 0;
+      proved_.below_cutoff += (how_[k] & below_cutoff) != 0;
+    }
+    return first;
+  }
+
   static N squared(const N& x) { return x * x; }
   static double power_of_ten(auto radius) { return static_cast<double>(std::log10(radius)); }
   N place_at(ParticleIndex b, const N& time) const {
@@ -296,6 +384,13 @@ template <Enclosing N> class Checker {
   Meeting last_;
   CertainOutcome<N> outcome_;  // of the collision at hand
   mutable bool needed_balls_ = false;
+
+  // ---- of collisions side by side
+  std::optional<Bounces<N>> bounces_;
+  Levels levels_;
+  static constexpr std::size_t most_at_once = 2048;  // so that lists stay in the nearest caches
+  static constexpr std::uint8_t in_doubles = 1, below_cutoff = 2;
+  std::vector<std::uint8_t> how_;  // each collision was decided
 };
 
 }  // namespace cradle

@@ -52,6 +52,7 @@ template <Enclosing N> struct WorldLine {
   N place, velocity;
   N changed{-1};  // when it had its last collision; -1: it had none
   bool touched = false;
+  std::uint64_t level = 0;  // of its last collision (side_by_side.hpp)
 };
 
 template <Enclosing N> class WorldLines {
@@ -108,6 +109,10 @@ template <Enclosing N> class WorldLines {
   }
   ParticleIndex seam() const { return seam_; }
 
+  // Whether they are neighbours, for sure, and reach() takes in none beside them.
+  bool inside(ParticleIndex left, ParticleIndex right) const {
+    return right == left + 1 && left > first() && right < last() && !linked_;
+  }
   // Takes in the particles of a row beside one that is about to have its first collision.
   void reach(ParticleIndex left, ParticleIndex right) {
     if (left == first() && left > 0) take_in_left(left - 1);

@@ -251,4 +251,34 @@ TYPED_TEST(Balls, WhatMayBeZeroDividesNothing) {
   EXPECT_FALSE(is_positive(B(TypeParam(1), 1)));
 }
 
+TEST(BallTest, DecimalsInIntegersAreThoseOfWideNumbers) {
+  std::uint64_t quick = 0;
+  for (std::uint64_t number = 0; number < 4000; ++number) {
+    SCOPED_TRACE(number);
+    std::uint64_t index = 0;
+    const auto uniform = [&] { return static_cast<double>(random_bits(21, number, index++) >> 11) * 0x1p-52 - 1; };
+    double high = std::ldexp(uniform(), static_cast<int>(random_bits(21, number, index++) % 60) - 30);
+    double radius = std::abs(high) * std::exp(-10 - 40 * std::abs(uniform()));
+    int digits = 3 + static_cast<int>(random_bits(21, number, index++) % 32);
+    double low = high * uniform() * 0x1p-54;
+    if (number % 8 == 0) high = std::round(high), low = 0;                                                // a decimal
+    if (number % 8 == 1) high = 100.5 + static_cast<double>(number % 900), low = radius = 0, digits = 3;  // between two
+    if (number % 8 == 2) high = std::pow(10, std::round(4 * high / (1 + std::abs(high)))), low = 0;  // a power of ten
+    if (number % 8 == 3) high = 0, low = 0;
+    if (number % 64 == 4) high *= 1e200, low *= 1e200;
+    const double_double middle = double_double::sum(high, low);
+    for (const bool below : {true, false}) {
+      const double by = below ? -radius : radius;
+      const detail::Wide exactly = detail::Wide(middle.high()) + middle.low() + by;
+      const std::string wide = detail::decimal_beside(exactly, digits, below);
+      const auto in_integers = detail::quick_decimal_beside({middle.high(), middle.low(), by}, digits, below);
+      if (in_integers) {
+        EXPECT_EQ(*in_integers, wide);
+      }
+      quick += in_integers.has_value();
+    }
+  }
+  EXPECT_GT(quick, 4000U);
+}
+
 }  // namespace ball_test

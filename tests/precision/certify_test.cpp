@@ -2,6 +2,7 @@
 // contain the exact numbers, and a run is never proved if one of its collisions is dropped, exchanged with a
 // neighbour's, invented or made on the wrong side of the cut-off.
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,6 +13,8 @@
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/counter_rng.hpp"
 #include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/observe/trace.hpp"
 #include "cradle/precision/ball.hpp"
 #include "cradle/precision/ball_text.hpp"
@@ -351,6 +354,164 @@ TEST(Certify, ParticlesThatAreNotInOrderForSureAreNoStart) {
   CertainLaw<B> law;
   EXPECT_FALSE(Checker<B>(particles, law).begin());
   EXPECT_THROW(List<B>({B(double_double(0), 1), B(double_double(1), 1)}, {B(0), B(0)}), std::invalid_argument);
+}
+
+// ---- collisions side by side
+
+using Pairs = std::vector<std::pair<ParticleIndex, ParticleIndex>>;
+
+// All that a checker knows, to the bit.
+struct Known {
+  std::uint64_t collisions, in_doubles, below_cutoff;
+  std::vector<double> lines;
+  friend bool operator==(const Known&, const Known&) = default;
+};
+void add(std::vector<double>& to, const B& x) {
+  to.insert(to.end(), {x.middle().high(), x.middle().low(), x.radius()});
+}
+Known known(const Checker<B>& checker) {
+  Known all{checker.proved().collisions, checker.proved().in_doubles, checker.proved().below_cutoff, {}};
+  checker.for_each(B(0),
+                   [&](ParticleIndex, const B&, const B& x, const B& v) { add(all.lines, x), add(all.lines, v); });
+  const auto last = checker.state_now();
+  add(all.lines, last.time), add(all.lines, last.closing);
+  return all;
+}
+
+// One checker is given the collisions one by one, the other one in pieces of so many.
+void compare_side_by_side(const std::shared_ptr<const Particles<B>>& particles, const CertainLaw<B>& law,
+                          const Pairs& collisions, std::size_t piece, bool proves) {
+  Checker<B> one(particles, law), many(particles, law);
+  std::optional<Doubt<B>> doubt;
+  std::optional<Checker<B>::DoubtAt> at;
+  for (std::size_t k = 0; k < collisions.size() && !doubt; k += piece) {
+    const std::span<const Checker<B>::Pair> some =
+        std::span(collisions).subspan(k, std::min(piece, collisions.size() - k));
+    at = many.collisions(some);
+    std::size_t number = 0;
+    for (; number < some.size() && !doubt; ++number) doubt = one.collision(some[number].first, some[number].second);
+    ASSERT_EQ(doubt.has_value(), at.has_value());
+    if (!doubt) {
+      if (k % 97 < piece) {
+        ASSERT_EQ(known(one), known(many));
+      }
+      continue;
+    }
+    EXPECT_EQ(at->number + 1, number);
+    EXPECT_EQ(at->doubt.check, doubt->check);
+    EXPECT_EQ(at->doubt.refuted, doubt->refuted);
+    EXPECT_EQ(at->doubt.left, doubt->left);
+    EXPECT_EQ(at->doubt.right, doubt->right);
+    std::vector<double> quantities, of_one;
+    add(quantities, at->doubt.first), add(quantities, at->doubt.second);
+    add(of_one, doubt->first), add(of_one, doubt->second);
+    EXPECT_EQ(quantities, of_one);
+    EXPECT_EQ(many.proved().collisions, one.proved().collisions);
+    EXPECT_EQ(many.proved().in_doubles, one.proved().in_doubles);
+    EXPECT_EQ(many.proved().below_cutoff, one.proved().below_cutoff);
+  }
+  EXPECT_EQ(doubt.has_value(), !proves);
+}
+
+template <class T> std::shared_ptr<const Particles<T>> shock(ParticleIndex particles) {
+  return std::make_shared<Rows<T>>(symmetric_rows<T>(particles, T(1) / T(2), T(1), uniform_displacement(0.1, 3, 0)));
+}
+template <class T> std::shared_ptr<const Particles<T>> gas(ParticleIndex particles) {
+  return std::make_shared<Ring<T>>(particles, T(particles), T(1), gaussian_velocity(5, 0),
+                                   uniform_displacement(0.3, 5, 0));
+}
+
+struct Proposed {
+  std::shared_ptr<const Particles<B>> particles;
+  CertainLaw<B> law;
+  Pairs collisions;
+};
+Proposed propose(bool ring, ParticleIndex particles, const char* restitution, double cutoff, double end) {
+  Proposed run;
+  run.particles = ring ? gas<B>(particles) : shock<B>(particles);
+  run.law.restitution = from_text<B>(restitution);
+  run.law.elastic = std::string(restitution) == "1";
+  if (cutoff > 0) run.law.cutoff = B(cutoff);
+  Simulation proposals(Inelastic<double>(std::stod(restitution), cutoff),
+                       GapChain<double>(ring ? gas<double>(particles) : shock<double>(particles), 0.));
+  proposals.advance(end, [&](const Collision<double>& c) { run.collisions.emplace_back(c.left, c.right); });
+  return run;
+}
+std::vector<Proposed> proposals() {
+  return {propose(false, 200, "0.97", 0.01, 150), propose(false, 200, "0.9", 0.25, 120),
+          propose(true, 300, "0.9", 0.5, 20), propose(true, 150, "1", 0, 10), propose(true, 60, "0.3", 0.125, 60)};
+}
+
+TEST(Certify, SideBySideCollisionsHaveTheBitsOfOneByOne) {
+  std::uint64_t below = 0;
+  for (const Proposed& run : proposals()) {
+    ASSERT_GT(run.collisions.size(), 500U);
+    for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{500}, run.collisions.size()})
+      compare_side_by_side(run.particles, run.law, run.collisions, piece, true);
+    Checker<B> checker(run.particles, run.law);
+    ASSERT_FALSE(checker.collisions(run.collisions));
+    EXPECT_GT(checker.proved().in_doubles, run.collisions.size() * 9 / 10);
+    below += checker.proved().below_cutoff;
+  }
+  EXPECT_GT(below, 1000U);
+}
+
+TEST(Certify, SideBySideCollisionsAreInDoubtWhereTheyAreOneByOne) {
+  std::uint64_t mutants = 0;
+  for (const Proposed& run : proposals()) {
+    for (std::uint64_t number = 0; number < 40; ++number) {
+      SCOPED_TRACE(number);
+      const auto pick = [&](std::uint64_t salt, std::size_t of) { return random_bits(9, number, salt) % of; };
+      Pairs changed = run.collisions;
+      for (std::uint64_t error = 0; error <= number % 3; ++error) {  // the first of several is the one in doubt
+        const auto at = changed.begin() + static_cast<std::ptrdiff_t>(pick(error, changed.size() - 60));
+        const auto count = run.particles->count();
+        const auto left = static_cast<ParticleIndex>(pick(10 + error, static_cast<std::size_t>(count - 1)));
+        if (number % 4 == 0) changed.erase(at);
+        if (number % 4 == 1) changed.insert(at, {left, left + 1});
+        if (number % 4 == 2) changed.insert(at, {left, left + 2});
+        if (number % 4 == 3)
+          for (auto next = at + 1; next < changed.end(); ++next)
+            if (*next != *at && shares_a_particle(*at, *next)) {
+              std::iter_swap(at, next);
+              break;
+            }
+      }
+      compare_side_by_side(run.particles, run.law, changed, 1 + pick(20, 3000), false);
+      ++mutants;
+    }
+  }
+  EXPECT_EQ(mutants, 200U);
+}
+
+TEST(Certify, SideBySideASpeedThatMayBeZeroIsOpen) {
+  const B slow(double_double(1e-30), 1e-29);
+  const auto particles =
+      std::make_shared<List<B>>(std::vector<B>{B(0), B(1), B(10), B(11)}, std::vector<B>{slow, B(0), B(1), B(0)});
+  CertainLaw<B> law;
+  law.restitution = from_text<B>("0.9");
+  compare_side_by_side(particles, law, {{0, 1}, {2, 3}}, 2, false);
+}
+
+TEST(Certify, SideBySideASpeedJustAtTheCutoffIsOpen) {
+  const auto particles =
+      std::make_shared<List<B>>(std::vector<B>{B(0), B(1), B(10), B(11)}, std::vector<B>{B(1), B(0), B(2), B(0)});
+  CertainLaw<B> law;
+  law.restitution = from_text<B>("0.9");
+  law.cutoff = B(1);
+  compare_side_by_side(particles, law, {{0, 1}, {2, 3}}, 2, false);
+}
+
+TEST(Certify, SideBySideCollisionsOfDrawnScenes) {
+  for (std::uint64_t number = 0; number < 500; ++number) {
+    SCOPED_TRACE(number);
+    const Drawn d = draw(number, false);
+    const Collisions collisions = made(d);
+    Checker<B> checker(particles_of<B>(d), law_of(d));
+    bool proves = true;
+    for (const auto& [left, right] : collisions) proves = proves && !checker.collision(left, right);
+    compare_side_by_side(particles_of<B>(d), law_of(d), collisions, 1 + number % 50, proves);
+  }
 }
 
 }  // namespace certify_test

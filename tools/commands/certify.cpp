@@ -35,6 +35,7 @@ Exit run_certify(const CertifyArguments& options) {
                                       : Progress::Show::on_terminal,
                      &interrupt};
   how.digits = options.digits.empty() ? rising_digits() : options.digits;
+  how.threads = options.threads;
   if (options.replicas > 0) {
     const CertifiedReplicas run = certify_replicas(scene, options.replicas, options.threads, how);
     write_or_keep(replicas_result(run), output);

@@ -63,6 +63,10 @@ struct ProofEnds {};
 /// Checks a run while it is in progress.
 class Certifier : public RunObserver {
  public:
+  /// From now on collisions are checked on a thread of their own, while the run makes the next ones.
+  virtual void check_beside() {}
+  /// Checks all collisions that are not checked yet, as a sample does. Throws ProofEnds.
+  virtual void check_all() {}
   virtual Certificate certificate() const = 0;
 };
 

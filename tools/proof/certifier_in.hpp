@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <future>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/precision/ball_text.hpp"
@@ -57,16 +60,23 @@ template <class M> class CertifierIn final : public Certifier {
     if (const auto doubt = checker_.begin()) certificate_.doubt = reported(*doubt, scene.run.start.value);
   }
 
+  void check_beside() override { beside_ = true; }
+
   void collision(ParticleIndex left, ParticleIndex right, double time) override {
     if (certificate_.doubt) throw ProofEnds();
-    const auto doubt = checker_.collision(left, right);
-    if (!doubt) return;
-    certificate_.doubt = reported(*doubt, time);
-    throw ProofEnds();
+    proposed_.pairs.emplace_back(left, right);
+    proposed_.times.push_back(time);
+    if (proposed_.pairs.size() == most_proposed) check();
+  }
+
+  void check_all() override {
+    check();
+    await_check();
   }
 
   void sample(const RunSample& sample) override {
     if (certificate_.doubt) throw ProofEnds();
+    check_all();
     for (const RequestedTime& asked : sample.requested) inspect(asked, sample);
   }
 
@@ -213,6 +223,33 @@ template <class M> class CertifierIn final : public Certifier {
     certificate_.snapshots.push_back(std::move(exact));
   }
 
+  // Those that wait are checked, and if beside, this returns once those before them are.
+  void check() {
+    await_check();
+    std::swap(proposed_, checked_);
+    proposed_.pairs.clear(), proposed_.times.clear();
+    const auto all = [this] { return checker_.collisions(checked_.pairs); };
+    if (beside_)
+      checking_ = std::async(std::launch::async, all);
+    else
+      report(all());
+  }
+  void await_check() {
+    if (checking_.valid()) report(checking_.get());
+  }
+  void report(const std::optional<typename Checker<N>::DoubtAt>& doubt) {
+    if (!doubt) return;
+    certificate_.doubt = reported(doubt->doubt, checked_.times[doubt->number]);
+    throw ProofEnds();
+  }
+
+  // Collisions of the run.
+  static constexpr std::size_t most_proposed = 16384;
+  struct Proposed {
+    std::vector<std::pair<ParticleIndex, ParticleIndex>> pairs;
+    std::vector<double> times;
+  };
+
   N start_;
   CertainLaw<N> law_;
   std::shared_ptr<const cradle::Particles<N>> particles_;
@@ -220,6 +257,9 @@ template <class M> class CertifierIn final : public Certifier {
   Checker<N> checker_;
   Certificate certificate_;
   std::size_t snapshots_ = 0;  // that the run has taken
+  bool beside_ = false;
+  Proposed proposed_, checked_;                                        // next and last
+  std::future<std::optional<typename Checker<N>::DoubtAt>> checking_;  // last: waits for the thread at the end
 };
 
 template <class M> std::unique_ptr<Certifier> certifier_in(const Scene& scene, unsigned digits) {

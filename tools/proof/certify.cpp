@@ -10,6 +10,7 @@
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 
@@ -96,6 +97,16 @@ bool raise(Scene& scene, unsigned digits) {
   }
 }
 
+// Whether the proof ends at a collision that the run has made.
+bool ends(Certifier& proof) {
+  try {
+    proof.check_all();
+    return false;
+  } catch (const ProofEnds&) {
+    return true;
+  }
+}
+
 std::string near(const std::string& number) { return number.size() > 24 ? number.substr(0, 24) + "..." : number; }
 
 // The digits that both ends share, and how much is known; both ends where they do not share many.
@@ -144,6 +155,9 @@ std::string Certified::not_proved() const {
 Certified certify(const Scene& requested, const CertifyOptions& options) {
   Scene scene = requested;
   std::vector<Attempt> attempts;
+  // One of them checks what the others propose.
+  const unsigned threads = thread_count(options.threads);
+  const Threads of_run(std::max(threads, 2U) - 1);
   auto digits = options.digits.begin();
   // One number of digits per process: a run in MPFR and its balls have the same.
   const auto in_step = [&] {
@@ -156,13 +170,15 @@ Certified certify(const Scene& requested, const CertifyOptions& options) {
     const auto started = std::chrono::steady_clock::now();
     const unsigned of_balls = in_step();
     const auto observer = options.make(scene, of_balls);
+    if (threads > 1) observer->check_beside();
     RunOutcome outcome;
     try {
-      outcome = run_scene(scene, {options.progress, observer.get(), options.interrupt});
+      outcome = run_scene(scene, {options.progress, observer.get(), options.interrupt, workers(of_run)});
     } catch (const ProofEnds&) {
     } catch (const Error& error) {  // a guard of the run: it was wrong, as if a collision of it had been
-      if (error.status != Exit::lost || !raise(scene, of_balls)) throw;
-      continue;
+      const bool ended = ends(*observer);
+      if (!ended && (error.status != Exit::lost || !raise(scene, of_balls))) throw;
+      if (!ended) continue;
     }
     if (outcome.end == RunEnd::interrupted)
       throw Error({}, "interrupted", "", "run it again; nothing is kept of a proof that did not finish",

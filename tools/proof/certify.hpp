@@ -35,6 +35,7 @@ struct CertifyOptions {
   Progress::Show progress = Progress::Show::on_terminal;
   Interrupt* interrupt = nullptr;
   MakeCertifier make = certifier;
+  unsigned threads = 1;  // 0: as many as the machine has
 };
 
 struct Certified {

@@ -76,6 +76,24 @@ TEST_F(Certified, TwiceTheSameBytesThatAreReadExportedAndDrawn) {
   EXPECT_TRUE(has(printed.out, "verdict = proved"));
 }
 
+TEST_F(Certified, ThreadsChangeNothing) {
+  const std::pair<std::string, int> scenes[] = {
+      {"fig2 --set initial.particles=500 --set law.restitution=0.99 --set run.until=300 --set output.snapshots=[100] "
+       "--set output.profiles.times=[] --set output.series.points=5",
+       0},
+      {"collapse3 --digits 31", 5}};
+  for (const auto& [scene, status] : scenes) {
+    const auto verdict = [](const Printed& printed) { return printed.out.substr(0, printed.out.find('\n')); };
+    const std::string one = verdict(certify(scene + " --threads 1", status));
+    for (const char* more : {" --threads 2", " --threads 3"}) {
+      EXPECT_EQ(verdict(certify(scene + more, status, "b.h5")), one);
+      shell("cmp a.h5 b.h5", 0);
+    }
+  }
+  certify(scenes[0].first);
+  EXPECT_GT(of_certificate<std::uint64_t>(result(), "collisions"), 20000U) << "several pieces";
+}
+
 TEST_F(Certified, ACollapseIsProvedToTheEndOfTheRangeOfDoubles) {
   const Printed printed = certify("collapse3", proved_in_wide_types);
 #ifdef CRADLE_WITH_MPFR

@@ -51,7 +51,7 @@ template <Real T, class Masses> class GapSegment {
     return {left, chain.on_ring() && left + 1 == chain.count() ? 0 : left + 1};
   }
 
-  // Copies what belongs to the segment. Never false: gaps do not go.
+  // Copies what belongs to the segment. Returns true: unlike clusters, gaps never vanish.
   bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
     report.to_left.at_end.clear(), report.to_right.at_end.clear();
     ring_first_ = static_cast<std::ptrdiff_t>(chain.first());

@@ -57,7 +57,7 @@ std::string checkpoint_listing(const CheckpointHeader& found, const std::string&
 std::string checkpoint_listing(const JournalHeader& journal, const std::string& path) {
   if (!std::filesystem::exists(path)) return line("checkpoint", "none yet: `resume` starts anew");
   const StateReader reader(path);
-  if (reader.header().run.identity != journal.identity) return line("checkpoint", "of a run before");
+  if (reader.header().run.identity != journal.identity) return line("checkpoint", "of an earlier run");
   return checkpoint_listing(reader.header(), path);
 }
 

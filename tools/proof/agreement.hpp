@@ -1,5 +1,5 @@
-// What a proof encloses and its run has too must be the same number, but for what the run has rounded: how far that can
-// go, and the first quantity that goes further, where the run or the program is wrong.
+// Compares a proof with its run. A quantity that both have must be the same number, except for the rounding of the run.
+// This bounds that rounding, and finds the first quantity that differs by more: then the run or the program is wrong.
 //
 // That the run has made the collisions of the exact system, and these alone, is proved before anything is compared. So
 // its world lines go through the maps of the exact ones (checker.hpp), and its error is what it has rounded at each

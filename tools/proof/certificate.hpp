@@ -26,7 +26,7 @@ struct Enclosed {
 /// What is certain at a time of the run.
 struct CertainSample {
   double time = 0;        // as the run has it
-  std::string time_text;  // the decimal that it stands for, and all else is of
+  std::string time_text;  // the decimal that it stands for; everything else refers to this time
   bool of_series = false;
   std::uint64_t collisions = 0;
   Enclosed energy;

@@ -146,7 +146,6 @@ Threading expected_threading(const Scene& scene, const Cost& cost, unsigned thre
   if (scene.run.collapse == scene::CollapsePolicy::contact_time) return alone("collisions with a memory");
   if (!merge && scene.run.collapse == scene::CollapsePolicy::stop && scene.law.restitution < Decimal("1"))
     return alone("a collapse to be found");
-  if (scene.output.events || scene.output.scenario) return alone("every collision is recorded, in order");
   // Two segments in two threads are 1.8 to 2.1 times as fast as the plain loop, bench/results/speed.md.
   constexpr double efficiency = 0.9;
   const double segments = std::min<double>(threads, std::floor(cost.particles / gaps_per_thread));

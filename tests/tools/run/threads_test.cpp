@@ -66,7 +66,6 @@ TEST_F(RunThreads, AreWhatCheckPrintsBeforehand) {
   EXPECT_TRUE(has(printed("ring.toml"), "threads: 2, about 1.8 times"));
   EXPECT_TRUE(has(printed("fig2 --set initial.particles=200"), "(few particles)"));
   EXPECT_TRUE(has(printed("fig2 --set run.coordinates=absolute"), "(absolute coordinates)"));
-  EXPECT_TRUE(has(printed("fig2 --set output.events=true"), "(every collision is recorded, in order)"));
   EXPECT_TRUE(has(printed("collapse3"), "(a collapse to be found)"));
 }
 

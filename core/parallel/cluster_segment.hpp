@@ -1,19 +1,19 @@
 #pragma once
-// A segment's part of the chain in gaps and particle velocities, on a ring (segments.hpp). A collision at the gap behind
-// the particle l reads and changes that gap, the gaps on either side of it, and the particles l and r beside it. A cut
-// is at a particle, the one on the right of the last gap before the cut. Both sides know this particle's velocity as
-// long as they know the collisions at the two gaps beside it. These collisions are logged: the gap, the exact time, and
-// the two that met.
+// A segment's part of the chain in gaps and particle velocities, on a ring (segments.hpp). A collision at the gap
+// behind the particle l reads and changes that gap, the gaps on either side of it, and the particles l and r beside it.
+// A cut is at a particle, the one on the right of the last gap before the cut. Both sides know this particle's velocity
+// as long as they know the collisions at the two gaps beside it. These collisions are logged: the gap, the exact time,
+// and the two that met.
 //
 // When particles merge, the gap between them vanishes. If the particles at the last gap before a cut merge, the merged
 // particle stays in that gap's cell, and the gap behind it is the one that was the first behind the cut. This gap now
 // belongs to the segment before the cut, which has had it as a ghost; the next gap is the first one behind the cut from
-// then on. Both sides log all that they know of the gap, so that it is taken over as it should be. Any other merger is a
-// collision like others. A segment whose last cell is absorbed from the left owns nothing any more: it is joined with
+// then on. Both sides log all that they know of the gap, so that it is taken over as it should be. Any other merger is
+// a collision like others. A segment whose last cell is absorbed from the left owns nothing any more: it is joined with
 // its neighbours.
 //
-// If positions are counted from the first cell, mass that crosses the seam is recorded in the order in which it crosses.
-// If two segments have such collisions in one time slab, the plain loop computes the slab.
+// If positions are counted from the first cell, mass that crosses the seam is recorded in the order in which it
+// crosses. If two segments have such collisions in one time slab, the plain loop computes the slab.
 
 #include <algorithm>
 #include <cstddef>

@@ -35,6 +35,7 @@ requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> f
 
   // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
   bool run(const Steps& steps, Part& part, const Law& law, const T& stop, std::uint64_t most, Report& report) {
+    if (report.observe) return false;  // the event loop logs what is observed
     if (report.pace.rest > 0) return --report.pace.rest, false;
     part_ = &part, law_ = &law, report_ = &report;
     made_ = {};

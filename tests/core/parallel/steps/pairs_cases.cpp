@@ -145,6 +145,12 @@ TEST_F(StepsOfPairs, MakeNearlyAllCollisionsOfAGas) {
   EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions));
 }
 
+TEST_F(StepsOfPairs, LeaveNothingOutThatIsObserved) {
+  for (const SegmentsAs& as : all_ways())
+    expect_same_in_segments<Equal>(gas<T>(800), Inelastic<T>(part(999, 1000), part(1, 100'000)), as,
+                                   std::vector{T(1), T(20)});
+}
+
 // Dense and cold: what is out of order is found and made again.
 TEST_F(StepsOfPairs, MakeThemAgainWhereImpulsesRunFar) {
   std::vector<T> x, v;

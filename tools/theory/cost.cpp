@@ -146,8 +146,9 @@ Threading expected_threading(const Scene& scene, const Cost& cost, unsigned thre
   if (scene.run.collapse == scene::CollapsePolicy::contact_time) return alone("collisions with a memory");
   if (!merge && scene.run.collapse == scene::CollapsePolicy::stop && scene.law.restitution < Decimal("1"))
     return alone("a collapse to be found");
-  // Two segments in two threads are 1.8 to 2.1 times as fast as the plain loop, bench/results/speed.md.
-  constexpr double efficiency = 0.9;
+  // Two segments in two threads are 1.8 to 2.1 times as fast as the plain loop, bench/results/speed.md. One thread
+  // alone sorts and writes events: then two are 1.0 to 1.6 times as fast as one.
+  const double efficiency = scene.output.events ? 0.65 : 0.9;
   const double segments = std::min<double>(threads, std::floor(cost.particles / gaps_per_thread));
   if (segments < 2) return alone(threads < 2 ? "one thread" : "few particles");
   return {efficiency * segments, ""};

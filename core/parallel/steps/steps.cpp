@@ -23,7 +23,7 @@ constexpr bool planted(int error) { return error == CRADLE_PLANTED_ERROR; }
 using Lanes = hn::ScalableTag<double>;  // of neighbours that are compared
 constexpr std::size_t lanes = hn::MaxLanes(Lanes());
 
-// Gaps are looked at in groups of eight.
+// Times of collision are compared eight at a time.
 constexpr std::size_t group = 8;
 using Group = hn::CappedTag<std::uint32_t, group>;
 

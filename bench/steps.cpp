@@ -9,9 +9,10 @@
 // The second one compares steps on two threads with steps on one, by the clock; beside it stands what the memory of the
 // machine allows: both copy as many gaps.
 //
-// Cases are those of bench/engine.cpp, and gases with masses 1 and 3, between walls, and with a restitution that
-// depends on the speed; `wide` ones are in double-double. Times are processor time of the thread. `late` is the last
-// thirteenth of the time: 6000 to 6500 for the shock.
+// Cases are those of bench/engine.cpp, which become thinner, and gases with masses 1 and 3, between walls, and with a
+// restitution that depends on the speed, in which clusters collapse; then gases on rings, which stay as dense as they
+// are: elastic ones, and one with a restitution near 1 that depends on the speed. `wide` ones are in double-double.
+// Times are processor time of the thread. `late` is the last thirteenth of the time: 6000 to 6500 for the shock.
 
 #include <cstdio>
 #include <ctime>
@@ -41,6 +42,18 @@ using namespace bench;
 ParticlesPointer between_walls(ParticleIndex n) {
   const auto wall = [](double position) { return Wall<double>{.position = position, .temperature = 0.3}; };
   return std::make_shared<Walled<double>>(gas(n), wall(-1), wall(static_cast<double>(n)));
+}
+
+// Masses 1 and 1.0001, so that even elastic particles have to be followed.
+ParticlesPointer ring(ParticleIndex n) {
+  std::vector<double> x, v, m;
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
+    const std::uint64_t bits = hash(i);
+    x.push_back(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29);
+    v.push_back(static_cast<double>(bits >> 28) * 0x1p-35 - 1);
+    m.push_back(i % 2 == 0 ? 1 : 1.0001);
+  }
+  return std::make_shared<List<double>>(std::move(x), std::move(v), std::move(m), static_cast<double>(n));
 }
 
 template <class Chain, class Law>
@@ -129,7 +142,8 @@ int main(int argc, char** argv) {
   using Unequal = GapChain<double, IndividualMasses<double>>;
   const Inelastic<double> law(0.999, 1e-5);
   const Inelastic<double_double> wide_law(double_double(0.999), double_double(1e-5));
-  const SpeedDependent<double> of_speed(0.9, 0.1, 0.2);
+  const Inelastic<double> elastic(1);
+  const SpeedDependent<double> of_speed(0.9, 0.1, 0.2), slightly(0.99, 0.1, 0.2);
   const std::vector<std::pair<const char*, std::function<bool(const char*)>>> cases{
       {"shock/8000", [&](const char* name) { return compare<Equal>(name, rows<double>(8000), law, 6500, 13); }},
       {"gas/300", [&](const char* name) { return compare<Equal>(name, gas(300), law, 10000, 13); }},
@@ -140,6 +154,11 @@ int main(int argc, char** argv) {
       {"gas/1e7", [&](const char* name) { return compare<Equal>(name, gas(10'000'000), law, 10, 1); }},
       {"masses/8000", [&](const char* name) { return compare<Unequal>(name, gas(8000, 3), law, 1000, 13); }},
       {"walls/8000", [&](const char* name) { return compare<Equal>(name, between_walls(8000), law, 1000, 13); }},
+      {"ring/1000", [&](const char* name) { return compare<Unequal>(name, ring(1000), elastic, 4000, 8); }},
+      {"ring/8000", [&](const char* name) { return compare<Unequal>(name, ring(8000), elastic, 1000, 8); }},
+      {"ring/1e5", [&](const char* name) { return compare<Unequal>(name, ring(100'000), elastic, 100, 2); }},
+      {"ring/1e6", [&](const char* name) { return compare<Unequal>(name, ring(1'000'000), elastic, 40, 1); }},
+      {"ring, r(w)", [&](const char* name) { return compare<Unequal>(name, ring(8000), slightly, 400, 8); }},
       {"speed/8000", [&](const char* name) { return compare<Unequal>(name, gas(8000), of_speed, 1000, 13); }},
       {"wide shock",
        [&](const char* name) { return compare<Wide>(name, rows<double_double>(8000), wide_law, 6500, 13); }},

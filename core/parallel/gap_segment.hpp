@@ -39,6 +39,7 @@ template <Real T, class Masses> class GapSegment {
   double queue_key(Slot s) { return line_.gaps.queue_key(s, line_.closing(s)); }
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
   bool across_seam() const { return across_seam_; }
+  bool is_ring() const { return is_ring_; }  // a whole one, without cuts
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
   // The collision at a gap of the segment's own, before it is made.
   Observed observed(Slot s, const T& time) const {
@@ -59,8 +60,9 @@ template <Real T, class Masses> class GapSegment {
     left_end_ = !chain.on_ring() && own.first == chain.first();
     right_end_ = !chain.on_ring() && own.first + own.gaps > chain.last();
     // At the end of a row particles are taken along that the front may reach.
+    is_ring_ = ring_ > 0 && own.gaps == chain.last() + 1 - chain.first();
     const auto beside = [&](bool at_end, std::size_t within_reach, std::size_t held) {
-      return chain.on_ring() ? ghosts : std::min(ghosts, at_end ? within_reach : held);
+      return is_ring_ ? 0 : chain.on_ring() ? ghosts : std::min(ghosts, at_end ? within_reach : held);
     };
     const std::size_t before = beside(left_end_, chain.within_reach_left(), own.first - chain.first());
     const std::size_t behind = beside(right_end_, chain.within_reach_right(), chain.last() + 1 - own.first - own.gaps);
@@ -152,6 +154,7 @@ template <Real T, class Masses> class GapSegment {
   // A collision that may be at a cut or a front, or beyond.
   [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const T& closing, const Outcome<T>& outcome, Report& report) {
     Notice notice = Notice::none;
+    if (is_ring_) return {};
     if (!left_end_ && s + 1 - own_first_ < 2) report.left.push_back({s == own_first_, time, closing});
     if (!right_end_ && s - own_last_ < 2) report.right.push_back({s != own_last_, time, closing});
     if (left_end_ && s <= reached_left_) {
@@ -176,6 +179,8 @@ template <Real T, class Masses> class GapSegment {
     return {(left_end_ || s >= own_first_) && (right_end_ || s <= own_last_), notice};
   }
   void set_inner() {
+    constexpr std::size_t reach = 8;  // of a decision in steps, over the seam
+    if (is_ring_) return void((inner_first_ = first_ + reach, inner_ = last_ + 1 - first_ - 2 * reach));
     inner_first_ = reached_left_ + 1;
     inner_ = reached_right_ > inner_first_ ? reached_right_ - inner_first_ : 0;
   }
@@ -201,7 +206,7 @@ template <Real T, class Masses> class GapSegment {
   Slot own_first_ = 0, own_last_ = 0, last_ = 0;
   std::ptrdiff_t offset_ = 0;                 // from a slot here to the chain's
   std::ptrdiff_t ring_first_ = 0, ring_ = 0;  // slots of a ring
-  bool left_end_ = false, right_end_ = false, across_seam_ = false;
+  bool left_end_ = false, right_end_ = false, across_seam_ = false, is_ring_ = false;
   Slot reached_left_ = 0, reached_right_ = 0;  // fronts; at a cut the gap owned beside it
   Slot inner_first_ = 0, inner_ = 0;           // between them
   GapRange gaps_{0, 0};                        // all that there are on the line

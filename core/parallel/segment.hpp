@@ -52,7 +52,9 @@ template <Real T> struct OwnedResult {
 template <class Chain> struct PartOf;
 
 // How it makes collisions in steps, where it can (steps/stepped.hpp).
-template <class Law, class Part> struct Stepped { static constexpr bool possible = false; };
+template <class Law, class Part> struct Stepped {
+  static constexpr bool possible = false, on_rings = false;  // on_rings: also of a whole ring, which has no cuts
+};
 
 template <class Law, class Chain> class Segment {
  public:
@@ -69,8 +71,11 @@ template <class Law, class Chain> class Segment {
            const Steps* steps, typename Chain::Line::Gaps& after, Report& report) {
     if constexpr (Stepped<Law, Part>::possible)
       if (steps != nullptr && take(chain, own, ghosts, report)) {
+        if (part_.is_ring()) report.pace.rest = 0;  // Segments is patient enough
         report.in_steps = stepped_.run(*steps, part_, law, stop, most, report);
         if (report.in_steps) return part_.give(chain, own, after, report);
+        report.plain = part_.is_ring();
+        if (report.plain) return;
       }
     if (!begin(chain, own, ghosts, report)) return;
     // Observers are given exact times; without one nobody pays for the log.

@@ -84,7 +84,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     const std::size_t held = chain.last() + 1 - chain.first();
     if (!(ahead > 0)) return 64;
     const std::size_t middle = (chain.first() + chain.last()) / 2;
-    if (!chain.fronts_are_within(middle, middle) || (chain.on_ring() && segments(chain, held) < 2)) return 256;
+    if (!chain.fronts_are_within(middle, middle) || segments(chain, held) == 0) return 256;
     // A time slab visits every gap.
     if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64 + 1;
     return std::exchange(plain_, 0);
@@ -163,6 +163,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   using Report = typename Segment<Law, Chain>::Report;
   bool in_steps() const { return how_.steps != nullptr && Stepped<Law, Part>::possible; }
   static constexpr double least_per_gap = 1. / 8;
+  static constexpr std::size_t least_on_ring = 100;  // gaps, for steps on a ring without cuts to pay
   static constexpr double least_observed = 1 << 14;  // collisions in a time slab, if there are as many
 
   std::optional<Slab> give_up(const Chain& chain) {
@@ -184,13 +185,16 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
       weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.collisions});
   }
 
-  // How many segments so many gaps make: as many for each thread. A ring has two cuts at least.
+  // How many segments so many gaps make: as many for each thread. A ring has no cut or two at least; 0: it is too small
+  // for them.
   std::size_t segments(const Chain& chain, std::size_t held) const {
     const std::size_t threads =
         how_.anywhere ? workers_.count : std::max<std::size_t>(1, std::min(workers_.count, held / gaps_per_thread));
     const std::size_t each = (held + threads * how_.gaps / 2) / (threads * how_.gaps);
-    const std::size_t least = chain.on_ring() && held >= 2 * gaps_per_thread ? 2 : 1;
-    return std::max(least, std::min(threads * std::max<std::size_t>(each, 1), held / 2));
+    const std::size_t count = std::min(threads * std::max<std::size_t>(each, 1), held / 2);
+    if (count > 1 || !chain.on_ring()) return std::max<std::size_t>(count, 1);
+    if (in_steps() && Stepped<Law, Part>::on_rings && held >= least_on_ring) return 1;
+    return held >= 2 * gaps_per_thread ? 2 : 0;
   }
 
   // Cuts the line into segments of about as many collisions each, by those of the time slab before; gaps count for a
@@ -241,7 +245,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     std::vector<char> kept(count);  // the cut on the left of each
     for (std::size_t k = 0; k < count; ++k) {
       const Report &left = reports_[(k + count - 1) % count], &right = reports_[k];
-      kept[k] = (k == 0 && !chain.on_ring()) || (!left.nothing_left && !right.nothing_left && left.right == right.left);
+      kept[k] = (k == 0 && (!chain.on_ring() || count == 1)) ||
+                (!left.nothing_left && !right.nothing_left && left.right == right.left);
     }
     // On a ring begin behind a cut that is kept.
     const auto begin = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), 1) - kept.begin());

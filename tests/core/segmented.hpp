@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cstdint>
 
@@ -64,6 +65,33 @@ template <class Run, class T> void expect_same_state(const Run& a, const Run& b,
   EXPECT_EQ(a.account().order_lost, b.account().order_lost);
   EXPECT_EQ(a.account().first_order_lost.time, b.account().first_order_lost.time);
   EXPECT_EQ(a.collided_particles(), b.collided_particles());
+}
+
+// Every number of every gap, and the accounts of walls.
+template <class Chain> void expect_same_bits(const Chain& a, const Chain& b) {
+  const auto bits = [](const auto& x) {
+    return std::bit_cast<std::array<std::uint64_t, sizeof x / sizeof(std::uint64_t)>>(x);
+  };
+  ASSERT_EQ(a.last() - a.first(), b.last() - b.first());
+  const auto &left = a.line().gaps, &right = b.line().gaps;
+  for (Slot k = 0; k <= a.last() - a.first(); ++k) {
+    const Slot s = a.first() + k, r = b.first() + k;
+    const auto &one = left[s], &other = right[r];
+    ASSERT_EQ(bits(one.gap), bits(other.gap)) << k;
+    ASSERT_EQ(bits(one.closing), bits(other.closing)) << k;
+    ASSERT_EQ(bits(one.time), bits(other.time)) << k;
+    if constexpr (requires { one.due; }) {
+      ASSERT_EQ(bits(one.due), bits(other.due)) << k;
+    }
+    if constexpr (requires { one.lost; }) {
+      ASSERT_EQ(bits(one.lost), bits(other.lost)) << k;
+    }
+    ASSERT_EQ(bits(left.lag(s)), bits(right.lag(r))) << k;
+  }
+  for (const End end : {End::left, End::right}) {
+    ASSERT_EQ(a.walls().tally(end).collisions, b.walls().tally(end).collisions);
+    ASSERT_EQ(bits(a.walls().tally(end).given.value()), bits(b.walls().tally(end).given.value()));
+  }
 }
 
 // All that an observer of a run receives, in its order, and the counts that it reads then: a hash of it, since a run

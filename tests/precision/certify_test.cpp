@@ -502,6 +502,15 @@ TEST(Certify, SideBySideASpeedJustAtTheCutoffIsOpen) {
   compare_side_by_side(particles, law, {{0, 1}, {2, 3}}, 2, false);
 }
 
+// Without the circumference the time of the first collision would be (0.1 - 0.9)/6: before the start, but later than
+// the time of "no collision yet".
+TEST(Certify, SideBySideACollisionOverTheSeamOfAShortRingIsComputedAlone) {
+  const std::vector<B> x{from_text<B>("0.1"), from_text<B>("0.6"), from_text<B>("0.9")}, v{B(-3), B(0), B(3)};
+  CertainLaw<B> law;
+  law.restitution = from_text<B>("0.9");
+  compare_side_by_side(std::make_shared<List<B>>(x, v, std::vector<B>{}, B(1)), law, {{2, 0}, {1, 2}, {0, 1}}, 3, true);
+}
+
 TEST(Certify, SideBySideCollisionsOfDrawnScenes) {
   for (std::uint64_t number = 0; number < 500; ++number) {
     SCOPED_TRACE(number);

@@ -36,6 +36,12 @@ class StepLine {
   // Gaps whose collisions are made as vectors; those at others are left to StepScalars.
   std::uint32_t inner_first = 0, inner = 0;
 
+  // Whether the last gap and the first one are neighbours. Then the gaps within a decision's radius of them are none of
+  // the inner ones.
+  bool ring = false;
+  std::size_t left_of(std::size_t i) const { return i > 0 ? i - 1 : ring ? gaps_ - 1 : 0; }
+  std::size_t right_of(std::size_t i) const { return ring && i + 1 == gaps_ ? 0 : i + 1; }
+
   // ---- lists of a step
   std::vector<std::uint32_t> candidates, waiting, first, edges;
   std::vector<std::uint32_t> visited;  // tiles with collisions
@@ -72,8 +78,10 @@ class StepLine {
   void guard(std::size_t k) {
     if (guarded_[k] == stretch_) return;
     guarded_[k] = stretch_;
-    for (std::size_t beside = k > 0 ? k - 1 : 0; beside <= k + 1 && beside < tiles(); ++beside)
-      if (kept_at_[beside] != stretch_) keep_tile(beside);
+    for (std::size_t beside = k > 0 ? k - 1 : 0; beside <= k + 1 && beside < tiles(); ++beside) keep_tile(beside);
+    if (!ring) return;
+    if (k == 0) keep_tile(tiles() - 1), keep_tile(tiles() - 2);  // the last one may not be full
+    if (k + 2 >= tiles()) keep_tile(tiles() - 1), keep_tile(0);
   }
   void restore() {
     const Gap<double>* from = kept_.data();
@@ -137,6 +145,7 @@ class StepLine {
     }
   }
   void keep_tile(std::size_t k) {
+    if (kept_at_[k] == stretch_) return;
     kept_at_[k] = stretch_;
     if (cells != nullptr) std::copy_n(cells + tile * k, in_tile(k), kept_.data() + tile * kept_tiles_.size());
     double* to = kept_numbers_.data() + arrays_.size() * tile * kept_tiles_.size();

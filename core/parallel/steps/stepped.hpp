@@ -1,6 +1,7 @@
 #pragma once
 // How a segment of a chain in gaps uses steps (steps.hpp): steps work on the segment's copy, and leave collisions at
-// cuts, fronts and walls to it. If steps fail, the segment takes its copy anew and goes through its event loop.
+// cuts, fronts and walls to it, and those beside the seam of a whole ring. If steps fail, the segment takes its copy
+// anew and goes through its event loop.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ template <class Law, class Masses>
 requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<double, Masses>> final
     : private StepScalars {
  public:
-  static constexpr bool possible = true;
+  static constexpr bool possible = true, on_rings = true;
   using Part = GapSegment<double, Masses>;
   using Report = typename Part::Report;
 
@@ -38,8 +39,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     StepResult inner;
     StepPace& pace = report.pace;
     const bool done = steps.run(line_, task, *this, pace, inner);
-    pace.rest = done ? 0 : pace.next_rest;
-    pace.next_rest = done ? std::max(pace.next_rest / 2, 1) : std::min(2 * pace.next_rest, 64);
+    pace.made(done);
     if (!done) return false;
     report.counts = made_.counts;
     report.counts.collisions += inner.collisions;
@@ -93,6 +93,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
         line_.fraction[i] = left_lighter ? -fraction : fraction;
         line_.reduced[i] = masses.reduced();
       }
+    line_.ring = part_->is_ring();
     set_inner();
   }
   void set_inner() {
@@ -115,8 +116,9 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     cell.closing = outcome.closing;
     cell.time = time;
     cell.due = line_.due[i] = StepLine::never;
-    if (i > 0 && !kick(i - 1, outcome.to_left, time)) return false;
-    if (i + 1 < line_.gaps() && !kick(i + 1, outcome.to_right, time)) return false;
+    const std::size_t left = line_.left_of(i), right = line_.right_of(i);
+    if (left != i && !kick(left, outcome.to_left, time)) return false;
+    if (right < line_.gaps() && !kick(right, outcome.to_right, time)) return false;
     if (!edge.own) return true;
     ledger_.add(outcome.energy_lost);
     ++made_.counts.collisions;

@@ -28,7 +28,7 @@ concept DoubleDouble = std::is_trivially_copyable_v<T> && sizeof(T) == 2 * sizeo
 template <DoubleDouble T, class Masses>
 requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> final : private StepScalars {
  public:
-  static constexpr bool possible = true;
+  static constexpr bool possible = true, on_rings = false;
   using Part = GapSegment<T, Masses>;
   using Law = Inelastic<T>;
   using Report = typename Part::Report;
@@ -44,8 +44,7 @@ requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> f
     bool done = fill() && steps.run(line_, task_of(stop, most), *this, pace, inner);
     if (done) line_.bound_tiles();
     done = done && line_.least_due() > to_double(stop);  // no key is that of `stop`
-    pace.rest = done ? 0 : pace.next_rest;
-    pace.next_rest = done ? std::max(pace.next_rest / 2, 1) : std::min(2 * pace.next_rest, 64);
+    pace.made(done);
     if (!done) return false;
     report.counts = made_.counts;
     report.counts.collisions += inner.collisions;

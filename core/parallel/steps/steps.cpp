@@ -58,14 +58,14 @@ struct Local {
   explicit HWY_INLINE Local(StepLine& line)
       : cells(line.cells), lag(line.lag), due(line.due), bound(line.bound), fraction(line.fraction),
         reduced(line.reduced), struck(line.struck.data()), struck_mass(line.struck_mass.data()),
-        inner_first(line.inner_first), inner(line.inner), candidates(line.candidates.data()),
-        waiting(line.waiting.data()), first(line.first.data()), edges(line.edges.data()), visited(line.visited.data()) {
-  }
+        inner_first(line.inner_first), inner(line.inner), around(line.ring ? line.gaps() : 0),
+        candidates(line.candidates.data()), waiting(line.waiting.data()), first(line.first.data()),
+        edges(line.edges.data()), visited(line.visited.data()) {}
 
   Gap<double>* cells;
   const double* lag;
   double *due, *bound, *fraction, *reduced, *struck, *struck_mass;
-  std::size_t inner_first, inner;
+  std::size_t inner_first, inner, around;  // around: gaps of a ring, else 0
   std::uint32_t *candidates, *waiting, *first, *edges, *visited;
   std::size_t count = 0, later = 0, firsts = 0, at_edges = 0, visits = 0;  // in these lists
 };
@@ -113,18 +113,29 @@ HWY_INLINE bool is_first(const double* due) {
   return hn::AllTrue(d, hn::Lt(hn::Set(d, *due), least));
 }
 
+// The same over the seam of a ring.
+HWY_INLINE bool is_first_on_ring(const Local& l, std::size_t i) {
+  bool first = true;
+  for (std::size_t k = 1; k <= group; ++k)
+    first &= (l.due[i] < l.due[(i + k) % l.around]) & (l.due[i] < l.due[(i + l.around - k) % l.around]);
+  return first;
+}
+
 // Which of the candidates are first in their neighbourhoods, and which must wait.
 HWY_INLINE void decide(Local& l, double end) {
   l.firsts = l.at_edges = l.later = 0;
   for (std::size_t k = 0; k < l.count; ++k) {
     const std::size_t i = l.candidates[k];
-    const bool is_due = l.due[i] <= end, now = is_due & is_first(l.due + i);
+    const bool is_due = l.due[i] <= end;
+    bool now = is_due & is_first(l.due + i);
     l.waiting[l.later] = static_cast<std::uint32_t>(i);
-    l.later += is_due & !now;
     if (i - l.inner_first >= l.inner) [[unlikely]] {
+      now = now && (l.around == 0 || planted(1) || is_first_on_ring(l, i));
+      l.later += is_due & !now;
       if (now) l.edges[l.at_edges++] = static_cast<std::uint32_t>(i);
       continue;
     }
+    l.later += is_due & !now;
     l.first[l.firsts] = static_cast<std::uint32_t>(i);
     l.firsts += now;
   }
@@ -142,134 +153,10 @@ HWY_INLINE void follow(Local& l, std::size_t left, unsigned left_soon, std::size
   l.later += right_soon;
 }
 
-// Two numbers that are computed at once, by any processor: those of the gaps left and right of a collision, or two of
-// one gap.
-typedef double Both __attribute__((vector_size(16), may_alias));
-HWY_INLINE Both both(double x) { return Both{x, x}; }
-HWY_INLINE Both lower(Both a, Both b) { return Both{a[0], b[0]}; }
-HWY_INLINE Both upper(Both a, Both b) { return Both{a[1], b[1]}; }
-HWY_INLINE Both least(Both a, Both b) { return a < b ? a : b; }
-// The numbers of a gap as they lie in memory: gap and local time, then time of collision and closing speed.
-HWY_INLINE Both* pairs(Gap<double>& cell) { return reinterpret_cast<Both*>(&cell.gap); }
-static_assert(sizeof(Gap<double>) == 2 * sizeof(Both) && alignof(Gap<double>) % alignof(Both) == 0);
-
-// What is known of all collisions of a step.
-struct Made {
-  Both flown = both(StepLine::never), own_flown = flown;  // least times since the collision before: beside, and own
-  Both gap = flown;                                       // least gaps beside
-  double latest;
-  hn::Vec<Lanes> lost = hn::Zero(Lanes()), rest = hn::Zero(Lanes());  // for the ledger
-  std::uint64_t below_cutoff = 0;
-
-  // Whether every collision came after the last ones at its gaps and left no gap below the floor.
-  HWY_INLINE bool in_order(double floor, double end) const {
-    return std::min(flown[0], flown[1]) > 0 && own_flown[0] > end * 0x1p-40 && std::min(gap[0], gap[1]) >= floor;
-  }
-};
-
-// Makes the collision at the gap i, number k of its pass: beside it g -= w since, w += gain.
-template <StepLaw law, bool unequal>
-HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t i, std::size_t k,
-                        Made& made) {
-  Both *const left = pairs(l.cells[i - 1]), *const own = pairs(l.cells[i]), *const right = pairs(l.cells[i + 1]);
-  const double time = l.due[i], w = own[1][1];
-  const Both x = both(time), g = lower(left[0], right[0]), then = upper(left[0], right[0]),
-             u = Both{left[1][1], right[1][1]};
-  double after = 0;
-  Both gain{};
-  if constexpr (law == StepLaw::any) {
-    after = line.after[k], gain = Both{line.to_left[k], line.to_right[k]};
-  } else {
-    double handed = 0;  // to each side, as far as masses are equal
-    if constexpr (law == StepLaw::hard) {
-      handed = (w < task.cutoff ? 1 : task.half_sum) * w;
-      after = w - (handed + handed);
-    } else {
-      after = -((w < task.cutoff ? 1 : task.restitution) * w);
-      handed = (w - after) * 0.5;
-    }
-    gain = both(handed);
-    if constexpr (unequal) {
-      const double share = l.fraction[i], all = handed + handed, small = all * std::abs(share), large = all - small;
-      gain = Both{share, -share} < 0 ? both(large) : both(small);
-      l.struck_mass[k] = l.reduced[i];
-    }
-    l.struck[k] = w;
-  }
-  Both since = x - then;
-  if (std::min(then[0], then[1]) < 0) [[unlikely]]
-    since -= then < 0 ? Both{l.lag[i - 1], l.lag[i + 1]} : both(0);
-  const Both g_now = g - u * since, u_now = u + gain;
-  made.flown = least(since, made.flown);
-  made.own_flown = least(x - upper(own[0], own[0]), made.own_flown);
-  made.gap = least(g_now, made.gap);
-  made.latest = time > made.latest ? time : made.latest;
-  left[0] = lower(g_now, x), right[0] = upper(g_now, x);
-  l.cells[i - 1].closing = u_now[0], l.cells[i + 1].closing = u_now[1];
-  own[0] = Both{0, time}, own[1] = Both{StepLine::never, after};
-  l.due[i] = StepLine::never;
-}
-
-// When the gaps beside the collision at the gap i are due now.
-HWY_INLINE void foresee(Local& l, double end, std::size_t i) {
-  Gap<double>&left = l.cells[i - 1], &right = l.cells[i + 1];
-  const Both x = both(l.cells[i].time), g{left.gap, right.gap}, u{left.closing, right.closing},
-             was_due{l.due[i - 1], l.due[i + 1]};
-  const Both due = u > 0 ? x + g / u : both(StepLine::never);
-  left.due = l.due[i - 1] = due[0];
-  right.due = l.due[i + 1] = due[planted(3) ? 0 : 1];
-  const auto soon = (due <= end) & (was_due > end);
-  follow(l, i - 1, soon[0] & 1, i + 1, soon[1] & 1);
-}
-
-// Enters the collisions of a pass in the ledger (ledger.hpp), by their closing speeds in `struck`.
-template <bool unequal> HWY_INLINE void enter(const Local& l, const StepTask& task, Made& made) {
-  const Lanes d;
-  hn::StoreU(hn::Zero(d), d, l.struck + l.firsts);
-  if (unequal) hn::StoreU(hn::Zero(d), d, l.struck_mass + l.firsts);
-  const auto cutoff = hn::Set(d, task.cutoff), share = hn::Set(d, task.lost), rounder = hn::Set(d, task.rounder),
-             per_fine = hn::Set(d, task.per_fine), whole = hn::Set(d, 0x1.8p52);
-  for (std::size_t k = 0; k < l.firsts; k += lanes) {
-    const auto w = hn::LoadU(d, l.struck + k);
-    const auto elastic = hn::Lt(w, cutoff);
-    made.below_cutoff += hn::CountTrue(d, hn::And(elastic, hn::Gt(w, hn::Zero(d))));
-    auto factor = hn::IfThenZeroElse(elastic, share);
-    if (unequal) factor = hn::Mul(factor, hn::LoadU(d, l.struck_mass + k));
-    const auto loss = hn::Mul(factor, hn::Mul(w, w));
-    const auto coarse = hn::Sub(hn::Add(loss, rounder), rounder);
-    made.lost = hn::Add(made.lost, coarse);
-    const auto fine = hn::Mul(hn::Sub(loss, coarse), per_fine);
-    made.rest = hn::Add(made.rest, hn::Sub(hn::Add(fine, whole), whole));  // rounded
-  }
-}
-
-// The collisions of a step, where numbers are doubles.
-template <StepLaw law, bool unequal> struct Doubles {
-  Made made;
-
-  HWY_INLINE Doubles(const StepTask&, const StepResult& before) : made{.latest = before.last} {}
-
-  // Makes those that are first in a pass. In two loops: the shorter a turn, the more of them are in the processor at
-  // once, and each operation waits for the one before (1.2 times as fast as one loop).
-  HWY_INLINE void make(StepLine& line, Local& l, const StepTask& task, StepScalars& scalars, double end) {
-    if (law == StepLaw::any) scalars.outcomes(l.first, l.firsts);
-    for (std::size_t k = 0; k < l.firsts; ++k) collide<law, unequal>(line, l, task, l.first[k], k, made);
-    for (std::size_t k = 0; k < l.firsts; ++k) foresee(l, end, l.first[k]);
-    if (law != StepLaw::any) enter<unequal>(l, task, made);
-  }
-  // Whether all of them were in order.
-  HWY_INLINE bool report(const StepTask& task, double end, StepResult& result) const {
-    result.last = made.latest;
-    result.lost += hn::GetLane(hn::SumOfLanes(Lanes(), made.lost));
-    result.rest += hn::GetLane(hn::SumOfLanes(Lanes(), made.rest));
-    result.below_cutoff += made.below_cutoff;
-    return made.in_order(task.floor, end);
-  }
-};
-
 }  // namespace HWY_NAMESPACE
 }  // namespace cradle
 
+#include "cradle/core/parallel/steps/doubles.inl"
 #include "cradle/core/parallel/steps/pairs.inl"
 
 namespace cradle {
@@ -290,7 +177,7 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
     if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
     collisions.make(line, l, task, scalars, end);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
-      const std::size_t i = l.edges[k], left = i > 0 ? i - 1 : 0, right = i + 1;
+      const std::size_t i = l.edges[k], left = line.left_of(i), right = line.right_of(i);
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
       if (!scalars.collide(i)) return -1;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));

@@ -4,6 +4,7 @@
 // loop makes them (segment.hpp). Without the unit, or if it was built without Highway, there are no steps and the event
 // loop does everything. core/README.md, Steps, has the argument why the result is the same.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -67,6 +68,11 @@ struct StepPace {
   double length = 0, passes = 5;
   int stretch = 32;
   int rest = 0, next_rest = 1;
+
+  void made(bool done) {
+    rest = done ? 0 : next_rest;
+    next_rest = done ? std::max(next_rest / 2, 1) : std::min(2 * next_rest, 64);
+  }
 };
 
 struct Steps {

@@ -6,8 +6,6 @@
 // As steps_cases.cpp it is built with errors planted too, and must fail with each of them.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <bit>
 #include <random>
 #include <string>
 
@@ -24,27 +22,8 @@ using namespace cradle::test;
 using T = double_double;
 using Equal = GapChain<T>;
 using Unequal = GapChain<T, IndividualMasses<T>>;
-using Bits = std::array<std::uint64_t, 2>;
 
-Bits bits(const T& x) { return std::bit_cast<Bits>(x); }
 T part(int numerator, int denominator) { return T(numerator) / T(denominator); }
-
-template <class Chain> void expect_same_bits(const Chain& a, const Chain& b) {
-  ASSERT_EQ(a.last() - a.first(), b.last() - b.first());
-  const auto &left = a.line().gaps, &right = b.line().gaps;
-  for (Slot k = 0; k <= a.last() - a.first(); ++k) {
-    const Slot s = a.first() + k, r = b.first() + k;
-    ASSERT_EQ(bits(left[s].gap), bits(right[r].gap)) << k;
-    ASSERT_EQ(bits(left[s].closing), bits(right[r].closing)) << k;
-    ASSERT_EQ(bits(left[s].time), bits(right[r].time)) << k;
-    ASSERT_EQ(bits(left[s].lost), bits(right[r].lost)) << k;
-    ASSERT_EQ(bits(left.lag(s)), bits(right.lag(r))) << k;
-  }
-  for (const End end : {End::left, End::right}) {
-    ASSERT_EQ(a.walls().tally(end).collisions, b.walls().tally(end).collisions);
-    ASSERT_EQ(bits(a.walls().tally(end).given.value()), bits(b.walls().tally(end).given.value()));
-  }
-}
 
 struct Made {
   std::uint64_t collisions = 0, in_steps = 0, slabs = 0;

@@ -28,25 +28,9 @@ using namespace cradle::test;
 
 using Equal = GapChain<double>;
 using Unequal = GapChain<double, IndividualMasses<double>>;
+using Law = Inelastic<double>;
 
 std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
-
-template <class Chain> void expect_same_bits(const Chain& a, const Chain& b) {
-  ASSERT_EQ(a.last() - a.first(), b.last() - b.first());
-  const auto &left = a.line().gaps, &right = b.line().gaps;
-  for (Slot k = 0; k <= a.last() - a.first(); ++k) {
-    const Slot s = a.first() + k, r = b.first() + k;
-    ASSERT_EQ(bits(left[s].gap), bits(right[r].gap)) << k;
-    ASSERT_EQ(bits(left[s].closing), bits(right[r].closing)) << k;
-    ASSERT_EQ(bits(left[s].time), bits(right[r].time)) << k;
-    ASSERT_EQ(bits(left[s].due), bits(right[r].due)) << k;
-    ASSERT_EQ(bits(left.lag(s)), bits(right.lag(r))) << k;
-  }
-  for (const End end : {End::left, End::right}) {
-    ASSERT_EQ(a.walls().tally(end).collisions, b.walls().tally(end).collisions);
-    ASSERT_EQ(a.walls().tally(end).given.value(), b.walls().tally(end).given.value());
-  }
-}
 
 // All vectors that this processor has.
 std::vector<const Steps*> targets() {
@@ -139,6 +123,43 @@ TEST_F(Steps, GasOnALine) { expect_same_by_all_laws<Equal>(gas<double>(800), {1,
 TEST_F(Steps, GasOnARing) { expect_same_by_all_laws<Equal>(gas<double>(700, 700.), {10, 50}, 0.5); }
 TEST_F(Steps, UnequalMassesOnALine) { expect_same_by_all_laws<Unequal>(gas<double>(700, 0., true), {10, 100}, 0.5); }
 TEST_F(Steps, UnequalMassesOnARing) { expect_same_by_all_laws<Unequal>(gas<double>(700, 700., true), {10, 60}, 0.5); }
+// One segment goes around: collisions over the seam are made alone, and undone like the others.
+template <class Chain> void expect_same_on_whole_rings(const Law& law, bool unequal) {
+  std::vector<SegmentsAs> ways;
+  for (const cradle::Steps* steps : targets()) ways.push_back({{.anywhere = true, .steps = steps}, 1});
+  for (const ParticleIndex n : {520, 641, 900}) {
+    SCOPED_TRACE(n);
+    const Made made = expect_same<Chain>(gas<double>(n, static_cast<double>(n), unequal), law, {10, 40}, ways);
+    EXPECT_GT(static_cast<double>(made.in_steps), 0.9 * static_cast<double>(made.collisions));
+    EXPECT_GT(made.collisions, 10'000U);
+  }
+}
+TEST_F(Steps, RingsWithoutCuts) {
+  expect_same_on_whole_rings<Equal>(Law(1), false);
+  expect_same_on_whole_rings<Equal>(Law(0.999, 1e-5), false);
+  expect_same_on_whole_rings<Unequal>(Law(0.9, 0.125), true);
+}
+// Dense and cold around the seam, or at rest there until impulses run over it: what is out of order is found and made
+// again.
+TEST_F(Steps, RingsWithoutCutsThatAreDenseAtTheSeam) {
+  std::vector<SegmentsAs> ways;
+  for (const cradle::Steps* steps : targets()) ways.push_back({{.anywhere = true, .steps = steps}, 1});
+  std::uint64_t in_steps = 0;
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    std::mt19937_64 random(seed);
+    std::vector<double> x, v;
+    double place = 0;
+    for (int i = 0; i < 800; ++i) {
+      const bool dense = i < 40 || i >= 760;
+      place += static_cast<double>(1 + (random() >> 40)) * (dense ? 0x1p-30 : 0x1p-23);
+      x.push_back(place);
+      v.push_back(static_cast<double>(random() >> 40) * (!dense ? 0x1p-23 : seed % 2 == 0 ? 0x1p-27 : 0));
+    }
+    const Scene<double> scene = std::make_shared<List<double>>(x, v, std::vector<double>{}, place + 0x1p-30);
+    in_steps += expect_same<Equal>(scene, Law(1), {5, 20}, ways).in_steps;
+  }
+  EXPECT_GT(in_steps, 10'000U);
+}
 // Collisions are simultaneous all over the line: for the event loop.
 TEST_F(Steps, LatticesFullOfTies) {
   const auto nowhere = [](ParticleIndex) { return std::int64_t{0}; };
@@ -246,6 +267,37 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
   EXPECT_GT(done, 30 * static_cast<int>(targets().size()));
   EXPECT_LE(undone_in_gas, 4);
   EXPECT_GT(undone_in_core, 0) << "steps that fail are part of what is to be shown";
+}
+
+// What collisions of a tile's gaps set off in fewer passes than a tile has gaps can be undone, over the seam of a ring
+// too.
+TEST_F(Steps, AnUndoCopyReachesAsFarAsImpulses) {
+  for (const bool ring : {false, true})
+    for (const std::size_t gaps : {100U, 112U, 113U, 127U}) {
+      const Gas before = random_gas(gaps, 1, 3);
+      Gas now = before;
+      StepLine line;
+      line.take(now.gaps.data(), now.lags.data(), gaps);
+      line.ring = ring;
+      for (std::size_t tile = 0; tile < line.tiles(); ++tile) {
+        SCOPED_TRACE((ring ? "ring of " : "line of ") + std::to_string(gaps) + ", tile " + std::to_string(tile));
+        line.keep();
+        line.guard(tile);
+        const std::size_t first = StepLine::tile * tile, last = std::min(first + StepLine::tile, gaps) - 1;
+        std::size_t left = first, right = last;
+        for (std::size_t reach = 1; reach < StepLine::tile; ++reach) {
+          left = line.left_of(left), right = std::min(line.right_of(right), gaps - 1);
+          for (const std::size_t i : {left, right}) now.gaps[i].gap = -1, line.due[i] = 0;
+        }
+        for (std::size_t i = first; i <= last; ++i) now.gaps[i].time = 7;
+        line.restore();
+        for (std::size_t i = 0; i < gaps; ++i) {
+          ASSERT_EQ(now.gaps[i].gap, before.gaps[i].gap) << i;
+          ASSERT_EQ(now.gaps[i].time, before.gaps[i].time) << i;
+          ASSERT_EQ(line.due[i], before.gaps[i].due) << i;
+        }
+      }
+    }
 }
 
 // Of segments as they are chosen, nearly all collisions are made in steps, and cuts hold.

@@ -43,7 +43,7 @@ void store_all(const Entries& entries, const std::string& scene_file, Scene& sce
 }
 
 void sort_times(std::vector<Decimal>& times) {
-  std::ranges::sort(times);
+  if (!std::ranges::is_sorted(times)) std::ranges::sort(times);
   times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 

@@ -118,7 +118,7 @@ TEST(Scene, OnlyTheContractsKeysAreRequired) {
   expect_refused({
       {line(2, ""), 0, "law.type", "missing: give one of inelastic, wet, sticky"},
       {line(3, ""), 0, "law.restitution", "missing: give a number from 0 to 1"},
-      {line(5, ""), 0, "initial.type", "missing: give one of rows, ring, list, clusters, cold"},
+      {line(5, ""), 0, "initial.type", "missing: give one of rows, ring, list, clusters, cold, gas"},
       {line(8, ""), 0, "run.until", "missing: give a number of run.start = 0 or more"},
       {"law.type = 'wet'\ninitial.type = 'ring'\nrun.until = 1", 0, "law.loss", "missing: give a number of 0 or more"},
   });

@@ -297,6 +297,8 @@ const Field all_fields[] = {
      "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
      "the energy beyond that of the sticky gas that began alike"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every collision"},
+    {"output.every_replica", output_of<&Output::every_replica>, "", "false", "", &always,
+     "in an ensemble, keep the snapshots and profiles of every replica beside the statistics"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",
      "[0, inf)", &always,
      "seconds of computing between checkpoints, from which `cradle resume` continues; 0: only when the run ends or is "

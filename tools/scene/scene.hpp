@@ -164,6 +164,7 @@ struct Output {
   bool scenario = false;  // wet rows: whether to decide between the two scenarios of Fig. 9
   bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
+  bool every_replica = false;  // ensembles: whether the snapshots and profiles of every replica are kept
   Checkpoint checkpoint;
   bool operator==(const Output&) const = default;
 };

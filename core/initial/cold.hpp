@@ -1,14 +1,19 @@
 #pragma once
-// A cold gas: particles at rest with spacing l, or displaced at random, of mass 1 or with masses that repeat. Some move
+// A cold gas: particles at rest with spacing l, or displaced at random, of mass 1 or with other masses. Some move
 // at the start: one that is kicked, or several with random velocities. These hot particles are in the middle of the
 // others, about x = 0, or at the left end, the first one at x = 0. The result is a blast (arXiv:2010.15868), a splash
 // (arXiv:2203.11097) or a row of dominoes (arXiv:2605.16125).
+//
+// The density may fall with the distance from the origin (arXiv:2504.03549): it is (1/l) (|x|/l)^-b, b < 1. A particle
+// that would be s spacings from the origin is at x = l ((1 - b) s)^(1/(1 - b)), on the same side. These numbers of
+// spacings are doubles, by definition: each scalar type starts from the same ones.
 //
 // Only the gaps beside hot particles are held at the start; particles at rest are taken in as the fronts reach them
 // (held_range.hpp). Velocities are integers minus the velocity of their centre of mass, times a unit that gives them
 // their energy: all scalar types start from the same state, which each type rounds.
 
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -18,6 +23,7 @@
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
+#include "cradle/core/laws/elementary.hpp"
 
 namespace cradle {
 
@@ -80,12 +86,13 @@ HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy
 
 template <Real T> class Cold final : public Particles<T> {
  public:
-  // Throws std::invalid_argument if there are no particles, no hot particles or more hot ones than particles, or if the
-  // spacing or a velocity is not finite or the spacing is not positive.
+  // `falls`: the exponent b of the density, below 1. Throws std::invalid_argument if there are no particles, no hot
+  // particles or more hot ones than particles, if the spacing or a velocity is not finite or the spacing is not
+  // positive, or if particles are not apart.
   Cold(ParticleIndex count, const T& spacing, HotPlace place, HotParticles<T> hot, Displacement displacement,
-       MassPattern<T> masses = {})
+       MassPattern<T> masses = {}, double falls = 0)
       : count_(count), left_(place == HotPlace::left), hot_(std::move(hot)), displacement_(std::move(displacement)),
-        masses_(std::move(masses)), unit_(spacing / T(displacement_unit)) {
+        masses_(std::move(masses)), unit_(spacing / T(displacement_unit)), spacing_(spacing), falls_(falls) {
     if (hot_.count() < 1 || hot_.first < 0 || hot_.end() > count)
       throw std::invalid_argument("hot particles " + std::to_string(hot_.first) + " to " +
                                   std::to_string(hot_.end() - 1) + " of " + std::to_string(count) +
@@ -93,6 +100,15 @@ template <Real T> class Cold final : public Particles<T> {
     require_finite(spacing, "spacing of the particles");
     if (!(spacing > T(0)))
       throw std::invalid_argument("spacing is not positive (" + in_message(spacing) + "): give a positive number");
+    if (!(falls < 1))
+      throw std::invalid_argument("a density that falls with the power " + std::to_string(falls) +
+                                  " of the distance: give a number below 1");
+    if (falls != 0) {
+      power_ = std::make_shared<const Power<double>>(1 / (1 - falls));
+      for (const ParticleIndex end : {ParticleIndex{0}, count - 1})
+        require_finite(position(end), "position of particle " + std::to_string(end));
+      if (count > 1) gap(0), gap(count - 2);
+    }
     CompensatedSum<T> twice, momentum;
     for (ParticleIndex particle = hot_.first; particle < hot_.end(); ++particle) {
       const T v = hot_.velocity(particle);
@@ -109,10 +125,11 @@ template <Real T> class Cold final : public Particles<T> {
   bool identical_masses() const override { return masses_.identical(); }
   T velocity(ParticleIndex particle) const override { return hot_.velocity(particle); }
   T position(ParticleIndex particle) const override {
-    const ParticleIndex half_steps = left_ ? 2 * particle : 2 * (particle - hot_.first) + 1 - hot_.count();
-    return place_of<T>(half_steps, displacement_(particle)) * unit_;
+    if (power_) return exactly<T>(spacings(particle)) * spacing_;
+    return place_of<T>(half_steps(particle), displacement_(particle)) * unit_;
   }
   T gap(ParticleIndex particle) const override {
+    if (power_) return uneven_gap(particle);
     return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * unit_;
   }
   T closing_speed(ParticleIndex particle) const override {
@@ -132,12 +149,34 @@ template <Real T> class Cold final : public Particles<T> {
   T greatest_mass() const override { return masses_.greatest(); }
 
  private:
+  // Half spacings from the origin, in an even gas.
+  ParticleIndex half_steps(ParticleIndex particle) const {
+    return left_ ? 2 * particle : 2 * (particle - hot_.first) + 1 - hot_.count();
+  }
+  // Spacings from the origin where the density falls.
+  double spacings(ParticleIndex particle) const {
+    const double even = place_of<double>(half_steps(particle), displacement_(particle)) * 0x1p-28;
+    const double uneven = (*power_)((1 - falls_) * (even < 0 ? -even : even));
+    return even < 0 ? -uneven : uneven;
+  }
+  // Far out, where doubles are wide apart, particles may have the same place: that is found when they are taken in.
+  T uneven_gap(ParticleIndex particle) const {
+    const double from = spacings(particle), to = spacings(particle + 1);
+    if (from < to) return (exactly<T>(to) - exactly<T>(from)) * spacing_;
+    throw std::invalid_argument("particles " + std::to_string(particle) + " and " + std::to_string(particle + 1) +
+                                " have no distance (both " + std::to_string(from) +
+                                " spacings from the origin, as doubles): give fewer particles, or an exponent of the "
+                                "density nearer to 0");
+  }
+
   ParticleIndex count_;
   bool left_;
   HotParticles<T> hot_;
   Displacement displacement_;
   MassPattern<T> masses_;
-  T unit_, energy_{0}, momentum_{0};
+  T unit_, spacing_, energy_{0}, momentum_{0};
+  double falls_;
+  std::shared_ptr<const Power<double>> power_;  // null in an even gas
 };
 
 }  // namespace cradle

@@ -31,7 +31,8 @@ template <Real T> struct CentralParticle {
   T velocity;
 };
 
-// Displacement of a particle in units of 2^-28 of the spacing, with magnitude below 2^27: particles stay in order.
+// Displacement of a particle in units of 2^-28 of the spacing: particles stay in order, since its magnitude is below
+// 2^27 or since it gives them other places in order (poisson.hpp).
 using Displacement = std::function<std::int64_t(ParticleIndex)>;
 
 inline constexpr std::int64_t displacement_unit = std::int64_t{1} << 28;

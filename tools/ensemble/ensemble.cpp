@@ -19,6 +19,7 @@ namespace {
 struct Finished {
   ReplicaRow row;
   std::vector<double> values;
+  ReplicaTables kept;
 };
 
 Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options,
@@ -26,7 +27,8 @@ Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const 
   const RunOutcome run =
       options.runner(replica_scene(ensemble.scene(), replica), {ProgressLine::Show::never, nullptr, &interrupt});
   if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
-  Finished done{ensemble.layout().row(replica, run), ensemble.layout().values(run)};
+  Finished done{ensemble.layout().row(replica, run), ensemble.layout().values(run), {}};
+  if (ensemble.scene().output.every_replica) done.kept = kept_tables(replica, run.result);
   if (std::any_of(done.values.begin(), done.values.end(), [](double value) { return std::isinf(value); }))
     throw Error("a number beyond the range of a double, in which statistics are: give other units of length or speed");
   return done;
@@ -94,7 +96,7 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew
       Threads(options.threads > 0 ? options.threads : crew.threads()), next,
       [&](const Job& job) { return run_replica(*store.states()[job.point], job.replica, options, crew.interrupt()); },
       [&](const Job& job, Finished&& done) {
-        store.add(job.point, done.row, std::move(done.values));
+        store.add(job.point, done.row, std::move(done.values), std::move(done.kept));
         finished();
       },
       [&](const Job& job, const std::string& message) {

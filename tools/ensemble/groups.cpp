@@ -168,6 +168,7 @@ std::vector<Group> EnsembleState::groups() const {
                       {{"messages", messages}},
                       {{"index", "1", "initial.replica of the runs that failed", std::move(index)}}});
   }
+  for (Group& table : joined_tables(kept_, name(""))) groups.push_back(std::move(table));
   groups.push_back({name("ensemble/nodes"),
                     {{"entries", std::uint64_t{layout_.entries}},
                      {"what", std::string("sets of 2^level replicas from `first` on, for continuation and merging")}},
@@ -208,6 +209,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
       if (stopped.contains(replica)) messages_.emplace(replica, colon == line.npos ? line : line.substr(colon + 2));
     }
   }
+  kept_ = separated_tables(result, name(""), file);
   for (std::size_t k = 0; k < spreads_.size(); ++k)
     take_counts(k, get<std::uint64_t>(get(result, spread_group(k).name, file), "counts", file), file);
 }

@@ -47,7 +47,7 @@ constexpr const char* collapse_time = "collapse_time";
 Scene replica_scene(const Scene& scene, std::uint64_t index) {
   Scene replica = scene;
   replica.initial.replica = index;
-  replica.output.snapshots.clear();
+  if (!scene.output.every_replica) replica.output.snapshots.clear();
   replica.output.masses.clear();
   replica.output.events = false;
   return replica;

@@ -69,7 +69,8 @@ void check_ensemble(const Scene& scene);
 /// The layout of the scene's replicas; runs nothing. Throws Error as check_ensemble does.
 ReplicaLayout replica_layout(const Scene& scene);
 
-/// The scene of one replica, without the outputs that ensembles do not keep: snapshots, masses and events.
+/// The scene of one replica, without the outputs that ensembles do not keep: masses and events, and snapshots unless
+/// the scene keeps those of every replica.
 Scene replica_scene(const Scene& scene, std::uint64_t index);
 
 }  // namespace cradle::tools

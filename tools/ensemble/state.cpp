@@ -46,11 +46,12 @@ EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<S
   }
 }
 
-void EnsembleState::add(const ReplicaRow& row, std::vector<double> values) {
+void EnsembleState::add(const ReplicaRow& row, std::vector<double> values, ReplicaTables kept) {
   check_length(values.size());
   {
     const std::scoped_lock lock(mutex_);
     table_.add(row);
+    if (!kept.empty()) kept_.emplace(row.index, std::move(kept));
     for (std::size_t k = 0; k < spreads_.size(); ++k) {
       const Quantity& quantity = layout_.quantities[spread_of_[k].quantity];
       spreads_[k].add(std::span(values).subspan(quantity.offset, quantity.size()));
@@ -100,6 +101,7 @@ bool EnsembleState::holds_any_of(const EnsembleState& other) const {
 void EnsembleState::take(EnsembleState& other) {
   for (std::size_t k = 0; k < other.table_.size(); ++k) table_.add(other.table_[k]);
   messages_.merge(other.messages_);
+  kept_.merge(other.kept_);
   for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].add(other.spreads_[k]);
   for (TreeNode& node : other.tree_.nodes()) tree_.add(std::move(node));
 }
@@ -183,11 +185,12 @@ void EnsembleState::put_records(std::uint64_t point, const JournalWriter::Put& p
   }
   for (std::size_t k = 0; k < spreads_.size(); ++k) put_one(SpreadRecord{k, spreads_[k].all_counts()});
   for (TreeNode& node : tree_.nodes()) put_one(std::move(node));
+  for (const auto& [replica, kept] : kept_) put_one(KeptRecord{replica, kept});
 }
 
 void EnsembleState::apply(EnsembleRecord&& record) {
   if (auto* one = std::get_if<ReplicaRecord>(&record.what)) {
-    if (!tree_.contains(one->row.index)) add(one->row, std::move(one->values));
+    if (!tree_.contains(one->row.index)) add(one->row, std::move(one->values), std::move(one->kept));
   } else if (auto* failure = std::get_if<FailureRecord>(&record.what)) {
     if (!tree_.contains(failure->replica)) fail(failure->replica, std::move(failure->message));
   } else if (auto* rows = std::get_if<RowsRecord>(&record.what)) {
@@ -197,6 +200,8 @@ void EnsembleState::apply(EnsembleRecord&& record) {
     }
   } else if (auto* spread = std::get_if<SpreadRecord>(&record.what)) {
     take_counts(spread->number, std::move(spread->counts), "a journal");
+  } else if (auto* kept = std::get_if<KeptRecord>(&record.what)) {
+    kept_.emplace(kept->replica, std::move(kept->kept));
   } else {
     take_node(std::get<TreeNode>(std::move(record.what)), "a journal");
   }

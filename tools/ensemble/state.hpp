@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cradle/core/ensemble/ensemble.hpp"
+#include "cradle/tools/ensemble/every_replica.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/store/journal.hpp"
 
@@ -24,7 +25,8 @@ namespace cradle::tools {
 struct ReplicaRecord {
   ReplicaRow row;
   std::vector<double> values;
-  static auto state(auto& self) { return std::tie(self.row, self.values); }
+  ReplicaTables kept = {};
+  static auto state(auto& self) { return std::tie(self.row, self.values, self.kept); }
 };
 struct FailureRecord {
   ReplicaIndex replica = 0;
@@ -38,9 +40,14 @@ struct SpreadRecord {
   std::vector<std::uint64_t> counts;
   static auto state(auto& self) { return std::tie(self.number, self.counts); }
 };
+struct KeptRecord {
+  ReplicaIndex replica = 0;
+  ReplicaTables kept;
+  static auto state(auto& self) { return std::tie(self.replica, self.kept); }
+};
 struct EnsembleRecord {
   std::uint64_t point = 0;  // which ensemble of a sweep
-  std::variant<ReplicaRecord, FailureRecord, RowsRecord, SpreadRecord, TreeNode> what;
+  std::variant<ReplicaRecord, FailureRecord, RowsRecord, SpreadRecord, TreeNode, KeptRecord> what;
   static auto state(auto& self) { return std::tie(self.point, self.what); }
 
   /// The number of replicas whose outcome it holds.
@@ -85,7 +92,7 @@ class EnsembleState {
   const ReplicaLayout& layout() const { return layout_; }
 
   /// Adds a replica that is not there yet. Both may be called from several threads.
-  void add(const ReplicaRow& row, std::vector<double> values);
+  void add(const ReplicaRow& row, std::vector<double> values, ReplicaTables kept = {});
   void fail(ReplicaIndex replica, std::string message);
 
   const MomentTree& replicas() const { return tree_; }
@@ -135,6 +142,7 @@ class EnsembleState {
   std::map<ReplicaIndex, std::string> messages_;  // of the replicas that failed
   std::vector<SpreadOf> spread_of_;
   std::vector<Histograms> spreads_;
+  KeptReplicas kept_;  // of every replica, if the scene requests it
 };
 
 }  // namespace cradle::tools

@@ -13,11 +13,14 @@ namespace cradle::tools {
 
 namespace {
 
-// Whether replicas differ: by displacements (whole multiples of a unit, core/initial/rows.hpp), velocities or walls.
+// Whether replicas differ: by displacements (whole multiples of a unit, core/initial/rows.hpp), velocities, masses or
+// walls.
 bool is_random(const Scene& scene) {
   const Initial& initial = scene.initial;
   const bool displaced = initial.type == InitialType::rows || initial.type == InitialType::cold;
-  return initial.type == InitialType::ring || (initial.type == InitialType::cold && initial.hot > 1) ||
+  return initial.type == InitialType::ring || initial.type == InitialType::gas ||
+         initial.positions != Positions::lattice || !initial.random_masses.empty() ||
+         (initial.type == InitialType::cold && initial.hot > 1) ||
          (displaced && initial.perturbation.value * static_cast<double>(displacement_unit) >= 1) ||
          scene.walls.left.temperature || scene.walls.right.temperature;
 }

@@ -7,7 +7,9 @@
 #include <optional>
 
 #include "cradle/core/initial/cold.hpp"
+#include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/poisson.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/core/initial/walled.hpp"
@@ -25,7 +27,17 @@ template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
   return values;
 }
 
+/// How many particles rows, a ring, a cold gas or a gas have.
+inline ParticleIndex particles_in_order(const Initial& initial) {
+  if (!initial.general_rows()) return static_cast<ParticleIndex>(initial.particles);
+  return static_cast<ParticleIndex>(initial.left.particles + initial.right.particles) +
+         (initial.centre.mass > Decimal("0") ? 1 : 0);
+}
+
 template <Real T> MassPattern<T> mass_pattern(const Initial& initial) {
+  if (!initial.random_masses.empty())
+    return MassPattern<T>(number<T>(initial.random_masses.front()), number<T>(initial.random_masses.back()),
+                          particles_in_order(initial), initial.seed, initial.replica);
   std::vector<T> masses;
   bool identical = true;
   for (const Decimal& mass : initial.masses) {
@@ -35,39 +47,75 @@ template <Real T> MassPattern<T> mass_pattern(const Initial& initial) {
   return MassPattern<T>(std::move(masses), identical);
 }
 
+inline cradle::HotPlace hot_place(const Initial& initial) {
+  return initial.place == scene::HotPlace::left ? cradle::HotPlace::left : cradle::HotPlace::middle;
+}
+
+/// Where particles are, as displacements from equal distances.
+inline Displacement displacement_of(const Initial& initial) {
+  if (initial.positions == Positions::lattice)
+    // The nearest double may be 1/2; the perturbation is smaller.
+    return uniform_displacement(std::min(initial.perturbation.value, std::nextafter(0.5, 0.)), initial.seed,
+                                initial.replica);
+  const ParticleIndex count = particles_in_order(initial);
+  if (initial.type == InitialType::ring || initial.type == InitialType::gas)
+    return uniform_places(count, initial.seed, initial.replica);
+  const auto from = [&](ParticleIndex origin, bool at_origin, auto half_steps) {
+    return poisson_displacement(count, origin, at_origin, half_steps, initial.seed, initial.replica);
+  };
+  if (initial.type == InitialType::cold) {
+    // The hot particle that is the first one, or in the middle of them, is at x = 0.
+    const auto hot = static_cast<ParticleIndex>(initial.hot);
+    const bool left = initial.place == scene::HotPlace::left;
+    const ParticleIndex first = first_hot(hot_place(initial), count, hot), origin = left ? 0 : first + (hot - 1) / 2;
+    return from(origin, true, [=](ParticleIndex p) { return left ? 2 * p : 2 * (p - first) + 1 - hot; });
+  }
+  const bool general = initial.general_rows(), centre = general && initial.centre.mass > Decimal("0");
+  const auto left = general ? static_cast<ParticleIndex>(initial.left.particles) : count / 2;
+  return from(left, centre, [=](ParticleIndex p) {
+    if (!centre || p < left) return 2 * (p - left) + 1;
+    return p == left ? 0 : 2 * (p - left) - 1;
+  });
+}
+
 template <Real T>
 std::shared_ptr<const cradle::Particles<T>> cold_particles(const Initial& initial, Displacement displacement) {
   const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
-  const auto place = initial.place == scene::HotPlace::left ? cradle::HotPlace::left : cradle::HotPlace::middle;
+  const cradle::HotPlace place = hot_place(initial);
   const ParticleIndex first = first_hot(place, all, hot);
   MassPattern<T> masses = mass_pattern<T>(initial);
   HotParticles<T> moving = hot == 1
                                ? kicked(first, number<T>(initial.speed))
                                : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
   return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), place, std::move(moving), std::move(displacement),
-                                   std::move(masses));
+                                   std::move(masses), initial.density_exponent.value);
 }
 
 namespace detail {
 
-template <Real T> std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Initial& initial) {
+template <Real T> std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Scene& scene) {
+  const Initial& initial = scene.initial;
   if (initial.type == InitialType::list) {
     const auto momentum = sum_of_products(initial.v, initial.m);
-    return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m), T(0),
+    return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m),
+                                     number<T>(initial.length),
                                      momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt);
   }
-  // The nearest double may be 1/2; the perturbation is smaller.
-  const double perturbation = std::min(initial.perturbation.value, std::nextafter(0.5, 0.));
-  const Displacement displacement = uniform_displacement(perturbation, initial.seed, initial.replica);
+  const Displacement displacement = displacement_of(initial);
   if (initial.type == InitialType::cold) return cold_particles<T>(initial, displacement);
-  if (initial.type == InitialType::ring) {
+  if (initial.type == InitialType::ring || initial.type == InitialType::gas) {
     using std::sqrt;
+    const auto count = static_cast<ParticleIndex>(initial.particles);
+    const T deviation = sqrt(number<T>(initial.variance));
     const VelocityDraw draw = initial.velocities == Velocities::gaussian
                                   ? gaussian_velocity(initial.seed, initial.replica)
                                   : uniform_velocity(initial.seed, initial.replica);
-    return std::make_shared<Ring<T>>(static_cast<ParticleIndex>(initial.particles), number<T>(initial.length),
-                                     T(sqrt(number<T>(initial.variance))), draw, displacement,
-                                     mass_pattern<T>(initial));
+    if (initial.type == InitialType::ring)
+      return std::make_shared<Ring<T>>(count, number<T>(initial.length), deviation, draw, displacement,
+                                       mass_pattern<T>(initial));
+    const T left = number<T>(*scene.walls.left.position), right = number<T>(*scene.walls.right.position);
+    return std::make_shared<Gas<T>>(count, left, T(right - left), deviation, draw, displacement,
+                                    mass_pattern<T>(initial));
   }
   if (!initial.general_rows())
     return std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<ParticleIndex>(initial.particles),
@@ -98,7 +146,7 @@ template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initi
 /// Throws Error if this precision cannot represent the scene's particles, or if its walls do not fit beside them.
 template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
   try {
-    auto particles = detail::particles_without_walls<T>(scene.initial);
+    auto particles = detail::particles_without_walls<T>(scene);
     require_sums(*particles);
     if (!scene.walls.any()) return particles;
     return std::make_shared<Walled<T>>(std::move(particles), detail::wall_of<T>(scene.walls.left, scene.initial),

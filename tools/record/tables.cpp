@@ -108,7 +108,7 @@ Group initial_table() {
        {"gap", "l", "distance to the next particle: resolves what x cannot; nan behind the last one of a line", {}}}};
 }
 
-bool has_clouds(const Scene& scene) { return law_row(scene).merges && scene.initial.type != InitialType::ring; }
+bool has_clouds(const Scene& scene) { return law_row(scene).merges && !scene.initial.on_ring(); }
 
 ZoneAverage zone_average(const Scene& scene) {
   const Zone& zone = scene.output.zone;

@@ -30,18 +30,23 @@ Handle properties(hid_t property_class) {
   return list;
 }
 
-void write_attribute(hid_t object, const Attribute& attribute) {
+// What attributes and columns have in common, made once a file: a result may have tens of thousands of them.
+struct Common {
+  Handle scalar{H5Screate(H5S_SCALAR), H5Sclose, no_room};
+  Handle text = hdf5::text_type("a result");
+  Handle columns = properties(H5P_DATASET_CREATE);
+};
+
+void write_attribute(hid_t object, const Attribute& attribute, const Common& common) {
   const std::string& name = attribute.first;  // no structured binding: lambdas of clang 14 cannot capture one
   const auto& value = attribute.second;
-  const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, no_room);
   const auto put = [&](hid_t type, hid_t memory, const void* data) {
-    const Handle id(H5Acreate2(object, name.c_str(), type, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, no_room);
+    const Handle id(H5Acreate2(object, name.c_str(), type, common.scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, no_room);
     check(H5Awrite(id, memory, data), no_room);
   };
   if (const auto* text = std::get_if<std::string>(&value)) {
-    const Handle type = hdf5::text_type(name);
     const char* characters = text->c_str();
-    put(type, type, &characters);
+    put(common.text, common.text, &characters);
   } else if (const auto* number = std::get_if<double>(&value)) {
     put(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, number);
   } else {
@@ -62,18 +67,13 @@ std::string padded(const Texts& texts, std::size_t bytes) {
   return all;
 }
 
-// When a column gets its place in the file: with its first rows or, if their order differs from run to run, at once.
-enum class Placed { when_written, at_once };
-
 // Makes a column for so many rows.
-Handle make_column(hid_t group, const Column& column, std::uint64_t rows, Placed placed = Placed::when_written) {
+Handle make_column(hid_t group, const Column& column, std::uint64_t rows, const Common& common) {
   const hsize_t shape[2] = {rows, column.width};
   const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, no_room);
-  const Handle list = properties(H5P_DATASET_CREATE);
-  if (placed == Placed::at_once) check(H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY), no_room);
   const auto make = [&](hid_t type) {
-    return Handle(H5Dcreate2(group, column.name.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose,
-                  no_room);
+    return Handle(H5Dcreate2(group, column.name.c_str(), type, space, H5P_DEFAULT, common.columns, H5P_DEFAULT),
+                  H5Dclose, no_room);
   };
   if (const auto* texts = std::get_if<Texts>(&column.values))
     return make(hdf5::text_type(std::max(longest(*texts), column.longest), column.name));
@@ -101,11 +101,15 @@ void write_rows(hid_t data, const Column& column, std::uint64_t from) {
   }
 }
 
-void write_column(hid_t group, const Column& column) {
-  const Handle data = make_column(group, column, column.rows());
+void describe(hid_t data, const Column& column, const Common& common) {
+  write_attribute(data, {"unit", column.unit}, common);
+  write_attribute(data, {"description", column.description}, common);
+}
+
+void write_column(hid_t group, const Column& column, const Common& common) {
+  const Handle data = make_column(group, column, column.rows(), common);
   write_rows(data, column, 0);
-  write_attribute(data, {"unit", column.unit});
-  write_attribute(data, {"description", column.description});
+  describe(data, column, common);
 }
 
 Handle file_in_memory() {
@@ -116,14 +120,14 @@ Handle file_in_memory() {
 }
 
 // Makes every group with its attributes and calls each(group, table).
-template <class Each> void write_groups(hid_t file, const Result& result, const Each& each) {
-  for (const auto& attribute : result.attributes) write_attribute(file, attribute);
+template <class Each> void write_groups(hid_t file, const Result& result, const Common& common, const Each& each) {
+  for (const auto& attribute : result.attributes) write_attribute(file, attribute, common);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, no_room);
   check(H5Pset_create_intermediate_group(links, 1), no_room);
   const Handle of_groups = properties(H5P_GROUP_CREATE);
   for (const auto& table : result.groups) {
     const Handle group(H5Gcreate2(file, table.name.c_str(), links, of_groups, H5P_DEFAULT), H5Gclose, no_room);
-    for (const auto& attribute : table.attributes) write_attribute(group, attribute);
+    for (const auto& attribute : table.attributes) write_attribute(group, attribute, common);
     each(group, table);
   }
 }
@@ -134,8 +138,9 @@ class Image {
   explicit Image(const Result& result) {
     hdf5::silence();
     const Handle file = file_in_memory();
-    write_groups(file, result, [](hid_t group, const Group& table) {
-      for (const auto& column : table.columns) write_column(group, column);
+    const Common common;
+    write_groups(file, result, common, [&](hid_t group, const Group& table) {
+      for (const auto& column : table.columns) write_column(group, column, common);
     });
     check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
     const ssize_t size = H5Fget_file_image(file, nullptr, 0);
@@ -171,12 +176,14 @@ void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string
       std::uint64_t rows = 0;
     };
     std::map<std::string, Open> open;
-    write_groups(file, ends, [&](hid_t group, const Group& table) {
+    // Columns get their places at once, since the order of their rows differs from run to run.
+    const Common common;
+    check(H5Pset_alloc_time(common.columns, H5D_ALLOC_TIME_EARLY), no_room);
+    write_groups(file, ends, common, [&](hid_t group, const Group& table) {
       Open& here = open[table.name];
       for (const Column& column : table.columns) {
-        here.columns.push_back(make_column(group, column, column.rows(), Placed::at_once));
-        write_attribute(here.columns.back(), {"unit", column.unit});
-        write_attribute(here.columns.back(), {"description", column.description});
+        here.columns.push_back(make_column(group, column, column.rows(), common));
+        describe(here.columns.back(), column, common);
       }
     });
     pieces([&](const Group& piece) {

@@ -69,7 +69,7 @@ void check_built(const Scene& scene) {
     not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
   if (scene.run.coordinates == Coordinates::absolute) {
     if (particles_merge(scene)) not_built("run.coordinates", "absolute with particles that merge", "gaps");
-    if (scene.initial.type == InitialType::ring) not_built("run.coordinates", "absolute on a ring", "gaps");
+    if (scene.initial.on_ring()) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   in_precision<void>(scene, [](auto) {});
 }

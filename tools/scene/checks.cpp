@@ -105,7 +105,7 @@ class Checks {
     if (!scene_.walls.any()) return;
     const std::string first = left.position ? "walls.left.position" : "walls.right.position";
     const Initial& initial = scene_.initial;
-    if (initial.type == InitialType::ring || initial.type == InitialType::clusters)
+    if (initial.on_ring() || initial.type == InitialType::clusters)
       throw Error(place(first), "a wall without a line of particles",
                   "initial.type = " + value_text(*find_field("initial.type", scene_), scene_).value(),
                   "remove [walls], or give particles on a line");
@@ -150,21 +150,59 @@ class Checks {
                 "give smaller speeds, or an earlier run.until");
   }
 
+  void gas_between_walls() const {
+    const Initial& initial = scene_.initial;
+    if (initial.type != InitialType::gas) return;
+    if (scene_.law.type != LawType::inelastic)
+      throw Error(place("initial.type"), "a gas between walls needs a law that bounces",
+                  "law.type = " + value_text(*find_field("law.type", scene_), scene_).value(),
+                  "give law.type = \"inelastic\" or another initial state");
+    const Decimal &left = *scene_.walls.left.position, &right = *scene_.walls.right.position;
+    if (right <= left)
+      throw Error(place("walls.right.position"), "walls without room for a gas",
+                  fmt::format("from {} to {}", left.text, right.text), "give the left wall a lower position");
+    Scene other = scene_;
+    const Field& end = *find_field("walls.right.position", scene_);
+    store_default(end, other);
+    if (initial.density && *other.walls.right.position != right)
+      throw Error(place("initial.density"), "a density and both walls",
+                  fmt::format("density {}, walls at {} and {}", initial.density->text, left.text, right.text),
+                  "remove initial.density or walls.right.position");
+  }
+
+  void random_masses() const {
+    const auto& range = scene_.initial.random_masses;
+    if (!entries_.contains("initial.random_masses")) return;
+    if (entries_.contains("initial.masses"))
+      throw Error(place("initial.random_masses"), "two ways to give masses", "initial.masses too",
+                  "remove one of them");
+    if (range.size() != 2 || range[0] >= range[1])
+      throw Error(place("initial.random_masses"), "not a range of masses",
+                  range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
+                                    : describe(entries_.find("initial.random_masses")->second),
+                  "give two masses, the smaller one first");
+  }
+
   void masses_repeat() const {
     const Initial& initial = scene_.initial;
-    if (!entries_.contains("initial.masses")) return;
+    if (!entries_.contains("initial.masses")) return masses_fit();
     const std::size_t period = initial.masses.size();
     if (period == 0) throw Error(place("initial.masses"), "no masses", "an empty list", "give at least one mass");
     if (initial.type == InitialType::ring && initial.particles % period != 0)
       throw Error(place("initial.masses"), "the pattern does not divide the ring",
                   fmt::format("{} masses, {} particles", period, initial.particles),
                   fmt::format("give initial.particles as a multiple of {}", period));
+    masses_fit();
+  }
+
+  void masses_fit() const {
+    const char* key = scene_.initial.random_masses.empty() ? "initial.masses" : "initial.random_masses";
     if (!unequal_masses(scene_)) return;
     if (scene_.output.scenario)
-      throw Error(place("output.scenario"), "for particles of mass 1", "initial.masses of others",
+      throw Error(place("output.scenario"), "for particles of mass 1", key + std::string(" of others"),
                   "remove one of the two");
     if (scene_.output.zone.from)
-      throw Error(place("output.zone.from"), "for particles of mass 1", "initial.masses of others",
+      throw Error(place("output.zone.from"), "for particles of mass 1", key + std::string(" of others"),
                   "remove one of the two");
   }
 
@@ -256,7 +294,7 @@ class Checks {
   std::optional<bin_float> outermost(int side) const {
     const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
     const Initial& initial = scene_.initial;
-    if (initial.type != InitialType::rows) return {};
+    if (initial.type != InitialType::rows || initial.positions != Positions::lattice) return {};
     const scene::Row& row = side < 0 ? initial.left : initial.right;
     const bin_float spacing = initial.general_rows() ? bin_float(1) / number(row.density) : number(initial.spacing);
     const bin_float particles(
@@ -283,7 +321,9 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.rows_meet();
   checks.one_list_of_particles();
   checks.two_clusters();
+  checks.gas_between_walls();
   checks.walls_stand();
+  checks.random_masses();
   checks.masses_repeat();
   checks.restitution_of_speed();
   checks.series_has_times();

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cradle/tools/scene/time_range.hpp"
+
 namespace cradle::tools {
 namespace {
 
@@ -230,6 +232,7 @@ std::string advice(const Field& field, const Scene& scene) {
   if (type == "one of") return fmt::format("give one of {}", fmt::join(choices_of(field), ", "));
   const Interval range = interval_of(field);
   const auto words = range_words(range, scene);
+  if (takes_times(field)) return fmt::format("give a list of numbers{}, or a table {{from, until, every}}", words);
   if (type == "list of numbers") return "give a list of numbers" + words;
   return fmt::format("give {} {}{}", range.even || type == "integer" ? "an" : "a", range.even ? "even integer" : type,
                      words);

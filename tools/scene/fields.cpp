@@ -1,6 +1,7 @@
 // The table of keys. To add a key, add a member in scene.hpp and a row here.
 #include "cradle/tools/scene/fields.hpp"
 
+#include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/model/laws.hpp"
 
 namespace cradle::tools {
@@ -32,10 +33,17 @@ constexpr When plain_rows{
 constexpr When general_rows{
     other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
-constexpr When in_order{other_state, "initial.type", "initial.type = \"rows\", \"ring\" or \"cold\"",
-                        begins_as<InitialType::rows, InitialType::ring, InitialType::cold>};
+constexpr auto is_in_order = begins_as<InitialType::rows, InitialType::ring, InitialType::cold, InitialType::gas>;
+constexpr When in_order{other_state, "initial.type", "initial.type = \"rows\", \"ring\", \"cold\" or \"gas\"",
+                        is_in_order};
+constexpr When on_lattice{other_state, "initial.positions",
+                          "initial.positions = \"lattice\" on rows, a ring, in a cold gas or a gas",
+                          [](const Scene& s) { return is_in_order(s) && s.initial.positions == Positions::lattice; }};
 constexpr When on_line{other_state, "initial.type", "initial.type = \"rows\", \"list\" or \"cold\"",
                        begins_as<InitialType::rows, InitialType::list, InitialType::cold>};
+constexpr When thermal_gas{other_state, "initial.type", "initial.type = \"ring\" or \"gas\"",
+                           begins_as<InitialType::ring, InitialType::gas>};
+constexpr When gas{other_state, "initial.type", "initial.type = \"gas\"", begins_as<InitialType::gas>};
 constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"", begins_as<InitialType::ring>};
 constexpr When list{other_state, "initial.type", "initial.type = \"list\"", begins_as<InitialType::list>};
 constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"", begins_as<InitialType::clusters>};
@@ -45,6 +53,9 @@ constexpr When one_hot{other_state, "initial.hot", "initial.type = \"cold\" with
 constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" with several hot particles",
                            [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot > 1; }};
 
+constexpr When may_have_walls{other_law, "law.type", "law.type = \"inelastic\"", [](const Scene& s) {
+                                return s.law.type == LawType::inelastic && s.initial.type != InitialType::gas;
+                              }};
 constexpr std::string_view no_wall = "key of a wall that is not there";
 constexpr When left_wall{no_wall, "walls.left.position", "a left wall",
                          [](const Scene& s) { return s.walls.left.position.has_value(); }};
@@ -75,6 +86,15 @@ constexpr When by_points{other_series, "output.series.every", "a series without 
                          [](const Scene& s) { return !s.output.series.every && s.output.series.times.empty(); }};
 
 std::string particles_as_length(const Scene& s) { return std::to_string(s.initial.particles); }
+
+// The left wall and the length of so many particles at their density, as a decimal: rounded if it has no end.
+std::string end_of_gas(const Scene& s) {
+  constexpr int digits = 40;
+  const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
+  const bin_float length =
+      bin_float(static_cast<std::int64_t>(s.initial.particles)) / number(s.initial.density.value_or(Decimal("1")));
+  return (number(s.walls.left.position.value_or(Decimal("0"))) + length).str(digits);
+}
 
 std::string hot_as_energy(const Scene& s) { return std::to_string(s.initial.hot); }
 
@@ -116,7 +136,7 @@ const Field all_fields[] = {
     {"law.loss", law_of<&scene::Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
      "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge"},
 
-    {"initial.type", initial_type, "", "required", "rows | ring | list | clusters | cold", &always,
+    {"initial.type", initial_type, "", "required", "rows | ring | list | clusters | cold | gas", &always,
      "which particles there are at the start"},
     {"initial.left.particles", initial_of<&Initial::left, &scene::Row::particles>, "", "required", "[1, 1e15]",
      &general_rows, "particles of the left row"},
@@ -139,6 +159,10 @@ const Field all_fields[] = {
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 1e15]", &ring, "particles on the ring"},
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15]", &cold,
      "particles of the gas, those that move included"},
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 2147483647]", &gas,
+     "particles between the two walls"},
+    {"initial.density", initial_of<&Initial::density>, "1/l", "", "(0, inf)", &gas,
+     "particles per length, 1 if nothing says it: gives walls.right.position, from that of the left wall on"},
     {"initial.hot", initial_of<&Initial::hot>, "", "1", "[1, initial.particles]", &cold,
      "how many particles move at the start, one beside the other; the others are at rest"},
     {"initial.place", initial_of<&Initial::place>, "", "\"middle\"", "middle | left", &cold,
@@ -148,24 +172,34 @@ const Field all_fields[] = {
     {"initial.energy", initial_of<&Initial::energy>, "m l^2/t^2", "initial.hot", "(0, inf)", &several_hot,
      "energy of several hot particles together: Gaussian velocities without total momentum", hot_as_energy},
     {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &cold, "distance between neighbours"},
+    {"initial.density_exponent", initial_of<&Initial::density_exponent>, "", "0", "(-inf, 1)", &cold,
+     "how the density falls with the distance from x = 0: it is (1/l) (|x|/l)^-this, l being the spacing"},
     {"initial.speed", initial_of<&Initial::speed>, "l/t", "0.5", "(0, inf)", &plain_rows,
      "u0: the left row moves at +u0, the right one at -u0"},
     {"initial.spacing", initial_of<&Initial::spacing>, "l", "1", "(0, inf)", &plain_rows,
      "distance between neighbours in a row"},
-    {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &in_order,
+    {"initial.positions", initial_of<&Initial::positions>, "", "\"lattice\"", "lattice | poisson", &in_order,
+     "at equal distances, or those of a Poisson process: independent exponential gaps of mean one spacing; where the "
+     "length is given, independent uniform positions"},
+    {"initial.perturbation", initial_of<&Initial::perturbation>, "", "0", "[0, 0.5)", &on_lattice,
      "each particle is shifted uniformly by up to plus or minus this times the spacing"},
     {"initial.masses", initial_of<&Initial::masses>, "m", "", "(0, inf)", &in_order,
      "masses of the particles, repeated from the first one on, 1 where not given; on a ring a whole number of times"},
+    {"initial.random_masses", initial_of<&Initial::random_masses>, "m", "", "(0, inf)", &in_order,
+     "two masses, the smaller one first: each particle has one drawn uniformly between them; instead of "
+     "initial.masses"},
     {"initial.length", initial_of<&Initial::length>, "l", "initial.particles", "(0, inf)", &ring,
      "circumference of the ring", particles_as_length},
-    {"initial.velocities", initial_of<&Initial::velocities>, "", "\"gaussian\"", "gaussian | uniform", &ring,
+    {"initial.velocities", initial_of<&Initial::velocities>, "", "\"gaussian\"", "gaussian | uniform", &thermal_gas,
      "distribution of the velocities"},
-    {"initial.variance", initial_of<&Initial::variance>, "l^2/t^2", "1", "(0, inf)", &ring,
+    {"initial.variance", initial_of<&Initial::variance>, "l^2/t^2", "1", "(0, inf)", &thermal_gas,
      "variance of the velocities"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
-     "CSV file of the particles, relative to the scene: a line x,v or x,v,m, then decimals, x increasing; results hold "
-     "the particles themselves"},
+     "CSV file of the particles, relative to the scene: a line x,v or x,v,m, then decimals, x increasing; or a result, "
+     "the last snapshot of which is taken if it has all particles; results hold the particles themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
+    {"initial.length", initial_of<&Initial::length>, "l", "0", "[0, inf)", &list,
+     "circumference of the ring on which the particles are; 0: on a line"},
     {"initial.v", initial_of<&Initial::v>, "l/t", "", any, &list, "velocities; instead of a file"},
     {"initial.m", initial_of<&Initial::m>, "m", "", "(0, inf)", &list, "masses, 1 where not given; instead of a file"},
     {"initial.speed", initial_of<&Initial::speed>, "l/t", "0.5", "(0, inf)", &clusters,
@@ -184,9 +218,11 @@ const Field all_fields[] = {
     {"initial.replica", initial_of<&Initial::replica>, "", "0", "[0, 18446744073709551615]", &always,
      "number of the replica; each has its own random numbers"},
 
-    {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "", any, &inelastic,
+    {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "", any, &may_have_walls,
      "position of a wall at the left end of the line, at run.start; without it, none. A wall is a particle of infinite "
      "mass"},
+    {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "0", any, &gas,
+     "where the gas begins: the left one of its two walls"},
     {"walls.left.speed", walls_of<&WallPair::left, &WallAt::speed>, "l/t", "0", any, &left_wall,
      "constant velocity of the left wall, positive to the right: a piston"},
     {"walls.left.temperature", walls_of<&WallPair::left, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)", &left_wall,
@@ -194,10 +230,12 @@ const Field all_fields[] = {
      "reflects them"},
     {"walls.left.restitution", walls_of<&WallPair::left, &WallAt::restitution>, "", "1", "[0, 1]", &left_reflects,
      "factor by which a collision with the left wall reduces the closing speed; 1 is elastic"},
-    {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &inelastic,
+    {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &may_have_walls,
      "position of a wall at the right end of the line, at run.start; without it, none. A wall is a particle of "
      "infinite "
      "mass"},
+    {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "initial.particles/initial.density on",
+     any, &gas, "where the gas ends: the right one of its two walls", end_of_gas},
     {"walls.right.speed", walls_of<&WallPair::right, &WallAt::speed>, "l/t", "0", any, &right_wall,
      "constant velocity of the right wall, positive to the right: a piston"},
     {"walls.right.temperature", walls_of<&WallPair::right, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)",
@@ -259,6 +297,8 @@ const Field all_fields[] = {
      "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
      "the energy beyond that of the sticky gas that began alike"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every collision"},
+    {"output.every_replica", output_of<&Output::every_replica>, "", "false", "", &always,
+     "in an ensemble, keep the snapshots and profiles of every replica beside the statistics"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",
      "[0, inf)", &always,
      "seconds of computing between checkpoints, from which `cradle resume` continues; 0: only when the run ends or is "

@@ -1,4 +1,5 @@
-// Reads particles from CSV line by line. Every number is checked when it is read, so that messages can name the line.
+// Reads particles from CSV line by line, or from the last snapshot of a result. Every number is checked when it is
+// read, so that messages can name the line.
 #include "cradle/tools/scene/list_file.hpp"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/scene/number_range.hpp"
 
 namespace cradle::tools {
@@ -116,12 +119,72 @@ ListedParticles parse_list(std::istream& csv, const std::string& file_name, cons
   return std::move(reader.particles());
 }
 
+namespace {
+
+// The column of a snapshot as decimals that read back as its numbers.
+std::vector<std::string> decimals(const Result& result, const std::string& snapshot, const std::string& name,
+                                  const std::string& file) {
+  for (const std::string& folder : {std::string("exact/"), std::string()})
+    if (const Group* group = result.find(folder + snapshot))
+      for (const Column& column : group->columns) {
+        if (column.name != name) continue;
+        if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) return *texts;
+        if (const auto* doubles = std::get_if<std::vector<double>>(&column.values)) {
+          std::vector<std::string> texts;
+          for (const double x : *doubles) texts.push_back(fmt::format("{}", x));
+          return texts;
+        }
+      }
+  throw Error({file, 0, snapshot}, "a snapshot without a column", name, "take the file from a copy", Exit::io);
+}
+
+// The last snapshot of a result, and the ring that it is on.
+ListedParticles last_state(const std::string& file, Scene& scene) {
+  const Result result = read_result(file);
+  const Scene other = parse_scene(attribute<std::string>(result.attributes, "scene", file), file);
+  std::string snapshot;
+  for (const Group& group : result.groups)
+    if (group.name.starts_with("snapshots/")) snapshot = group.name;
+  if (snapshot.empty())
+    throw Error({file, 0, "snapshots"}, "a result without a state of its particles", "no snapshot",
+                "run its scene with output.snapshots at the time that is to be taken");
+  const auto x = decimals(result, snapshot, "x", file), v = decimals(result, snapshot, "v", file),
+             m = decimals(result, snapshot, "m", file);
+  if (v.size() != x.size() || m.size() != x.size())
+    throw Error({file, 0, snapshot}, "columns of different lengths", std::to_string(v.size()),
+                "take the file from a copy", Exit::io);
+  const auto all = initial_particles<double>(other);
+  CompensatedSum<double> mass;
+  for (const std::string& text : m) mass.add(Decimal(text).value);
+  // Any missing particle is heavier than what sums round.
+  if (!(std::abs(mass.value() - all->total_mass()) < all->least_mass() / 2))
+    throw Error({file, 0, snapshot}, "particles that no collision has reached are not in it",
+                fmt::format("{:g} of the mass {:g}", mass.value(), all->total_mass()),
+                "take a later snapshot, when all particles have collided");
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (std::is_lteq(compare_decimals(x[i], x[i - 1])))
+      throw Error({file, 0, snapshot + "/x"}, "particles closer to each other than positions resolve",
+                  fmt::format("{} after {}", x[i], x[i - 1]), "run its scene in more digits (run.precision)");
+  Reader reader(file, scene.run);
+  const bool ones = std::ranges::all_of(m, [](const std::string& text) { return Decimal(text) == Decimal("1"); });
+  for (std::size_t i = 0; i < x.size(); ++i)
+    reader.add(ones ? std::vector<std::string_view>{x[i], v[i]} : std::vector<std::string_view>{x[i], v[i], m[i]}, 0);
+  if (other.initial.on_ring() && !scene.initial.on_ring()) scene.initial.length = other.initial.length;
+  return std::move(reader.particles());
+}
+
+}  // namespace
+
 void read_list(const std::filesystem::path& path, Scene& scene) {
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path))
     throw Error({path.string(), 0, {}}, "the list of particles cannot be read", "no such file, or no permission",
                 "correct initial.file, which is relative to the scene file", Exit::io);
-  ListedParticles particles = parse_list(file, path.string(), scene.run);
+  char first = 0;
+  const bool is_result = file.get(first) && first == '\x89';  // as HDF5 begins
+  file.clear();
+  file.seekg(0);
+  ListedParticles particles = is_result ? last_state(path.string(), scene) : parse_list(file, path.string(), scene.run);
   scene.initial.file.reset();
   scene.initial.x = std::move(particles.x);
   scene.initial.v = std::move(particles.v);

@@ -3,7 +3,8 @@
 #include <optional>
 #include <string_view>
 
-#include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/time_range.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -14,9 +15,11 @@ void drop_replaced_series(Entries& entries, std::string_view assignment) {
   const auto key = assignment.substr(0, assignment.find_first_of("= \t"));
   if (!key.starts_with(series)) return;
   const auto way = key.substr(series.size());
-  if (way != "points" && way != "every" && way != "times") return;
+  const bool of_range = way.starts_with("times.");
+  if (way != "points" && way != "every" && way != "times" && !of_range) return;
   std::erase_if(entries, [&](const auto& entry) {
-    return entry.first.starts_with(series) && !(way == "points" && entry.first == "output.series.spacing");
+    return entry.first.starts_with(series) && !(way == "points" && entry.first == "output.series.spacing") &&
+           !(of_range && entry.first.starts_with("output.series.times."));
   });
 }
 
@@ -30,8 +33,8 @@ void drop_times_cut_off(Entries& entries) {
     return literal ? std::optional(Decimal(*literal)) : std::nullopt;
   };
   const auto start = bound("run.start"), until = bound("run.until");
-  for (const char* key : {"output.series.times", "output.snapshots", "output.profiles.times", "output.masses"}) {
-    const auto entry = entries.find(key);
+  for (const Field& field : scene_fields()) {
+    const auto entry = takes_times(field) ? entries.find(field.key) : entries.end();
     if (entry == entries.end() || entry->second.place.source == "--set") continue;
     const auto dropped = std::erase_if(entry->second.items, [&](const Value& item) {
       const auto literal = canonical_decimal(item.text);
@@ -48,6 +51,7 @@ void apply_overrides(Entries& entries, const std::vector<std::string>& overrides
     drop_replaced_series(entries, assignment);
     apply_override(entries, assignment);
   }
+  expand_time_ranges(entries);
   drop_times_cut_off(entries);
 }
 

@@ -1,4 +1,5 @@
 // What the command line changes in a scene file: `--set` assignments, and the keys of the file that they replace.
+// Ranges of times become lists.
 #pragma once
 
 #include <string>

@@ -43,7 +43,7 @@ void store_all(const Entries& entries, const std::string& scene_file, Scene& sce
 }
 
 void sort_times(std::vector<Decimal>& times) {
-  std::ranges::sort(times);
+  if (!std::ranges::is_sorted(times)) std::ranges::sort(times);
   times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
@@ -72,7 +72,8 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
 }  // namespace
 
 bool unequal_masses(const Scene& scene) {
-  return std::ranges::any_of(scene.initial.masses, [](const Decimal& mass) { return mass != Decimal("1"); });
+  return !scene.initial.random_masses.empty() ||
+         std::ranges::any_of(scene.initial.masses, [](const Decimal& mass) { return mass != Decimal("1"); });
 }
 
 bool operator==(const Scene& a, const Scene& b) {

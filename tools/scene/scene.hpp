@@ -21,8 +21,9 @@ namespace cradle::tools {
 
 // The enumerators are in the order of the names in the table of fields.
 enum class LawType { inelastic, wet, sticky };
-enum class InitialType { rows, ring, list, clusters, cold };
+enum class InitialType { rows, ring, list, clusters, cold, gas };
 enum class Velocities { gaussian, uniform };
+enum class Positions { lattice, poisson };
 enum class Coordinates { gaps, absolute };
 enum class Spacing { linear, log };
 
@@ -62,29 +63,35 @@ struct Centre {
 
 struct Initial {
   InitialType type = InitialType::rows;
-  std::uint64_t particles = 0;  // rows (both together), ring, cold
+  std::uint64_t particles = 0;  // rows (both together), ring, cold, gas
   Decimal speed;    // rows: left row +speed, right row -speed; clusters: of the rows that feed them; cold: of one hot
                     // particle
   Decimal spacing;  // rows, clusters, cold
   scene::Row left, right;  // rows given as tables: see general_rows()
   Centre centre;
-  Decimal perturbation;  // rows, ring, cold: uniform in plus/minus this times the spacing
-  Decimal length;        // ring
+  Positions positions = Positions::lattice;  // rows, ring, cold, gas
+  Decimal perturbation;                      // rows, ring, cold, gas: uniform in plus/minus this times the spacing
+  Decimal length;                            // ring; list: 0 on a line
+  std::optional<Decimal> density;            // gas: says where the right wall is
+  Decimal density_exponent;                  // cold: the density falls with this power of the distance
   Velocities velocities = Velocities::gaussian;
-  Decimal variance;                                 // ring
-  std::vector<Decimal> masses;                      // rows, ring, cold: repeated from particle 0 on; empty: all 1
+  Decimal variance;                                 // ring, gas
+  std::vector<Decimal> masses;                      // rows, ring, cold, gas: repeated from particle 0 on; empty: all 1
+  std::vector<Decimal> random_masses;               // or uniform between these two
   std::uint64_t hot = 0;                            // cold: particles that move at the start
   scene::HotPlace place = scene::HotPlace::middle;  // cold: where these are
   Decimal energy;                                   // cold: of several hot particles together
-  std::optional<std::string> file;  // list: the file with the particles; a scene that was read has them here:
-  DecimalColumn x, v, m;            // list; m empty: all 1. clusters: two x, two v
-  std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
+  std::optional<std::string>
+      file;                     // list: the file with the particles, or a result; a scene that was read has them here:
+  DecimalColumn x, v, m;        // list; m empty: all 1. clusters: two x, two v
+  std::vector<Decimal> growth;  // clusters: share of the incoming mass that each takes up
   scene::Meeting meeting = scene::Meeting::energy;
   std::uint64_t seed = 0;
   std::uint64_t replica = 0;
 
   /// Rows given by [initial.left] and [initial.right] instead of particles, speed and spacing.
   bool general_rows() const { return left.particles > 0; }
+  bool on_ring() const { return type == InitialType::ring || (type == InitialType::list && length > Decimal("0")); }
   bool operator==(const Initial&) const = default;
 };
 
@@ -157,6 +164,7 @@ struct Output {
   bool scenario = false;  // wet rows: whether to decide between the two scenarios of Fig. 9
   bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
+  bool every_replica = false;  // ensembles: whether the snapshots and profiles of every replica are kept
   Checkpoint checkpoint;
   bool operator==(const Output&) const = default;
 };
@@ -181,8 +189,7 @@ struct Scene {
   Sweep sweep;
 };
 
-/// Whether initial.masses gives different masses, or masses that are not 1: formulas for particles of mass 1 do not
-/// apply then.
+/// Whether masses differ or are not 1: formulas for particles of mass 1 do not apply then.
 bool unequal_masses(const Scene& scene);
 
 /// Whether the scenes are equal, wherever they were read from (names are not compared).

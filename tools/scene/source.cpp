@@ -106,12 +106,14 @@ class Literals {
   }
 
   std::string at(const toml::source_position& begin) const {
-    std::size_t i = lines_.at(begin.line - 1);
-    for (auto column = begin.column; column > 1; --column) {
-      ++i;
-      while (i < text_.size() && (static_cast<unsigned char>(text_[i]) & 0xC0U) == 0x80U) ++i;
+    // The values of a list stand one after the other, often in one long line.
+    if (begin.line != last_.line || begin.column < last_.column)
+      last_ = {begin.line, 1}, i_ = lines_.at(begin.line - 1);
+    for (; last_.column < begin.column; ++last_.column) {
+      ++i_;
+      while (i_ < text_.size() && (static_cast<unsigned char>(text_[i_]) & 0xC0U) == 0x80U) ++i_;
     }
-    i = std::min(i, text_.size());
+    const std::size_t i = std::min(i_, text_.size());
     const auto end = std::min(text_.find_first_not_of(literal_characters, i), text_.size());
     return std::string(text_.substr(i, end - i));
   }
@@ -119,6 +121,9 @@ class Literals {
  private:
   std::string_view text_;
   std::vector<std::size_t> lines_;
+  // The place of the literal that was found last.
+  mutable toml::source_position last_{0, 1};
+  mutable std::size_t i_ = 0;
 };
 
 Value value_of(const toml::node& node, const Literals& literals, const Place& place) {
@@ -229,7 +234,10 @@ void apply_override(Entries& entries, std::string_view assignment) {
   const Place place{"--set", 0, key};
   const auto text = trimmed(assignment.substr(equals + 1));
 
-  std::erase_if(entries, [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
+  const auto inside = [](const std::string& inner, const std::string& outer) { return inner.starts_with(outer + '.'); };
+  std::erase_if(entries, [&](const auto& entry) {
+    return entry.first == key || inside(entry.first, key) || inside(key, entry.first);
+  });
   if (text.empty()) return;
   if (auto parsed = assigned(text, place)) {
     entries.merge(*parsed);

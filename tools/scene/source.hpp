@@ -29,7 +29,7 @@ using Entries = std::map<std::string, Value, std::less<>>;
 Entries read_entries(std::string_view toml, const std::string& source_name);
 
 /// Applies one `table.key=value`: the value is TOML or else a bare word, which is a text; an empty value removes the
-/// key. A table or array replaces the old one completely.
+/// key. A table or array replaces the old one completely, and so does a key of a table where there was no table.
 void apply_override(Entries& entries, std::string_view assignment);
 
 /// A single value in TOML syntax, which must be valid.

@@ -5,6 +5,7 @@
 
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/scene/time_range.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -56,6 +57,7 @@ std::string effective_toml(const Scene& scene) {
 
 std::string facts(const Field& field) {
   std::string text(type_name(field));
+  if (takes_times(field)) text += " or range";
   if (!field.range.empty() && field.range != "(-inf, inf)") text += fmt::format(" {}", field.range);
   if (!field.unit.empty()) text += fmt::format(", in {}", field.unit);
   if (field.fallback == "required") return text + ", required";

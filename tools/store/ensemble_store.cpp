@@ -176,11 +176,11 @@ void EnsembleStore::journal(const EnsembleRecord& record) {
   journal_->append(bytes);
 }
 
-void EnsembleStore::add(std::size_t point, const ReplicaRow& row, std::vector<double> values) {
+void EnsembleStore::add(std::size_t point, const ReplicaRow& row, std::vector<double> values, ReplicaTables kept) {
   {
     const std::shared_lock lock(changing_);
-    if (journalling_) journal({point, ReplicaRecord{row, values}});
-    states_.at(point)->add(row, std::move(values));
+    if (journalling_) journal({point, ReplicaRecord{row, values, kept}});
+    states_.at(point)->add(row, std::move(values), std::move(kept));
   }
   if (journalling_) keep_safe();
 }

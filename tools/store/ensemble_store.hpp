@@ -47,7 +47,7 @@ class EnsembleStore {
   /// bytes is rewritten.
   void start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest);
   /// Both may be called from several threads.
-  void add(std::size_t point, const ReplicaRow& row, std::vector<double> values);
+  void add(std::size_t point, const ReplicaRow& row, std::vector<double> values, ReplicaTables kept = {});
   void fail(std::size_t point, ReplicaIndex replica, const std::string& message);
   /// Syncs the journal to the disk, so that it survives a crash of the machine.
   void sync();

@@ -86,7 +86,7 @@ void RunFiles::add(Group&& rows) {
   if (none && !rows.columns.empty() && rows.attributes.empty()) return;
   waiting_.add(std::move(rows));
   const std::uint64_t most = journal_ ? most_waiting : most_in_memory;
-  if (!complained_ && numbers_in(waiting_.tables()) > most) saved([this] { write_waiting(); });
+  if (!complained_ && waiting_.numbers() > most) saved([this] { write_waiting(); });
 }
 
 void RunFiles::count(std::uint64_t collisions) {

@@ -35,6 +35,7 @@ void keep_ends(Column& column) {
 void GrowingTables::add(Group&& rows) {
   const auto [at, anew] = by_name_.try_emplace(rows.name, tables_.size());
   if (anew) tables_.emplace_back();
+  for (const Column& column : rows.columns) numbers_ += column.rows() * column.width;
   std::vector<Column>& columns = tables_[at->second].columns;
   const auto same = [](const Column& a, const Column& b) {
     return a.name == b.name && a.values.index() == b.values.index() && a.width == b.width;

@@ -27,12 +27,15 @@ class GrowingTables {
   void add(Group&& rows);
   const std::vector<Group>& tables() const { return tables_; }
   std::vector<Group>& tables() { return tables_; }
+  /// The number of numbers that were added.
+  std::uint64_t numbers() const { return numbers_; }
   /// The tables in the order of results.
   std::vector<Group> in_order() &&;
 
  private:
   Reading reading_;
   std::vector<Group> tables_;
+  std::uint64_t numbers_ = 0;
   std::unordered_map<std::string, std::size_t> by_name_;
 };
 

@@ -27,10 +27,13 @@ double reached_when_cold(const Scene& scene) {
   double least = initial.masses.empty() ? 1 : initial.masses.front().value, heaviest = least;
   for (const Decimal& mass : initial.masses)
     least = std::min(least, mass.value), heaviest = std::max(heaviest, mass.value);
+  if (!initial.random_masses.empty())
+    least = initial.random_masses.front().value, heaviest = initial.random_masses.back().value;
   const auto hot = static_cast<double>(initial.hot);
   const double speed = initial.speed.value;
   const double energy = initial.hot > 1 ? initial.energy.value : heaviest * speed * speed / 2;
-  const double layers = std::sqrt(2 * energy / least) * span(scene) / initial.spacing.value;
+  const double even = std::sqrt(2 * energy / least) * span(scene) / initial.spacing.value;
+  const double share = 1 - initial.density_exponent.value, layers = std::pow(even, share) / share;
   return std::min(static_cast<double>(initial.particles), hot + 2 * layers);
 }
 

@@ -112,6 +112,7 @@ Drawn draw_list(Random& random) {
   const LawText law = draw_law(random);
   Drawn d{parse_scene(law.law + some_ring + law.run + draw_times(random), "list", {}), law.wet};
   d.scene.initial.type = InitialType::list;
+  d.scene.initial.length = Decimal("0");  // on a line
   draw_particles(random, d.scene.initial);
   return d;
 }

@@ -118,7 +118,7 @@ TEST(Scene, OnlyTheContractsKeysAreRequired) {
   expect_refused({
       {line(2, ""), 0, "law.type", "missing: give one of inelastic, wet, sticky"},
       {line(3, ""), 0, "law.restitution", "missing: give a number from 0 to 1"},
-      {line(5, ""), 0, "initial.type", "missing: give one of rows, ring, list, clusters, cold"},
+      {line(5, ""), 0, "initial.type", "missing: give one of rows, ring, list, clusters, cold, gas"},
       {line(8, ""), 0, "run.until", "missing: give a number of run.start = 0 or more"},
       {"law.type = 'wet'\ninitial.type = 'ring'\nrun.until = 1", 0, "law.loss", "missing: give a number of 0 or more"},
   });
@@ -225,7 +225,8 @@ TEST(Scene, MistakesAreReportedWithLineAndKey) {
       {good + "[output]\nsnapshots = 5", 10, "output.snapshots", "wrong type (found 5): gi..."},
       // an element is reported at its own line
       {good + "[output]\nsnapshots = [1,\n 2, true]", 11, "output.snapshots",
-       "wrong type (found true): give a list of numbers from run.start = 0 to run.until = 6500"},
+       "wrong type (found true): give a list of numbers from run.start = 0 to run.until = 6500, or a table {from, "
+       "until, every}"},
       // unknown keys name the nearest known one
       {line(3, "restituton = 0.9"), 3, "law.restituton", "unknown key (found 0.9): did you mean law.restitution?"},
       {good + "restitution = 0.9", 9, "run.restitution", "unknown key (found 0.9): did you mean law.restitution?"},
@@ -267,7 +268,8 @@ TEST(Scene, TimesAreSortedAndWithinTheRun) {
   const std::string output = good + "[output]\n";
   expect_refused({
       {output + "snapshots = [1, 6500.001]", 10, "output.snapshots",
-       "out of range (found 6500.001): give a list of numbers from run.start = 0 to run.until = 6500"},
+       "out of range (found 6500.001): give a list of numbers from run.start = 0 to run.until = 6500, or a table "
+       "{from, until, every}"},
       {output + "series.times = []", 10, "output.series.times",
        "no times (found an empty list): give at least one time"},
       {output + "profiles.range = [4, -4]", 10, "output.profiles.range",

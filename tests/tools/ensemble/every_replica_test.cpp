@@ -1,0 +1,78 @@
+// The snapshots and profiles of every replica: those of the runs, to the last bit; the same file for any history; and
+// nothing of it where the scene does not ask for it.
+#include <cmath>
+
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
+
+namespace cradle::tests::every_replica_test {
+
+TEST_F(Ensembles, KeepWhatEveryReplicaRecords) {
+  run("ensemble shock.toml --replicas 5 --set output.every_replica=true -o e.h5");
+  const Result all = result("e.h5");
+  for (const std::string table : {"snapshots/0000", "profiles/0000", "profiles/0001"}) {
+    const tools::Group& kept = *all.find("replicas/" + table);
+    const auto replica = std::get<std::vector<std::uint64_t>>(column(kept, "replica").values);
+    std::size_t row = 0;
+    for (std::uint64_t k = 0; k < 5; ++k) {
+      run("run shock.toml --quiet -o r.h5 --set initial.replica=" + std::to_string(k));
+      const Result alone = result("r.h5");
+      const tools::Group& own = *alone.find(table);
+      EXPECT_EQ(kept.columns.size(), own.columns.size() + 1);
+      EXPECT_EQ(attribute<double>(kept.attributes, "time", ""), attribute<double>(own.attributes, "time", ""));
+      const std::size_t rows = own.columns.front().rows();
+      for (const Column& c : own.columns) {
+        const auto here = numbers(all, kept.name, c.name), there = numbers(alone, table, c.name);
+        ASSERT_EQ(here.size(), replica.size());
+        for (std::size_t i = 0; i < there.size(); ++i)
+          EXPECT_TRUE(here[row + i] == there[i] || (std::isnan(here[row + i]) && std::isnan(there[i]))) << c.name;
+        // Between n particles there are n - 1 gaps.
+        for (std::size_t i = there.size(); i < rows; ++i) EXPECT_TRUE(std::isnan(here[row + i])) << c.name;
+      }
+      for (std::size_t i = 0; i < rows; ++i) EXPECT_EQ(replica[row + i], k);
+      row += rows;
+    }
+    EXPECT_EQ(row, replica.size());
+  }
+  run("ensemble shock.toml --replicas 5 -o plain.h5");
+  for (const tools::Group& group : result("plain.h5").groups)
+    EXPECT_FALSE(has(group.name, "replicas/snapshots") || has(group.name, "replicas/profiles")) << group.name;
+}
+
+TEST_F(Ensembles, KeepTheSameBytesForAnyHistory) {
+  const std::string keep = " --set output.every_replica=true -o ", shock_of = "ensemble shock.toml --replicas ";
+  run(shock_of + "12 --threads 1" + keep + "whole.h5");
+  run(shock_of + "12 --threads 3" + keep + "threads.h5");
+  expect_same("whole.h5", "threads.h5");
+  run(shock_of + "5" + keep + "grown.h5");
+  run(shock_of + "12" + keep + "grown.h5");
+  expect_same("whole.h5", "grown.h5");
+  run("ensemble shock.toml --first 5 --replicas 7" + keep + "b.h5");
+  run(shock_of + "5" + keep + "a.h5");
+  run("merge b.h5 a.h5 -o merged.h5");
+  expect_same("whole.h5", "merged.h5");
+}
+
+// The first kill leaves records of replicas, which the second call rewrites as statistics and tables of replicas.
+TEST_F(Ensembles, KeepEveryReplicaWhereTheyAreKilled) {
+  write("shock.toml", std::string(shock) + "every_replica = true\n");
+  for (int kill = 0; kill < 2; ++kill) shell(until_journalled("killed.h5", "KILL"), 137);
+  const std::string all = enough_for("killed.h5");
+  run("ensemble shock.toml --replicas " + all + " -o whole.h5");
+  run("ensemble shock.toml --replicas " + all + " --threads 2 -o killed.h5");
+  expect_same("whole.h5", "killed.h5");
+}
+
+TEST_F(Ensembles, OfASweepKeepEveryReplicaToo) {
+  run("sweep collapse.toml --vary law.restitution=0.05,0.9 --replicas 3 --set output.every_replica=true "
+      "--set output.snapshots=[0.25,1.75] -o s.h5");
+  const Result sweep = result("s.h5");
+  for (const std::string point : {"points/0000/", "points/0001/"}) {
+    const auto replica = numbers(sweep, point + "replicas/snapshots/0000", "replica");
+    EXPECT_EQ(replica.front(), 0);
+    EXPECT_EQ(replica.back(), 2);
+  }
+  run("sweep collapse.toml --vary law.restitution=0.05,0.9 --replicas 3 --set output.every_replica=true "
+      "--set output.snapshots=[0.25,1.75] -o s.h5");
+}
+
+}  // namespace cradle::tests::every_replica_test

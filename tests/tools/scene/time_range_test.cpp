@@ -1,0 +1,143 @@
+// Ranges of times in place of lists: the decimals that a user would write, in every key that takes times, in files and
+// on the command line; every mistake has its own message with file, line and key.
+#include "cradle/tools/scene/time_range.hpp"
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/record/schedule.hpp"
+#include "cradle/tools/scene/fields.hpp"
+
+namespace cradle::tools::time_range_test {
+
+using Strings = std::vector<std::string>;
+using tests::begins;
+using tests::refusal;
+
+const std::string ring = "law = { type = 'sticky' }\ninitial = { type = 'ring', particles = 10 }\n[run]\nuntil = 100\n";
+
+Scene parse(const std::string& output, const Strings& overrides = {}) {
+  return parse_scene(ring + "[output]\n" + output, "s.toml", overrides);
+}
+Strings snapshots(const std::string& range, const Strings& overrides = {}) {
+  Strings texts;
+  for (const Decimal& time : parse("snapshots = " + range, overrides).output.snapshots) texts.push_back(time.text);
+  return texts;
+}
+std::string refused(const std::string& range, const Strings& overrides = {}) {
+  return refusal(Exit::bad_input, [&] { snapshots(range, overrides); });
+}
+
+TEST(TimeRange, StepsAreTheDecimalsThatAUserWouldWrite) {
+  EXPECT_EQ(snapshots("{ from = 70, until = 70.08, every = 0.02 }"),
+            (Strings{"70", "70.02", "70.04", "70.06", "70.08"}));
+  EXPECT_EQ(snapshots("{ from = 1, until = 2, every = 0.4 }"), (Strings{"1", "1.4", "1.8"}));
+  EXPECT_EQ(snapshots("{ from = 5, until = 5, every = 1e300 }"), (Strings{"5"}));
+  EXPECT_EQ(snapshots("{ from = '0.1', until = 0.3, every = 1e-1 }"), (Strings{"0.1", "0.2", "0.3"}));
+  // Every double is the one nearest to its decimal, which sums and products of 0.1 are not.
+  const Scene scene = parse("snapshots = { from = 0, until = 100, every = 0.1 }");
+  const auto plan = schedule<double>(scene).snapshots;
+  ASSERT_EQ(plan.size(), 1001U);
+  for (std::size_t k = 0; k <= 1000; ++k) {
+    const std::string digits = std::to_string(k);
+    const std::string decimal =
+        digits.size() == 1 ? "0." + digits : digits.substr(0, digits.size() - 1) + "." + digits.back();
+    EXPECT_EQ(plan[k], std::stod(decimal));
+    EXPECT_EQ(scene.output.snapshots[k], Decimal(decimal));
+  }
+  EXPECT_NE(plan[3], 3 * 0.1);
+}
+
+TEST(TimeRange, PointsAreEvenOrOfEqualRatios) {
+  EXPECT_EQ(snapshots("{ from = 0, until = 1, points = 11 }"),
+            (Strings{"0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1"}));
+  EXPECT_EQ(snapshots("{ from = 0, until = 1, points = 4, spacing = 'linear' }"),
+            (Strings{"0", "0.333333333333333", "0.666666666666667", "1"}));
+  EXPECT_EQ(snapshots("{ from = 0.01, until = 100, points = 5, spacing = 'log' }"),
+            (Strings{"0.01", "0.1", "1", "10", "100"}));
+  EXPECT_EQ(snapshots("{ from = 1, until = 2, points = 3, spacing = 'log' }"), (Strings{"1", "1.4142135623731", "2"}));
+  // The ends are kept with all their digits.
+  EXPECT_EQ(snapshots("{ from = '0.12345678901234567890', until = 1, points = 2 }").front(), "0.12345678901234567890");
+}
+
+TEST(TimeRange, EndsAreThoseOfTheRunWhereNotGiven) {
+  EXPECT_EQ(snapshots("{ every = 50 }"), (Strings{"0", "50", "100"}));
+  EXPECT_EQ(snapshots("{ every = 50 }", {"run.start=20"}), (Strings{"20", "70"}));
+  EXPECT_EQ(snapshots("{ from = 60, every = 20 }", {"run.until=90"}), (Strings{"60", "80"}));
+  EXPECT_EQ(snapshots("{ from = 20, points = 2, spacing = 'log' }"), (Strings{"20", "100"}));
+  EXPECT_EQ(refusal(Exit::bad_input, [] { parse("snapshots = { every = 1 }", {"run.until="}); }),
+            "s.toml: run.until: missing: give a number of run.start = 0 or more");
+}
+
+// Keys that take lists of times take ranges, whatever they are called.
+TEST(TimeRange, StandsInEveryKeyOfTimes) {
+  const std::string range = "{ from = 10, until = 30, every = 10 }";
+  const Scene scene = parse("series.times = " + range + "\nsnapshots = " + range + "\nmasses = " + range +
+                            "\nprofiles = { bins = 5, times = " + range + " }");
+  for (const char* key : {"output.series.times", "output.snapshots", "output.masses", "output.profiles.times"}) {
+    EXPECT_TRUE(takes_times(*find_field(key, scene))) << key;
+    EXPECT_EQ(value_text(*find_field(key, scene), scene), "[10, 20, 30]") << key;
+  }
+  for (const char* key : {"output.series.every", "output.profiles.range", "initial.x", "run.until"})
+    EXPECT_FALSE(takes_times(*find_field(key, scene))) << key;
+  EXPECT_EQ(scene.output.profiles.bins, 5U);
+  // A scene holds lists: it is the same scene, with the same text.
+  EXPECT_EQ(effective_toml(parse("snapshots = " + range)), effective_toml(parse("snapshots = [10, 20, 30]")));
+}
+
+TEST(TimeRange, IsSetOnTheCommandLine) {
+  EXPECT_EQ(snapshots("[1, 2]", {"output.snapshots={ from = 3, until = 4, every = 1 }"}), (Strings{"3", "4"}));
+  EXPECT_EQ(snapshots("{ from = 3, until = 4, every = 1 }", {"output.snapshots.every=0.5"}),
+            (Strings{"3", "3.5", "4"}));
+  EXPECT_EQ(snapshots("[1, 2]", {"output.snapshots.every=50"}), (Strings{"0", "50", "100"}));
+  EXPECT_EQ(snapshots("{ from = 3, until = 4, every = 1 }", {"output.snapshots=[7]"}), (Strings{"7"}));
+  EXPECT_TRUE(snapshots("{ from = 3, until = 4, every = 1 }", {"output.snapshots="}).empty());
+  const Scene series = parse("series = { points = 9 }", {"output.series.times.from=1", "output.series.times.points=2"});
+  EXPECT_FALSE(series.output.series.points);
+  EXPECT_EQ(series.output.series.times, (std::vector{Decimal("1"), Decimal("100")}));
+  // A run cut short keeps the times of the file that are within it, and none of the command line outside.
+  EXPECT_EQ(snapshots("{ from = 0, until = 100, every = 30 }", {"run.until=50"}), (Strings{"0", "30"}));
+  EXPECT_TRUE(begins(refused("[]", {"run.until=50", "output.snapshots={ from = 0, until = 90, every = 30 }"}),
+                     "--set output.snapshots.until: out of range (found 60): "));
+}
+
+TEST(TimeRange, MistakesHaveMessages) {
+  const std::string at = "s.toml:6: output.snapshots";
+  EXPECT_EQ(refused("{ from = 1, until = 2 }"), at + ": a range of times that is not divided (found neither every nor "
+                                                     "points): give from, until and every, or from, until, points and "
+                                                     "spacing");
+  EXPECT_EQ(refused("{ every = 1, points = 3 }"),
+            at + ".points: two ways to divide a range of times (found every and points): remove one of them");
+  EXPECT_EQ(refused("{ every = 1, spacing = 'log' }"), at + ".spacing: spacing of a range that every divides (found "
+                                                            "\"log\"): remove it, or give points instead of every");
+  EXPECT_EQ(refused("{ every = 1, form = 3 }"),
+            at + ".form: unknown key in a range of times (found 3): give from, until "
+                 "and every, or from, until, points and spacing");
+  EXPECT_EQ(refused("{ from = 3, until = 2, every = 1 }"), at + ".until: a range of times that ends before it begins "
+                                                                "(found from 3 until 2): give from the lower time");
+  EXPECT_EQ(refused("{ every = 0 }"), at + ".every: out of range (found 0): give a number above 0");
+  EXPECT_EQ(refused("{ every = -1 }"), at + ".every: out of range (found -1): give a number above 0");
+  EXPECT_EQ(refused("{ every = true }"), at + ".every: not a decimal number (found true): give a number");
+  EXPECT_EQ(refused("{ every = [1] }"), at + ".every: not a decimal number (found an array of 1 value): give a number");
+  EXPECT_EQ(refused("{ every = nan }"), at + ".every: not a decimal number (found nan): give a number");
+  EXPECT_EQ(refused("{ every = 1e-7 }"), at + ".every: too many times (found 1e-7, which makes 1e+09 of them): give a "
+                                              "longer time, 1e+06 times at most");
+  EXPECT_TRUE(begins(refused("{ every = 1e-300000 }"), at + ".every: too many times"));
+  EXPECT_EQ(refused("{ points = 1 }"), at + ".points: out of range (found 1): give an integer from 2 to 1e+06");
+  EXPECT_EQ(refused("{ points = 2.5 }"), at + ".points: out of range (found 2.5): give an integer from 2 to 1e+06");
+  EXPECT_EQ(refused("{ points = 1e7 }"), at + ".points: out of range (found 1e7): give an integer from 2 to 1e+06");
+  EXPECT_EQ(refused("{ points = 3, spacing = 'logarithmic' }"),
+            at + ".spacing: no such choice (found \"logarithmic\"): give one of linear, log");
+  EXPECT_EQ(refused("{ points = 3, spacing = 'log' }"), at +
+                                                            ": equal ratios from a time that is not above 0 (found 0): "
+                                                            "give from a time above 0, or spacing = \"linear\"");
+  EXPECT_EQ(refused("{ from = 1, until = 1.0000000000000001, points = 4 }"),
+            at +
+                ".points: times closer to each other than 15 digits resolve (found 4 from 1 until 1.0000000000000001): "
+                "give fewer points, a longer range, or every");
+  EXPECT_EQ(refused("{ from = 50, until = 200, every = 75 }"),
+            at + ".until: out of range (found 125): give a list of numbers from run.start = 0 to run.until = 100, or a "
+                 "table {from, until, every}");
+  EXPECT_TRUE(begins(refused("{ from = -1, until = 2, every = 3 }"), at + ".from: out of range (found -1): "));
+  EXPECT_TRUE(begins(refused("{}"), at + ": wrong type (found a table): give a list of numbers"));
+}
+
+}  // namespace cradle::tools::time_range_test

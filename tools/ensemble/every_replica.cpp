@@ -1,0 +1,89 @@
+#include "cradle/tools/ensemble/every_replica.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "cradle/tools/support/errors.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr const char* below = "replicas/";
+
+using Rows = std::vector<std::uint64_t>;
+
+// Appends rows [first, last) of one column to another.
+void append(Column& to, const Column& from, std::size_t first, std::size_t last) {
+  std::visit(
+      [&]<class Values>(const Values& values) {
+        auto& all = std::get<Values>(to.values);
+        const auto at = [&](std::size_t row) { return values.begin() + static_cast<std::ptrdiff_t>(row); };
+        all.insert(all.end(), at(first), at(last));
+      },
+      from.values);
+}
+
+// The table without rows.
+Group emptied(const Group& table, std::string name) {
+  Group empty{std::move(name), table.attributes, table.columns};
+  for (Column& column : empty.columns) std::visit([](auto& values) { values.clear(); }, column.values);
+  return empty;
+}
+
+}  // namespace
+
+ReplicaTables kept_tables(ReplicaIndex replica, const Result& run) {
+  ReplicaTables kept;
+  for (const Group& group : run.groups) {
+    if (!group.name.starts_with("snapshots/") && !group.name.starts_with("profiles/")) continue;
+    const std::size_t rows = group.columns.front().rows();
+    Group table{below + group.name, {}, {{"replica", "1", "initial.replica of the run", Rows(rows, replica)}}};
+    for (const Attribute& attribute : group.attributes)
+      if (attribute.first == "time") table.attributes.push_back(attribute);
+    table.columns.insert(table.columns.end(), group.columns.begin(), group.columns.end());
+    for (Column& column : table.columns)
+      if (auto* numbers = std::get_if<std::vector<double>>(&column.values))
+        numbers->resize(rows, std::numeric_limits<double>::quiet_NaN());
+    kept.push_back(std::move(table));
+  }
+  return kept;
+}
+
+std::vector<Group> joined_tables(const KeptReplicas& kept, const std::string& folder) {
+  std::map<std::string, Group> joined;
+  for (const auto& [replica, tables] : kept)
+    for (const Group& table : tables) {
+      const auto [at, anew] = joined.try_emplace(table.name);
+      if (anew) at->second = emptied(table, folder + table.name);
+      for (std::size_t k = 0; k < table.columns.size(); ++k)
+        append(at->second.columns[k], table.columns[k], 0, table.columns[k].rows());
+    }
+  std::vector<Group> all;
+  for (auto& [name, table] : joined) all.push_back(std::move(table));
+  return all;
+}
+
+KeptReplicas separated_tables(const Result& result, const std::string& folder, const std::string& file) {
+  KeptReplicas kept;
+  for (const Group& table : result.groups) {
+    if (!table.name.starts_with(folder + below + "snapshots/") && !table.name.starts_with(folder + below + "profiles/"))
+      continue;
+    const Rows* replica = table.columns.empty() ? nullptr : std::get_if<Rows>(&table.columns.front().values);
+    const bool whole =
+        replica != nullptr && std::all_of(table.columns.begin(), table.columns.end(),
+                                          [&](const Column& c) { return c.width == 1 && c.rows() == replica->size(); });
+    if (!whole)
+      throw Error({file, 0, table.name}, "a damaged ensemble", "columns of different lengths",
+                  "take it from a copy, or run it again", Exit::io);
+    for (std::size_t first = 0, last = 0; first < replica->size(); first = last) {
+      while (last < replica->size() && (*replica)[last] == (*replica)[first]) ++last;
+      Group one = emptied(table, table.name.substr(folder.size()));
+      for (std::size_t k = 0; k < table.columns.size(); ++k) append(one.columns[k], table.columns[k], first, last);
+      kept[(*replica)[first]].push_back(std::move(one));
+    }
+  }
+  return kept;
+}
+
+}  // namespace cradle::tools

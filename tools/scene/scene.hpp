@@ -94,6 +94,7 @@ struct WallAt {
   Decimal speed;                       // positive to the right
   std::optional<Decimal> temperature;  // of a thermal wall; without one it reflects
   Decimal restitution;                 // of a reflecting wall
+  bool dissipates() const { return position && !temperature && restitution < Decimal("1"); }
   bool operator==(const WallAt&) const = default;
 };
 

@@ -78,7 +78,7 @@ template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& optio
   const auto particles = initial_particles<T>(scene);
   Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
   const auto engine = engine_of<T>(scene, particles, policy_of<T>(scene, options, progress), options.workers,
-                                   scene.output.events || options.observer != nullptr);
+                                   scene.output.observes_collisions() || options.observer != nullptr);
   return SceneRun<T>(scene, particles, *engine, options, progress)();
 }
 

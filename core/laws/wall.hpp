@@ -10,8 +10,9 @@
 // Random speeds are keyed by seed, replica, wall and number of the collision at this wall, so they do not depend on the
 // order of collisions elsewhere. They are doubles in every scalar type, so that all types have the same walls.
 //
-// A wall adds energy: m/2 (w'^2 - w^2) in its own frame, plus m (w - w') V if it moves at V towards the particles. This
-// energy is stored beside the ledger of all losses, where it is entered as a negative loss.
+// Every wall has an account of what it gives to the particles: momentum, and the energy m (w - w') V if it moves at V
+// towards them, to which a thermal wall adds m/2 (w'^2 - w^2), the heat that leaves it. A reflecting wall dissipates
+// m/2 (1 - r^2) w^2. The ledger of losses has the sum: what is dissipated minus what is given.
 
 #include <array>
 #include <cmath>
@@ -37,13 +38,19 @@ template <Real T> struct Wall {
   std::uint64_t seed = 1, replica = 0;
 };
 
-// The tally of a wall: its collisions, and the energy that it has given to the particles (negative: taken).
+// The account of a wall: its collisions, the energy (m l^2/t^2) and the momentum (m l/t, positive to the right) that it
+// has given to the particles (negative: taken), and the energy dissipated in its collisions.
 template <Real T> struct WallTally {
   std::uint64_t collisions = 0;
-  CompensatedSum<T> given;
-  static auto state(auto& self) { return std::tie(self.collisions, self.given); }
-  void loaded() const { require_state(is_finite(given.sum) && is_finite(given.errors), "walls"); }
+  CompensatedSum<T> given, momentum, dissipated;
+  static auto state(auto& self) { return std::tie(self.collisions, self.given, self.momentum, self.dissipated); }
+  void loaded() const {
+    for (const auto* sum : {&given, &momentum, &dissipated})
+      require_state(is_finite(sum->sum) && is_finite(sum->errors), "walls");
+  }
 };
+// Of the left wall and of the right one, in the order of End.
+template <Real T> using WallTallies = std::array<WallTally<T>, 2>;
 
 // The speed after collision number k of a particle of mass 1 with a wall of temperature 1.
 inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, std::uint64_t collision) {
@@ -94,7 +101,9 @@ template <Real T> class Walls {
     const T work = mass * handed * (end == End::left ? wall.speed : T(-wall.speed));
     const T lost = mass * in_its_frame / T(2) - work;
     tally.collisions += 1;
-    tally.given.add(T(-lost));
+    tally.momentum.add(mass * (end == End::left ? handed : T(-handed)));
+    tally.given.add(wall.temperature > 0 ? T(-lost) : work);
+    if (!(wall.temperature > 0)) tally.dissipated.add(mass * in_its_frame / T(2));
     return {after, end == End::left ? T(0) : handed, end == End::left ? handed : T(0), lost};
   }
 
@@ -110,9 +119,8 @@ template <Real T> class Walls {
   }
 
   const WallTally<T>& tally(End end) const { return tallies_[at(end)]; }
+  const WallTallies<T>& tallies() const { return tallies_; }
   void continue_with(const WallTally<T>& left, const WallTally<T>& right) { tallies_ = {left, right}; }
-  // The energy that the walls have given.
-  T given() const { return tallies_[0].given.value() + tallies_[1].given.value(); }
 
   static auto state(auto& self) { return std::tie(self.tallies_[0], self.tallies_[1]); }
 
@@ -125,7 +133,7 @@ template <Real T> class Walls {
   }
 
   std::array<const Wall<T>*, 2> walls_{};
-  std::array<WallTally<T>, 2> tallies_;
+  WallTallies<T> tallies_;
   std::int64_t last_ = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // One row of the time series: the state after all collisions at times <= t, in a few numbers. The ledger holds what
-// walls have given as a negative loss; here the two are separated.
+// walls have given as a negative loss; here the two are separated: what a wall dissipates is lost, the rest is given.
 //
 // If the ledger leaves half of the initial energy or more, the energy comes from the ledger, at constant cost; else it
 // comes from the velocities of all particles (relative_motion.hpp), as it does if walls have given or taken some. The
@@ -23,35 +23,43 @@ namespace cradle {
 template <Real T> struct Sample {
   T time{0};
   T energy{0};       // kinetic, of all particles of the scene
-  T energy_lost{0};  // since the start, in collisions of particles
+  T energy_lost{0};  // since the start, in collisions of particles and in walls
   T given{0};        // by walls, since the start
   Counts counts;
   ParticleIndex particles = 0;               // in the active zone, between the outermost two that have collided
   std::optional<T> front_left, front_right;  // positions of these two; none before the first collision, nor on a ring
+  WallTallies<T> walls = {};
 };
 
-// Energy that walls have given to the particles of a run.
-template <class Run, Real T = typename Run::Scalar> T given_by_walls(const Run& run) {
-  if constexpr (requires { run.given_by_walls(); })
-    return run.given_by_walls();
+// The accounts of a run's walls; of a wall that is not there, an empty one.
+template <class Run, Real T = typename Run::Scalar> WallTallies<T> wall_tallies(const Run& run) {
+  if constexpr (requires { run.wall_tallies(); })
+    return run.wall_tallies();
   else if constexpr (requires { run.chain().walls(); })
-    return run.chain().walls().given();
+    return run.chain().walls().tallies();
   else
-    return T(0);
+    return {};
 }
+// Energy that walls have given to the particles.
+template <Real T> T given_by(const WallTallies<T>& walls) { return walls[0].given.value() + walls[1].given.value(); }
 
 // Kinetic energy of all particles of the scene, after the collisions made until now.
 template <class Run, Real T = typename Run::Scalar> T energy_now(const Run& run, const T& initial_energy) {
   const T left = initial_energy - run.energy_lost();
-  return T(left + left) < initial_energy || !(given_by_walls(run) == T(0)) ? T(run.kinetic_energy()) : left;
+  bool by_walls = false;
+  for (const WallTally<T>& wall : wall_tallies(run))
+    by_walls = by_walls || !(wall.given.value() == T(0) && wall.dissipated.value() == T(0));
+  return T(left + left) < initial_energy || by_walls ? T(run.kinetic_energy()) : left;
 }
 
 // A sample of a Simulation or a StickyGas. `time` must be between the last collision and the time advanced to.
 template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
-  const T lost = run.energy_lost(), given = given_by_walls(run);
+  const WallTallies<T> walls = wall_tallies(run);
+  const T lost = run.energy_lost(), given = given_by(walls);
   Sample<T> s{time,         energy_now(run, initial_energy), lost + given, given,
-              run.counts(), run.collided_particles(),        {},           {}};
+              run.counts(), run.collided_particles(),        {},           {},
+              walls};
   if (s.particles > 0 && !run.on_ring()) {
     s.front_left = run.front_left(time);
     s.front_right = run.front_right(time);

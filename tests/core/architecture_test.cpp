@@ -95,6 +95,7 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
                                            "core/ensemble/histogram.hpp",
                                            "core/ensemble/moments.hpp",
                                            "core/engine/event_queue.hpp",
+                                           "core/observe/averages.hpp",
                                            "core/observe/clusters.hpp",
                                            "core/observe/profile.hpp",
                                            "core/observe/scenario.hpp",

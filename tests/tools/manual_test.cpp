@@ -54,6 +54,10 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
         "cradle run fig6 -o wet.h5 --set output.snapshots=[] --set output.profiles.times=[] --set output.masses=[40] "
         "--set output.zone.from=20 --set output.scenario=true" +
             small,
+        "cradle run classics/heat_wall -o walls.h5 --set walls.right.restitution=0.9 --set output.averages.every=1 "
+        "--set "
+        "'output.histograms=[\"closing_speed\"]' --set output.snapshots=[]" +
+            small,
         std::string("cradle run fig9 -o model.h5 --quiet --set run.until=10"),
         std::string("cradle trust collapse3 -o trust.h5 --quiet --digits 16,31"),
         "cradle ensemble fig2 -o ensemble.h5 --replicas 3 --spread energy=0:10:5 --set output.profiles.times=[30]" +
@@ -69,7 +73,7 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
         << file << " holds " << name << ", tools/README.md does not name it: add it there";
   };
   std::size_t groups = 0;
-  for (const char* file : {"dry", "wet", "model", "trust", "collapse", "ensemble", "sweep"}) {
+  for (const char* file : {"dry", "wet", "walls", "model", "trust", "collapse", "ensemble", "sweep"}) {
     const tools::Result result = tools::read_result((folder / (std::string(file) + ".h5")).string());
     for (const auto& [name, value] : result.attributes) expect(name, file);
     for (const tools::Group& group : result.groups) {

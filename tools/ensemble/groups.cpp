@@ -150,7 +150,7 @@ std::vector<Group> EnsembleState::groups() const {
   auto binned = layout_.binned.begin();
   for (const Quantity& quantity : layout_.quantities) {
     if (binned != layout_.binned.end() && quantity.group == binned->group) {
-      groups.push_back({name("ensemble/" + binned->group), binned->attributes, {binned->x}});
+      groups.push_back({name("ensemble/" + binned->group), binned->attributes, binned->bins});
       ++binned;
     }
     groups.push_back(quantity_group(quantity, total));

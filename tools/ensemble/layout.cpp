@@ -81,15 +81,24 @@ ReplicaLayout replica_layout(const Scene& scene) {
         add(column, group.name, times.series.size());
   layout.time.values = times.series;
   const auto add_binned = [&](const Group& table, const std::string& group, std::vector<Attribute> attributes) {
-    const Column& x = table.columns.front();
-    layout.binned.push_back({group, std::move(attributes), x});
+    layout.binned.push_back({group, std::move(attributes), {}});
+    std::vector<Column>& bins = layout.binned.back().bins;
     for (const Column& column : table.columns)
-      if (column.name != x.name) add(column, group, x.rows());
+      if (column.rows() > 0)
+        bins.push_back(column);
+      else if (!column.name.ends_with("_error"))  // of one run; the replicas have one of their own
+        add(column, group, bins.front().rows());
   };
   for (std::size_t k = 0; k < times.profiles.size(); ++k)
     add_binned(tables.profile.value(), fmt::format("profiles/{:04}", k), {{"time", times.profiles[k]}});
   if (tables.zone)
     add_binned(*tables.zone, "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
+  const Output& output = scene.output;
+  if (tables.averages)
+    add_binned(*tables.averages, tables.averages->name,
+               {{"from", output.averages.from.value}, {"until", output.averages.until.value}});
+  for (const Group& table : tables.histograms)
+    add_binned(table, table.name, {{"from", output.counting.from.value}, {"until", output.counting.until.value}});
   layout.numbers.push_back({"energy", "m l^2/t^2", "kinetic energy at the end", {}});
   if (stops_at_collapse(scene))
     layout.numbers.push_back({collapse_time, "t", "time of inelastic collapse; NaN: there was none", {}});

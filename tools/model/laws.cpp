@@ -57,6 +57,8 @@ bool stops_at_collapse(const Scene& scene) {
   return !law_row(scene).merges && scene.run.collapse == scene::CollapsePolicy::stop;
 }
 
-bool without_collisions(const Scene& scene) { return !law_row(scene).needs_events && !scene.output.events; }
+bool without_collisions(const Scene& scene) {
+  return !law_row(scene).needs_events && !scene.output.observes_collisions();
+}
 
 }  // namespace cradle::tools

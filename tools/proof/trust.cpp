@@ -62,6 +62,8 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
   scene.output.events = false;
   scene.output.snapshots.clear();
   scene.output.profiles.times.clear();
+  scene.output.averages = {};
+  scene.output.histograms.clear();
   return scene;
 }
 

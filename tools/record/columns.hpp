@@ -92,14 +92,17 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
   using Whole = std::uint64_t;
   constexpr auto always = [](const Scene&) { return true; };
   constexpr auto clouds = [](const Scene& scene) { return has_clouds(scene); };
-  constexpr auto walls = [](const Scene& scene) { return scene.walls.any(); };
+  constexpr auto left_wall = [](const Scene& scene) { return scene.walls.left.position.has_value(); };
+  constexpr auto right_wall = [](const Scene& scene) { return scene.walls.right.position.has_value(); };
+  constexpr auto left_loses = [](const Scene& scene) { return scene.walls.left.dissipates(); };
+  constexpr auto right_loses = [](const Scene& scene) { return scene.walls.right.dissipates(); };
   constexpr auto core = [](const Scene& scene) { return scene.output.core; };
   static const std::vector<SeriesColumn<T>> all{
       {"time", "t", "a sample is the state after all collisions at times <= t", always,
        filled_by<T, [](At at) { return at.state.time; }>()},
       {"energy", "m l^2/t^2", "kinetic energy of all particles of the scene", always,
        filled_by<T, [](At at) { return at.state.energy; }>()},
-      {"energy_lost", "m l^2/t^2", "energy lost in collisions since the start", always,
+      {"energy_lost", "m l^2/t^2", "energy lost in collisions since the start, with walls too", always,
        filled_by<T, [](At at) { return at.state.energy_lost; }>()},
       {"collisions", "1", "collisions since the start, those below the cut-off and merges included", always,
        filled_by<T, [](At at) { return Whole{at.state.counts.collisions}; }>()},
@@ -118,8 +121,22 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
       {"cloud_width", "l",
        "standard deviation of position, weighted by mass, of all that have collided but the two heaviest clusters",
        clouds, filled_by<T, [](At at) { return at.cloud().width; }>()},
-      {"wall_work", "m l^2/t^2", "energy that the walls have given since the start", walls,
-       filled_by<T, [](At at) { return at.state.given; }>()},
+      {"wall_left_collisions", "1", "collisions with the left wall since the start", left_wall,
+       filled_by<T, [](At at) { return Whole{at.state.walls[0].collisions}; }>()},
+      {"wall_left_energy", "m l^2/t^2", "energy that the left wall has given since the start", left_wall,
+       filled_by<T, [](At at) { return at.state.walls[0].given.value(); }>()},
+      {"wall_left_momentum", "m l/t", "momentum that the left wall has given since the start", left_wall,
+       filled_by<T, [](At at) { return at.state.walls[0].momentum.value(); }>()},
+      {"wall_left_lost", "m l^2/t^2", "energy lost in the left wall since the start; energy_lost has it too",
+       left_loses, filled_by<T, [](At at) { return at.state.walls[0].dissipated.value(); }>()},
+      {"wall_right_collisions", "1", "collisions with the right wall since the start", right_wall,
+       filled_by<T, [](At at) { return Whole{at.state.walls[1].collisions}; }>()},
+      {"wall_right_energy", "m l^2/t^2", "energy that the right wall has given since the start", right_wall,
+       filled_by<T, [](At at) { return at.state.walls[1].given.value(); }>()},
+      {"wall_right_momentum", "m l/t", "momentum that the right wall has given since the start", right_wall,
+       filled_by<T, [](At at) { return at.state.walls[1].momentum.value(); }>()},
+      {"wall_right_lost", "m l^2/t^2", "energy lost in the right wall since the start; energy_lost has it too",
+       right_loses, filled_by<T, [](At at) { return at.state.walls[1].dissipated.value(); }>()},
       {"core_mass", "m", "mass within three core_width about the densest place", core,
        filled_by<T, [](At at) { return at.core().mass; }>()},
       {"core_width", "l", "shortest length that holds more than half of the mass that has collided", core,

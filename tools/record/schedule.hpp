@@ -15,8 +15,8 @@
 namespace cradle::tools {
 
 template <Real T> struct Schedule {
-  std::vector<T> series, snapshots, profiles, masses, zone;  // each increasing
-  std::vector<T> stops;                                      // their union
+  std::vector<T> series, snapshots, profiles, masses, zone, averages, counting;  // each increasing
+  std::vector<T> stops;                                                          // their union
 };
 
 template <Real T> bool holds(const std::vector<T>& times, const T& time) {
@@ -26,17 +26,21 @@ template <Real T> bool holds(const std::vector<T>& times, const T& time) {
 /// Logarithmic spacing starts at this share of the run: six points per decade would need 36 for it.
 inline constexpr double first_log_share = 1e-6;
 
+template <Real T> std::vector<T> times_from(const T& start, const T& until, const T& step) {
+  std::vector<T> times;
+  for (std::int64_t k = 0;; ++k) {
+    const T time = start + T(k) * step;
+    if (time > until) return times;
+    times.push_back(time);
+  }
+}
+
 template <Real T> std::vector<T> series_times(const Series& series, const T& start, const T& until) {
   std::vector<T> times;
   if (!series.times.empty()) {
     for (const auto& time : series.times) times.push_back(number<T>(time));
   } else if (series.every) {
-    const T step = number<T>(*series.every);
-    for (std::int64_t k = 0;; ++k) {
-      const T time = start + T(k) * step;
-      if (time > until) break;
-      times.push_back(time);
-    }
+    times = times_from(start, until, number<T>(*series.every));
   } else {
     const auto points = static_cast<std::int64_t>(*series.points);
     const T end = series.over ? number<T>(*series.over) : until, span = end - start;
@@ -58,7 +62,7 @@ template <Real T> std::vector<T> series_times(const Series& series, const T& sta
 
 template <Real T> Schedule<T> schedule(const Scene& scene) {
   const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
-  Schedule<T> plan{series_times(scene.output.series, start, until), {}, {}, {}, {}, {}};
+  Schedule<T> plan{series_times(scene.output.series, start, until), {}, {}, {}, {}, {}, {}, {}};
   for (const auto& time : scene.output.snapshots) plan.snapshots.push_back(number<T>(time));
   for (const auto& time : scene.output.profiles.times) plan.profiles.push_back(number<T>(time));
   for (const auto& time : scene.output.masses) plan.masses.push_back(number<T>(time));
@@ -68,7 +72,16 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
     const auto samples = static_cast<std::int64_t>(zone.samples);
     for (std::int64_t k = 0; k < samples; ++k) plan.zone.push_back(from + (until - from) * T(k) / T(samples));
   }
-  for (const auto* times : {&plan.series, &plan.snapshots, &plan.profiles, &plan.masses, &plan.zone})
+  const auto every = [](const auto& plan_of) {
+    if (!plan_of.every) return std::vector<T>();
+    auto times = times_from(number<T>(plan_of.from), number<T>(plan_of.until), number<T>(*plan_of.every));
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+  };
+  plan.averages = every(scene.output.averages);
+  plan.counting = every(scene.output.counting);
+  for (const auto* times :
+       {&plan.series, &plan.snapshots, &plan.profiles, &plan.masses, &plan.zone, &plan.averages, &plan.counting})
     plan.stops.insert(plan.stops.end(), times->begin(), times->end());
   plan.stops.push_back(until);
   std::sort(plan.stops.begin(), plan.stops.end());

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <stdexcept>
 
 #include "cradle/core/theory/wet_zone.hpp"
@@ -9,6 +12,29 @@
 #include "cradle/tools/record/columns.hpp"
 
 namespace cradle::tools {
+
+namespace {
+
+struct HistogramRow {
+  std::string_view name;
+  const char *unit, *text;
+  bool of_numbers = true;  // else it counts whole numbers
+};
+constexpr std::array<HistogramRow, 7> histograms{
+    {{"free_flight", "t", "times between two collisions of a particle"},
+     {"pair_flight", "t", "times between two collisions of a pair"},
+     {"closing_speed", "l/t", "closing speeds before collisions of two particles"},
+     {"dissipative_closing_speed", "l/t",
+      "those of collisions by the law, neither below the cut-off nor within the contact time"},
+     {"collisions_per_particle", "1", "particles, by their number of collisions", false},
+     {"gap", "l", "gaps between neighbours"},
+     {"cluster", "1", "clusters, by their number of particles; single ones included", false}}};
+
+const HistogramRow& histogram_row(std::string_view name) {
+  return *std::find_if(histograms.begin(), histograms.end(), [&](const auto& row) { return row.name == name; });
+}
+
+}  // namespace
 
 Group series_table(const Scene& scene) {
   Group table{"series", {}, {}};
@@ -85,6 +111,34 @@ Group zone_table() {
            {"velocity_left", "l/t", "their mean velocity", {}}}};
 }
 
+Group averages_table() {
+  Group table{"averages", {}, {{"x", "l", "centre of the bin", {}}}};
+  constexpr std::array<std::array<const char*, 3>, TimeAverages::quantities> quantities{
+      {{"density", "1/l", "particles per length"},
+       {"mass_density", "m/l", "mass per length"},
+       {"momentum_density", "m/t", "momentum per length: the current of mass"},
+       {"energy_density", "m l/t^2", "kinetic energy per length"},
+       {"energy_current", "m l^2/t^3", "energy through a point per time, positive to the right"},
+       {"velocity", "l/t", "mass-weighted mean velocity"},
+       {"temperature", "m l^2/t^2", "of a particle, sum of m (v - velocity)^2 divided by the number of particles"},
+       {"pressure", "m l/t^2", "momentum through a point that moves at the velocity, per time"},
+       {"heat_current", "m l^2/t^3", "energy through such a point per time, in its frame"}}};
+  for (const auto& [name, unit, text] : quantities) {
+    table.columns.push_back({name, unit, text, {}});
+    table.columns.push_back({std::string(name) + "_error", unit, "standard error", {}});
+  }
+  return table;
+}
+
+Group histogram_table(std::string_view name) {
+  const HistogramRow& row = histogram_row(name);
+  return {"histograms/" + std::string(name),
+          {},
+          {{"low", row.unit, "where the bin begins", {}},
+           {"high", row.unit, "where it ends", {}},
+           {"count", "1", row.text, {}}}};
+}
+
 Group events_table() {
   return {"events",
           {},
@@ -128,6 +182,14 @@ ZoneAverage zone_average(const Scene& scene) {
 
 namespace {
 
+Group with_bins(Group histogram, const OctaveBins& bins) {
+  std::vector<double> low = bins.low(), high(low.begin() + 1, low.end());
+  high.push_back(std::numeric_limits<double>::infinity());
+  histogram.columns[0].values = std::move(low);
+  histogram.columns[1].values = std::move(high);
+  return histogram;
+}
+
 std::vector<double> centres(const ZoneAverage& zone, std::size_t bins) {
   std::vector<double> x;
   for (std::size_t bin = 0; bin < bins; ++bin) x.push_back(zone.centre(bin));
@@ -145,6 +207,41 @@ Group zone_result(const ZoneAverage& zone, const ZoneWidth& width, const Scene& 
                       {"samples", std::uint64_t{zone.samples()}},
                       {"width", width.width},
                       {"width_error", width.error}};
+  return table;
+}
+
+TimeAverages time_averages(const Scene& scene, std::size_t samples) {
+  const Averages& wanted = scene.output.averages;
+  return {{wanted.range[0].value, wanted.range[1].value}, wanted.bins, samples};
+}
+
+Group averages_result(const TimeAverages& averages, const Scene& scene) {
+  const std::vector<TimeAverages::InBin> bins = averages.averages();
+  std::vector<Numbers> columns{averages.centres()};
+  for (std::size_t q = 0; q < TimeAverages::quantities; ++q) {
+    std::vector<double> values, errors;
+    for (const auto& [value, error] : bins) values.push_back(value[q]), errors.push_back(error[q]);
+    columns.emplace_back(std::move(values));
+    columns.emplace_back(std::move(errors));
+  }
+  Group table = filled(averages_table(), std::move(columns));
+  table.attributes = {{"from", scene.output.averages.from.value},
+                      {"until", scene.output.averages.until.value},
+                      {"samples", std::uint64_t{averages.samples()}},
+                      {"error_growth", averages.error_growth()}};
+  return table;
+}
+
+OctaveBins histogram_bins(std::string_view name, const Scene& scene) {
+  const auto& range = scene.output.counting.range;
+  return histogram_row(name).of_numbers ? OctaveBins::of_numbers(range[0].value, range[1].value)
+                                        : OctaveBins::of_counts();
+}
+
+Group histogram_result(std::string_view name, const OctaveHistogram& histogram, const Scene& scene) {
+  Group table = with_bins(histogram_table(name), histogram.bins());
+  table.columns.back().values = histogram.counts();
+  table.attributes = {{"from", scene.output.counting.from.value}, {"until", scene.output.counting.until.value}};
   return table;
 }
 
@@ -179,6 +276,13 @@ RunTables run_tables(const Scene& scene) {
     tables.zone->columns.front().values = centres(zone_average(scene), scene.output.zone.bins);
     tables.summary.emplace_back("zone_width");
   }
+  if (scene.output.averages.every) {
+    tables.averages = averages_table();
+    tables.averages->columns.front().values = time_averages(scene, TimeAverages::batches).centres();
+  }
+  for (const HistogramRow& row : histograms)
+    if (scene.output.has_histogram(row.name))
+      tables.histograms.push_back(with_bins(histogram_table(row.name), histogram_bins(row.name, scene)));
   if (scene.output.scenario)
     for (auto& [name, value] : scenario_numbers({})) tables.summary.push_back(name);
   return tables;

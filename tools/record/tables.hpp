@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/observe/averages.hpp"
+#include "cradle/core/observe/histograms.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/scenario.hpp"
 #include "cradle/core/observe/zone.hpp"
@@ -27,6 +29,8 @@ struct RunTables {
   std::vector<Group> series;         // "series" and the tables below it
   std::optional<Group> profile;      // for each profile, if the scene has any; with its bins if the range is given
   std::optional<Group> zone;         // with its bins
+  std::optional<Group> averages;     // with its bins
+  std::vector<Group> histograms;     // with their bins
   std::vector<std::string> summary;  // names of RunOutcome::summary
 };
 /// Throws Error if the extent of the zone is unknown.
@@ -45,6 +49,8 @@ Group snapshot_table(const std::string& name);
 Group profile_table(const std::string& name);
 Group masses_table(const std::string& name);
 Group zone_table();
+Group averages_table();
+Group histogram_table(std::string_view name);
 Group events_table();
 /// The initial state of the particles that events refer to.
 Group initial_table();
@@ -57,6 +63,12 @@ bool has_clouds(const Scene& scene);
 /// The average over the interaction zone. Throws Error as above.
 ZoneAverage zone_average(const Scene& scene);
 Group zone_result(const ZoneAverage& zone, const ZoneWidth& width, const Scene& scene);
+
+/// Averages over time, without samples.
+TimeAverages time_averages(const Scene& scene, std::size_t samples);
+Group averages_result(const TimeAverages& averages, const Scene& scene);
+OctaveBins histogram_bins(std::string_view name, const Scene& scene);
+Group histogram_result(std::string_view name, const OctaveHistogram& histogram, const Scene& scene);
 
 /// Named numbers; NaN for those that the run does not have.
 std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& scenario);

@@ -21,11 +21,8 @@ namespace cradle::tools {
 template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& options, Progress& progress) {
   Policy<T> policy;
   // Elastic particles collapse only against a wall that loses energy; particles that stick do not collapse.
-  const auto loses = [](const WallAt& wall) {
-    return wall.position && !wall.temperature && wall.restitution < Decimal("1");
-  };
   if (stops_at_collapse(scene) &&
-      (scene.law.restitution < Decimal("1") || loses(scene.walls.left) || loses(scene.walls.right)))
+      (scene.law.restitution < Decimal("1") || scene.walls.left.dissipates() || scene.walls.right.dissipates()))
     policy.collapse = cradle::CollapsePolicy::stop;
   if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
   policy.interrupt = [interrupt = options.interrupt, store = options.store] {
@@ -81,7 +78,7 @@ template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& optio
   const auto particles = initial_particles<T>(scene);
   Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
   const auto engine = engine_of<T>(scene, particles, policy_of<T>(scene, options, progress), options.workers,
-                                   scene.output.events || options.observer != nullptr);
+                                   scene.output.observes_collisions() || options.observer != nullptr);
   return SceneRun<T>(scene, particles, *engine, options, progress)();
 }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cradle/tools/record/columns.hpp"
+#include "cradle/tools/record/histograms.hpp"
 #include "cradle/tools/record/recorder.hpp"
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/engine.hpp"
@@ -33,6 +34,8 @@ template <Real T> class SceneRun {
         engine_(engine), progress_(progress), plan_(schedule<T>(scene)), series_(scene),
         guards_(scene, *particles_, engine) {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
+    if (!plan_.averages.empty()) averages_.emplace(time_averages(scene, plan_.averages.size()));
+    if (!scene.output.histograms.empty()) histograms_.emplace(scene, particles_->count());
   }
 
   RunOutcome operator()() {
@@ -41,6 +44,8 @@ template <Real T> class SceneRun {
       observer_ = observer_ ? [before = observer_, added](const Collision<T>& c) { before(c), added(c); } : added;
     };
     if (scene_.output.events) also([this](const Collision<T>& c) { record_collision(c); });
+    if (histograms_ && scene_.output.observes_collisions())
+      also([this](const Collision<T>& c) { histograms_->made(engine_.counts()), (*histograms_)(c); });
     if (scene_.output.scenario)
       also([this](const Collision<T>& c) {
         scenario_.collision(c.left, c.right, to_double(T(c.time.value())), engine_.counts().merges);
@@ -69,10 +74,14 @@ template <Real T> class SceneRun {
   // What is saved besides the engine's state: how much of the plan is done, and what observers have collected.
   static auto state(auto& self) {
     return std::tie(self.inspected_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
-                    self.guards_);
+                    self.averages_, self.histograms_, self.guards_);
   }
 
-  void loaded() const { require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone"); }
+  void loaded() const {
+    require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone");
+    require_state(averages_.has_value() == !plan_.averages.empty(), "averages");
+    require_state(histograms_.has_value() == !scene_.output.histograms.empty(), "histograms");
+  }
 
  private:
   // ---- what is stored during the run
@@ -112,6 +121,7 @@ template <Real T> class SceneRun {
         run_is);
   }
   void put_rows() {
+    if (histograms_) histograms_->made(engine_.counts());
     put(series_.take());
     if (has_clouds(scene_)) put(heaviest_.take());
     if (!scene_.output.events) return;
@@ -144,17 +154,23 @@ template <Real T> class SceneRun {
   // recorded yet.
   bool sample_at(const T& time) {
     const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
-               masses = holds(plan_.masses, time), zone = holds(plan_.zone, time);
+               masses = holds(plan_.masses, time), zone = holds(plan_.zone, time),
+               averaged = holds(plan_.averages, time), counted = holds(plan_.counting, time);
     std::optional<Configuration<T>> now;
     std::optional<Profile> seen;
-    if (snapshot || profiled || masses || zone) now = engine_.configuration(time);
+    if (snapshot || profiled || masses || zone || averaged || counted) now = engine_.configuration(time);
     if (now) guards_.require_held(*now);
     try {
       if (profiled) seen = profile_at(*now, time);
-      if (zone) zone_->add(*now, *particles_, T(time - number<T>(scene_.run.start)), [this] { return stopped(); });
+      const T elapsed = time - number<T>(scene_.run.start);
+      const auto stop = [this] { return stopped(); };
+      if (averaged) averages_->find(*now, *particles_, elapsed, stop);
+      if (zone) zone_->add(*now, *particles_, elapsed, stop);
     } catch (const WalkStopped&) {
       return false;
     }
+    if (averaged) averages_->add_found();
+    if (counted) histograms_->add(*now);
     if (holds(plan_.series, time)) record_sample(time);
     if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
     if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
@@ -240,7 +256,7 @@ template <Real T> class SceneRun {
       end.result.attributes.push_back(attribute);
     if (account.uncertain || account.uncertain_end)
       end.result.attributes.emplace_back("uncertain_from", account.first_uncertain.value);
-    put_tables(end);
+    put_tables(end, time);
     if (status == Status::collapsed) {
       const ReportedCollapse collapse = reported(*engine_.collapse());
       end.report = collapse_report(collapse, counts.collisions);
@@ -250,7 +266,7 @@ template <Real T> class SceneRun {
     return end;
   }
 
-  void put_tables(RunOutcome& end) {
+  void put_tables(RunOutcome& end, const T& time) {
     put_rows();
     std::vector<Group>& groups = end.result.groups;
     groups = std::move(tables_).in_order();
@@ -266,6 +282,12 @@ template <Real T> class SceneRun {
       groups.push_back(zone_result(*zone_, width, scene_));
       end.summary.emplace_back("zone_width", width.width);
     }
+    // Ensembles combine what covers the whole time only.
+    const bool partial = options_.store != nullptr;
+    if (averages_ && averages_->samples() > 0 && (partial || averages_->complete()))
+      groups.push_back(averages_result(*averages_, scene_));
+    if (histograms_ && (partial || !(time < number<T>(scene_.output.counting.until))))
+      append(groups, histograms_->tables());
     if (scene_.output.scenario) {
       const auto numbers = scenario_numbers(scenario_.result(engine_.counts().merges));
       groups.push_back({"scenario", {numbers.begin(), numbers.end()}, {}});
@@ -285,6 +307,8 @@ template <Real T> class SceneRun {
   SeriesRecorder<T> series_;
   HeaviestRecorder<T> heaviest_;
   std::optional<ZoneAverage> zone_;
+  std::optional<TimeAverages> averages_;
+  std::optional<HistogramRecorder<T>> histograms_;
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Observer<T> observer_;

@@ -8,8 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cradle/core/observe/averages.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/precision/bin_float.hpp"
+#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/number_range.hpp"
 
@@ -93,7 +95,8 @@ class Checks {
     } catch (const std::domain_error& error) {
       throw Error(place("law.loss"), error.what(), scene_.law.loss.text, "give another loss or initial.speed");
     }
-    for (const char* key : {"output.snapshots", "output.profiles.times", "output.masses", "output.events"})
+    for (const char* key : {"output.snapshots", "output.profiles.times", "output.masses", "output.averages.every",
+                            "output.histograms", "output.events"})
       if (const auto text = value_text(*find_field(key, scene_), scene_); text && *text != "[]" && *text != "false")
         throw Error(place(key), "nothing to write", "two clusters in the force of particles that are not there",
                     "remove it");
@@ -223,17 +226,31 @@ class Checks {
       throw Error(place("output.series.times"), "no times", "an empty list", "give at least one time");
   }
 
-  void profile_range() const {
-    const auto& range = scene_.output.profiles.range;
-    if (!entries_.contains("output.profiles.range")) return;
-    if (range.size() != 2 || range[0] >= range[1])
-      throw Error(place("output.profiles.range"), "not a range",
-                  range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
-                                    : describe(entries_.find("output.profiles.range")->second),
+  void ranges_of_bins() const {
+    range_of_bins("output.profiles.range", scene_.output.profiles.range);
+    range_of_bins("output.averages.range", scene_.output.averages.range);
+    range_of_bins("output.counting.range", scene_.output.counting.range);
+  }
+
+  void averages_have_bins_and_samples() const {
+    const Averages& averages = scene_.output.averages;
+    if (!averages.every) return;
+    if (averages.range.empty())
+      throw Error(place("output.averages.range"), "missing", "particles that are neither on a ring nor between walls",
                   "give two positions, the lower one first");
-    if (!(range[0].value < range[1].value) || !std::isfinite(range[1].value - range[0].value))
-      throw Error(place("output.profiles.range"), "not a range of doubles, in which profiles are",
-                  fmt::format("from {} to {}", range[0].text, range[1].text), "give ends that doubles distinguish");
+    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
+    const bin_float span = number(averages.until) - number(averages.from);
+    if (const auto least = number(*averages.every) * bin_float(static_cast<std::int64_t>(TimeAverages::batches - 1));
+        span < least)
+      throw Error(place("output.averages.every"), "too few samples for errors", averages.every->text,
+                  fmt::format("give {:g} or less, for {} samples at least",
+                              static_cast<double>(span) / (TimeAverages::batches - 1), TimeAverages::batches));
+  }
+
+  void pairs_stay_together() const {
+    if (scene_.output.has_histogram("pair_flight") && particles_merge(scene_))
+      throw Error(place("output.histograms"), "pairs that do not stay neighbours",
+                  "pair_flight of particles that merge", "leave out pair_flight");
   }
 
   void numbers_fit() const {
@@ -264,6 +281,9 @@ class Checks {
                     fmt::format("{}, which makes {:.3g} of them until run.until", given.text, samples),
                     fmt::format("give a longer time, {:.0g} samples at most", most));
     };
+    for (const auto& [key, every] : {std::pair("output.averages.every", scene_.output.averages.every),
+                                     std::pair("output.counting.every", scene_.output.counting.every)})
+      if (every) check(key, *every, number(*every));
     if (series.every) return check("output.series.every", *series.every, number(*series.every));
     if (!series.over) return;
     const bin_float over = number(*series.over) - start, points(static_cast<std::int64_t>(*series.points - 1));
@@ -274,9 +294,22 @@ class Checks {
   }
 
  private:
+  void range_of_bins(const char* key, const std::vector<Decimal>& range) const {
+    if (!entries_.contains(key)) return;
+    if (range.size() != 2 || range[0] >= range[1])
+      throw Error(place(key), "not a range",
+                  range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
+                                    : describe(entries_.find(key)->second),
+                  std::string_view(key) == "output.counting.range" ? "give two numbers, the lower one first"
+                                                                   : "give two positions, the lower one first");
+    if (!(range[0].value < range[1].value) || !std::isfinite(range[1].value - range[0].value))
+      throw Error(place(key), "not a range of doubles, in which bins are",
+                  fmt::format("from {} to {}", range[0].text, range[1].text), "give ends that doubles distinguish");
+  }
+
   // Random speeds of thermal walls and averages are doubles in every working precision.
   static bool is_double_anyway(std::string_view key) {
-    return key.ends_with(".temperature") || key == "output.zone.reach";
+    return key.ends_with(".temperature") || key == "output.zone.reach" || key == "output.counting.range";
   }
 
   Place place(std::string_view key) const {
@@ -327,7 +360,9 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.masses_repeat();
   checks.restitution_of_speed();
   checks.series_has_times();
-  checks.profile_range();
+  checks.ranges_of_bins();
+  checks.averages_have_bins_and_samples();
+  checks.pairs_stay_together();
   checks.numbers_fit();
   checks.samples_can_be_kept();
 }

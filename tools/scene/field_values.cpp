@@ -135,6 +135,8 @@ void read(const Field& field, const Value& value, Scene& scene, std::vector<std:
   target.clear();
   for (const Value& item : value.items) {
     if (item.kind != Value::Kind::text) refuse(field, item, scene, "wrong type");
+    if (const auto names = choices_of(field); !names.empty() && std::ranges::find(names, item.text) == names.end())
+      refuse(field, item, scene, "no such choice");
     target.push_back(item.text);
   }
 }
@@ -189,7 +191,8 @@ std::optional<std::string> written(const Field&, const DecimalColumn& value) {
   for (std::size_t i = 0; i < value.size(); ++i) text.append(i == 0 ? "" : ", ").append(value[i]);
   return text + ']';
 }
-std::optional<std::string> written(const Field&, const std::vector<std::string>& value) {
+std::optional<std::string> written(const Field& field, const std::vector<std::string>& value) {
+  if (value.empty() && field.fallback.empty()) return {};
   std::string text;
   for (const std::string& item : value) text += (text.empty() ? "" : ", ") + in_quotes(item);
   return '[' + text + ']';
@@ -228,7 +231,9 @@ std::string advice(const Field& field, const Scene& scene) {
   const auto type = type_name(field);
   if (type == "true or false") return "give true or false";
   if (type == "text") return "give a text";
-  if (type == "list of texts") return "give a list of texts";
+  if (type == "list of texts")
+    return field.range.empty() ? "give a list of texts"
+                               : fmt::format("give a list of {}", fmt::join(choices_of(field), ", "));
   if (type == "one of") return fmt::format("give one of {}", fmt::join(choices_of(field), ", "));
   const Interval range = interval_of(field);
   const auto words = range_words(range, scene);

@@ -85,6 +85,26 @@ constexpr When not_every{other_series, "output.series.every", "a series without 
 constexpr When by_points{other_series, "output.series.every", "a series without every and times",
                          [](const Scene& s) { return !s.output.series.every && s.output.series.times.empty(); }};
 
+constexpr When averaged{"key of averages that are not requested", "output.averages.every", "output.averages.every",
+                        [](const Scene& s) { return s.output.averages.every.has_value(); }};
+constexpr std::string_view no_histogram = "key of histograms that are not requested";
+constexpr When counted{no_histogram, "output.histograms", "output.histograms",
+                       [](const Scene& s) { return !s.output.histograms.empty(); }};
+constexpr When states_counted{no_histogram, "output.histograms", "\"gap\" or \"cluster\" in output.histograms",
+                              [](const Scene& s) { return s.output.has_histogram_of_states(); }};
+constexpr When clusters_counted{no_histogram, "output.histograms", "\"cluster\" in output.histograms",
+                                [](const Scene& s) { return s.output.has_histogram("cluster"); }};
+
+std::string start_of_run(const Scene& s) { return s.run.start.text; }
+std::string end_of_run(const Scene& s) { return s.run.until.text; }
+// The two ends of where all particles are, if these are known.
+std::string extent(const Scene& s) {
+  const auto& [left, right] = s.walls;
+  if (s.initial.type == InitialType::ring) return "[0, " + s.initial.length.text + "]";
+  const bool between_walls = left.position && right.position && left.speed == Decimal("0") && right.speed == left.speed;
+  return between_walls ? "[" + left.position->text + ", " + right.position->text + "]" : "[]";
+}
+
 std::string particles_as_length(const Scene& s) { return std::to_string(s.initial.particles); }
 
 // The left wall and the length of so many particles at their density, as a decimal: rounded if it has no end.
@@ -293,6 +313,29 @@ const Field all_fields[] = {
     {"output.scenario", output_of<&Output::scenario>, "", "false", "", &wet_shock,
      "watch whether the two heaviest clusters pass or stick; needs a series with spacing = \"log\" and 100 points a "
      "decade"},
+    {"output.averages.every", output_of<&Output::averages, &Averages::every>, "t", "", "(0, inf)", &always,
+     "time between the samples of averages over time, 32 samples at least; without it, none are made"},
+    {"output.averages.from", output_of<&Output::averages, &Averages::from>, "t", "run.start", within_run, &averaged,
+     "time of the first sample of the averages", start_of_run},
+    {"output.averages.until", output_of<&Output::averages, &Averages::until>, "t", "run.until",
+     "[output.averages.from, run.until]", &averaged, "no sample of the averages is later", end_of_run},
+    {"output.averages.bins", output_of<&Output::averages, &Averages::bins>, "", "50", "[1, 1e5]", &averaged,
+     "number of bins of the averages"},
+    {"output.averages.range", output_of<&Output::averages, &Averages::range>, "l", "the ring, or between walls at rest",
+     any, &averaged, "the two ends of the bins", extent},
+    {"output.histograms", output_of<&Output::histograms>, "", "",
+     "free_flight | pair_flight | closing_speed | dissipative_closing_speed | collisions_per_particle | gap | cluster",
+     &always, "what is counted in bins that are nearly logarithmic"},
+    {"output.counting.from", output_of<&Output::counting, &Counting::from>, "t", "run.start", within_run, &counted,
+     "histograms count collisions from here on; gaps and clusters here for the first time", start_of_run},
+    {"output.counting.until", output_of<&Output::counting, &Counting::until>, "t", "run.until",
+     "[output.counting.from, run.until]", &counted, "histograms count up to here", end_of_run},
+    {"output.counting.every", output_of<&Output::counting, &Counting::every>, "t", "required", "(0, inf)",
+     &states_counted, "time between counts of gaps and clusters"},
+    {"output.counting.cluster_gap", output_of<&Output::counting, &Counting::cluster_gap>, "l", "required", "(0, inf)",
+     &clusters_counted, "neighbours with a gap below this belong to one cluster"},
+    {"output.counting.range", output_of<&Output::counting, &Counting::range>, "", "[1e-12, 1e6]", "(0, inf)", &counted,
+     "numbers between these two have bins, eight in every octave; one bin each is for those below and above"},
     {"output.core", output_of<&Output::core>, "", "false", "", &on_line,
      "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
      "the energy beyond that of the sticky gas that began alike"},

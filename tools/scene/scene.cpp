@@ -71,6 +71,15 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
 
 }  // namespace
 
+bool Output::has_histogram(std::string_view name) const {
+  return std::ranges::find(histograms, name) != histograms.end();
+}
+
+bool Output::observes_collisions() const {
+  const auto of_collisions = [](const std::string& name) { return name != "gap" && name != "cluster"; };
+  return events || std::ranges::any_of(histograms, of_collisions);
+}
+
 bool unequal_masses(const Scene& scene) {
   return !scene.initial.random_masses.empty() ||
          std::ranges::any_of(scene.initial.masses, [](const Decimal& mass) { return mass != Decimal("1"); });

@@ -101,6 +101,7 @@ struct WallAt {
   Decimal speed;                       // positive to the right
   std::optional<Decimal> temperature;  // of a thermal wall; without one it reflects
   Decimal restitution;                 // of a reflecting wall
+  bool dissipates() const { return position && !temperature && restitution < Decimal("1"); }
   bool operator==(const WallAt&) const = default;
 };
 
@@ -149,6 +150,23 @@ struct Zone {
   bool operator==(const Zone&) const = default;
 };
 
+/// Averages over time in bins, at `from`, `from` + `every` and so on up to `until`; without `every` there are none.
+struct Averages {
+  std::optional<Decimal> every;
+  Decimal from, until;
+  std::uint64_t bins = 0;
+  std::vector<Decimal> range;  // {from, to}
+  bool operator==(const Averages&) const = default;
+};
+
+/// What histograms count: collisions at `from` to `until`; gaps and clusters at `from`, `from` + `every` and so on.
+struct Counting {
+  Decimal from, until;
+  std::optional<Decimal> every, cluster_gap;
+  std::vector<Decimal> range;  // of the bins
+  bool operator==(const Counting&) const = default;
+};
+
 struct Checkpoint {
   Decimal every_seconds;  // of computing time; 0: none during the run
   bool operator==(const Checkpoint&) const = default;
@@ -161,11 +179,19 @@ struct Output {
   Profiles profiles;
   std::vector<Decimal> masses;  // times at which the distribution of masses is written
   Zone zone;
+  Averages averages;
+  std::vector<std::string> histograms;  // their names
+  Counting counting;
   bool scenario = false;  // wet rows: whether to decide between the two scenarios of Fig. 9
   bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
   bool every_replica = false;  // ensembles: whether the snapshots and profiles of every replica are kept
   Checkpoint checkpoint;
+
+  bool has_histogram(std::string_view name) const;
+  /// Whether a histogram is of the state at times: of gaps or of clusters.
+  bool has_histogram_of_states() const { return has_histogram("gap") || has_histogram("cluster"); }
+  bool observes_collisions() const;
   bool operator==(const Output&) const = default;
 };
 

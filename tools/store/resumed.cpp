@@ -57,7 +57,8 @@ bool begins_again(const Scene& scene) { return without_collisions(scene); }
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   std::erase_if(groups, [](const Group& g) {
     const std::string_view name = rounded_name(g.name);
-    return name == "zone" || name == "scenario" || name == "collapse" || name == "initial";
+    return name == "zone" || name == "averages" || name.starts_with("histograms/") || name == "scenario" ||
+           name == "collapse" || name == "initial";
   });
   // The file returns attributes in another order than they were written.
   const auto rank = [](const Attribute& attribute) {

@@ -64,8 +64,9 @@ std::uint64_t numbers_in(const std::vector<Group>& tables) {
 
 std::vector<Group> GrowingTables::in_order() && {
   const auto rank = [](const Group& table) -> std::ptrdiff_t {
-    static const std::array<std::string, 9> order{"series", "series/heaviest", "snapshots/", "profiles/", "masses/",
-                                                  "zone",   "scenario",        "events",     "collapse"};
+    static const std::array<std::string, 11> order{"series",  "series/heaviest", "snapshots/",  "profiles/", "masses/",
+                                                   "zone",    "averages",        "histograms/", "scenario",  "events",
+                                                   "collapse"};
     const std::string_view of = rounded_name(table.name);
     const bool exact = of != table.name;
     const auto place =

@@ -34,6 +34,9 @@ until = 200
 series = { points = 50 }
 snapshots = [100]
 profiles = { times = [50, 100], bins = 20, range = [-30, 30] }
+averages = { every = 1.5, bins = 4, range = [-30, 30] }
+histograms = ["free_flight", "cluster"]
+counting = { from = 40, range = [0.01, 10], every = 50, cluster_gap = 0.1 }
 )";
 
 // Two of the three particles collapse before `until`, at a time that depends on the replica.

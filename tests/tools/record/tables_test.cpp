@@ -19,6 +19,12 @@ const std::pair<const char*, std::string> scenes[] = {
     {"sticky", "[law]\ntype = 'sticky'\n" + rows},
     {"ring", "law.type = 'wet'\nlaw.loss = 0.1\nrun.until = 3\noutput.series.points = 5\n"
              "initial = { type = 'ring', particles = 20 }"},
+    {"gas",
+     "law = { type = 'inelastic', restitution = 1 }\nrun.until = 40\n"
+     "initial = { type = 'rows', particles = 60 }\nwalls = { left = { position = -31, restitution = 0.9 }, right "
+     "= { position = 40, temperature = 1 } }\noutput = { averages = { every = 1, bins = 3 }, histograms = "
+     "['free_flight', 'pair_flight', 'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', "
+     "'gap', 'cluster'], counting = { every = 20, cluster_gap = 0.5 }, series.points = 5 }"},
     {"model", "law.type = 'wet'\nlaw.loss = 0.05\nrun.until = 3\noutput.series.points = 5\n"
               "initial = { type = 'clusters', x = [-1, 1] }"},
 };
@@ -50,6 +56,10 @@ TEST(RunTables, AreWhatARunWrites) {
     for (const Group& table : tables.series) expect_columns(table, run.result.find(table.name));
     if (tables.profile) expect_columns(*tables.profile, run.result.find("profiles/0000"));
     if (tables.zone) expect_columns(*tables.zone, run.result.find("zone"));
+    if (tables.averages) expect_columns(*tables.averages, run.result.find("averages"));
+    EXPECT_EQ(tables.averages.has_value(), std::string(name) == "gas");
+    EXPECT_EQ(tables.histograms.size(), std::string(name) == "gas" ? 7U : 0U);
+    for (const Group& table : tables.histograms) expect_columns(table, run.result.find(table.name));
     EXPECT_EQ(tables.profile.has_value(), run.result.find("profiles/0000") != nullptr);
     EXPECT_EQ(tables.zone.has_value(), run.result.find("zone") != nullptr);
     std::vector<std::string> summary;

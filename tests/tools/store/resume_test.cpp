@@ -60,7 +60,10 @@ struct Case {
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 constexpr const char* outputs =
-    "output = { series.points = 20, snapshots = [40, 60], profiles = { times = [50], bins = 8 }, events = true }\n";
+    "output = { series.points = 20, snapshots = [40, 60], profiles = { times = [50], bins = 8 }, events = true, "
+    "averages = { every = 2.5, bins = 3, range = [-50, 50] }, histograms = ['free_flight', 'closing_speed', "
+    "'dissipative_closing_speed', 'collisions_per_particle', 'gap', 'cluster'], "
+    "counting = { from = 10, until = 90, every = 20, cluster_gap = 0.5, range = [1e-3, 10] } }\n";
 
 std::string dry(const std::string& initial, const std::string& run, const std::string& law = "") {
   return "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-4 }\n" + initial + outputs + law +
@@ -117,7 +120,8 @@ const std::string scenes[] = {
 
 Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }
 
-const std::string large = "output = { series.points = 12, profiles = { times = [5], bins = 8 } }\n[run]\nuntil = 8\n";
+const std::string large = "output = { series.points = 12, profiles = { times = [5], bins = 8 }, histograms = "
+                          "['free_flight'] }\n[run]\nuntil = 8\n";
 const std::string large_events = "output = { series.points = 5, events = true }\n[run]\nuntil = 8\n";
 const std::string of_large_dry = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\ninitial = { type = "
                                  "'ring', particles = 2500, perturbation = 0.1 }\n";
@@ -231,6 +235,7 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
         const char* precision = series == every[1] ? "double-double" : "double";  // there with decimals beside
         const Scene scene =
             parse_scene(law + initial + "output = { series = { " + series + " }, snapshots = [5], core = true, " +
+                            "averages = { every = 0.3, range = [-9, 9] }, histograms = ['free_flight'], " +
                             "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
                         "scene.toml", {std::string("run.precision=") + precision});
         ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);

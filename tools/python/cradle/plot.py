@@ -41,6 +41,8 @@ PICTURES = {
     "domino": "Dominoes of two masses: when each heavy particle is first hit, against the closed form.",
     "splash": "A kicked cold gas on a half-line: front, energy and their exponents.",
     "walls": "A gas between walls: places, shares of the energy, what the walls have given.",
+    "averages": "Averages over time in bins, with standard errors; a heat current beside the exact one.",
+    "histograms": "What was counted, as densities; closing speeds in equilibrium beside the exact ones.",
     "ensemble": "Means over replicas with their standard errors and extremes.",
     "profiles": "Profiles of an ensemble, with standard errors and extremes.",
     "collapse": "When replicas collapsed.",

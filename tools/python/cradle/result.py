@@ -195,6 +195,10 @@ class Result:
         an ensemble tables.""", "profiles", "ensemble/profiles")
     mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "The same; of an ensemble the means.",
                                  "profiles", "ensemble/profiles")
+    averages: Table = part(Table, """Averages over time in bins: `x`, `density`, `temperature`, `heat_current`, ... of
+        shape (bins,), with `_error`; of an ensemble tables.""", "averages", "ensemble/averages")
+    histograms: Table = part(Table, """What a run counted, a table each: `result.histograms.free_flight` has `low`,
+        `high` and `count` of shape (bins,); of an ensemble `count` is a table.""", "histograms", "ensemble/histograms")
     masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
     events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
         `interval`, `closing_speed`, `kind`.""", "events")

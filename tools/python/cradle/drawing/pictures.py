@@ -7,8 +7,8 @@ import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (beyond, blast, clusters, cooling, domino, energy, ensemble, onset, particles, proof, scenarios, shock,
-               spacetime, splash, sticky, structure, sweep, walls, zone)
+from . import (averages, beyond, blast, clusters, cooling, domino, energy, ensemble, histograms, onset, particles,
+               proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, walls, zone)
 from .style import Units, style
 from .theory import Theory
 
@@ -16,11 +16,13 @@ CLASSICS = (onset, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
 ALONE = (proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
+MEASURED = (averages, histograms)  # behind the others
 
 
 def pictures_of(result, theory, units):
     """The pictures, the main one first and a proof last."""
-    last = proof.certificates(result, units)
+    last = [picture for kind in MEASURED for picture in kind.pictures(result, theory, units)]
+    last += proof.certificates(result, units)
     for kind in ALONE:
         if found := kind.pictures(result, theory, units):
             return found + last

@@ -8,9 +8,14 @@ FEW = 12  # snapshots, for quantiles against time to mean something
 
 
 def pictures(result, _theory, _units):
-    if "wall_work" not in result.means or len(result.snapshots) < FEW:
+    if not given_by(result.means) or len(result.snapshots) < FEW:
         return []
     return [("walls", lambda axes=None: draw(result, axes))]
+
+
+def given_by(series):
+    """The names of the columns with the energy that each wall has given."""
+    return [name for name in ("wall_left_energy", "wall_right_energy") if name in series]
 
 
 def draw(result, axes):
@@ -35,9 +40,8 @@ def draw(result, axes):
     axes[1].legend(loc="center right", fontsize=7)
     positive = series["energy"] > 0
     axes[2].semilogy(series["time"][positive], series["energy"][positive], color=BLUE, lw=0.8, label="energy")
-    given = series["wall_work"] > 0
-    axes[2].semilogy(series["time"][given], series["wall_work"][given], color=ORANGE, lw=1.2,
-                     label="given by the walls")
+    given = sum(np.asarray(series[name]) for name in given_by(series))
+    axes[2].semilogy(series["time"][given > 0], given[given > 0], color=ORANGE, lw=1.2, label="given by the walls")
     axes[2].set_ylabel("energy")
     axes[2].set_xlabel(r"time $t$")
     axes[2].legend(loc="lower right", fontsize=7)

@@ -1,0 +1,168 @@
+// What is measured while a run goes on. Proves: heat flux, collision rate and closing speeds of gases whose exact
+// values are known, within 4 standard errors over replicas; accounts of walls that balance; the same bytes on any
+// number of threads, in segments and out of them; and which scenes are refused. Checkpoints: tools/store/resume_test.
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/ensemble/layout.hpp"
+#include "cradle/tools/run/run.hpp"
+
+namespace cradle::tests::measured_test {
+
+using tools::parse_scene;
+using tools::Result;
+using tools::Scene;
+
+// Of numbers from replicas that are independent of each other.
+class Replicas {
+ public:
+  void add(double x) { n_ += 1, sum_ += x, squares_ += x * x; }
+  double mean() const { return sum_ / n_; }
+  double error() const { return std::sqrt((squares_ / n_ - mean() * mean()) / (n_ - 1)); }
+  void expect(double exact, double largest_error) const {
+    EXPECT_NEAR(mean(), exact, 4 * error());
+    EXPECT_LT(error(), largest_error);
+  }
+
+ private:
+  double n_ = 0, sum_ = 0, squares_ = 0;
+};
+
+template <class Use> void of_replicas(const Scene& scene, int count, const Use& use) {
+  for (int k = 0; k < count; ++k)
+    use(tools::run_scene(tools::replica_scene(scene, static_cast<std::uint64_t>(k)), {tools::Progress::Show::never})
+            .result);
+}
+
+// Identical elastic particles pass each other. At t = 1000 a share L/(t v) of 1 % of the slow ones has not crossed the
+// line yet, less than the errors.
+TEST(Measured, HeatFluxOfIdenticalParticles) {
+  const Scene scene = parse_scene(R"(
+law = { type = "inelastic", restitution = 1 }
+initial = { type = "rows", particles = 20, speed = 2, perturbation = 0.4 }
+walls = { left = { position = -10, temperature = 2 }, right = { position = 10, temperature = 8 } }
+run.until = 3000
+output = { series.times = [0, 1000, 3000], averages = { every = 5, from = 1000, bins = 4 } }
+)",
+                                  "flux.toml");
+  const double exact = (2 - 8) / (std::sqrt(std::numbers::pi / 2) * (1 / std::sqrt(2) + 1 / std::sqrt(8)));
+  EXPECT_NEAR(exact, -4.5136, 1e-4);
+  Replicas left, right, current, pressure, errors;
+  of_replicas(scene, 60, [&](const Result& run) {
+    const auto of_left = numbers(run, "series", "wall_left_energy"),
+               of_right = numbers(run, "series", "wall_right_energy"), energy = numbers(run, "series", "energy");
+    left.add((of_left[2] - of_left[1]) / 2000);
+    right.add((of_right[2] - of_right[1]) / 2000);
+    for (const std::size_t k : {1U, 2U}) EXPECT_NEAR(energy[0] + of_left[k] + of_right[k], energy[k], 1e-8);
+    EXPECT_NEAR(numbers(run, "series", "energy_lost")[2], 0, 1e-8);
+    current.add(numbers(run, "averages", "energy_current")[1]);
+    // The momentum from a wall per time is the pressure at it, the same everywhere.
+    const auto momentum = numbers(run, "series", "wall_left_momentum");
+    pressure.add((momentum[2] - momentum[1]) / 2000 - numbers(run, "averages", "pressure")[2]);
+    errors.add(numbers(run, "averages", "density_error")[1]);
+  });
+  left.expect(exact, 0.05);
+  right.expect(-exact, 0.05);
+  current.expect(exact, 0.1);
+  pressure.expect(0, 0.05);
+  EXPECT_GT(errors.mean(), 0.01);
+}
+
+TEST(Measured, CollisionsOfAGasInEquilibrium) {
+  const Scene scene = parse_scene(R"(
+law = { type = "inelastic", restitution = 1 }
+initial = { type = "ring", particles = 1000, perturbation = 0.4 }
+run.until = 60
+[output]
+series.points = 2
+histograms = ["closing_speed", "collisions_per_particle", "free_flight", "gap"]
+counting = { from = 20, every = 40 }
+)",
+                                  "equilibrium.toml");
+  Replicas rate, slow, fast, wide;
+  of_replicas(scene, 40, [&](const Result& run) {
+    const auto share_above = [&](const std::string& name, double x) {
+      const auto low = numbers(run, "histograms/" + name, "low");
+      const auto count = numbers<std::uint64_t>(run, "histograms/" + name, "count");
+      double all = 0, above = 0;
+      for (std::size_t k = 0; k < low.size(); ++k)
+        all += static_cast<double>(count[k]), above += low[k] >= x ? static_cast<double>(count[k]) : 0;
+      return std::pair(above / all, all);
+    };
+    rate.add(2 * share_above("closing_speed", 0).second / 1000 / 40);
+    slow.add(share_above("closing_speed", 1).first);
+    fast.add(share_above("closing_speed", 3).first);
+    wide.add(share_above("gap", 1).first);
+    EXPECT_EQ(share_above("collisions_per_particle", 0).second, 1000);
+    EXPECT_EQ(share_above("gap", 0).second, 2000);
+    EXPECT_EQ(share_above("free_flight", 0).second, 2 * share_above("closing_speed", 0).second);
+  });
+  rate.expect(2 / std::sqrt(std::numbers::pi), 0.01);
+  slow.expect(std::exp(-1. / 4), 0.002);
+  fast.expect(std::exp(-9. / 4), 0.003);
+  wide.expect(std::exp(-1.), 0.003);
+}
+
+using Measuring = ProgramTest;
+
+const std::string measured = "averages = { every = 0.2, bins = 7, range = [0, 4000] }\nhistograms = ['free_flight', "
+                             "'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', 'gap', "
+                             "'cluster']\ncounting = { from = 2, until = 7, every = 2.5, cluster_gap = 0.1 }\n";
+
+TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
+  const std::string ring = "initial = { type = 'ring', particles = 4000, perturbation = 0.2 }\nrun.until = 8\n";
+  write("dry.toml", "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.1 }\n" + ring +
+                        "[output]\nseries.points "
+                        "= 3\n" +
+                        measured);
+  write("wet.toml", "law = { type = 'wet', loss = 0.01 }\n" + ring + "[output]\nseries.points = 3\n" + measured);
+  for (const std::string scene : {"dry", "wet"})
+    for (const std::string precision : {"double", "double-double"}) {
+      SCOPED_TRACE(scene + " in " + precision);
+      const std::string run = "cradle run " + scene + ".toml --quiet --set run.precision=" + precision;
+      for (const std::string threads : {"1", "2", "8"}) {
+        shell(run + " --threads " + threads + " -o " + threads + ".h5", 0);
+        expect_same("1.h5", threads + ".h5");
+      }
+      // Stops at so many times that it goes one by one.
+      shell(run + " --set output.series.points=3000 -o plain.h5", 0);
+      const Result found = read("1.h5"), wanted = read("plain.h5");
+      for (const tools::Group& group : wanted.groups) {
+        if (group.name != "averages" && !group.name.starts_with("histograms/")) continue;
+        for (const tools::Column& c : group.columns)
+          EXPECT_TRUE(column(found, group.name, c.name).values == c.values) << group.name << "/" << c.name;
+      }
+    }
+}
+
+TEST(Measured, WhatIsRefused) {
+  const auto message = [](const std::string& output, const std::string& more = "law.restitution = 1\nlaw.type = "
+                                                                               "'inelastic'\n") {
+    return refusal(tools::Exit::bad_input, [&] {
+      parse_scene(more + "initial.type = 'rows'\nrun.until = 10\n[output]\n" + output, "scene.toml");
+    });
+  };
+  const auto expect = [](const std::string& found, const std::string& wanted) {
+    EXPECT_TRUE(has(found, wanted)) << found;
+  };
+  const std::string gaps = "histograms = ['gap']\n";
+  expect(message("averages.every = 0.1"), "output.averages.range: missing");
+  expect(message("averages = { every = 1, range = [0, 1] }"), "too few samples for errors (found 1): give 0.322581 or less");
+  expect(message("averages = { every = 0.1, range = [1, 0] }"), "output.averages.range: not a range");
+  expect(message("averages = { bins = 3 }"), "output.averages.bins: key of averages that are not requested");
+  expect(message("averages = { every = 1e-9, range = [0, 1] }"), "too many samples");
+  expect(message("histograms = ['gaps']"), "no such choice (found \"gaps\"): give a list of free_flight, pair_flight");
+  expect(message("counting.from = 1"), "output.counting.from: key of histograms that are not requested");
+  expect(message(gaps), "output.counting.every: missing");
+  expect(message("histograms = ['cluster']\ncounting.every = 1"), "output.counting.cluster_gap: missing");
+  expect(message("histograms = ['closing_speed']\ncounting.every = 1"), "output.counting.every: key of histograms");
+  expect(message(gaps + "counting = { every = 1, range = [0, 1] }"), "output.counting.range: out of range");
+  expect(message(gaps + "counting = { every = 1, range = [2, 1] }"), "give two numbers, the lower one first");
+  expect(message(gaps + "counting = { every = 1, from = 3, until = 2 }"), "output.counting.until: out of range");
+  expect(message("histograms = ['pair_flight']", "law.type = 'sticky'\n"), "leave out pair_flight");
+}
+
+}  // namespace cradle::tests::measured_test

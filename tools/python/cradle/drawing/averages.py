@@ -1,0 +1,47 @@
+"""Averages over time in bins, with standard errors. Beside the heat current of identical elastic particles between
+thermal walls the exact one: they pass each other, so J = rho (T1 - T2) / (sqrt(pi/2) (T1^-1/2 + T2^-1/2)), m = 1."""
+import numpy as np
+
+from .style import BLUE, ORANGE, stacked
+
+PANELS = (("density", "density $n$"), ("velocity", "mean velocity $u$"), ("temperature", "temperature $T$"),
+          ("heat_current", "heat current $J$"))
+
+
+def pictures(result, _theory, _units):
+    return [("averages", lambda axes=None: draw(result, axes))] if "x" in result.averages else []
+
+
+def with_error(table, name):
+    """Values and standard errors of a quantity, of a run or of an ensemble."""
+    quantity = table[name]
+    return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table[name + "_error"])
+
+
+def exact_current(result):
+    """The heat current of identical elastic particles between thermal walls at rest; None of others."""
+    temperatures = [result.setting("walls", f"{side}.temperature") for side in ("left", "right")]
+    moving = any(result.setting("walls", f"{side}.speed", 0.0) for side in ("left", "right"))
+    masses = result.scene.get("initial", {}).get("masses", [1])
+    if None in temperatures or moving or result.setting("law", "restitution", 0.0) != 1 or set(masses) != {1}:
+        return None
+    density, _ = with_error(result.averages, "density")
+    left, right = temperatures
+    return np.mean(density) * (left - right) / (np.sqrt(np.pi / 2) * (left ** -0.5 + right ** -0.5))
+
+
+def draw(result, axes):
+    table = result.averages
+    x = np.asarray(table["x"])
+    figure, axes = stacked(axes, len(PANELS), height=1.9, sharex=True)
+    for ax, (name, label) in zip(axes, PANELS):
+        value, error = (np.asarray(numbers) for numbers in with_error(table, name))
+        ax.errorbar(x, value, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, color=BLUE, lw=0.9)
+        ax.set_ylabel(label)
+    if (current := exact_current(result)) is not None:
+        axes[-1].axhline(current, color=ORANGE, lw=1, ls="--", label=f"exact, {current:.4g}")
+        axes[-1].legend(loc="best")
+    axes[0].set_title(f"averages over $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors",
+                      loc="right", fontsize=8)
+    axes[-1].set_xlabel(r"position $x$")
+    return figure

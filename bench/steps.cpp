@@ -91,10 +91,9 @@ bool compare_threads(const char* name, const ParticlesPointer& scene, double unt
   using Chain = GapChain<double>;
   using Law = Inelastic<double>;
   const Law law(0.999, 1e-5);
-  TbbExecutor one(1), two(2);
+  TbbExecutor two(2);  // the only one: of several, oneTBB takes the least number of threads for all
   Simulation<double, Law, Chain> alone(law, Chain(scene, 0.)), together(law, Chain(scene, 0.));
-  Segments<Law, Chain> by_one(workers(one), {.steps = fastest_steps()}),
-      by_two(workers(two), {.steps = fastest_steps()});
+  Segments<Law, Chain> by_one({}, {.steps = fastest_steps()}), by_two(workers(two), {.steps = fastest_steps()});
   double of_one = 0, of_two = 0;
   for (int k = 1; k <= pieces; ++k) {
     const double to = until * k / pieces, start = seconds_now(CLOCK_MONOTONIC);

@@ -90,7 +90,9 @@ template <class Chain> void expect_same_bits(const Chain& a, const Chain& b) {
   }
   for (const End end : {End::left, End::right}) {
     ASSERT_EQ(a.walls().tally(end).collisions, b.walls().tally(end).collisions);
-    ASSERT_EQ(bits(a.walls().tally(end).given.value()), bits(b.walls().tally(end).given.value()));
+    for (const auto sum : {&WallTally<typename Chain::Scalar>::given, &WallTally<typename Chain::Scalar>::momentum,
+                           &WallTally<typename Chain::Scalar>::dissipated})
+      ASSERT_EQ(bits((a.walls().tally(end).*sum).value()), bits((b.walls().tally(end).*sum).value()));
   }
 }
 

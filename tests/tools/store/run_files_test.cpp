@@ -27,10 +27,11 @@ class Files : public ProgramTest {
   bool exists(const char* name) const { return std::filesystem::exists(folder / name); }
 
   // Leaves a run that was killed, with its state, and what it would have come to: whole.h5. One that was over before is
-  // made again, twice as long.
+  // made again, twice as long, of twice as many particles: else they would have flown apart by then.
   void kill_a_run() const {
-    for (double until = 1300;; until *= 2) {
-      const std::string long_run = run + "--set run.until=" + std::to_string(until) + " -o ";
+    for (int until = 1300;; until *= 2) {
+      const std::string size = std::to_string(until);
+      const std::string long_run = run + "--set run.until=" + size + " --set initial.particles=" + size + " -o ";
       shell("rm -f a.h5*; " + long_run +
             "a.h5 & pid=$!; until [ -e a.h5.checkpoint ] || [ -e a.h5 ]; do :; done; kill -9 $pid; wait $pid");
       if (exists("a.h5") || !exists("a.h5.part")) continue;

@@ -1,5 +1,5 @@
-// Collisions in double: a part of steps.cpp, which includes it once for each kind of vectors. Operations are those of the
-// event loop one for one, so that their bits are the same.
+// Collisions in double: a part of steps.cpp, which includes it once for each kind of vectors. The operations are those
+// of the event loop one for one, so that their bits are the same.
 
 namespace cradle {
 namespace HWY_NAMESPACE {

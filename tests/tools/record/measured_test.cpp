@@ -1,5 +1,5 @@
-// What is measured while a run goes on. Proves: heat flux, collision rate and closing speeds of gases whose exact
-// values are known, within 4 standard errors over replicas; accounts of walls that balance; the same bytes on any
+// What is measured during a run. Proves: heat flux, collision rate and closing speeds of gases whose exact values are
+// known, within 4 standard errors over replicas; accounts of walls that balance; the same bytes on any
 // number of threads, in segments and out of them; and which scenes are refused. Checkpoints: tools/store/resume_test.
 #include <cmath>
 #include <numbers>
@@ -127,7 +127,7 @@ TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
         shell(run + " --threads " + threads + " -o " + threads + ".h5", 0);
         expect_same("1.h5", threads + ".h5");
       }
-      // Stops at so many times that it goes one by one.
+      // With so many samples the plain loop makes all collisions.
       shell(run + " --set output.series.points=3000 -o plain.h5", 0);
       const Result found = read("1.h5"), wanted = read("plain.h5");
       for (const tools::Group& group : wanted.groups) {
@@ -150,7 +150,8 @@ TEST(Measured, WhatIsRefused) {
   };
   const std::string gaps = "histograms = ['gap']\n";
   expect(message("averages.every = 0.1"), "output.averages.range: missing");
-  expect(message("averages = { every = 1, range = [0, 1] }"), "too few samples for errors (found 1): give 0.322581 or less");
+  expect(message("averages = { every = 1, range = [0, 1] }"),
+         "too few samples for errors (found 1): give 0.322581 or less");
   expect(message("averages = { every = 0.1, range = [1, 0] }"), "output.averages.range: not a range");
   expect(message("averages = { bins = 3 }"), "output.averages.bins: key of averages that are not requested");
   expect(message("averages = { every = 1e-9, range = [0, 1] }"), "too many samples");

@@ -231,8 +231,8 @@ class Tables(Sequence):
     def at(self, time: float) -> Table:
         """The table with the nearest time. Raises Error if there are no tables."""
         if not self._tables:
-            raise Error(f"{self._place} is empty: the scene does not request it (see output.* of `cradle scenes --keys`)",
-                        BAD_INPUT)
+            raise Error(f"{self._place} is empty: the scene does not request it "
+                        "(see output.* of `cradle scenes --keys`)", BAD_INPUT)
         return self._tables[int(np.nanargmin(np.abs(self.times - time)))]
 
     def __getitem__(self, index):

@@ -8,7 +8,6 @@
 #include <exception>
 #include <functional>
 #include <mutex>
-#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -54,31 +53,44 @@ class ThreadExecutor {
 /// Calls work(job, worker) for all jobs from 0 to jobs - 1 on the executor's threads, and returns when they are done.
 /// `worker` is below the number of threads, and differs between calls that run at the same time. The first exception
 /// from `work` is thrown again here when no call is running; jobs not begun by then are dropped.
+/// Worker k begins with the k-th part of the jobs and then takes what others have left. A thread stays the same worker
+/// where it can: from one call to the next a job's data are still in the caches of its processor.
 template <Executor E> void for_each(const E& executor, std::size_t jobs, const Workers::Work& work) {
   if (jobs == 1) return work(0, 0);
+  struct Part {
+    std::size_t next, end;  // jobs
+    bool idle = true;
+    std::size_t left() const { return end - next; }
+  };
+  const std::size_t threads = executor.threads();
+  std::vector<Part> parts;
+  for (std::size_t k = 0; k < threads; ++k) parts.push_back({jobs * k / threads, jobs * (k + 1) / threads});
   std::mutex mutex;
-  std::size_t next = 0;
   std::exception_ptr thrown;
-  std::vector<std::size_t> idle(executor.threads());
-  std::iota(idle.begin(), idle.end(), std::size_t{0});
   executor.run([&] {
-    std::size_t job = 0, worker = 0;
+    thread_local std::size_t home = 0;  // the worker that this thread was last
+    std::size_t job = 0;
     {
       const std::lock_guard lock(mutex);
-      if (next == jobs) return false;
-      job = next++;
-      worker = idle.back();
-      idle.pop_back();
+      const auto most = std::ranges::max_element(parts, {}, &Part::left);
+      if (most->left() == 0) return false;
+      if (home >= threads || !parts[home].idle)
+        home = static_cast<std::size_t>(std::ranges::find(parts, true, &Part::idle) - parts.begin());
+      job = parts[home].left() > 0 ? parts[home].next++ : --most->end;
+      parts[home].idle = false;
     }
     std::exception_ptr now;
     try {
-      work(job, worker);
+      work(job, home);
     } catch (...) {
       now = std::current_exception();
     }
     const std::lock_guard lock(mutex);
-    if (now && !thrown) thrown = now, next = jobs;
-    idle.push_back(worker);
+    if (now && !thrown) {
+      thrown = now;
+      for (Part& part : parts) part.next = part.end;
+    }
+    parts[home].idle = true;
     return true;
   });
   if (thrown) std::rethrow_exception(thrown);

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "cradle/tests/core/replicas.hpp"
 
@@ -42,6 +43,30 @@ TYPED_TEST(Executors, SameBitsOnAnyNumberOfThreads) {
     EXPECT_EQ(ensemble.statistics(), serial) << threads;
     EXPECT_EQ(ensemble.tree().size(), 500U);
   }
+}
+
+// The workers of a run in segments: every job once, no two calls at a time as the same worker, whatever the number of
+// jobs; an exception is thrown again.
+TYPED_TEST(Executors, WorkersDoEveryJobOnce) {
+  for (const unsigned threads : {2U, 3U, 8U})
+    for (const std::size_t jobs : {1U, 2U, 3U, 7U, 100U}) {
+      const TypeParam executor(threads);
+      std::vector<std::atomic<int>> made(jobs), busy(threads);
+      std::atomic<int> clashes = 0;
+      workers(executor).run(jobs, [&](std::size_t job, std::size_t worker) {
+        if (busy.at(worker)++ > 0) ++clashes;
+        dawdle(job);
+        ++made.at(job);
+        --busy[worker];
+      });
+      EXPECT_EQ(clashes, 0);
+      for (const auto& times : made) EXPECT_EQ(times, 1) << threads << " threads, " << jobs << " jobs";
+      EXPECT_THROW(workers(executor).run(jobs,
+                                         [](std::size_t job, std::size_t) {
+                                           if (job == 0) throw std::domain_error("");
+                                         }),
+                   std::domain_error);
+    }
 }
 
 TYPED_TEST(Executors, ReplicasThatThrowAreRecordedAndHarmNoOther) {

@@ -267,8 +267,8 @@ struct Tally {
   std::uint64_t scenes = 0, proved = 0, undecided = 0, refused = 0, left_out = 0, collisions = 0, numbers = 0;
 };
 
-template <class Values> const Values& values_of(const Group& group, const std::string& name) {
-  return std::get<Values>(column(group, name).values);
+template <class Values> const Values& values_of(const Group& group, std::string_view name) {
+  return std::get<Values>(column(group, std::string(name)).values);
 }
 using Doubles = std::vector<double>;
 using Texts = std::vector<std::string>;

@@ -12,8 +12,8 @@ import numpy as np
 from .averages import with_error
 from .style import BLUE, ORANGE, stacked
 
-PANELS = (("mean_square_displacement", r"$\langle\Delta x^2\rangle$"),
-          ("velocity_autocorrelation", r"$\langle v(0)\,v(t)\rangle$"))
+PANELS = (("mean_square_displacement", r"mean-square displacement ($l^2$)"),
+          ("velocity_autocorrelation", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
 
 
 def pictures(result, _theory, _units):
@@ -80,5 +80,5 @@ def draw(result, axes):
             ax.legend(loc="best")
     axes[0].set_title(f"tagged particles, $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors",
                       loc="right", fontsize=8)
-    axes[-1].set_xlabel("time between the two states $t$")
+    axes[-1].set_xlabel("time between the two states ($t$)")
     return figure

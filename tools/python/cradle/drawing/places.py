@@ -5,8 +5,8 @@ import numpy as np
 from .averages import with_error
 from .style import ORANGE, beside, shades, subplots, thinned
 
-PICTURES = (("structure_factor", "structure", "k", "wave number $k$", "structure factor $S(k)$", True),
-            ("pair_distribution", "pair_distribution", "distance", "distance $r$", "pair distribution $g(r)$", False))
+PICTURES = (("structure_factor", "structure", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
+            ("pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)", "pair distribution $g(r)$", False))
 
 
 def pictures(result, _theory, _units):

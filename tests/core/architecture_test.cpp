@@ -96,9 +96,13 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
                                            "core/ensemble/moments.hpp",
                                            "core/engine/event_queue.hpp",
                                            "core/observe/averages.hpp",
+                                           "core/observe/batch_means.hpp",
                                            "core/observe/clusters.hpp",
+                                           "core/observe/correlations.hpp",  // turns of a ring
                                            "core/observe/profile.hpp",
                                            "core/observe/scenario.hpp",
+                                           "core/observe/structure.hpp",
+                                           "core/observe/turns.hpp",
                                            "core/observe/zone.hpp",
                                            "core/initial/ring.hpp",
                                            "core/initial/rows.hpp",

@@ -56,7 +56,9 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
             small,
         "cradle run classics/heat_wall -o walls.h5 --set walls.right.restitution=0.9 --set output.averages.every=1 "
         "--set "
-        "'output.histograms=[\"closing_speed\"]' --set output.snapshots=[]" +
+        "'output.histograms=[\"closing_speed\"]' --set output.snapshots=[] --set output.correlations.every=1 --set "
+        "output.structure.every=2 --set output.structure.times=[9] --set output.pair_distribution.every=2 --set "
+        "output.pair_distribution.times=[9] --set output.pair_distribution.distance=0.2" +
             small,
         std::string("cradle run fig9 -o model.h5 --quiet --set run.until=10"),
         std::string("cradle trust collapse3 -o trust.h5 --quiet --digits 16,31"),

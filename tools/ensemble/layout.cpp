@@ -89,16 +89,25 @@ ReplicaLayout replica_layout(const Scene& scene) {
       else if (!column.name.ends_with("_error"))  // of one run; the replicas have one of their own
         add(column, group, bins.front().rows());
   };
-  for (std::size_t k = 0; k < times.profiles.size(); ++k)
-    add_binned(tables.profile.value(), fmt::format("profiles/{:04}", k), {{"time", times.profiles[k]}});
+  const auto add_at = [&](const std::optional<Group>& table, const char* folder, const std::vector<double>& at) {
+    for (std::size_t k = 0; k < at.size(); ++k)
+      add_binned(table.value(), fmt::format("{}/{:04}", folder, k), {{"time", at[k]}});
+  };
+  add_at(tables.profile, "profiles", times.profiles);
+  add_at(tables.structure_at, "structure_at", times.structure);
+  add_at(tables.pair_distribution_at, "pair_distribution_at", times.pair_distribution);
   if (tables.zone)
     add_binned(*tables.zone, "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
   const Output& output = scene.output;
-  if (tables.averages)
-    add_binned(*tables.averages, tables.averages->name,
-               {{"from", output.averages.from.value}, {"until", output.averages.until.value}});
+  const auto add_mean = [&](const std::optional<Group>& table, const auto& wanted) {
+    if (table) add_binned(*table, table->name, {{"from", wanted.from.value}, {"until", wanted.until.value}});
+  };
+  add_mean(tables.averages, output.averages);
   for (const Group& table : tables.histograms)
     add_binned(table, table.name, {{"from", output.counting.from.value}, {"until", output.counting.until.value}});
+  add_mean(tables.correlations, output.correlations);
+  add_mean(tables.structure, output.structure);
+  add_mean(tables.pair_distribution, output.pair_distribution);
   layout.numbers.push_back({"energy", "m l^2/t^2", "kinetic energy at the end", {}});
   if (stops_at_collapse(scene))
     layout.numbers.push_back({collapse_time, "t", "time of inelastic collapse; NaN: there was none", {}});

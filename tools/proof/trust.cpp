@@ -64,6 +64,9 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
   scene.output.profiles.times.clear();
   scene.output.averages = {};
   scene.output.histograms.clear();
+  scene.output.correlations = {};
+  scene.output.structure = {};
+  scene.output.pair_distribution = {};
   return scene;
 }
 

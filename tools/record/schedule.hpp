@@ -16,7 +16,8 @@ namespace cradle::tools {
 
 template <Real T> struct Schedule {
   std::vector<T> series, snapshots, profiles, masses, zone, averages, counting;  // each increasing
-  std::vector<T> stops;                                                          // their union
+  std::vector<T> correlations, structure, structure_at, pairs, pairs_at;
+  std::vector<T> stops;  // their union
 };
 
 template <Real T> bool holds(const std::vector<T>& times, const T& time) {
@@ -62,11 +63,20 @@ template <Real T> std::vector<T> series_times(const Series& series, const T& sta
 
 template <Real T> Schedule<T> schedule(const Scene& scene) {
   const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
-  Schedule<T> plan{series_times(scene.output.series, start, until), {}, {}, {}, {}, {}, {}, {}};
-  for (const auto& time : scene.output.snapshots) plan.snapshots.push_back(number<T>(time));
-  for (const auto& time : scene.output.profiles.times) plan.profiles.push_back(number<T>(time));
-  for (const auto& time : scene.output.masses) plan.masses.push_back(number<T>(time));
-  const Zone& zone = scene.output.zone;
+  const Output& output = scene.output;
+  Schedule<T> plan;
+  plan.series = series_times(output.series, start, until);
+  const auto at = [](const std::vector<Decimal>& decimals) {
+    std::vector<T> times;
+    for (const Decimal& time : decimals) times.push_back(number<T>(time));
+    return times;
+  };
+  plan.snapshots = at(output.snapshots);
+  plan.profiles = at(output.profiles.times);
+  plan.masses = at(output.masses);
+  plan.structure_at = at(output.structure.times);
+  plan.pairs_at = at(output.pair_distribution.times);
+  const Zone& zone = output.zone;
   if (zone.from) {
     const T from = number<T>(*zone.from);
     const auto samples = static_cast<std::int64_t>(zone.samples);
@@ -78,10 +88,14 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
     times.erase(std::unique(times.begin(), times.end()), times.end());
     return times;
   };
-  plan.averages = every(scene.output.averages);
-  plan.counting = every(scene.output.counting);
+  plan.averages = every(output.averages);
+  plan.counting = every(output.counting);
+  plan.correlations = every(output.correlations);
+  plan.structure = every(output.structure);
+  plan.pairs = every(output.pair_distribution);
   for (const auto* times :
-       {&plan.series, &plan.snapshots, &plan.profiles, &plan.masses, &plan.zone, &plan.averages, &plan.counting})
+       {&plan.series, &plan.snapshots, &plan.profiles, &plan.masses, &plan.zone, &plan.averages, &plan.counting,
+        &plan.correlations, &plan.structure, &plan.structure_at, &plan.pairs, &plan.pairs_at})
     plan.stops.insert(plan.stops.end(), times->begin(), times->end());
   plan.stops.push_back(until);
   std::sort(plan.stops.begin(), plan.stops.end());
@@ -133,10 +147,13 @@ std::vector<RequestedTime> requested_times(const Scene& scene, const Schedule<T>
 
 template <class T> PlannedTimes planned_in(const Scene& scene) {
   const Schedule<T> plan = schedule<T>(scene);
-  PlannedTimes times{{}, {}, to_double(plan.stops.back())};
-  for (const T& time : plan.series) times.series.push_back(to_double(time));
-  for (const T& time : plan.profiles) times.profiles.push_back(to_double(time));
-  return times;
+  const auto rounded = [](const std::vector<T>& all) {
+    std::vector<double> times;
+    for (const T& time : all) times.push_back(to_double(time));
+    return times;
+  };
+  return {rounded(plan.series), rounded(plan.profiles), rounded(plan.structure_at), rounded(plan.pairs_at),
+          to_double(plan.stops.back())};
 }
 
 }  // namespace cradle::tools

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "cradle/core/theory/wet_zone.hpp"
+#include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/record/columns.hpp"
 
@@ -139,6 +140,33 @@ Group histogram_table(std::string_view name) {
            {"count", "1", row.text, {}}}};
 }
 
+Group correlations_table(const Scene& scene) {
+  std::vector<double> lags;
+  for (const std::uint64_t steps : Correlator::lags(longest_lag(scene)))
+    lags.push_back(static_cast<double>(steps) * scene.output.correlations.every->value);
+  return {"correlations",
+          {},
+          {{"lag", "t", "time between the two states", std::move(lags)},
+           {"mean_square_displacement", "l^2", "of a tagged particle, not folded on rings", {}},
+           {"mean_square_displacement_error", "l^2", "standard error", {}},
+           {"velocity_autocorrelation", "l^2/t^2", "mean product of the two velocities of a tagged particle", {}},
+           {"velocity_autocorrelation_error", "l^2/t^2", "standard error", {}}}};
+}
+
+Group structure_table(const std::string& name, const Scene& scene) {
+  return {name,
+          {},
+          {{"k", "1/l", "wave number, 2 pi n/length", structure_factor(scene).wave_numbers()},
+           {"structure_factor", "1", "|sum m exp(ikx)|^2/sum m^2; 1 at independent places", {}}}};
+}
+
+Group pair_distribution_table(const std::string& name, const Scene& scene) {
+  return {name,
+          {},
+          {{"distance", "l", "centre of the bin", pair_distribution(scene).centres()},
+           {"pair_distribution", "1", "pairs at this distance, over their mean number at independent places", {}}}};
+}
+
 Group events_table() {
   return {"events",
           {},
@@ -188,6 +216,19 @@ Group with_bins(Group histogram, const OctaveBins& bins) {
   histogram.columns[0].values = std::move(low);
   histogram.columns[1].values = std::move(high);
   return histogram;
+}
+
+Group with_error(Group table) {
+  const Column& of = table.columns.back();
+  table.columns.push_back({of.name + "_error", of.unit, "standard error", {}});
+  return table;
+}
+
+// Of the ring, or between walls at rest.
+double length_of(const Scene& scene, const char* key) {
+  if (const auto ends = extent(scene)) return ends->second.value - ends->first.value;
+  throw Error({scene.name, 0, key}, "no length", "particles that are neither on a ring nor between walls at rest",
+              "give output.structure.length, or remove this key");
 }
 
 std::vector<double> centres(const ZoneAverage& zone, std::size_t bins) {
@@ -245,6 +286,65 @@ Group histogram_result(std::string_view name, const OctaveHistogram& histogram, 
   return table;
 }
 
+std::uint64_t longest_lag(const Scene& scene) {
+  const Correlations& wanted = scene.output.correlations;
+  const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
+  bin_float span = number(wanted.until) - number(wanted.from);
+  if (wanted.longest && number(*wanted.longest) < span) span = number(*wanted.longest);
+  // Rounding to a double makes a quotient of decimals whole that is so.
+  return static_cast<std::uint64_t>(static_cast<double>(bin_float(span / number(*wanted.every))));
+}
+
+Group correlations_result(const Correlator& correlator, std::size_t particles, const Scene& scene) {
+  const std::vector<Correlator::Correlation> all = correlator.correlations();
+  Group table = correlations_table(scene);
+  std::vector<double> displacement, of_displacement, velocity, of_velocity;
+  std::vector<BatchMean> displacements;
+  for (const auto& [x, v] : all) {
+    displacement.push_back(x.mean), of_displacement.push_back(x.error);
+    velocity.push_back(v.mean), of_velocity.push_back(v.error);
+    displacements.push_back(x);
+  }
+  table = filled(table, table.columns.front().values, std::move(displacement), std::move(of_displacement),
+                 std::move(velocity), std::move(of_velocity));
+  table.attributes = {{"from", scene.output.correlations.from.value},
+                      {"until", scene.output.correlations.until.value},
+                      {"samples", correlator.samples()},
+                      {"particles", std::uint64_t{particles}},
+                      {"error_growth", error_growth(displacements)}};
+  return table;
+}
+
+StructureFactor structure_factor(const Scene& scene) {
+  const Structure& wanted = scene.output.structure;
+  return {wanted.length ? wanted.length->value : length_of(scene, "output.structure"), wanted.waves};
+}
+
+PairDistribution pair_distribution(const Scene& scene) {
+  const Pairs& wanted = scene.output.pair_distribution;
+  return {wanted.distance.value, wanted.bins, length_of(scene, "output.pair_distribution"), scene.initial.on_ring()};
+}
+
+Group at_time(Group table, double time, std::vector<double> numbers) {
+  table.columns.back().values = std::move(numbers);
+  table.attributes = {{"time", time}};
+  return table;
+}
+
+Group averaged(Group table, const SampledMeans& means, const PlaceTimes& wanted) {
+  const std::vector<BatchMean> all = means.means();
+  std::vector<double> values, errors;
+  for (const BatchMean& m : all) values.push_back(m.mean), errors.push_back(m.error);
+  table.columns.back().values = std::move(values);
+  table = with_error(std::move(table));
+  table.columns.back().values = std::move(errors);
+  table.attributes = {{"from", wanted.from.value},
+                      {"until", wanted.until.value},
+                      {"samples", std::uint64_t{means.samples()}},
+                      {"error_growth", error_growth(all)}};
+  return table;
+}
+
 std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& s) {
   const bool met = s.passes + s.sticks > 0;
   return {{"pair_established", s.established},
@@ -283,6 +383,15 @@ RunTables run_tables(const Scene& scene) {
   for (const HistogramRow& row : histograms)
     if (scene.output.has_histogram(row.name))
       tables.histograms.push_back(with_bins(histogram_table(row.name), histogram_bins(row.name, scene)));
+  if (scene.output.correlations.every) tables.correlations = correlations_table(scene);
+  const auto places = [&](const PlaceTimes& wanted, const std::string& name, const auto& table,
+                          std::optional<Group>& mean, std::optional<Group>& at) {
+    if (wanted.every) mean = with_error(table(name, scene));
+    if (!wanted.times.empty()) at = table(name + "_at", scene);
+  };
+  places(scene.output.structure, "structure", structure_table, tables.structure, tables.structure_at);
+  places(scene.output.pair_distribution, "pair_distribution", pair_distribution_table, tables.pair_distribution,
+         tables.pair_distribution_at);
   if (scene.output.scenario)
     for (auto& [name, value] : scenario_numbers({})) tables.summary.push_back(name);
   return tables;

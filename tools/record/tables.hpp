@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "cradle/core/observe/averages.hpp"
+#include "cradle/core/observe/correlations.hpp"
 #include "cradle/core/observe/histograms.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/scenario.hpp"
+#include "cradle/core/observe/structure.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
@@ -26,11 +28,13 @@ inline std::string_view rounded_name(std::string_view name) {
 }
 
 struct RunTables {
-  std::vector<Group> series;         // "series" and the tables below it
-  std::optional<Group> profile;      // for each profile, if the scene has any; with its bins if the range is given
-  std::optional<Group> zone;         // with its bins
-  std::optional<Group> averages;     // with its bins
-  std::vector<Group> histograms;     // with their bins
+  std::vector<Group> series;      // "series" and the tables below it
+  std::optional<Group> profile;   // for each profile, if the scene has any; with its bins if the range is given
+  std::optional<Group> zone;      // with its bins
+  std::optional<Group> averages;  // with its bins
+  std::vector<Group> histograms;  // with their bins
+  // With their lags, wave numbers and distances.
+  std::optional<Group> correlations, structure, structure_at, pair_distribution, pair_distribution_at;
   std::vector<std::string> summary;  // names of RunOutcome::summary
 };
 /// Throws Error if the extent of the zone is unknown.
@@ -51,6 +55,9 @@ Group masses_table(const std::string& name);
 Group zone_table();
 Group averages_table();
 Group histogram_table(std::string_view name);
+Group correlations_table(const Scene& scene);
+Group structure_table(const std::string& name, const Scene& scene);
+Group pair_distribution_table(const std::string& name, const Scene& scene);
 Group events_table();
 /// The initial state of the particles that events refer to.
 Group initial_table();
@@ -69,6 +76,17 @@ TimeAverages time_averages(const Scene& scene, std::size_t samples);
 Group averages_result(const TimeAverages& averages, const Scene& scene);
 OctaveBins histogram_bins(std::string_view name, const Scene& scene);
 Group histogram_result(std::string_view name, const OctaveHistogram& histogram, const Scene& scene);
+
+/// The longest lag of the correlations, in samples.
+std::uint64_t longest_lag(const Scene& scene);
+Group correlations_result(const Correlator& correlator, std::size_t particles, const Scene& scene);
+
+/// Throw Error if no length is known.
+StructureFactor structure_factor(const Scene& scene);
+PairDistribution pair_distribution(const Scene& scene);
+/// Such a table from numbers at one time, or from their averages over samples.
+Group at_time(Group table, double time, std::vector<double> numbers);
+Group averaged(Group table, const SampledMeans& means, const PlaceTimes& wanted);
 
 /// Named numbers; NaN for those that the run does not have.
 std::vector<std::pair<std::string, double>> scenario_numbers(const Scenario& scenario);

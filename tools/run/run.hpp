@@ -53,9 +53,10 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
 /// Throws Error, naming the key, for a scene that this build cannot run.
 void check_built(const Scene& scene);
 
-/// The times of the series and of the profiles, and the end, as results store them: rounded from the run's precision.
+/// The times of the series and of tables at times, and the end, as results store them: rounded from the run's
+/// precision.
 struct PlannedTimes {
-  std::vector<double> series, profiles;
+  std::vector<double> series, profiles, structure, pair_distribution;
   double until = 0;
 };
 PlannedTimes planned_times(const Scene& scene);

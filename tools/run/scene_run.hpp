@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cradle/tools/record/columns.hpp"
+#include "cradle/tools/record/correlations.hpp"
 #include "cradle/tools/record/histograms.hpp"
 #include "cradle/tools/record/recorder.hpp"
 #include "cradle/tools/record/schedule.hpp"
@@ -36,6 +37,7 @@ template <Real T> class SceneRun {
     if (scene.output.zone.from) zone_.emplace(zone_average(scene));
     if (!plan_.averages.empty()) averages_.emplace(time_averages(scene, plan_.averages.size()));
     if (!scene.output.histograms.empty()) histograms_.emplace(scene, particles_->count());
+    if (CorrelationRecorder<T>::wanted(scene.output)) correlations_.emplace(scene, *particles_, plan_);
   }
 
   RunOutcome operator()() {
@@ -74,13 +76,14 @@ template <Real T> class SceneRun {
   // What is saved besides the engine's state: how much of the plan is done, and what observers have collected.
   static auto state(auto& self) {
     return std::tie(self.inspected_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
-                    self.averages_, self.histograms_, self.guards_);
+                    self.averages_, self.histograms_, self.correlations_, self.guards_);
   }
 
   void loaded() const {
     require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone");
     require_state(averages_.has_value() == !plan_.averages.empty(), "averages");
     require_state(histograms_.has_value() == !scene_.output.histograms.empty(), "histograms");
+    require_state(correlations_.has_value() == CorrelationRecorder<T>::wanted(scene_.output), "correlations");
   }
 
  private:
@@ -155,22 +158,25 @@ template <Real T> class SceneRun {
   bool sample_at(const T& time) {
     const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
                masses = holds(plan_.masses, time), zone = holds(plan_.zone, time),
-               averaged = holds(plan_.averages, time), counted = holds(plan_.counting, time);
+               averaged = holds(plan_.averages, time), counted = holds(plan_.counting, time),
+               correlated = correlations_ && correlations_->due(time);
     std::optional<Configuration<T>> now;
     std::optional<Profile> seen;
-    if (snapshot || profiled || masses || zone || averaged || counted) now = engine_.configuration(time);
+    if (snapshot || profiled || masses || zone || averaged || counted || correlated) now = engine_.configuration(time);
     if (now) guards_.require_held(*now);
     try {
       if (profiled) seen = profile_at(*now, time);
       const T elapsed = time - number<T>(scene_.run.start);
       const auto stop = [this] { return stopped(); };
       if (averaged) averages_->find(*now, *particles_, elapsed, stop);
+      if (correlated) correlations_->find(*now, time, stop);
       if (zone) zone_->add(*now, *particles_, elapsed, stop);
     } catch (const WalkStopped&) {
       return false;
     }
     if (averaged) averages_->add_found();
     if (counted) histograms_->add(*now);
+    if (correlated) correlations_->add(time, [this](Group&& table) { put(std::move(table)); });
     if (holds(plan_.series, time)) record_sample(time);
     if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
     if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
@@ -288,6 +294,7 @@ template <Real T> class SceneRun {
       groups.push_back(averages_result(*averages_, scene_));
     if (histograms_ && (partial || !(time < number<T>(scene_.output.counting.until))))
       append(groups, histograms_->tables());
+    if (correlations_) append(groups, correlations_->tables(partial));
     if (scene_.output.scenario) {
       const auto numbers = scenario_numbers(scenario_.result(engine_.counts().merges));
       groups.push_back({"scenario", {numbers.begin(), numbers.end()}, {}});
@@ -309,6 +316,7 @@ template <Real T> class SceneRun {
   std::optional<ZoneAverage> zone_;
   std::optional<TimeAverages> averages_;
   std::optional<HistogramRecorder<T>> histograms_;
+  std::optional<CorrelationRecorder<T>> correlations_;
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Observer<T> observer_;

@@ -95,8 +95,10 @@ class Checks {
     } catch (const std::domain_error& error) {
       throw Error(place("law.loss"), error.what(), scene_.law.loss.text, "give another loss or initial.speed");
     }
-    for (const char* key : {"output.snapshots", "output.profiles.times", "output.masses", "output.averages.every",
-                            "output.histograms", "output.events"})
+    for (const char* key :
+         {"output.snapshots", "output.profiles.times", "output.masses", "output.averages.every", "output.histograms",
+          "output.correlations.every", "output.structure.times", "output.structure.every",
+          "output.pair_distribution.times", "output.pair_distribution.every", "output.events"})
       if (const auto text = value_text(*find_field(key, scene_), scene_); text && *text != "[]" && *text != "false")
         throw Error(place(key), "nothing to write", "two clusters in the force of particles that are not there",
                     "remove it");
@@ -253,6 +255,33 @@ class Checks {
                   "pair_flight of particles that merge", "leave out pair_flight");
   }
 
+  void tagged_particles_stay_in_order() const {
+    if (scene_.output.correlations.every && particles_merge(scene_))
+      throw Error(place("output.correlations.every"), "tagged particles that do not stay what they are",
+                  "particles that merge", "remove it");
+  }
+
+  // A ring whose length is in another result is known later.
+  void places_are_on_a_length() const {
+    const auto ends = extent(scene_);
+    const Structure& structure = scene_.output.structure;
+    const Pairs& pairs = scene_.output.pair_distribution;
+    constexpr const char* neither = "particles that are neither on a ring nor between walls at rest";
+    if (!ends && scene_.initial.file) return;
+    if (structure.any() && !structure.length && !ends)
+      throw Error(place("output.structure.length"), "missing", neither, "give the length of the longest wave");
+    if (!pairs.any()) return;
+    const std::string_view key = pairs.every ? "output.pair_distribution.every" : "output.pair_distribution.times";
+    if (!ends) throw Error(place(key), "pairs without a density to compare them with", neither, "remove it");
+    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
+    const bin_float length = number(ends->second) - number(ends->first);
+    const bin_float most = scene_.initial.on_ring() ? bin_float(length / bin_float(2)) : length;
+    if (number(pairs.distance) > most)
+      throw Error(place("output.pair_distribution.distance"),
+                  scene_.initial.on_ring() ? "more than half of the ring" : "more than there is between the walls",
+                  pairs.distance.text, fmt::format("give {:g} at most", static_cast<double>(most)));
+  }
+
   void numbers_fit() const {
     const NumberRange of_type(scene_.run), of_doubles{Run()};
     for (const Field& field : scene_fields()) {
@@ -281,8 +310,12 @@ class Checks {
                     fmt::format("{}, which makes {:.3g} of them until run.until", given.text, samples),
                     fmt::format("give a longer time, {:.0g} samples at most", most));
     };
-    for (const auto& [key, every] : {std::pair("output.averages.every", scene_.output.averages.every),
-                                     std::pair("output.counting.every", scene_.output.counting.every)})
+    for (const auto& [key, every] :
+         {std::pair("output.averages.every", scene_.output.averages.every),
+          std::pair("output.counting.every", scene_.output.counting.every),
+          std::pair("output.correlations.every", scene_.output.correlations.every),
+          std::pair("output.structure.every", scene_.output.structure.every),
+          std::pair("output.pair_distribution.every", scene_.output.pair_distribution.every)})
       if (every) check(key, *every, number(*every));
     if (series.every) return check("output.series.every", *series.every, number(*series.every));
     if (!series.over) return;
@@ -309,7 +342,8 @@ class Checks {
 
   // Random speeds of thermal walls and averages are doubles in every working precision.
   static bool is_double_anyway(std::string_view key) {
-    return key.ends_with(".temperature") || key == "output.zone.reach" || key == "output.counting.range";
+    return key.ends_with(".temperature") || key == "output.zone.reach" || key == "output.counting.range" ||
+           key == "output.structure.length" || key == "output.pair_distribution.distance";
   }
 
   Place place(std::string_view key) const {
@@ -363,6 +397,8 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.ranges_of_bins();
   checks.averages_have_bins_and_samples();
   checks.pairs_stay_together();
+  checks.tagged_particles_stay_in_order();
+  checks.places_are_on_a_length();
   checks.numbers_fit();
   checks.samples_can_be_kept();
 }

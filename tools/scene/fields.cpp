@@ -95,14 +95,27 @@ constexpr When states_counted{no_histogram, "output.histograms", "\"gap\" or \"c
 constexpr When clusters_counted{no_histogram, "output.histograms", "\"cluster\" in output.histograms",
                                 [](const Scene& s) { return s.output.has_histogram("cluster"); }};
 
+constexpr When correlated{"key of correlations that are not requested", "output.correlations.every",
+                          "output.correlations.every",
+                          [](const Scene& s) { return s.output.correlations.every.has_value(); }};
+constexpr std::string_view no_structure = "key of structure factors that are not requested";
+constexpr When structured{no_structure, "output.structure.every", "output.structure.times or output.structure.every",
+                          [](const Scene& s) { return s.output.structure.any(); }};
+constexpr When structure_averaged{no_structure, "output.structure.every", "output.structure.every",
+                                  [](const Scene& s) { return s.output.structure.every.has_value(); }};
+constexpr std::string_view no_pairs = "key of pair distributions that are not requested";
+constexpr When paired{no_pairs, "output.pair_distribution.every",
+                      "output.pair_distribution.times or output.pair_distribution.every",
+                      [](const Scene& s) { return s.output.pair_distribution.any(); }};
+constexpr When pairs_averaged{no_pairs, "output.pair_distribution.every", "output.pair_distribution.every",
+                              [](const Scene& s) { return s.output.pair_distribution.every.has_value(); }};
+
 std::string start_of_run(const Scene& s) { return s.run.start.text; }
 std::string end_of_run(const Scene& s) { return s.run.until.text; }
 // The two ends of where all particles are, if these are known.
-std::string extent(const Scene& s) {
-  const auto& [left, right] = s.walls;
-  if (s.initial.type == InitialType::ring) return "[0, " + s.initial.length.text + "]";
-  const bool between_walls = left.position && right.position && left.speed == Decimal("0") && right.speed == left.speed;
-  return between_walls ? "[" + left.position->text + ", " + right.position->text + "]" : "[]";
+std::string extent_of(const Scene& s) {
+  const auto ends = extent(s);
+  return ends ? "[" + ends->first.text + ", " + ends->second.text + "]" : "[]";
 }
 
 std::string particles_as_length(const Scene& s) { return std::to_string(s.initial.particles); }
@@ -322,7 +335,7 @@ const Field all_fields[] = {
     {"output.averages.bins", output_of<&Output::averages, &Averages::bins>, "", "50", "[1, 1e5]", &averaged,
      "number of bins of the averages"},
     {"output.averages.range", output_of<&Output::averages, &Averages::range>, "l", "the ring, or between walls at rest",
-     any, &averaged, "the two ends of the bins", extent},
+     any, &averaged, "the two ends of the bins", extent_of},
     {"output.histograms", output_of<&Output::histograms>, "", "",
      "free_flight | pair_flight | closing_speed | dissipative_closing_speed | collisions_per_particle | gap | cluster",
      &always, "what is counted in bins that are nearly logarithmic"},
@@ -336,6 +349,42 @@ const Field all_fields[] = {
      &clusters_counted, "neighbours with a gap below this belong to one cluster"},
     {"output.counting.range", output_of<&Output::counting, &Counting::range>, "", "[1e-12, 1e6]", "(0, inf)", &counted,
      "numbers between these two have bins, eight in every octave; one bin each is for those below and above"},
+    {"output.correlations.every", output_of<&Output::correlations, &Correlations::every>, "t", "", "(0, inf)", &always,
+     "time between samples of tagged particles, and the shortest lag of their mean-square displacement and velocity "
+     "autocorrelation; without it, none are made"},
+    {"output.correlations.from", output_of<&Output::correlations, &Correlations::from>, "t", "run.start", within_run,
+     &correlated, "time of the first sample of the correlations", start_of_run},
+    {"output.correlations.until", output_of<&Output::correlations, &Correlations::until>, "t", "run.until",
+     "[output.correlations.from, run.until]", &correlated, "no sample of the correlations is later", end_of_run},
+    {"output.correlations.longest", output_of<&Output::correlations, &Correlations::longest>, "t", "",
+     "[output.correlations.every, inf)", &correlated,
+     "no lag is longer; without it, lags reach from the first sample to the last one"},
+    {"output.correlations.tag_every", output_of<&Output::correlations, &Correlations::tag_every>, "", "1", "[1, 1e15]",
+     &correlated, "every so many particles, from the left, one is tagged"},
+    {"output.structure.times", output_of<&Output::structure, &Structure::times>, "t", "", within_run, &always,
+     "times at which the structure factor is written"},
+    {"output.structure.every", output_of<&Output::structure, &Structure::every>, "t", "", "(0, inf)", &always,
+     "time between samples of the average structure factor; without it, no average is made"},
+    {"output.structure.from", output_of<&Output::structure, &Structure::from>, "t", "run.start", within_run,
+     &structure_averaged, "time of the first sample of the average", start_of_run},
+    {"output.structure.until", output_of<&Output::structure, &Structure::until>, "t", "run.until",
+     "[output.structure.from, run.until]", &structure_averaged, "no sample of the average is later", end_of_run},
+    {"output.structure.waves", output_of<&Output::structure, &Structure::waves>, "", "1000", "[1, 1e9]", &structured,
+     "largest n of the wave numbers 2 pi n/length; beyond 8 there are eight in every octave"},
+    {"output.structure.length", output_of<&Output::structure, &Structure::length>, "l", "", "(0, inf)", &structured,
+     "length of the wave with n = 1; without it, that of the ring, or between walls at rest"},
+    {"output.pair_distribution.times", output_of<&Output::pair_distribution, &Pairs::times>, "t", "", within_run,
+     &always, "times at which the pair distribution is written"},
+    {"output.pair_distribution.every", output_of<&Output::pair_distribution, &Pairs::every>, "t", "", "(0, inf)",
+     &always, "time between samples of the average pair distribution; without it, no average is made"},
+    {"output.pair_distribution.from", output_of<&Output::pair_distribution, &Pairs::from>, "t", "run.start", within_run,
+     &pairs_averaged, "time of the first sample of the average", start_of_run},
+    {"output.pair_distribution.until", output_of<&Output::pair_distribution, &Pairs::until>, "t", "run.until",
+     "[output.pair_distribution.from, run.until]", &pairs_averaged, "no sample of the average is later", end_of_run},
+    {"output.pair_distribution.distance", output_of<&Output::pair_distribution, &Pairs::distance>, "l", "required",
+     "(0, inf)", &paired, "pairs up to this distance are counted: half of a ring at most"},
+    {"output.pair_distribution.bins", output_of<&Output::pair_distribution, &Pairs::bins>, "", "50", "[1, 1e5]",
+     &paired, "number of bins of the pair distribution"},
     {"output.core", output_of<&Output::core>, "", "false", "", &on_line,
      "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
      "the energy beyond that of the sticky gas that began alike"},

@@ -65,6 +65,8 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   sort_times(scene.output.snapshots);
   sort_times(scene.output.profiles.times);
   sort_times(scene.output.masses);
+  sort_times(scene.output.structure.times);
+  sort_times(scene.output.pair_distribution.times);
   if (scene.initial.file) read_list(path.parent_path() / *scene.initial.file, scene);
   return scene;
 }
@@ -83,6 +85,13 @@ bool Output::observes_collisions() const {
 bool unequal_masses(const Scene& scene) {
   return !scene.initial.random_masses.empty() ||
          std::ranges::any_of(scene.initial.masses, [](const Decimal& mass) { return mass != Decimal("1"); });
+}
+
+std::optional<std::pair<Decimal, Decimal>> extent(const Scene& scene) {
+  const auto& [left, right] = scene.walls;
+  if (scene.initial.on_ring()) return std::pair(Decimal("0"), scene.initial.length);
+  if (!left.position || !right.position || left.speed != Decimal("0") || right.speed != left.speed) return {};
+  return std::pair(*left.position, *right.position);
 }
 
 bool operator==(const Scene& a, const Scene& b) {

@@ -167,6 +167,39 @@ struct Counting {
   bool operator==(const Counting&) const = default;
 };
 
+/// Correlations of every `tag_every`-th particle, from samples at `from`, `from` + `every` and so on up to `until`;
+/// without `every` there are none.
+struct Correlations {
+  std::optional<Decimal> every;
+  Decimal from, until;
+  std::optional<Decimal> longest;  // time between the two states that are compared; none: all there is
+  std::uint64_t tag_every = 0;
+  bool operator==(const Correlations&) const = default;
+};
+
+/// When the places of particles are measured: at times, and on the average over samples as above.
+struct PlaceTimes {
+  std::vector<Decimal> times;
+  std::optional<Decimal> every;
+  Decimal from, until;
+  bool any() const { return !times.empty() || every; }
+  bool operator==(const PlaceTimes&) const = default;
+};
+
+/// The structure factor at wave numbers 2 pi n/length.
+struct Structure : PlaceTimes {
+  std::uint64_t waves = 0;        // the largest n
+  std::optional<Decimal> length;  // none: that of the system
+  bool operator==(const Structure&) const = default;
+};
+
+/// Pairs of particles up to a distance.
+struct Pairs : PlaceTimes {
+  Decimal distance;
+  std::uint64_t bins = 0;
+  bool operator==(const Pairs&) const = default;
+};
+
 struct Checkpoint {
   Decimal every_seconds;  // of computing time; 0: none during the run
   bool operator==(const Checkpoint&) const = default;
@@ -182,6 +215,9 @@ struct Output {
   Averages averages;
   std::vector<std::string> histograms;  // their names
   Counting counting;
+  Correlations correlations;
+  Structure structure;
+  Pairs pair_distribution;
   bool scenario = false;  // wet rows: whether to decide between the two scenarios of Fig. 9
   bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
@@ -241,6 +277,9 @@ std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool
 
 /// A value for display: long lists of numbers are shortened to their ends.
 std::string shortened(const std::string& value);
+
+/// The two ends of where all particles are, if the scene says it: a ring, or walls at rest.
+std::optional<std::pair<Decimal, Decimal>> extent(const Scene& scene);
 
 struct BundledScene {
   std::string_view name;

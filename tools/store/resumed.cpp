@@ -57,8 +57,9 @@ bool begins_again(const Scene& scene) { return without_collisions(scene); }
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   std::erase_if(groups, [](const Group& g) {
     const std::string_view name = rounded_name(g.name);
-    return name == "zone" || name == "averages" || name.starts_with("histograms/") || name == "scenario" ||
-           name == "collapse" || name == "initial";
+    constexpr std::array<std::string_view, 8> of_all{
+        "zone", "averages", "correlations", "structure", "pair_distribution", "scenario", "collapse", "initial"};
+    return std::find(of_all.begin(), of_all.end(), name) != of_all.end() || name.starts_with("histograms/");
   });
   // The file returns attributes in another order than they were written.
   const auto rank = [](const Attribute& attribute) {

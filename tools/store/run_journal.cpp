@@ -64,8 +64,21 @@ std::uint64_t numbers_in(const std::vector<Group>& tables) {
 
 std::vector<Group> GrowingTables::in_order() && {
   const auto rank = [](const Group& table) -> std::ptrdiff_t {
-    static const std::array<std::string, 11> order{"series",  "series/heaviest", "snapshots/",  "profiles/", "masses/",
-                                                   "zone",    "averages",        "histograms/", "scenario",  "events",
+    static const std::array<std::string, 16> order{"series",
+                                                   "series/heaviest",
+                                                   "snapshots/",
+                                                   "profiles/",
+                                                   "masses/",
+                                                   "structure_at/",
+                                                   "pair_distribution_at/",
+                                                   "zone",
+                                                   "averages",
+                                                   "histograms/",
+                                                   "correlations",
+                                                   "structure",
+                                                   "pair_distribution",
+                                                   "scenario",
+                                                   "events",
                                                    "collapse"};
     const std::string_view of = rounded_name(table.name);
     const bool exact = of != table.name;

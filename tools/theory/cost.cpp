@@ -7,6 +7,7 @@
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/record/tables.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {
@@ -137,6 +138,8 @@ Cost expected_cost(const Scene& scene) {
   const double bytes = type.bytes.at(digits);
   cost.memory = program + numbers * bytes * cost.particles + (bytes_per_sample + 2 * bytes) * samples;
   if (scene.output.events) cost.memory += bytes_per_event * cost.collisions.value_or(0);
+  if (const Correlations& wanted = scene.output.correlations; wanted.every)
+    cost.memory += Correlator::bytes(cost.particles / static_cast<double>(wanted.tag_every), longest_lag(scene));
   return cost;
 }
 

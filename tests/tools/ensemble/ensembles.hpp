@@ -36,6 +36,8 @@ snapshots = [100]
 profiles = { times = [50, 100], bins = 20, range = [-30, 30] }
 averages = { every = 1.5, bins = 4, range = [-30, 30] }
 histograms = ["free_flight", "cluster"]
+correlations = { every = 3, longest = 60, tag_every = 5 }
+structure = { every = 50, times = [120], waves = 12, length = 300 }
 counting = { from = 40, range = [0.01, 10], every = 50, cluster_gap = 0.1 }
 )";
 

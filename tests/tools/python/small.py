@@ -50,6 +50,24 @@ def trust():
     return "trust.h5"
 
 
+TAGGED = {"initial.particles": 100, "run.until": 40, "output.structure.times": [10, 40],
+          "output.pair_distribution.times": [10]}
+
+
+@functools.cache
+def tagged():
+    """100 tagged particles."""
+    cradle.run("classics/diffusion", set=TAGGED, output="tagged.h5").close()
+    return "tagged.h5"
+
+
+@functools.cache
+def tagged_ensemble():
+    """4 replicas of them."""
+    cradle.ensemble("classics/diffusion", 4, set=TAGGED, output="tagged_ensemble.h5").close()
+    return "tagged_ensemble.h5"
+
+
 @functools.cache
 def page(make):
     """The text of the report of one of these, beside it with .html."""
@@ -57,4 +75,4 @@ def page(make):
         return file.read()
 
 
-ALL = (shock, ensemble, sweep, collapse, trust)
+ALL = (shock, ensemble, sweep, collapse, trust, tagged, tagged_ensemble)

@@ -7,6 +7,7 @@ import unittest
 
 import matplotlib
 import matplotlib.pyplot as plt
+import numpy as np
 
 import cradle
 import small
@@ -37,6 +38,19 @@ class Pictures(unittest.TestCase):
             function = getattr(cradle.plot, name)
             self.assertIn("matplotlib figure", function.__doc__)
             self.assertEqual(list(inspect.signature(function).parameters), ["result", "axes", "theory"])
+
+    def test_the_exact_displacement_is_that_of_jepsen(self):
+        from cradle.drawing.correlations import displacement, exact
+        for time, square in ((1, 0.5297), (3, 2.170), (5, 3.787), (10, 7.788), (20, 15.77)):
+            self.assertAlmostEqual(displacement(time) / square, 1, delta=2e-4)
+        self.assertAlmostEqual(displacement(1e-4), 1e-8, delta=2e-12)
+        self.assertAlmostEqual(displacement(1e6), (2 / np.pi) ** 0.5 * 1e6, delta=100)
+        with cradle.open(small.tagged()) as result:
+            squares, products = exact(result, [1e-3, 20.0])
+            self.assertAlmostEqual(products[0], 0.99, delta=0.003)  # 1 - 1/N, and less by the first collisions
+            self.assertAlmostEqual(squares[1], displacement(20) - 4, delta=1e-9)
+        with cradle.open(small.shock()) as result:
+            self.assertIsNone(exact(result, [1.0]))
 
     def test_draw_into_given_axes(self):
         figure, axes = plt.subplots(2, 2)

@@ -104,6 +104,23 @@ class Others(unittest.TestCase):
             self.assertEqual(result.replicas.index.values.tolist(), [0, 1, 2, 3])
             self.assertEqual(result.profiles.times.tolist(), [2, 4])
 
+    def test_correlations_and_places_of_runs_and_ensembles(self):
+        with cradle.open(small.tagged()) as run, cradle.open(small.tagged_ensemble()) as ensemble:
+            self.assertEqual(run.correlations.attributes["particles"], 100)
+            self.assertEqual(run.correlations.lag[4], 1)
+            self.assertEqual(run.correlations.mean_square_displacement.unit, "l^2")
+            self.assertGreater(run.correlations.velocity_autocorrelation_error[0], 0)
+            self.assertEqual(ensemble.correlations.lag.values.tolist(), run.correlations.lag.values.tolist())
+            self.assertGreater(ensemble.correlations.mean_square_displacement.sem[1], 0)
+            self.assertEqual(run.structure_at.times.tolist(), [10, 40])
+            self.assertEqual(len(run.structure_at.at(10).structure_factor), len(run.structure.k))
+            self.assertEqual(ensemble.structure_at.at(40).structure_factor.mean.shape, run.structure.k.shape)
+            self.assertEqual(len(run.pair_distribution.pair_distribution_error), 50)
+            self.assertAlmostEqual(run.pair_distribution.distance[0], 0.1)
+            self.assertEqual(len(ensemble.pair_distribution_at), 1)
+            self.assertEqual(set(cradle.plot.names(run)) & {"correlations", "structure_factor", "pair_distribution"},
+                             {"correlations", "structure_factor", "pair_distribution"})
+
     def test_sweeps_have_points(self):
         with cradle.open(small.sweep()) as result:
             self.assertEqual(len(result.points), 6)

@@ -1,6 +1,9 @@
-// What is measured during a run. Proves: heat flux, collision rate and closing speeds of gases whose exact values are
-// known, within 4 standard errors over replicas; accounts of walls that balance; the same bytes on any
-// number of threads, in segments and out of them; and which scenes are refused. Checkpoints: tools/store/resume_test.
+// What is measured during a run. Proves: heat flux, collision rate and closing speeds of gases whose exact
+// values are known, within 4 standard errors over replicas, and the diffusion of tagged particles; accounts of walls
+// that balance; the same bytes on any number of threads and ranks, in segments and out of them, and nearly the same
+// numbers in every scalar type; and which scenes are refused. Checkpoints: tools/store/resume_test.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -106,17 +109,110 @@ counting = { from = 20, every = 40 }
   wide.expect(std::exp(-1.), 0.003);
 }
 
+// Identical elastic particles at Poisson positions, rho = T = 1 (Jepsen, J. Math. Phys. 6, 405, 1965). On a ring of N
+// their mean velocity, of variance T/N, is taken away, which is a displacement independent of all else: it takes t^2/N
+// from the mean square. Such particles stay at independent places.
+TEST(Measured, DiffusionOfTaggedParticles) {
+  const Scene scene = parse_scene(R"(
+law = { type = "inelastic", restitution = 1 }
+initial = { type = "ring", particles = 1000, positions = "poisson" }
+run.until = 60
+[output]
+series.points = 2
+correlations = { every = 0.5, longest = 20 }
+structure = { every = 10, waves = 16, times = [30] }
+pair_distribution = { every = 10, distance = 4, bins = 4, times = [30] }
+)",
+                                  "diffusion.toml");
+  constexpr std::array<std::pair<double, double>, 5> exact{
+      {{1, 0.5297}, {3, 2.170}, {5, 3.787}, {10, 7.788}, {20, 15.77}}};
+  std::array<Replicas, 5> displacement, of_one_run, structure, structure_at, pairs, pairs_at;
+  Replicas squares;
+  of_replicas(scene, 100, [&](const Result& run) {
+    const auto lag = numbers(run, "correlations", "lag"),
+               found = numbers(run, "correlations", "mean_square_displacement"),
+               error = numbers(run, "correlations", "mean_square_displacement_error");
+    squares.add(numbers(run, "correlations", "velocity_autocorrelation")[0]);
+    EXPECT_EQ(found[0], 0);
+    for (std::size_t k = 0; k < 5; ++k) {
+      const auto at = static_cast<std::size_t>(std::find(lag.begin(), lag.end(), exact[k].first) - lag.begin());
+      displacement[k].add(found.at(at));
+      of_one_run[k].add(error.at(at));
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      structure[k].add(numbers(run, "structure", "structure_factor")[4 * k]);
+      structure_at[k].add(numbers(run, "structure_at/0000", "structure_factor")[4 * k]);
+      pairs[k].add(numbers(run, "pair_distribution", "pair_distribution")[k]);
+      pairs_at[k].add(numbers(run, "pair_distribution_at/0000", "pair_distribution")[k]);
+    }
+  });
+  squares.expect(1 - 1 / 1000., 0.01);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const auto [t, value] = exact[k];
+    displacement[k].expect(value - t * t / 1000, 0.025 * value);
+    // Errors of one run come from batches of 31 particles. Over 20 units of time these are not independent any more.
+    const double over_replicas = displacement[k].error() * 10;
+    if (t <= 5) {
+      EXPECT_NEAR(of_one_run[k].mean(), over_replicas, 0.35 * over_replicas);
+    }
+  }
+  for (std::size_t k = 0; k < 4; ++k) {
+    structure[k].expect(1, 0.15), structure_at[k].expect(1, 0.15);
+    pairs[k].expect(1, 0.005), pairs_at[k].expect(1, 0.01);
+  }
+}
+
+TEST(Measured, IsNearlyTheSameInEveryScalarType) {
+  const std::string text = R"(
+law = { type = "inelastic", restitution = 0.9, cutoff = 1e-3 }
+initial = { type = "ring", particles = 60, positions = "poisson" }
+run.until = 4
+[output]
+series.points = 2
+correlations.every = 0.25
+structure = { every = 1, times = [3] }
+pair_distribution = { every = 1, times = [3], distance = 20, bins = 8 }
+)";
+  const auto run = [&](const std::string& precision) {
+    const Scene scene = parse_scene(text, "scene.toml", {"run.precision=" + precision});
+    tools::check_built(scene);
+    return tools::run_scene(scene, {tools::Progress::Show::never}).result;
+  };
+  const Result wanted = run("double");
+  for (const std::string precision : {"long double", "double-double", "float128", "mpfr"}) {
+    SCOPED_TRACE(precision);
+    Result found;
+    try {
+      found = run(precision);
+    } catch (const tools::Error&) {  // not built
+      continue;
+    }
+    for (const auto& [group, name] : {std::pair("correlations", "mean_square_displacement"),
+                                      {"correlations", "velocity_autocorrelation"},
+                                      {"structure", "structure_factor"},
+                                      {"structure_at/0000", "structure_factor"},
+                                      {"pair_distribution", "pair_distribution"},
+                                      {"pair_distribution_at/0000", "pair_distribution"}}) {
+      const auto a = numbers(wanted, group, name), b = numbers(found, group, name);
+      ASSERT_EQ(a.size(), b.size());
+      for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * (1 + a[k])) << group << " " << k;
+    }
+  }
+}
+
 using Measuring = ProgramTest;
 
 const std::string measured = "averages = { every = 0.2, bins = 7, range = [0, 4000] }\nhistograms = ['free_flight', "
                              "'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', 'gap', "
-                             "'cluster']\ncounting = { from = 2, until = 7, every = 2.5, cluster_gap = 0.1 }\n";
+                             "'cluster']\ncounting = { from = 2, until = 7, every = 2.5, cluster_gap = 0.1 }\n"
+                             "structure = { every = 2, times = [1, 7], waves = 20 }\n"
+                             "pair_distribution = { every = 2, times = [1, 7], distance = 3 }\n";
 
 TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
   const std::string ring = "initial = { type = 'ring', particles = 4000, perturbation = 0.2 }\nrun.until = 8\n";
   write("dry.toml", "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.1 }\n" + ring +
                         "[output]\nseries.points "
-                        "= 3\n" +
+                        "= 3\ncorrelations = { every = 0.25, tag_every = 3 }\n" +
                         measured);
   write("wet.toml", "law = { type = 'wet', loss = 0.01 }\n" + ring + "[output]\nseries.points = 3\n" + measured);
   for (const std::string scene : {"dry", "wet"})
@@ -131,11 +227,50 @@ TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
       shell(run + " --set output.series.points=3000 -o plain.h5", 0);
       const Result found = read("1.h5"), wanted = read("plain.h5");
       for (const tools::Group& group : wanted.groups) {
-        if (group.name != "averages" && !group.name.starts_with("histograms/")) continue;
+        if (group.name.ends_with("series")) continue;
         for (const tools::Column& c : group.columns)
           EXPECT_TRUE(column(found, group.name, c.name).values == c.values) << group.name << "/" << c.name;
       }
     }
+}
+
+TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
+  write("ring.toml", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\ninitial = { type = 'ring', "
+                     "particles = 50, perturbation = 0.4 }\nrun.until = 8\n[output]\nseries.points = 3\n"
+                     "correlations.every = 0.25\n" +
+                         std::string("structure = { every = 2, times = [1, 7], waves = 20 }\npair_distribution = { "
+                                     "every = 2, times = [1, 7], distance = 3 }\n"));
+  const std::string ensemble = "ensemble ring.toml --replicas 30 --quiet";
+  shell("cradle " + ensemble + " --threads 1 -o 1.h5", 0);
+  for (const std::string threads : {"2", "8"}) {
+    shell("cradle " + ensemble + " --threads " + threads + " -o " + threads + ".h5", 0);
+    expect_same("1.h5", threads + ".h5");
+  }
+  // Replicas from two files are those of one.
+  shell("cradle " + ensemble + " --first 30 -o later.h5", 0);
+  shell("cradle merge 1.h5 later.h5 -o merged.h5", 0);
+  shell("cradle ensemble ring.toml --replicas 60 --quiet -o whole.h5", 0);
+  expect_same("merged.h5", "whole.h5");
+#ifdef CRADLE_WITH_MPI
+  if (shell("command -v mpirun").status == 0) {
+    shell("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+          "OMPI_MCA_hwloc_base_binding_policy=none mpirun -n 2 cradle " +
+              ensemble + " --threads 1 -o ranks.h5",
+          0);
+    expect_same("1.h5", "ranks.h5");
+  }
+#endif
+  const Result found = read("1.h5");
+  for (const auto& [group, name] : {std::pair("correlations", "mean_square_displacement"),
+                                    {"correlations", "velocity_autocorrelation"},
+                                    {"structure", "structure_factor"},
+                                    {"structure_at/0001", "structure_factor"},
+                                    {"pair_distribution", "pair_distribution"},
+                                    {"pair_distribution_at/0001", "pair_distribution"}})
+    for (const double error : numbers(found, fmt::format("ensemble/{}/{}", group, name), "sem"))
+      EXPECT_GE(error, 0) << group;
+  EXPECT_EQ(numbers(found, "ensemble/correlations", "lag")[3], 0.75);
+  EXPECT_EQ(found.find("ensemble/structure/structure_factor_error"), nullptr);
 }
 
 TEST(Measured, WhatIsRefused) {
@@ -164,6 +299,29 @@ TEST(Measured, WhatIsRefused) {
   expect(message(gaps + "counting = { every = 1, range = [2, 1] }"), "give two numbers, the lower one first");
   expect(message(gaps + "counting = { every = 1, from = 3, until = 2 }"), "output.counting.until: out of range");
   expect(message("histograms = ['pair_flight']", "law.type = 'sticky'\n"), "leave out pair_flight");
+  expect(message("correlations.every = 1", "law.type = 'sticky'\n"), "particles that merge");
+  expect(message("correlations.from = 1"), "output.correlations.from: key of correlations that are not requested");
+  expect(message("correlations = { every = 1, longest = 0.5 }"), "output.correlations.longest: out of range");
+  expect(message("correlations = { every = 1e-7 }"), "too many samples");
+  expect(message("structure.every = 1"), "output.structure.length: missing");
+  expect(message("structure.waves = 5"), "output.structure.waves: key of structure factors that are not requested");
+  expect(message("structure = { times = [1], until = 3, length = 1 }"), "output.structure.until: key of structure");
+  expect(message("structure.times = [11]\nstructure.length = 1"), "output.structure.times: out of range");
+  expect(message("pair_distribution.every = 1"), "output.pair_distribution.distance: missing");
+  expect(message("pair_distribution = { every = 1, distance = 3 }"), "pairs without a density to compare them with");
+  expect(message("pair_distribution.bins = 3"), "output.pair_distribution.bins: key of pair distributions");
+  const std::string walls = "law = { type = 'inelastic', restitution = 1 }\ninitial.particles = 20\nwalls = { left = "
+                            "{ position = -15 }, right = { position = 15 } }\n";
+  expect(message("pair_distribution = { every = 1, distance = 31 }", walls),
+         "more than there is between the walls (found 31): give 30 at most");
+  const auto tagged = refusal(tools::Exit::bad_input, [] {
+    tools::run_scene(
+        parse_scene("law = { type = 'inelastic', restitution = 1 }\ninitial = { type = 'ring', particles = "
+                    "1.1e6 }\nrun.until = 10\noutput = { series.points = 2, correlations.every = 1e-5 }",
+                    "scene.toml"),
+        {tools::Progress::Show::never});
+  });
+  expect(tagged, "more tagged particles than memory is for (found 1100000 of them");
 }
 
 }  // namespace cradle::tests::measured_test

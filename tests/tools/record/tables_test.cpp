@@ -24,7 +24,9 @@ const std::pair<const char*, std::string> scenes[] = {
      "initial = { type = 'rows', particles = 60 }\nwalls = { left = { position = -31, restitution = 0.9 }, right "
      "= { position = 40, temperature = 1 } }\noutput = { averages = { every = 1, bins = 3 }, histograms = "
      "['free_flight', 'pair_flight', 'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', "
-     "'gap', 'cluster'], counting = { every = 20, cluster_gap = 0.5 }, series.points = 5 }"},
+     "'gap', 'cluster'], counting = { every = 20, cluster_gap = 0.5 }, correlations = { every = 1, longest = 30 }, "
+     "structure = { every = 5, times = [7], waves = 30 }, pair_distribution = { every = 5, times = [8], distance = 9, "
+     "bins = 4 }, series.points = 5 }"},
     {"model", "law.type = 'wet'\nlaw.loss = 0.05\nrun.until = 3\noutput.series.points = 5\n"
               "initial = { type = 'clusters', x = [-1, 1] }"},
 };
@@ -60,6 +62,14 @@ TEST(RunTables, AreWhatARunWrites) {
     EXPECT_EQ(tables.averages.has_value(), std::string(name) == "gas");
     EXPECT_EQ(tables.histograms.size(), std::string(name) == "gas" ? 7U : 0U);
     for (const Group& table : tables.histograms) expect_columns(table, run.result.find(table.name));
+    for (const auto& [table, group] : {std::pair(&tables.correlations, "correlations"),
+                                       {&tables.structure, "structure"},
+                                       {&tables.structure_at, "structure_at/0000"},
+                                       {&tables.pair_distribution, "pair_distribution"},
+                                       {&tables.pair_distribution_at, "pair_distribution_at/0000"}}) {
+      EXPECT_EQ(table->has_value(), std::string(name) == "gas");
+      if (*table) expect_columns(**table, run.result.find(group));
+    }
     EXPECT_EQ(tables.profile.has_value(), run.result.find("profiles/0000") != nullptr);
     EXPECT_EQ(tables.zone.has_value(), run.result.find("zone") != nullptr);
     std::vector<std::string> summary;

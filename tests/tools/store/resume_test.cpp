@@ -59,14 +59,21 @@ struct Case {
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
-constexpr const char* outputs =
-    "output = { series.points = 20, snapshots = [40, 60], profiles = { times = [50], bins = 8 }, events = true, "
-    "averages = { every = 2.5, bins = 3, range = [-50, 50] }, histograms = ['free_flight', 'closing_speed', "
-    "'dissipative_closing_speed', 'collisions_per_particle', 'gap', 'cluster'], "
-    "counting = { from = 10, until = 90, every = 20, cluster_gap = 0.5, range = [1e-3, 10] } }\n";
+std::string outputs_and(const std::string& more) {
+  return "output = { series.points = 20, snapshots = [40, 60], profiles = { times = [50], bins = 8 }, events = true, "
+         "averages = { every = 2.5, bins = 3, range = [-50, 50] }, histograms = ['free_flight', 'closing_speed', "
+         "'dissipative_closing_speed', 'collisions_per_particle', 'gap', 'cluster'], " +
+         more +
+         "structure = { every = 7, times = [30, 80], waves = 20, length = 50 }, "
+         "counting = { from = 10, until = 90, every = 20, cluster_gap = 0.5, range = [1e-3, 10] } }\n";
+}
+const std::string outputs = outputs_and("");
 
 std::string dry(const std::string& initial, const std::string& run, const std::string& law = "") {
-  return "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-4 }\n" + initial + outputs + law +
+  std::string more;
+  if (!cradle::tests::has(run, "merge")) more += "correlations = { every = 1.5, from = 5, tag_every = 2 }, ";
+  if (cradle::tests::has(initial, "'ring'")) more += "pair_distribution = { every = 7, times = [45], distance = 9 }, ";
+  return "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-4 }\n" + initial + outputs_and(more) + law +
          "[run]\nuntil = 100\n" + run;
 }
 
@@ -122,6 +129,9 @@ Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].
 
 const std::string large = "output = { series.points = 12, profiles = { times = [5], bins = 8 }, histograms = "
                           "['free_flight'] }\n[run]\nuntil = 8\n";
+const std::string large_tagged =
+    "output = { series.points = 12, correlations.every = 0.2, structure = { every = 2, waves = 20 }, "
+    "pair_distribution = { every = 2, distance = 3 } }\n[run]\nuntil = 8\n";
 const std::string large_events = "output = { series.points = 5, events = true }\n[run]\nuntil = 8\n";
 const std::string of_large_dry = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\ninitial = { type = "
                                  "'ring', particles = 2500, perturbation = 0.1 }\n";
@@ -131,9 +141,10 @@ const std::string of_large_walls =
     "= 1 } }\n";
 const std::string of_large_wet = "law = { type = 'wet', loss = 0.01 }\ninitial = { type = 'ring', particles = 2500, "
                                  "perturbation = 0.1 }\n";
-const std::string large_dry = of_large_dry + large, large_walls = of_large_walls + large,
-                  large_wet = of_large_wet + large, large_dry_events = of_large_dry + large_events,
-                  large_walls_events = of_large_walls + large_events, large_wet_events = of_large_wet + large_events;
+const std::string large_dry = of_large_dry + large, large_dry_tagged = of_large_dry + large_tagged,
+                  large_walls = of_large_walls + large, large_wet = of_large_wet + large,
+                  large_dry_events = of_large_dry + large_events, large_walls_events = of_large_walls + large_events,
+                  large_wet_events = of_large_wet + large_events;
 
 class Resuming : public cradle::tests::ProgramTest {
  protected:
@@ -212,6 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
                     case_of("SpeedDependent", 24),
                     Case{"LargeWalls", large_walls.c_str(), {"double", "double-double"}, 2, 3},
                     Case{"LargeDry", large_dry.c_str(), {"double", "double-double"}, 1, 1},
+                    Case{"LargeDryTagged", large_dry_tagged.c_str(), {"double", "double-double"}, 2, 1},
                     Case{"LargeDryFromTwoThreadsToOne", large_dry.c_str(), {"double", "long double", "mpfr"}, 2, 1},
                     Case{"LargeDryFromOneThreadToThree", large_dry.c_str(), {"double", "float128"}, 1, 3},
                     Case{"LargeWetFromThreeThreadsToTwo", large_wet.c_str(), {"double", "double-double"}, 3, 2},
@@ -236,6 +248,8 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
         const Scene scene =
             parse_scene(law + initial + "output = { series = { " + series + " }, snapshots = [5], core = true, " +
                             "averages = { every = 0.3, range = [-9, 9] }, histograms = ['free_flight'], " +
+                            "structure = { every = 0.7, times = [4], waves = 9, length = 9 }, " +
+                            (law == inelastic ? "correlations.every = 0.3, " : "") +
                             "events = " + (law == sticky ? "false" : "true") + " }\nrun.until = 10\n",
                         "scene.toml", {std::string("run.precision=") + precision});
         ASSERT_EQ(begin("later.h5", scene, {}, 1).end, RunEnd::reached);

@@ -199,6 +199,16 @@ class Result:
         shape (bins,), with `_error`; of an ensemble tables.""", "averages", "ensemble/averages")
     histograms: Table = part(Table, """What a run counted, a table each: `result.histograms.free_flight` has `low`,
         `high` and `count` of shape (bins,); of an ensemble `count` is a table.""", "histograms", "ensemble/histograms")
+    correlations: Table = part(Table, """Of tagged particles: `lag`, `mean_square_displacement`,
+        `velocity_autocorrelation` of shape (lags,), with `_error`; of an ensemble tables.""", "correlations",
+                               "ensemble/correlations")
+    structure: Table = part(Table, """The average structure factor: `k`, `structure_factor` of shape (waves,), with
+        `_error`; of an ensemble a table.""", "structure", "ensemble/structure")
+    structure_at: Tables = part(Tables, "The same at times.", "structure_at", "ensemble/structure_at")
+    pair_distribution: Table = part(Table, """The average pair distribution: `distance`, `pair_distribution` of shape
+        (bins,), with `_error`; of an ensemble a table.""", "pair_distribution", "ensemble/pair_distribution")
+    pair_distribution_at: Tables = part(Tables, "The same at times.", "pair_distribution_at",
+                                        "ensemble/pair_distribution_at")
     masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
     events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
         `interval`, `closing_speed`, `kind`.""", "events")

@@ -7,8 +7,8 @@ import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (averages, beyond, blast, clusters, cooling, domino, energy, ensemble, histograms, onset, particles,
-               proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, walls, zone)
+from . import (averages, beyond, blast, clusters, cooling, correlations, domino, energy, ensemble, histograms, onset,
+               particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, walls, zone)
 from .style import Units, style
 from .theory import Theory
 
@@ -16,7 +16,7 @@ CLASSICS = (onset, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
 ALONE = (proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
-MEASURED = (averages, histograms)  # behind the others
+MEASURED = (averages, histograms, correlations, places)  # behind the others
 
 
 def pictures_of(result, theory, units):

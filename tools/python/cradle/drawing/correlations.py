@@ -1,0 +1,84 @@
+"""Correlations of tagged particles. Beside those of identical elastic particles at Poisson positions the exact ones
+(Jepsen, J. Math. Phys. 6, 405, 1965). Such particles pass each other's velocities on, so the tagged one is always the
+n-th in the line. It is to the right of y at time t if of all lines of flight more have come from its left to the right
+of y than the other way; these are two Poisson numbers, of means a(y) and b(y), and its own line is one more. So with
+their difference D, P(x > y) = P(D >= 1) + P(v > y/t) P(D = 0), and the mean square is 4 times the integral of y P(x > y).
+On a ring of N at rest as a whole the mean square is less by T t^2/N: the mean velocity, of variance T/N, is taken away.
+The velocity autocorrelation is half of its second derivative."""
+import math
+
+import numpy as np
+
+from .averages import with_error
+from .style import BLUE, ORANGE, stacked
+
+PANELS = (("mean_square_displacement", r"mean-square displacement ($l^2$)"),
+          ("velocity_autocorrelation", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
+
+
+def pictures(result, _theory, _units):
+    return [("correlations", lambda axes=None: draw(result, axes))] if "lag" in result.correlations else []
+
+
+def displacement(t):
+    """The exact mean square at one time t > 0, rho = T = m = 1."""
+    largest = 8 * max(min(t, math.sqrt(t)), 1e-3 * t)  # of the displacements that matter
+    y = np.linspace(0, largest, 801)
+    u = y / t
+    beyond = 0.5 * np.array([math.erfc(each / math.sqrt(2)) for each in u])  # P(v > y/t)
+    b = t * np.exp(-u ** 2 / 2) / math.sqrt(2 * math.pi) + y * (1 - beyond)
+    a = b - y
+    # The distribution of D from its characteristic function, on points that its spread resolves.
+    widest = min(1, math.sqrt(10 / b[0]))  # of half a turn: beyond, less than exp(-40)
+    points = 64 + int(16 * widest * (math.sqrt(2 * b[0]) + largest))
+    angle = (np.arange(points) + 0.5) * (widest * math.pi / points)
+    size = np.exp(-np.multiply.outer(a + b, 1 - np.cos(angle)))
+    turned = np.multiply.outer(a - b, np.sin(angle))
+    zero = widest * (size * np.cos(turned)).mean(axis=1)  # P(D = 0)
+    more = widest * (size * np.sin(turned) / np.tan(angle / 2)).mean(axis=1)  # P(D >= 1) - P(D <= -1)
+    right = 0.5 * (1 - zero + more) + beyond * zero
+    return 4 * (y * right).sum() * y[1]
+
+
+def exact(result, lags):
+    """Mean squares and autocorrelations at these lags; None of others than such particles."""
+    initial = result.scene.get("initial", {})
+    if result.setting("law", "restitution", 0.0) != 1 or "masses" in initial or "random_masses" in initial:
+        return None
+    if (result.word("initial", "type"), result.word("initial", "positions"), result.word("initial", "velocities")) != (
+            "ring", "poisson", "gaussian"):
+        return None
+    particles, variance = result.setting("initial", "particles"), result.setting("initial", "variance", 1.0)
+    spacing = result.setting("initial", "length", particles) / particles
+    unit = spacing / math.sqrt(variance)  # of time
+
+    def squares(t):
+        return displacement(t) - t ** 2 / particles
+
+    def products(t):
+        step = 0.02 * t
+        return (squares(t + step) - 2 * squares(t) + squares(t - step)) / (2 * step ** 2)
+    times = np.asarray(lags) / unit
+    return (spacing ** 2 * np.array([squares(t) for t in times]), variance * np.array([products(t) for t in times]))
+
+
+def draw(result, axes):
+    table = result.correlations
+    lag = np.asarray(table["lag"])
+    figure, axes = stacked(axes, len(PANELS), height=2.6, sharex=True)
+    shown = lag > 0
+    for ax, (name, label) in zip(axes, PANELS):
+        value, error = (np.asarray(numbers, float)[shown] for numbers in with_error(table, name))
+        ax.errorbar(lag[shown], value, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, color=BLUE, lw=0.9)
+        ax.set(xscale="log", ylabel=label)
+    axes[0].set_yscale("log")
+    axes[1].axhline(0, color="0.6", lw=0.7)
+    if shown.any():
+        times = np.geomspace(lag[shown][0], lag[shown][-1], 60)
+        for ax, curve in zip(axes, exact(result, times) or ()):
+            ax.plot(times, curve, "--", color=ORANGE, lw=1, label="exact")
+            ax.legend(loc="best")
+    axes[0].set_title(f"tagged particles, $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors",
+                      loc="right", fontsize=8)
+    axes[-1].set_xlabel("time between the two states ($t$)")
+    return figure

@@ -1,0 +1,34 @@
+"""The places of particles: structure factor and pair distribution, averaged with standard errors and at times. The line
+is that of independent places, 1, of which identical elastic particles in equilibrium are an example."""
+import numpy as np
+
+from .averages import with_error
+from .style import ORANGE, beside, shades, subplots, thinned
+
+PICTURES = (("structure_factor", "structure", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
+            ("pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)", "pair distribution $g(r)$", False))
+
+
+def pictures(result, _theory, _units):
+    return [(name, lambda axes=None, of=(name, group, *labels): draw(result, axes, *of))
+            for name, group, *labels in PICTURES
+            if getattr(result, group) or len(getattr(result, group + "_at"))]
+
+
+def draw(result, axes, name, group, along, xlabel, ylabel, log):
+    figure, ax = subplots(axes, figsize=(5.6, 3.2))
+    at = thinned(getattr(result, group + "_at"))
+    for table, colour in zip(at, shades(len(at))):
+        quantity = table[name]
+        y = quantity["mean"] if "mean" in quantity else quantity
+        ax.plot(table[along], y, color=colour, lw=1, label=f"$t={table['time']:.5g}$")
+    if mean := getattr(result, group):
+        y, error = (np.asarray(numbers, float) for numbers in with_error(mean, name))
+        ax.errorbar(mean[along], y, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, lw=0.9, color="k",
+                    label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")
+    ax.axhline(1, color=ORANGE, lw=1, ls="--", label="independent")
+    if log:
+        ax.set(xscale="log", yscale="log")
+    ax.set(xlabel=xlabel, ylabel=ylabel)
+    beside(ax)
+    return figure

@@ -61,9 +61,13 @@ template <Real T> Found<T> find(const System<T>& system, const T& r, const T& to
 // whose mirror image is the other one.
 template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const T& tolerance, bool mirror) {
   const std::size_t gaps = system.shares.left.size(), length = system.word.size();
+  T rate(1);
   const auto flights = [&](const System<T>& of) {
     const Found<T> found = find(of, r, tolerance);
-    return found.verdict == Verdict::none ? std::vector<T>() : course(of, r, state_of(of, found.pairs)).flight;
+    if (found.verdict == Verdict::none) return std::vector<T>();
+    const State<T> state = state_of(of, found.pairs);
+    rate = state.growth * state.lambda;
+    return course(of, r, state).flight;
   };
   const auto negative = [&](const std::vector<T>& times) {
     std::size_t k = 0;
@@ -86,9 +90,10 @@ template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const
   if (times.size() != length) return system;
   std::size_t begin = length;
   for (std::size_t k = 0; k < length; ++k) {
-    const bool flies = times[k] > tolerance * (k > 0 ? times[k - 1] : times[k]) && times[k] > T(0);
+    // Letters that do not touch may close at the same time.
+    const bool flies = times[k] > times[(k + 1) % length] / T(1000) / (k + 1 < length ? T(1) : rate);
     const bool half = mirror && has_mirrored_half(rotated(system.word, k), gaps);
-    if (flies && (begin == length || half)) begin = k;
+    if (flies && begin == length) begin = k;
     if (flies && half) return System<T>(rotated(system.word, k), system.shares, true);
   }
   return begin == length ? system : System<T>(rotated(system.word, begin), system.shares);

@@ -78,7 +78,7 @@ struct Period {
   std::size_t seen(std::size_t gap, std::size_t gaps) const { return mirrored ? gaps - 1 - gap : gap; }
   // The gap that closes before the letter at `place`.
   std::size_t before(std::size_t place, std::size_t gaps) const {
-    return place > 0 ? word[place - 1] : seen(word.back(), gaps);
+    return place > 0 ? word[place - 1] : planted(9) ? word.back() : seen(word.back(), gaps);
   }
 };
 

@@ -45,7 +45,9 @@ inline std::vector<Condition> conditions(const Word& word, std::size_t gaps) {
     const auto places = places_of(word, low);
     for (std::size_t k = 0; k < places.size(); ++k) {
       const bool last = k + 1 == places.size();
-      all.push_back({Condition::Of::order, places[k], places[last ? 0 : k + 1], last});
+      const std::size_t first = places[k], second = places[last ? 0 : k + 1];
+      // A gap's own collisions have one beside them in between, whose two conditions imply theirs.
+      if (word[first] != word[second]) all.push_back({Condition::Of::order, first, second, last});
     }
   }
   all.push_back({Condition::Of::period, 0, 0, false});
@@ -84,7 +86,7 @@ std::vector<Margin<T>> margins(const Word& word, const std::vector<Condition>& c
         add(condition.first + 1, condition.second, T(1));
       }
       all.push_back({planted(8) ? scale : value, scale});
-    } else {
+    } else if (!planted(10)) {
       all.push_back({state.lambda, T(1)});
       all.push_back({rate - T(1), T(1)});
     }

@@ -87,8 +87,6 @@ std::string equality_text(const words::Word& word, const std::vector<Condition>&
     return margin + 1 == conditions.size() ? "closing speeds no longer shrink" : "periods no longer become shorter";
   const Condition& c = conditions[margin];
   if (c.of == Condition::Of::closing) return fmt::format("the closing speed of {} is 0", collision(c.first));
-  if (word[c.first] == word[c.second])
-    return fmt::format("{} follows {} at once", collision(c.second), collision(c.first));
   return fmt::format("three particles meet: {}{} at the time of {}", collision(c.second),
                      c.next_period ? " of the next period" : "", collision(c.first));
 }

@@ -13,6 +13,7 @@
 #include "cradle/tools/scene/list_file.hpp"
 #include "cradle/tools/scene/overrides.hpp"
 #include "cradle/tools/scene/source.hpp"
+#include "cradle/tools/words/start.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -65,6 +66,10 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   sort_times(scene.output.snapshots);
   sort_times(scene.output.profiles.times);
   sort_times(scene.output.masses);
+  if (scene.initial.word) {
+    const auto entry = entries.find("initial.word");
+    start_from_word(entry->second.place, scene);
+  }
   if (scene.initial.file) read_list(path.parent_path() / *scene.initial.file, scene);
   return scene;
 }

@@ -21,22 +21,6 @@ using words::Condition;
 using words::Verdict;
 using words::Within;
 
-bool WordParticles::symmetric() const {
-  return left_wall == right_wall && std::equal(masses.begin(), masses.end(), masses.rbegin());
-}
-
-std::string WordParticles::text() const {
-  std::string text = fmt::format("{} particles", particles);
-  if (masses.empty()) {
-    text += " of equal masses";
-  } else {
-    text += " of masses ";
-    for (std::size_t i = 0; i < masses.size(); ++i) text += (i > 0 ? ", " : "") + masses[i].text;
-  }
-  if (left_wall && right_wall) return text + " between two walls";
-  return text + (left_wall ? " right of a wall" : right_wall ? " left of a wall" : "");
-}
-
 WordParticles word_particles(const std::string& count, const std::string& masses, const std::string& walls,
                              unsigned digits) {
   WordParticles all;
@@ -72,12 +56,6 @@ namespace {
 constexpr std::size_t points = 1999;  // of the grid on which restitutions are looked at
 constexpr long double tolerance = 1e-11L;
 
-template <class N> words::Shares<N> shares_in(const WordParticles& particles) {
-  std::vector<N> masses(particles.particles, N(1));
-  for (std::size_t i = 0; i < particles.masses.size(); ++i) masses[i] = Text<N>::from(particles.masses[i].text);
-  return words::shares(masses, {particles.left_wall, particles.right_wall});
-}
-
 // What a margin says, where it is 0.
 std::string equality_text(const words::Word& word, const std::vector<Condition>& conditions, std::size_t margin) {
   const auto collision = [&](std::size_t place) {
@@ -89,22 +67,6 @@ std::string equality_text(const words::Word& word, const std::vector<Condition>&
   if (c.of == Condition::Of::closing) return fmt::format("the closing speed of {} is 0", collision(c.first));
   return fmt::format("three particles meet: {}{} at the time of {}", collision(c.second),
                      c.next_period ? " of the next period" : "", collision(c.first));
-}
-
-// A decimal with so many digits after the point, cut off.
-std::string fixed(std::string text, unsigned digits) {
-  const auto e = text.find('e');
-  const int exponent = e == text.npos ? 0 : std::stoi(text.substr(e + 1));
-  std::string mantissa = text.substr(0, e);
-  const bool negative = mantissa.starts_with('-');
-  if (negative) mantissa.erase(0, 1);
-  auto point = static_cast<int>(std::min(mantissa.find('.'), mantissa.size()));
-  mantissa.erase(std::remove(mantissa.begin(), mantissa.end(), '.'), mantissa.end());
-  point += exponent;
-  if (point <= 0) mantissa.insert(0, static_cast<std::size_t>(1 - point), '0'), point = 1;
-  mantissa.resize(static_cast<std::size_t>(point) + digits, '0');
-  return (negative ? "-" : "") + mantissa.substr(0, static_cast<std::size_t>(point)) + '.' +
-         mantissa.substr(static_cast<std::size_t>(point));
 }
 
 std::string list_of(const std::vector<std::string>& items) {
@@ -165,7 +127,7 @@ template <class T> class Analyst {
     WordEnd text;
     text.value = to_double(end.at);
     text.proved = proved;
-    text.at = end.is == Is::zero ? "0" : fixed(to_text(end.at), particles_.digits);
+    text.at = end.is == Is::zero ? "0" : cut_off(to_text(end.at), particles_.digits);
     const auto around = in_decimals(B::widened(B(end.at, 0), B(radius, 0).size()));
     text.low = end.is == Is::zero ? "0" : around.low;
     text.high = end.is == Is::zero ? fmt::format("1e-{}", particles_.digits + 2) : around.high;
@@ -181,7 +143,6 @@ template <class T> class Analyst {
     WordRange text;
     text.low = text_of(prover.system, range.low, range.low_ends, radius);
     text.high = text_of(prover.system, range.high, range.high_ends, radius);
-    const auto digits = particles_.digits + 5;
     text.proved_from = to_text(range.proved_low), text.proved_to = to_text(range.proved_high);
     const bool to_low = !(range.low.at + radius * T(2) < range.proved_low);
     const bool to_high = !(range.proved_high < range.high.at - radius * T(2));
@@ -209,45 +170,8 @@ template <class T> class Analyst {
                   : stable.within == Within::no ? "unstable, proved"
                   : stable.factor < T(1)        ? "stable"
                                                 : "unstable";
-    state_texts(prover.system, r, pairs, digits, text);
+    text.start = start_text(particles_, prover.system, r, pairs, particles_.digits + 5);
     return text;
-  }
-
-  // The state half-way to the first collision, in units in which the extent and the largest closing speed are 1.
-  void state_texts(const words::System<T>& system, const T& r, const words::Pairs<T>& pairs, unsigned digits,
-                   WordRange& text) const {
-    words::Start<T> start = words::start_of(system, r, pairs);
-    T extent(0), fastest(0);
-    for (const T& gap : start.gaps) extent += gap;
-    for (const T& speed : start.speeds)
-      if (fastest < magnitude(speed)) fastest = magnitude(speed);
-    for (T& gap : start.gaps) gap /= extent;
-    for (T& speed : start.speeds) speed /= fastest;
-    const auto shown = [&](const T& x) { return fixed(to_text(x), digits); };
-    for (const T& gap : start.gaps) text.gaps.push_back(shown(gap));
-    for (const T& speed : start.speeds) text.speeds.push_back(shown(speed));
-    text.collapse = shown(T(start.collapse * fastest / extent));
-    // A wall is at rest at 0; otherwise the first particle is at 0, and the momentum is 0.
-    std::vector<T> x, v;
-    if (!particles_.left_wall) x.push_back(T(0)), v.push_back(T(0));
-    for (std::size_t i = 0; i < particles_.gaps() - (particles_.right_wall ? 1 : 0); ++i) {
-      x.push_back(T((x.empty() ? T(0) : x.back()) + start.gaps[i]));
-      v.push_back(T((v.empty() ? T(0) : v.back()) - start.speeds[i]));
-    }
-    T drift(0);
-    if (particles_.right_wall) {
-      drift = v.back() - start.speeds.back();
-    } else if (!particles_.left_wall) {
-      T mass(0);
-      for (std::size_t i = 0; i < v.size(); ++i) {
-        const T m = particles_.masses.empty() ? T(1) : from_text<T>(particles_.masses[i].text);
-        drift += m * v[i], mass += m;
-      }
-      drift /= mass;
-    }
-    std::vector<std::string> xs, vs;
-    for (std::size_t i = 0; i < x.size(); ++i) xs.push_back(shown(x[i])), vs.push_back(shown(T(v[i] - drift)));
-    text.x = list_of(xs), text.v = list_of(vs);
   }
 
   const WordParticles& particles_;
@@ -334,10 +258,10 @@ std::string word_text(const WordParticles& particles, const WordReport& report) 
                         range.lambda, range.gamma, range.gamma / range.lambda);
     text +=
         fmt::format("    stability       {}: a perturbation grows by {:.6g} in a period\n", range.stable, range.factor);
-    for (std::size_t i = 0; i < range.gaps.size(); ++i)
-      text += fmt::format("    gap {}           {}, closing speed {}\n", static_cast<char>('a' + i), range.gaps[i],
-                          range.speeds[i]);
-    text += fmt::format("    collapse        at t = {}\n", range.collapse);
+    for (std::size_t i = 0; i < range.start.gaps.size(); ++i)
+      text += fmt::format("    gap {}           {}, closing speed {}\n", static_cast<char>('a' + i),
+                          range.start.gaps[i], range.start.speeds[i]);
+    text += fmt::format("    collapse        at t = {}\n", range.start.collapse);
   }
   text += fmt::format("  not proved: that there are no others, narrower than a step of {:.1g}, or outside\n",
                       1.0 / (points + 1));
@@ -363,7 +287,7 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
     const WordRange& range = report.ranges.front();
     scene = fmt::format("title = \"self-similar collapse {}\"\n[law]\ntype = \"inelastic\"\nrestitution = {}\n"
                         "[initial]\ntype = \"list\"\nx = {}\nv = {}\n",
-                        report.word, range.at, range.x, range.v);
+                        report.word, range.at, list_of(range.start.x), list_of(range.start.v));
     if (!particles.masses.empty()) {
       std::vector<std::string> masses;
       for (const Decimal& mass : particles.masses) masses.push_back(mass.text);
@@ -372,7 +296,7 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
     for (const auto& [is, name, place] : {std::tuple(particles.left_wall, "left", std::string("0")),
                                           std::tuple(particles.right_wall, "right", std::string("1"))})
       if (is) scene += fmt::format("[walls.{}]\nposition = {}\nrestitution = {}\n", name, place, range.at);
-    scene += fmt::format("[run]\nuntil = {}\nprecision = \"mpfr\"\ndigits = {}\n", range.collapse,
+    scene += fmt::format("[run]\nuntil = {}\nprecision = \"mpfr\"\ndigits = {}\n", range.start.collapse,
                          std::max(particles.digits, 10U));
     break;
   }
@@ -394,7 +318,7 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
       at.push_back(std::stod(range.at)), at_text.push_back(range.at);
       lambda.push_back(range.lambda), gamma.push_back(range.gamma), factor.push_back(range.factor);
       stable.push_back(range.stable);
-      gaps.push_back(list_of(range.gaps)), speeds.push_back(list_of(range.speeds));
+      gaps.push_back(list_of(range.start.gaps)), speeds.push_back(list_of(range.start.speeds));
     }
   const std::string end = "; proved to be within 1e-" + std::to_string(particles.digits) + " where ";
   result.groups.push_back(

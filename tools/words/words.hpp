@@ -10,22 +10,9 @@
 
 #include "cradle/core/words/word.hpp"
 #include "cradle/tools/result/result.hpp"
-#include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/words/start.hpp"
 
 namespace cradle::tools {
-
-/// Which particles, and how many digits of an end are proved.
-struct WordParticles {
-  std::size_t particles = 3;
-  std::vector<Decimal> masses;  // empty: all 1
-  bool left_wall = false, right_wall = false;
-  unsigned digits = 30;
-
-  std::size_t gaps() const { return particles - 1 + left_wall + right_wall; }
-  /// Whether a word and its mirror image are the same motion.
-  bool symmetric() const;
-  std::string text() const;  // "4 particles of equal masses"
-};
 
 /// 3 to 6 particles, masses "1,2.5,1" (empty: equal), walls "", "left", "right" or "both". Throws Error.
 WordParticles word_particles(const std::string& count, const std::string& masses, const std::string& walls,
@@ -49,9 +36,7 @@ struct WordRange {
   std::string at;
   double lambda = 0, gamma = 0, factor = 0;
   std::string stable;  // "stable, proved", "unstable, proved", "stable", "unstable"
-  std::vector<std::string> gaps, speeds;
-  std::string x, v;  // positions and velocities of a scene, as lists
-  std::string collapse;
+  WordStart start;
 };
 
 struct WordReport {

@@ -53,8 +53,8 @@ Exit run_words(const WordsArguments& options) {
   } else {
     const FileClaim claim(output);
     tried = 0;
-    fmt::print("{}\n{:<14} {:<18} {:<18}  {:<9} {:<17} {:>10}  upper end\n", particles.text(), "word", "r from", "to",
-               "existence", "stability", "growth");
+    fmt::print("{}\n{:<14} {:<18} {:<18}  {:<9} {:<23}  upper end\n", particles.text(), "word", "r from", "to",
+               "existence", "stable (seen)");
     const auto print = [](const WordReport& report) {
       fmt::print("{}", word_line(report));
       std::fflush(stdout);

@@ -48,6 +48,7 @@ class Checks {
   void one_list_of_particles() const {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::list) return;
+    if (entries_.contains("initial.word")) return word_alone();
     const bool inline_particles = !initial.x.empty() || entries_.contains("initial.x");
     if (initial.file && inline_particles)
       throw Error(place("initial.file"), "two lists of particles", "initial.file and initial.x", "remove one of them");
@@ -60,7 +61,6 @@ class Checks {
                       "put it into the file, or remove the file");
       return;
     }
-    if (initial.word) return word_alone();
     if (!inline_particles)
       throw Error(place("initial.file"), "missing", "",
                   "name a CSV file of particles, or give initial.x and initial.v");
@@ -80,7 +80,7 @@ class Checks {
       if (entries_.contains(key))
         throw Error(place(key), "particles of a word and others", "initial.word too", "remove one of them");
     if (scene_.law.type != LawType::inelastic)
-      throw Error(place("initial.word"), "words are of particles that bounce", *scene_.initial.word,
+      throw Error(place("initial.word"), "words are of particles that bounce", *scene_.initial.file,
                   "give law.type = \"inelastic\"");
     const auto wall_at = [&](const char* key, const WallAt& wall, const char* position) {
       if (!wall.position) return;

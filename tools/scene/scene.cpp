@@ -66,11 +66,11 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   sort_times(scene.output.snapshots);
   sort_times(scene.output.profiles.times);
   sort_times(scene.output.masses);
-  if (scene.initial.word) {
-    const auto entry = entries.find("initial.word");
-    start_from_word(entry->second.place, scene);
-  }
-  if (scene.initial.file) read_list(path.parent_path() / *scene.initial.file, scene);
+  // Either becomes a list of particles: a file, or a word, which is kept in the same place until then.
+  if (const auto word = entries.find("initial.word"); word != entries.end())
+    start_from_word(word->second.place, scene);
+  else if (scene.initial.file)
+    read_list(path.parent_path() / *scene.initial.file, scene);
   return scene;
 }
 

@@ -82,10 +82,9 @@ struct Initial {
   scene::HotPlace place = scene::HotPlace::middle;  // cold: where these are
   Decimal energy;                                   // cold: of several hot particles together
   std::optional<std::string>
-      file;  // list: the file with the particles, or a result; a scene that was read has them here:
-  std::optional<std::string> word;  // list: the self-similar state of this word, which becomes x and v
-  DecimalColumn x, v, m;            // list; m empty: all 1. clusters: two x, two v
-  std::vector<Decimal> growth;      // clusters: share of the incoming mass that each takes up
+      file;                     // list: the file with the particles, or a result; a scene that was read has them here:
+  DecimalColumn x, v, m;        // list; m empty: all 1. clusters: two x, two v
+  std::vector<Decimal> growth;  // clusters: share of the incoming mass that each takes up
   scene::Meeting meeting = scene::Meeting::energy;
   std::uint64_t seed = 0;
   std::uint64_t replica = 0;

@@ -85,7 +85,7 @@ unsigned digits_of(const Run& run) {
 }  // namespace
 
 void start_from_word(const Place& place, Scene& scene) {
-  const std::string text = *scene.initial.word;
+  const std::string text = *scene.initial.file;
   WordParticles particles;
   particles.left_wall = scene.walls.left.position.has_value();
   particles.right_wall = scene.walls.right.position.has_value();
@@ -111,7 +111,7 @@ void start_from_word(const Place& place, Scene& scene) {
   } catch (const words::BadWord& bad) {
     throw Error(place, bad.what(), bad.found, bad.advice);
   }
-  scene.initial.word.reset();
+  scene.initial.file.reset();
 }
 
 }  // namespace cradle::tools

@@ -78,8 +78,8 @@ WordStart start_text(const WordParticles& particles, const words::System<T>& sys
   return text;
 }
 
-/// Gives the scene the particles of initial.word at its restitution, with more digits than its precision has. Throws
-/// Error if the word has no self-similar state there.
+/// Gives the scene the particles of a word, which is in place of the name of a list, at the scene's restitution, with
+/// more digits than its precision has. Throws Error if the word has no self-similar state there.
 void start_from_word(const Place& place, Scene& scene);
 
 }  // namespace cradle::tools

@@ -122,6 +122,37 @@ template <class T> class Analyst {
     return "";
   }
 
+  bool is_stable(long double r) const {
+    const auto found = words::find(quick_, r, tolerance);
+    if (found.verdict != Verdict::exists) return false;
+    const auto [speeds, gaps] = words::others(quick_, r, found.pairs);
+    return words::largest_modulus(speeds) < 1 && words::largest_modulus(gaps) < 1;
+  }
+
+  // Ends are bisected between the points of a grid, except for those of the range itself.
+  std::vector<std::pair<double, double>> stable_ranges(double low, double high) const {
+    constexpr int steps = 256;
+    const auto at = [&](int k) {
+      return static_cast<long double>(low) + static_cast<long double>(high - low) * (k + 0.5L) / steps;
+    };
+    const auto change = [&](long double yes, long double no) {
+      for (int i = 0; i < 40; ++i) {
+        const long double middle = (yes + no) / 2;
+        (is_stable(middle) ? yes : no) = middle;
+      }
+      return static_cast<double>(yes);
+    };
+    std::vector<std::pair<double, double>> all;
+    bool before = false;
+    for (int k = 0; k < steps; ++k) {
+      const bool here = is_stable(at(k));
+      if (here && !before) all.emplace_back(k == 0 ? low : change(at(k), at(k - 1)), high);
+      if (!here && before) all.back().second = change(at(k - 1), at(k));
+      before = here;
+    }
+    return all;
+  }
+
   WordEnd text_of(const words::System<T>& system, const words::End<T>& end, bool proved, const T& radius) const {
     using Is = typename words::End<T>::Is;
     WordEnd text;
@@ -170,6 +201,7 @@ template <class T> class Analyst {
                   : stable.within == Within::no ? "unstable, proved"
                   : stable.factor < T(1)        ? "stable"
                                                 : "unstable";
+    text.stable_ranges = stable_ranges(text.low.value, text.high.value);
     text.start = start_text(particles_, prover.system, r, pairs, particles_.digits + 5);
     return text;
   }
@@ -258,6 +290,8 @@ std::string word_text(const WordParticles& particles, const WordReport& report) 
                         range.lambda, range.gamma, range.gamma / range.lambda);
     text +=
         fmt::format("    stability       {}: a perturbation grows by {:.6g} in a period\n", range.stable, range.factor);
+    for (const auto& [from, to] : range.stable_ranges)
+      text += fmt::format("    stable          for r from {:.10g} to {:.10g} (seen, not proved)\n", from, to);
     for (std::size_t i = 0; i < range.start.gaps.size(); ++i)
       text += fmt::format("    gap {}           {}, closing speed {}\n", static_cast<char>('a' + i),
                           range.start.gaps[i], range.start.speeds[i]);
@@ -268,12 +302,23 @@ std::string word_text(const WordParticles& particles, const WordReport& report) 
   return text;
 }
 
+namespace {
+
+std::string stable_text(const WordRange& range) {
+  std::string text;
+  for (const auto& [from, to] : range.stable_ranges)
+    text += fmt::format("{}{:.8f}..{:.8f}", text.empty() ? "" : ", ", from, to);
+  return text.empty() ? "nowhere" : text;
+}
+
+}  // namespace
+
 std::string word_line(const WordReport& report) {
   std::string text;
   for (const WordRange& range : report.ranges)
-    text += fmt::format("{:<14} {:<18} {:.18}  {:<9} {:<17} {:>10.4g}  {}\n", report.word,
+    text += fmt::format("{:<14} {:<18} {:.18}  {:<9} {:<23}  {}\n", report.word,
                         range.low.at == "0" ? "0" : range.low.at.substr(0, 18), range.high.at,
-                        range.proved ? "proved" : "in part", range.stable, range.factor, range.high.reason);
+                        range.proved ? "proved" : "in part", stable_text(range), range.high.reason);
   if (!report.degenerate.empty()) text += fmt::format("{:<14} degenerate: {}\n", report.word, report.degenerate);
   return text;
 }
@@ -304,7 +349,7 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
   result.attributes = provenance(parse_scene(scene, "words.toml"), fmt::format("mpfr, {} digits", 4 * particles.digits),
                                  "words of collapse");
   std::vector<std::string> word, low_text, high_text, low_reason, high_reason, stable, gaps, speeds, at_text;
-  std::vector<double> low, high, from, to, at, lambda, gamma, factor;
+  std::vector<double> low, high, from, to, at, lambda, gamma, factor, stable_from, stable_to;
   std::vector<std::uint64_t> proved, low_proved, high_proved;
   for (const WordReport& report : reports)
     for (const WordRange& range : report.ranges) {
@@ -318,6 +363,9 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
       at.push_back(std::stod(range.at)), at_text.push_back(range.at);
       lambda.push_back(range.lambda), gamma.push_back(range.gamma), factor.push_back(range.factor);
       stable.push_back(range.stable);
+      const auto& stables = range.stable_ranges;
+      stable_from.push_back(stables.empty() ? std::nan("") : stables.front().first);
+      stable_to.push_back(stables.empty() ? std::nan("") : stables.front().second);
       gaps.push_back(list_of(range.start.gaps)), speeds.push_back(list_of(range.start.speeds));
     }
   const std::string end = "; proved to be within 1e-" + std::to_string(particles.digits) + " where ";
@@ -344,6 +392,8 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
         {"gamma", "1", "by what a period multiplies gaps", gamma},
         {"factor", "1", "by what a period multiplies a small perturbation", factor},
         {"stable", "1", "whether that is below 1", stable},
+        {"stable_from", "1", "the first range where the state is stable, as seen on a grid; NaN: none", stable_from},
+        {"stable_to", "1", "end of that range", stable_to},
         {"gaps", "1", "of the state half-way to the first collision; their sum is 1", gaps},
         {"closing_speeds", "1", "of that state; the largest one is 1", speeds}}});
   return result;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cradle/core/words/word.hpp"
@@ -36,6 +37,8 @@ struct WordRange {
   std::string at;
   double lambda = 0, gamma = 0, factor = 0;
   std::string stable;  // "stable, proved", "unstable, proved", "stable", "unstable"
+  // Where it is stable: seen on a finer grid, not proved.
+  std::vector<std::pair<double, double>> stable_ranges;
   WordStart start;
 };
 

@@ -56,10 +56,15 @@ template <Real T> Found<T> find(const System<T>& system, const T& r, const T& to
   return best;
 }
 
+// Where a period begins: with the first letter to which there is a flight, or after the last collision before the
+// longest flight, as a part of a period. The latter keeps most digits: a flight that vanishes at an end, and is a small
+// difference there, is then not the last one of the way backwards. A half whose mirror image is the other one is used
+// if it is allowed.
+enum class Begin { first, longest, longest_or_half };
+
 // The same motion with its collisions in the order of their times at one restitution: then flights are positive, and no
-// margin is a difference of large ones. A period begins where there is a flight and, if `mirror` allows it, with a half
-// whose mirror image is the other one.
-template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const T& tolerance, bool mirror) {
+// margin is a difference of large ones.
+template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const T& tolerance, Begin where) {
   const std::size_t gaps = system.shares.left.size(), length = system.word.size();
   T rate(1);
   const auto flights = [&](const System<T>& of) {
@@ -88,14 +93,19 @@ template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const
     times = flights(system);
   }
   if (times.size() != length) return system;
-  std::size_t begin = length;
+  std::size_t begin = length, half = length;
+  T longest(0), longest_half(0);
   for (std::size_t k = 0; k < length; ++k) {
     // Letters that do not touch may close at the same time.
-    const bool flies = times[k] > times[(k + 1) % length] / T(1000) / (k + 1 < length ? T(1) : rate);
-    const bool half = mirror && has_mirrored_half(rotated(system.word, k), gaps);
-    if (flies && begin == length) begin = k;
-    if (flies && half) return System<T>(rotated(system.word, k), system.shares, true);
+    if (!(times[k] > times[(k + 1) % length] / T(1000) / (k + 1 < length ? T(1) : rate))) continue;
+    T period(0);
+    for (std::size_t i = 0; i < length; ++i) period += times[(k + i) % length] / (k + i < length ? T(1) : rate);
+    const T part = times[k] / period;
+    if (begin == length || (where != Begin::first && part > longest)) begin = k, longest = part;
+    if (has_mirrored_half(rotated(system.word, k), gaps) && part > longest_half) half = k, longest_half = part;
   }
+  if (where == Begin::longest_or_half && half < length)
+    return System<T>(rotated(system.word, half), system.shares, true);
   return begin == length ? system : System<T>(rotated(system.word, begin), system.shares);
 }
 

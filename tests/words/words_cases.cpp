@@ -36,7 +36,7 @@ class Words : public testing::Test {
   static std::vector<Range<Real>> ranges_of(const std::string& text, std::size_t particles) {
     System<long double> quick(read_word(text, particles - 1), equal<long double>(particles));
     const auto runs = scan(quick, points, tolerance);
-    quick = in_order_of_time(quick, 0.05L, tolerance, true);
+    quick = in_order_of_time(quick, 0.05L, tolerance, Begin::longest_or_half);
     return ranges(prover(quick.word, particles, quick.period.mirrored), quick, runs, points, tolerance,
                   number("1e-32"));
   }

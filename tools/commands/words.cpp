@@ -30,6 +30,16 @@ std::optional<Decimal> restitution(const std::optional<std::string>& text) {
   throw Error({"", 0, "--at"}, "not a restitution", *text, "give a number between 0 and 1");
 }
 
+std::string command_of(const WordsArguments& options) {
+  std::string command = "words " + options.particles;
+  command += options.word.empty() ? fmt::format(" --search {}", options.search) : " " + options.word;
+  if (!options.masses.empty()) command += " --masses " + options.masses;
+  if (!options.walls.empty()) command += " --walls " + options.walls;
+  if (options.at) command += " --at " + *options.at;
+  if (options.digits != 30) command += fmt::format(" --digits {}", options.digits);
+  return command;
+}
+
 Exit run_words(const WordsArguments& options) {
   const WordParticles particles =
       word_particles(options.particles, options.masses, options.walls, static_cast<unsigned>(options.digits));
@@ -62,7 +72,7 @@ Exit run_words(const WordsArguments& options) {
     reports = search_words(particles, options.search, print, tried);
     fmt::print("{} of {} words up to {} letters exist for some restitution\n", reports.size(), tried, options.search);
   }
-  write_or_keep(words_result(particles, reports, tried), output);
+  write_or_keep(words_result(particles, reports, tried, command_of(options)), output);
   if (!options.quiet) fmt::print("wrote {}\n", output);
   return Exit::done;
 }

@@ -44,7 +44,7 @@ namespace {
 template <class T> WordStart start_in(const WordParticles& particles, const words::Word& word, const Decimal& r) {
   constexpr long double tolerance = 1e-11L;
   words::System<long double> quick(word, shares_in<long double>(particles));
-  quick = words::in_order_of_time(quick, from_text<long double>(r.text), tolerance, false);
+  quick = words::in_order_of_time(quick, from_text<long double>(r.text), tolerance, words::Begin::first);
   const words::System<T> system(quick.word, shares_in<T>(particles));
   const T restitution = from_text<T>(r.text);
   const auto found = words::find(system, restitution, T(0));

@@ -97,7 +97,8 @@ template <class T> class Analyst {
         std::find_if(runs_.begin(), runs_.end(), [](const auto& run) { return run.verdict == Verdict::exists; });
     if (first == runs_.end()) return report;
     const long double middle = words::grid_point<long double>((first->first + first->last) / 2, points);
-    quick_ = words::in_order_of_time(quick_, middle, tolerance, particles_.symmetric());
+    quick_ = words::in_order_of_time(quick_, middle, tolerance,
+                                     particles_.symmetric() ? words::Begin::longest_or_half : words::Begin::longest);
     report.in_order = words::text_of(quick_.word);
     report.mirrored = quick_.period.mirrored;
     const words::Prover<B, T> prover(quick_.word, shares_in<T>(particles_), shares_in<B>(particles_), report.mirrored);
@@ -323,7 +324,8 @@ std::string word_line(const WordReport& report) {
   return text;
 }
 
-Result words_result(const WordParticles& particles, const std::vector<WordReport>& reports, std::size_t tried) {
+Result words_result(const WordParticles& particles, const std::vector<WordReport>& reports, std::size_t tried,
+                    const std::string& command) {
   // The scene is the state of the first word, so that the file can be run.
   std::string scene = "title = \"words of collapse\"\n[law]\ntype = \"inelastic\"\nrestitution = 0.05\n[initial]\n"
                       "type = \"list\"\nx = [0, 1]\nv = [0, 0]\n[run]\nuntil = 1\n";
@@ -348,6 +350,7 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
   Result result;
   result.attributes = provenance(parse_scene(scene, "words.toml"), fmt::format("mpfr, {} digits", 4 * particles.digits),
                                  "words of collapse");
+  result.attributes.emplace_back("kind", std::string("words"));
   std::vector<std::string> word, low_text, high_text, low_reason, high_reason, stable, gaps, speeds, at_text;
   std::vector<double> low, high, from, to, at, lambda, gamma, factor, stable_from, stable_to;
   std::vector<std::uint64_t> proved, low_proved, high_proved;
@@ -374,6 +377,7 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
        {{"particles", std::uint64_t{particles.particles}},
         {"system", particles.text()},
         {"tried", std::uint64_t{tried}},
+        {"command", command},
         {"digits", std::uint64_t{particles.digits}}},
        {{"word", "1", "letters are gaps from the left", word},
         {"low", "1", "lower end of the restitutions for which the self-similar state exists", low},

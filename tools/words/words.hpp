@@ -61,6 +61,8 @@ std::string word_text(const WordParticles& particles, const WordReport& report);
 /// A line of a table.
 std::string word_line(const WordReport& report);
 
-Result words_result(const WordParticles& particles, const std::vector<WordReport>& reports, std::size_t tried);
+/// `command` is what follows `cradle` to make the result.
+Result words_result(const WordParticles& particles, const std::vector<WordReport>& reports, std::size_t tried,
+                    const std::string& command);
 
 }  // namespace cradle::tools

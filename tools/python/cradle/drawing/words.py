@@ -19,7 +19,7 @@ def draw(words, axes=None):
     """One bar for each range of a word: thick where the state is stable, open where existence is not proved."""
     low, high = np.array(words["low"]), np.array(words["high"])
     order = np.argsort(high, kind="stable")[-MOST:]
-    figure, (ax,) = subplots(axes, 1, 1, figsize=(6.4, 1.2 + 0.17 * max(len(order), 4)))
+    figure, ax = subplots(axes, 1, 1, figsize=(6.4, 1.2 + 0.17 * max(len(order), 4)))
     for row, k in enumerate(order):
         ax.plot([low[k], high[k]], [row, row], color=GREY, lw=1.5, solid_capstyle="butt", zorder=1)
         ax.plot([max(words["proved_from"][k], low[k]), min(words["proved_to"][k], high[k])], [row, row], color=BLUE,

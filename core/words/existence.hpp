@@ -197,8 +197,11 @@ template <Enclosing B, Real T> class Prover {
   }
 
  private:
-  // The signs of a margin on both sides differ, and the eigenpairs there are those of the ball in between.
+  // The signs of a margin on both sides differ, and the eigenpairs there are those of the ball in between. A closing
+  // speed depends on one eigenpair only; where it is 0, the other one has no enclosure, since times are quotients by
+  // it.
   bool is_equality(const End<T>& end, const T& low, const T& high) const {
+    if (end.margin < exact.word.size()) return closing_vanishes(end, low, high);
     const auto around = enclosed(exact, system, between<B>(low, high), end.pairs);
     if (!around) return false;
     bool negative = false, positive = false;
@@ -207,6 +210,25 @@ template <Enclosing B, Real T> class Prover {
       const auto at = enclosed(exact, system, r, followed(system, side, end.pairs));
       if (!at || !within(*at, *around)) return false;
       const B value = margins(exact, r, *at)[end.margin].value;
+      (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
+    }
+    return negative && positive;
+  }
+
+  bool closing_vanishes(const End<T>& end, const T& low, const T& high) const {
+    const auto speeds_at = [&](const B& r) {
+      Eigenpair<T> near = end.pairs.speeds;
+      improve(system.velocities(r.middle()), near, T(std::numeric_limits<T>::epsilon() * T(1024)));
+      return enclosed(exact.velocities(r), system.velocities(r.middle()), near);
+    };
+    const auto around = speeds_at(between<B>(low, high));
+    if (!around) return false;
+    bool negative = false, positive = false;
+    for (const T& side : {low, high}) {
+      const B r(side, 0);
+      const auto at = speeds_at(r);
+      if (!at || !within(*at, *around)) return false;
+      const B value = speeds_of(exact.word, r, exact.shares, at->vector)[end.margin][exact.word[end.margin]];
       (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
     }
     return negative && positive;
@@ -326,7 +348,8 @@ template <Real T> End<T> equality_near(const System<T>& system, const T& yes, co
     const T a = at_yes[k].value, b = at_no[k].value;
     if (!is_positive(a) || !is_negative(b)) continue;
     const T share = a / (a - b);
-    if (!nearest || share < *nearest) nearest = share, end.margin = k;
+    // Where several are 0 at once, the first one, which may be a closing speed: then gaps need not be enclosed.
+    if (!nearest || share < *nearest * (T(1) - T(1) / T(1'000'000))) nearest = share, end.margin = k;
   }
   if (!nearest) return end;
   const auto root = root_between(yes, no, [&](const T& r) { return values(r)[end.margin].value; });

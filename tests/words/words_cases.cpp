@@ -216,6 +216,22 @@ TEST_F(Words, NeedPeriodsThatBecomeShorter) {
   EXPECT_TRUE(is_negative(least()));
 }
 
+// The same state with all signs changed has collisions at the same times, of gaps below 0 that open.
+TEST_F(Words, NeedGapsThatClose) {
+  const System<Real> system(read_word("ababcb", 3), equal<Real>(4));
+  const Real r = number("0.05");
+  State<Real> state = state_of(system, find(system, r, Real(0)).pairs);
+  const auto negative = [&] {
+    std::size_t count = 0;
+    for (const auto& margin : margins(system.word, system.conditions, course(system, r, state), state))
+      count += is_negative(margin.value);
+    return count;
+  };
+  EXPECT_EQ(negative(), 0U);
+  negate(state.w), negate(state.g);
+  EXPECT_EQ(negative(), 6U) << "one for each closing speed";
+}
+
 TEST_F(Words, AreStableForThreeParticlesAndNotForFour) {
   const auto at = number("0.05");
   const auto three = prover(read_word("ab", 2), 3);

@@ -308,7 +308,8 @@ template <Real T, class F> std::optional<T> root_between(const T& a, const T& b,
     x0 = std::exchange(x1, next);
     f0 = std::exchange(f1, f(next));
   }
-  if ((a < x1) != (x1 < b)) return {};
+  const bool inside = a < b ? a < x1 && x1 < b : b < x1 && x1 < a;  // not if it is no number
+  if (!inside) return {};
   return x1;
 }
 

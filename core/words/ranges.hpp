@@ -104,8 +104,11 @@ template <Enclosing B, Real T, Real Q>
 std::vector<Range<T>> ranges(const Prover<B, T>& prover, const System<Q>& quick, const std::vector<Run>& runs,
                              std::size_t points, const Q& tolerance, const T& radius) {
   std::vector<Range<T>> all;
-  for (const Run& run : runs) {
+  for (std::size_t which = 0; which < runs.size(); ++which) {
+    Run run = runs[which];
     if (run.verdict != Verdict::exists) continue;
+    // Near 0 margins can be too small for the short type, which then takes them for 0.
+    if (which == 1 && runs[0].verdict == Verdict::degenerate) run.first = 0;
     Range<T> range;
     range.middle = grid_point<T>((run.first + run.last) / 2, points);
     Found<T> found = find(prover.system, range.middle, T(0));

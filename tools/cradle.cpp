@@ -55,7 +55,8 @@ int main(int argc, char** argv) {
     program.begin_with(first_steps);
     for (const auto add :
          {add_run, add_resume, add_check, add_info, add_export, add_diff, add_theory, add_scenes, add_new, add_plot,
-          add_report, add_cite, add_trust, add_certify, add_ensemble, add_sweep, add_merge, add_completion, add_manual})
+          add_report, add_cite, add_trust, add_certify, add_ensemble, add_sweep, add_merge, add_completion, add_manual,
+          add_words})
       add(program);
     return finish(program.read(argc, argv)());
   } catch (const Error& error) {

@@ -62,6 +62,7 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
             small,
         std::string("cradle run fig9 -o model.h5 --quiet --set run.until=10"),
         std::string("cradle trust collapse3 -o trust.h5 --quiet --digits 16,31"),
+        std::string("cradle words 3 ab -o words.h5 --quiet --digits 10"),
         "cradle ensemble fig2 -o ensemble.h5 --replicas 3 --spread energy=0:10:5 --set output.profiles.times=[30]" +
             small,
         "cradle sweep fig8 -o sweep.h5 --vary law.loss=0.01,0.02 --replicas 2 --set output.zone.from=20" + small}) {
@@ -75,7 +76,7 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
         << file << " holds " << name << ", tools/README.md does not name it: add it there";
   };
   std::size_t groups = 0;
-  for (const char* file : {"dry", "wet", "walls", "model", "trust", "collapse", "ensemble", "sweep"}) {
+  for (const char* file : {"dry", "wet", "walls", "model", "trust", "words", "collapse", "ensemble", "sweep"}) {
     const tools::Result result = tools::read_result((folder / (std::string(file) + ".h5")).string());
     for (const auto& [name, value] : result.attributes) expect(name, file);
     for (const tools::Group& group : result.groups) {

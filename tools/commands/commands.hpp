@@ -49,5 +49,6 @@ void add_sweep(CommandLine& program);
 void add_merge(CommandLine& program);
 void add_completion(CommandLine& program);
 void add_manual(CommandLine& program);
+void add_words(CommandLine& program);
 
 }  // namespace cradle::tools

@@ -48,6 +48,7 @@ class Checks {
   void one_list_of_particles() const {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::list) return;
+    if (entries_.contains("initial.word")) return word_alone();
     const bool inline_particles = !initial.x.empty() || entries_.contains("initial.x");
     if (initial.file && inline_particles)
       throw Error(place("initial.file"), "two lists of particles", "initial.file and initial.x", "remove one of them");
@@ -71,6 +72,25 @@ class Checks {
       if (const auto order = compare_decimals(initial.x[i], initial.x[i - 1]); std::is_lteq(order))
         throw Error(item_place("initial.x", i), std::is_eq(order) ? "coincident particles" : "not increasing",
                     fmt::format("{} after {}", initial.x[i], initial.x[i - 1]), "give increasing positions");
+  }
+
+  // A word says where its particles are and how they move.
+  void word_alone() const {
+    for (const char* key : {"initial.x", "initial.v", "initial.file"})
+      if (entries_.contains(key))
+        throw Error(place(key), "particles of a word and others", "initial.word too", "remove one of them");
+    if (scene_.law.type != LawType::inelastic)
+      throw Error(place("initial.word"), "words are of particles that bounce", *scene_.initial.file,
+                  "give law.type = \"inelastic\"");
+    const auto wall_at = [&](const char* key, const WallAt& wall, const char* position) {
+      if (!wall.position) return;
+      if (*wall.position != Decimal(position) || wall.speed != Decimal("0") || wall.temperature ||
+          wall.restitution != scene_.law.restitution)
+        throw Error(place(key), "not a wall of a word", wall.position->text,
+                    std::string("give a wall at ") + position + ", at rest, with the restitution of the particles");
+    };
+    wall_at("walls.left.position", scene_.walls.left, "0");
+    wall_at("walls.right.position", scene_.walls.right, "1");
   }
 
   void two_clusters() const {

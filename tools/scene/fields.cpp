@@ -231,6 +231,9 @@ const Field all_fields[] = {
      "CSV file of the particles, relative to the scene: a line x,v or x,v,m, then decimals, x increasing; or a result, "
      "the last snapshot of which is taken if it has all particles; results hold the particles themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
+    {"initial.word", initial_of<&Initial::file>, "", "", "", &list,
+     "a word of collisions, letters are gaps from the left: the particles start on its self-similar state (`cradle "
+     "words`), at distances that add up to 1; instead of x and v"},
     {"initial.length", initial_of<&Initial::length>, "l", "0", "[0, inf)", &list,
      "circumference of the ring on which the particles are; 0: on a line"},
     {"initial.v", initial_of<&Initial::v>, "l/t", "", any, &list, "velocities; instead of a file"},

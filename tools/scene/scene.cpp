@@ -13,6 +13,7 @@
 #include "cradle/tools/scene/list_file.hpp"
 #include "cradle/tools/scene/overrides.hpp"
 #include "cradle/tools/scene/source.hpp"
+#include "cradle/tools/words/start.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -67,7 +68,11 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   sort_times(scene.output.masses);
   sort_times(scene.output.structure.times);
   sort_times(scene.output.pair_distribution.times);
-  if (scene.initial.file) read_list(path.parent_path() / *scene.initial.file, scene);
+  // Either becomes a list of particles: a file, or a word, which is kept in the same place until then.
+  if (const auto word = entries.find("initial.word"); word != entries.end())
+    start_from_word(word->second.place, scene);
+  else if (scene.initial.file)
+    read_list(path.parent_path() / *scene.initial.file, scene);
   return scene;
 }
 

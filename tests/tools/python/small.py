@@ -2,6 +2,7 @@
 import functools
 
 import cradle
+from cradle import program
 
 SHOCK = {"initial.particles": 200, "run.until": 60, "output.snapshots": [20, 60], "output.profiles.times": [30, 60],
          "output.series.points": 20}
@@ -69,10 +70,17 @@ def tagged_ensemble():
 
 
 @functools.cache
+def words():
+    """A word of three particles."""
+    program.call(["words", "3", "ab", "--digits", "10", "-o", "words.h5"])
+    return "words.h5"
+
+
+@functools.cache
 def page(make):
     """The text of the report of one of these, beside it with .html."""
     with open(cradle.report(make()), encoding="utf-8") as file:
         return file.read()
 
 
-ALL = (shock, ensemble, sweep, collapse, trust, tagged, tagged_ensemble)
+ALL = (shock, ensemble, sweep, collapse, trust, tagged, tagged_ensemble, words)

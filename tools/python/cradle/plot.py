@@ -52,6 +52,7 @@ PICTURES = {
     "scenarios": "Whether two clusters pass or stick, against the loss.",
     "regimes": "What the replicas have come to, in shares.",
     "sweep": "What depends on the parameters that were varied.",
+    "words": "For which restitutions words of collapse exist, and where they are stable.",
     "trust": "Digits that runs of rising precision share with the last one.",
     "certificate": "Of a proof: smallest gap, and how well places and gaps are known.",
 }

@@ -146,7 +146,7 @@ class Result:
 
     @property
     def kind(self) -> str:
-        """"run", "ensemble", "sweep", "trust" or "point"."""
+        """"run", "ensemble", "sweep", "trust", "words" or "point"."""
         if self.label:
             return "point"
         return self.attributes.get("kind") or ("trust" if len(self.trust) else "run")

@@ -1,0 +1,369 @@
+#pragma once
+// The restitutions for which a word has a self-similar state: found approximately, then proved.
+//
+//   scan      at many restitutions: eigenvalues, signs of the margins. An interval narrower than the grid is missed.
+//   end       where a margin changes its sign, by the secant method in a long type
+//   proof     balls of restitutions, one beside the other from the middle to the ends, in each of which all margins are
+//             positive; and a ball around each end in which one margin is 0: it is positive on one side, negative on
+//             the other, and continuous in between, since the eigenpairs in the ball are unique
+//
+// What is proved is existence inside and the equality at the ends. That there is nothing outside is only seen.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/words/state.hpp"
+
+namespace cradle::words {
+
+enum class Verdict { none, degenerate, exists };
+
+// Degenerate: no margin is negative, but some are 0, so far as the type can tell.
+template <Real T> Verdict verdict(const std::vector<Margin<T>>& margins, const T& tolerance) {
+  Verdict found = Verdict::exists;
+  for (const Margin<T>& margin : margins) {
+    if (margin.value < -tolerance * margin.scale || !(margin.scale == margin.scale)) return Verdict::none;
+    if (!(margin.value > tolerance * margin.scale)) found = Verdict::degenerate;
+  }
+  return found;
+}
+
+// The best state at one restitution.
+template <Real T> struct Found {
+  Verdict verdict = Verdict::none;
+  Pairs<T> pairs{};
+};
+
+template <Real T> Found<T> find(const System<T>& system, const T& r, const T& tolerance) {
+  Found<T> best;
+  const auto closing = [&](const std::vector<T>& speeds) {
+    std::vector<T> w = speeds;
+    for (const std::size_t letter : system.word) {
+      if (!planted(7) && w[letter] < -tolerance) return false;
+      collide(w, letter, r, system.shares);
+    }
+    return true;
+  };
+  for (Pairs<T>& pairs : all_pairs(system, r, closing)) {
+    const Verdict of = verdict(margins(system, r, pairs), tolerance);
+    if (best.verdict < of) best = {of, std::move(pairs)};
+  }
+  return best;
+}
+
+// Where a period begins: with the first letter to which there is a flight, or after the last collision before the
+// longest flight, as a part of a period. The latter keeps most digits: a flight that vanishes at an end, and is a small
+// difference there, is then not the last one of the way backwards. A half whose mirror image is the other one is used
+// if it is allowed.
+enum class Begin { first, longest, longest_or_half };
+
+// The same motion with its collisions in the order of their times at one restitution: then flights are positive, and no
+// margin is a difference of large ones.
+template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const T& tolerance, Begin where) {
+  const std::size_t gaps = system.shares.left.size(), length = system.word.size();
+  T rate(1);
+  const auto flights = [&](const System<T>& of) {
+    const Found<T> found = find(of, r, tolerance);
+    if (found.verdict == Verdict::none) return std::vector<T>();
+    const State<T> state = state_of(of, found.pairs);
+    rate = state.growth * state.lambda;
+    return course(of, r, state).flight;
+  };
+  const auto negative = [&](const std::vector<T>& times) {
+    std::size_t k = 0;
+    T scale(0);
+    for (const T& time : times) scale += magnitude(time);
+    while (k < times.size() && !(times[k] < -tolerance * scale)) ++k;
+    return k;
+  };
+  std::vector<T> times = flights(system);
+  for (std::size_t swaps = 0; swaps < length * length && times.size() == length; ++swaps) {
+    std::size_t late = negative(times);
+    if (late == length) break;
+    Word word = system.word;
+    if (late == 0) word = rotated(std::move(word), length - 1), late = 1;
+    if (touch(word[late - 1], word[late])) break;
+    std::swap(word[late - 1], word[late]);
+    system = System<T>(std::move(word), system.shares);
+    times = flights(system);
+  }
+  if (times.size() != length) return system;
+  std::size_t begin = length, half = length;
+  T longest(0), longest_half(0);
+  for (std::size_t k = 0; k < length; ++k) {
+    // Letters that do not touch may close at the same time.
+    if (!(times[k] > times[(k + 1) % length] / T(1000) / (k + 1 < length ? T(1) : rate))) continue;
+    T period(0);
+    for (std::size_t i = 0; i < length; ++i) period += times[(k + i) % length] / (k + i < length ? T(1) : rate);
+    const T part = times[k] / period;
+    if (begin == length || (where != Begin::first && part > longest)) begin = k, longest = part;
+    if (has_mirrored_half(rotated(system.word, k), gaps) && part > longest_half) half = k, longest_half = part;
+  }
+  if (where == Begin::longest_or_half && half < length)
+    return System<T>(rotated(system.word, half), system.shares, true);
+  return begin == length ? system : System<T>(rotated(system.word, begin), system.shares);
+}
+
+// The state near a known one at another restitution, by Newton's method, to an error of about `small`.
+template <Real T> Pairs<T> followed(const System<T>& system, const T& r, Pairs<T> pairs, const T& small) {
+  improve(system.velocities(r), pairs.speeds, small);
+  improve(system.gaps(r, pairs.speeds.vector), pairs.gaps, T(small * pairs.gaps.value));
+  return pairs;
+}
+template <Real T> Pairs<T> followed(const System<T>& system, const T& r, Pairs<T> pairs) {
+  return followed(system, r, std::move(pairs), T(std::numeric_limits<T>::epsilon() * T(1024)));
+}
+
+// Both eigenpairs at all restitutions of a ball, near an approximation at its middle.
+template <Enclosing B, Real T>
+std::optional<Pairs<B>> enclosed(const System<B>& exact, const System<T>& system, const B& r, const Pairs<T>& near) {
+  const T& middle = r.middle();
+  const auto speeds = enclosed(exact.velocities(r), system.velocities(middle), near.speeds);
+  if (!speeds) return {};
+  const auto gaps = enclosed(exact.gaps(r, speeds->vector), system.gaps(middle, near.speeds.vector), near.gaps);
+  if (!gaps) return {};
+  return Pairs<B>{*speeds, *gaps};
+}
+
+// The ball of all numbers between two.
+template <Enclosing B, Real T> B between(const T& a, const T& b) {
+  const T middle = (a + b) / T(2);
+  const B to_a = B(middle, 0) - B(a, 0), to_b = B(b, 0) - B(middle, 0);
+  return B::widened(B(middle, 0), to_a.size() < to_b.size() ? to_b.size() : to_a.size());
+}
+
+template <Real T> struct Interval { T low, high; };
+
+// An end of an interval of restitutions.
+template <Real T> struct End {
+  // A margin is 0; two eigenvalues of the velocity map meet, and are complex beyond; r = 0.
+  enum class Is { equality, meeting, zero, unresolved } is = Is::unresolved;
+  T at{0};
+  std::size_t margin = 0;  // equality: which one; of several the first
+  Pairs<T> pairs{};        // equality: the state at the end
+  T lambda{0};             // meeting: the double eigenvalue
+};
+
+template <Enclosing B, Real T> class Prover {
+ public:
+  static constexpr int most_tries = 20'000;
+
+  Prover(const Word& word, Shares<T> shares, Shares<B> exact_shares, bool mirrored = false)
+      : system(word, std::move(shares), mirrored), exact(word, std::move(exact_shares), mirrored) {}
+
+  System<T> system;
+  System<B> exact;
+
+  // Whether all margins are positive at all restitutions of the ball; the approximation is followed to its middle.
+  bool holds(const B& r, Pairs<T>& near, const T& width) const {
+    Pairs<T> here = followed(system, r.middle(), near, T(width / T(1000)));
+    const auto pairs = enclosed(exact, system, r, here);
+    if (!pairs) return false;
+    for (const Margin<B>& margin : margins(exact, r, *pairs))
+      if (!is_positive(margin.value)) return false;
+    near = std::move(here);
+    return true;
+  }
+
+  // Proves existence from a restitution on towards another one, in steps that grow after one that succeeds and shrink
+  // after one that fails. Returns how far it came.
+  T march(T from, const T& to, Pairs<T> near, std::uint64_t& balls) const {
+    const bool up = from < to;
+    T step = (to - from) / T(64);
+    for (int tries = 0; tries < most_tries && (up ? from < to : to < from); ++tries) {
+      T next = from + step;
+      if (up ? !(next < to) : !(to < next)) next = to;
+      if (holds(between<B>(from, next), near, magnitude(T(next - from)))) {
+        from = next;
+        ++balls;
+        step = step * T(9) / T(8);
+      } else {
+        step = (next - from) * T(2) / T(3);
+        if (magnitude(step) < magnitude(T(to - from)) / T(1'000'000)) break;
+      }
+    }
+    return from;
+  }
+
+  // Proves what the end is, between two restitutions: the state ceases to exist in between.
+  bool ends(const End<T>& end, const T& low, const T& high) const {
+    if (end.is == End<T>::Is::equality) return is_equality(end, low, high);
+    return end.is == End<T>::Is::meeting && is_meeting(end, low, high);
+  }
+
+ private:
+  // The signs of a margin on both sides differ, and the eigenpairs there are those of the ball in between. A closing
+  // speed depends on one eigenpair only; where it is 0, the other one has no enclosure, since times are quotients by
+  // it.
+  bool is_equality(const End<T>& end, const T& low, const T& high) const {
+    if (end.margin < exact.word.size()) return closing_vanishes(end, low, high);
+    const auto around = enclosed(exact, system, between<B>(low, high), end.pairs);
+    if (!around) return false;
+    bool negative = false, positive = false;
+    for (const T& side : {low, high}) {
+      const B r(side, 0);
+      const auto at = enclosed(exact, system, r, followed(system, side, end.pairs));
+      if (!at || !within(*at, *around)) return false;
+      const B value = margins(exact, r, *at)[end.margin].value;
+      (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
+    }
+    return negative && positive;
+  }
+
+  bool closing_vanishes(const End<T>& end, const T& low, const T& high) const {
+    const auto speeds_at = [&](const B& r) {
+      Eigenpair<T> near = end.pairs.speeds;
+      improve(system.velocities(r.middle()), near, T(std::numeric_limits<T>::epsilon() * T(1024)));
+      return enclosed(exact.velocities(r), system.velocities(r.middle()), near);
+    };
+    const auto around = speeds_at(between<B>(low, high));
+    if (!around) return false;
+    bool negative = false, positive = false;
+    for (const T& side : {low, high}) {
+      const B r(side, 0);
+      const auto at = speeds_at(r);
+      if (!at || !within(*at, *around)) return false;
+      const B value = speeds_of(exact.word, r, exact.shares, at->vector)[end.margin][exact.word[end.margin]];
+      (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
+    }
+    return negative && positive;
+  }
+
+  // Let x(r) be the root of the derivative of the characteristic polynomial p near the double eigenvalue: unique in a
+  // ball, since the second derivative has one sign there and the first one two. Then p(x(r)), which is 0 where two
+  // eigenvalues meet, has different signs on both sides. With x within h of x0, p(x) is p(x0) + p'(ball) (x - x0).
+  bool is_meeting(const End<T>& end, const T& low, const T& high) const {
+    const T width = magnitude(T(high - low)) * T(1'000'000);
+    const B near = between<B>(T(end.lambda - width), T(end.lambda + width));
+    const auto at = [&](const B& r) { return characteristic_polynomial(exact.velocities(r)); };
+    const Polynomial<B> first = derivative(at(between<B>(low, high))), second = derivative(first);
+    const B bend = value_at(second, near);
+    const B left = value_at(first, B(T(end.lambda - width), 0)), right = value_at(first, B(T(end.lambda + width), 0));
+    if (!(is_positive(bend) && is_negative(left) && is_positive(right)) &&
+        !(is_negative(bend) && is_positive(left) && is_negative(right)))
+      return false;
+    bool negative = false, positive = false;
+    for (const T& side : {low, high}) {
+      const Polynomial<B> p = at(B(side, 0));
+      const B value = value_at(p, B(end.lambda, 0)) + value_at(derivative(p), near) * (near - B(end.lambda, 0));
+      (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
+    }
+    return negative && positive;
+  }
+
+  static bool within(const B& inner, const B& outer) { return (inner - B(outer.middle(), 0)).size() <= outer.radius(); }
+  static bool within(const Eigenpair<B>& inner, const Eigenpair<B>& outer) {
+    bool all = inner.fixed == outer.fixed && within(inner.value, outer.value);
+    for (std::size_t i = 0; i < inner.vector.size(); ++i)
+      all = all && (i == inner.fixed || within(inner.vector[i], outer.vector[i]));
+    return all;
+  }
+  static bool within(const Pairs<B>& inner, const Pairs<B>& outer) {
+    return within(inner.speeds, outer.speeds) && within(inner.gaps, outer.gaps);
+  }
+};
+
+// Runs of restitutions with the same verdict on a grid in (0, 1).
+struct Run {
+  Verdict verdict;
+  std::size_t first, last;  // points of the grid: (k + 1)/(points + 1)
+};
+
+template <Real T> T grid_point(std::size_t k, std::size_t points) {
+  return T(static_cast<std::int64_t>(k + 1)) / T(static_cast<std::int64_t>(points + 1));
+}
+
+template <Real T> std::vector<Run> scan(const System<T>& system, std::size_t points, const T& tolerance) {
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < points; ++k) {
+    const Verdict here = find(system, grid_point<T>(k, points), tolerance).verdict;
+    if (runs.empty() || runs.back().verdict != here)
+      runs.push_back({here, k, k});
+    else
+      runs.back().last = k;
+  }
+  return runs;
+}
+
+// Between a restitution at which a state exists and one at which none does: nearer ones.
+template <Real T> Interval<T> bisected(const System<T>& system, T yes, T no, const T& tolerance, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    const T middle = (yes + no) / T(2);
+    (find(system, middle, tolerance).verdict == Verdict::exists ? yes : no) = middle;
+  }
+  return {yes, no};
+}
+
+// The root of f between two places where its signs differ, by the secant method; none if that leaves them.
+template <Real T, class F> std::optional<T> root_between(const T& a, const T& b, F f) {
+  T x0 = a, x1 = b, f0 = f(a), f1 = f(b);
+  const T small = magnitude(T(b - a)) * std::numeric_limits<T>::epsilon();
+  for (int step = 0; step < 60 && magnitude(T(x1 - x0)) > small && !(f1 == f0); ++step) {
+    const T next = x1 - f1 * (x1 - x0) / (f1 - f0);
+    x0 = std::exchange(x1, next);
+    f0 = std::exchange(f1, f(next));
+  }
+  const bool inside = a < b ? a < x1 && x1 < b : b < x1 && x1 < a;  // not if it is no number
+  if (!inside) return {};
+  return x1;
+}
+
+// Where the state's eigenvalue meets another one, between a restitution at which it exists and one at which it does
+// not; unresolved if it does not.
+template <Real T> End<T> meeting_near(const System<T>& system, const T& yes, const T& no, const Pairs<T>& known) {
+  End<T> end;
+  const auto p_at = [&](const T& r) { return characteristic_polynomial(system.velocities(r)); };
+  const T& lambda = known.speeds.value;
+  for (const T& turn : real_roots(derivative(p_at(yes)), T(0), T(1)))
+    if (!is_positive(end.lambda) || magnitude(T(turn - lambda)) < magnitude(T(end.lambda - lambda))) end.lambda = turn;
+  const auto extreme = [&](const T& r) {
+    const Polynomial<T> p = p_at(r), first = derivative(p), second = derivative(first);
+    for (int step = 0; step < 12; ++step) end.lambda -= value_at(first, end.lambda) / value_at(second, end.lambda);
+    return value_at(p, end.lambda);
+  };
+  if (!is_positive(end.lambda) || is_negative(extreme(yes)) == is_negative(extreme(no))) return {};
+  const auto root = root_between(yes, no, extreme);
+  if (!root) return {};
+  end.is = End<T>::Is::meeting;
+  end.at = *root;
+  extreme(end.at);
+  return end;
+}
+
+// Where a margin of the state becomes 0.
+template <Real T> End<T> equality_near(const System<T>& system, const T& yes, const T& no, const Pairs<T>& known) {
+  End<T> end;
+  Pairs<T> pairs = followed(system, yes, known);
+  const auto values = [&](const T& r) {
+    pairs = followed(system, r, std::move(pairs));
+    return margins(system, r, pairs);
+  };
+  const std::vector<Margin<T>> at_yes = values(yes), at_no = values(no);
+  std::optional<T> nearest;  // as a share of the way
+  for (std::size_t k = 0; k < at_yes.size(); ++k) {
+    const T a = at_yes[k].value, b = at_no[k].value;
+    if (!is_positive(a) || !is_negative(b)) continue;
+    const T share = a / (a - b);
+    // Where several are 0 at once, the first one, which may be a closing speed: then gaps need not be enclosed.
+    if (!nearest || share < *nearest * (T(1) - T(1) / T(1'000'000))) nearest = share, end.margin = k;
+  }
+  if (!nearest) return end;
+  const auto root = root_between(yes, no, [&](const T& r) { return values(r)[end.margin].value; });
+  if (!root) return end;
+  end.is = End<T>::Is::equality;
+  end.at = *root;
+  end.pairs = std::move(pairs);
+  return end;
+}
+
+template <Real T> End<T> end_near(const System<T>& system, const T& yes, const T& no, const Pairs<T>& known) {
+  const End<T> meeting = meeting_near(system, yes, no, known);
+  return meeting.is == End<T>::Is::meeting ? meeting : equality_near(system, yes, no, known);
+}
+
+}  // namespace cradle::words

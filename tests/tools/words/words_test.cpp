@@ -1,0 +1,118 @@
+// `cradle words`, and scenes that start from a word.
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+
+namespace cradle::tests::words_test {
+
+class WordsCommand : public ProgramTest {
+ protected:
+  // How many whole periods of the word the run's collisions follow. Letters that do not touch commute.
+  static std::size_t periods_kept(const std::vector<std::uint64_t>& made, const std::string& word) {
+    std::string open;  // what is expected and not made yet
+    std::size_t kept = 0;
+    for (const std::uint64_t gap : made) {
+      const char letter = static_cast<char>('a' + gap);
+      open += word;
+      const auto place = open.find(letter);
+      for (std::size_t k = 0; k < place; ++k)
+        if (place == open.npos || std::abs(open[k] - letter) <= 1) return kept / word.size();
+      open.erase(place, 1);
+      ++kept;
+      // No more than a period ahead.
+      if (open.size() > 2 * word.size()) open.resize(open.size() - word.size());
+    }
+    return kept / word.size();
+  }
+};
+
+TEST_F(WordsCommand, PrintsAProvedRangeAndWritesIt) {
+  const Printed printed = shell("cradle words 4 ababcb", 0);
+  EXPECT_TRUE(has(printed.out, "for r from 0 to 0.101020514433643803605431850588")) << printed.out;
+  EXPECT_TRUE(has(printed.out, "existence         proved"));
+  EXPECT_TRUE(has(printed.out, "three particles meet"));
+  EXPECT_TRUE(has(printed.out, "unstable, proved"));
+  const tools::Result result = read("ababcb.h5");
+  EXPECT_EQ(numbers<std::string>(result, "words", "word"), std::vector<std::string>{"ababcb"});
+  EXPECT_EQ(numbers<std::uint64_t>(result, "words", "proved"), std::vector<std::uint64_t>{1});
+  EXPECT_NEAR(numbers(result, "words", "high").front(), 5 - 2 * std::sqrt(6.), 1e-15);
+  // The file's scene is the state that is printed.
+  shell("cradle export ababcb.h5 --to csv && cradle check csv/scene.toml", 0);
+}
+
+TEST_F(WordsCommand, RefusesWhatIsNoWord) {
+  const auto expect = [&](const std::string& arguments, const std::string& message) {
+    const Printed printed = shell("cradle words " + arguments, 2);
+    EXPECT_TRUE(has(printed.err, message)) << printed.err;
+    EXPECT_FALSE(exists("a.h5"));
+  };
+  expect("3 abd", "WORD: a letter that is no gap (found d in abd): use the letters a to b");
+  expect("4 aabcb", "gap a closes twice running");
+  expect("4 abab", "gap c never closes (found abab)");
+  expect("4 abcbabcb", "a word that repeats a shorter one");
+  expect("2 a", "not a number of particles");
+  expect("4", "no word: give either a word or --search LENGTH");
+  expect("4 abcb --masses 1,2,1", "not one mass per particle (found 3 for 4 particles)");
+  expect("3 ab --masses 1,0,1", "not a mass (found 0)");
+  expect("3 ab --walls up", "no such walls (found up)");
+  expect("3 ab --at 0.08", "no such state at this restitution (found 0.08): give one between 0 and 0.0717967697");
+}
+
+TEST_F(WordsCommand, SearchesAllWords) {
+  const Printed printed = shell("cradle words 4 --search 5 --digits 10 -o four.h5", 0);
+  EXPECT_TRUE(has(printed.out, "3 of 3 words up to 5 letters exist for some restitution")) << printed.out;
+  const auto high = numbers(read("four.h5"), "words", "high");
+  ASSERT_EQ(high.size(), 3U);
+  EXPECT_NEAR(high[0], 3 - 2 * std::sqrt(2.), 1e-10) << "abc, which is acb";
+  EXPECT_NEAR(high[1], 0.191659578393, 1e-10) << "abcb";
+}
+
+// Three particles at a wall: with the mirror image of the wall six, if the wall were elastic.
+TEST_F(WordsCommand, KnowsWallsAndMasses) {
+  EXPECT_TRUE(has(shell("cradle words 3 abcb --walls left -o a.h5", 0).out, "right of a wall"));
+  EXPECT_TRUE(has(shell("cradle words 3 abcdcb --walls both -o a.h5", 0).out, "nowhere"));
+  // A light particle between two heavy ones collapses up to a larger restitution than between equal ones.
+  shell("cradle words 3 ab --masses 4,1,4 -o light.h5 && cradle words 3 ab --masses 1,4,1 -o heavy.h5", 0);
+  EXPECT_GT(numbers(read("light.h5"), "words", "high").front(), 0.08);
+  EXPECT_LT(numbers(read("heavy.h5"), "words", "high").front(), 0.07);
+}
+
+// An error of the last bit grows by the state's factor in every period, until it is as large as the state: 230 digits
+// are 766 bits. How large it has to be to change a collision, and how large it was, is worth a period or two.
+TEST_F(WordsCommand, RunsKeepTheirWordForAsLongAsTheirDigitsLast) {
+  for (const std::string restitution : {"0.09", "0.1", "0.101"}) {
+    shell("cradle words 4 ababcb --digits 10 -o factor.h5 --at " + restitution, 0);
+    const double factor = numbers(read("factor.h5"), "words", "factor").front();
+    write("word.toml", "[law]\ntype = 'inelastic'\nrestitution = " + restitution +
+                           "\n[initial]\ntype = 'list'\nword = 'ababcb'\n[run]\nuntil = 5\nprecision = 'mpfr'\n"
+                           "digits = 230\nstop_gap = '1e-2000'\n[output]\nevents = true\nseries = { points = 3 }\n");
+    shell("cradle run word.toml --quiet -o word.h5");
+    const auto left = numbers<std::uint64_t>(read("word.h5"), "events", "left");
+    EXPECT_NEAR(static_cast<double>(periods_kept(left, "ababcb")), 766 * std::log(2.) / std::log(factor), 2)
+        << restitution;
+  }
+}
+
+TEST_F(WordsCommand, ScenesStartFromAWordInEveryType) {
+  write("word.toml", "[law]\ntype = 'inelastic'\nrestitution = 0.05\n[initial]\ntype = 'list'\nword = 'ababcb'\n[run]\n"
+                     "until = 5\nstop_gap = 1e-30\n[output]\nevents = true\nseries = { points = 3 }\n");
+  for (const char* type : {"double", "long double", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
+    const std::string digits = std::string(type) == "mpfr" ? " --set run.digits=60" : "";
+    shell("cradle run word.toml --quiet -o word.h5 --set 'run.precision=\"" + std::string(type) + "\"'" + digits);
+    const auto left = numbers<std::uint64_t>(read("word.h5"), "events", "left");
+    // Errors of 1e-16 grow by 15,000 in a period.
+    EXPECT_GE(periods_kept(left, "ababcb"), 3U) << type;
+  }
+  const Printed refused = shell("cradle run word.toml --set law.restitution=0.2", 2);
+  EXPECT_TRUE(has(refused.err, "initial.word: a word without a self-similar state at this restitution (found ababcb at "
+                               "0.2): see `cradle words 4 ababcb`"))
+      << refused.err;
+  EXPECT_TRUE(has(shell("cradle run word.toml --set initial.word=abba", 2).err, "closes twice running"));
+  EXPECT_TRUE(has(shell("cradle run word.toml --set 'initial.x=[1, 2]'", 2).err, "particles of a word and others"));
+}
+
+}  // namespace cradle::tests::words_test

@@ -74,6 +74,11 @@ TYPED_TEST(FallIn, AColumnKeepsItsEnergy) {
   twin.advance(6, [&](const Collision<double>& collision) { wanted.add(collision.left); });
   EXPECT_EQ(found, wanted);
   EXPECT_GT(run.counts().collisions, 20U);
+  Simulation<T, Inelastic<T>, PositionChain<T, Gravity<T>>> places(Inelastic<T>(T(1)),
+                                                                   PositionChain<T, Gravity<T>>(column, T(0)));
+  Sequence of_places;
+  places.advance(until, [&](const Collision<T>& collision) { of_places.add(collision.left); });
+  EXPECT_EQ(of_places, wanted);
   const auto d = configuration_at(twin, 6.);
   for (std::size_t j = 0; j < d.x.size(); ++j) EXPECT_NEAR(to_double(c.x[j]), d.x[j], 1e-12);
 }

@@ -14,10 +14,18 @@ template <Real T> struct Flight {
   static auto state(auto& self) { return std::tie(self.x, self.v); }
 };
 
+// Adds to the straight flight of a particle, after a time, what gravity does in it.
+template <Real T>
+Flight<T> fallen(Flight<T> straight, const Particles<T>& particles, ParticleIndex particle, const T& time) {
+  if (!particles.falls(particle)) return straight;
+  const T gained = particles.acceleration() * time;
+  return {straight.x + T(gained * time / T(2)), straight.v + gained};
+}
+
 // The flight of a particle that has not collided, at a time since the start.
 template <Real T> Flight<T> undisturbed(const Particles<T>& particles, ParticleIndex particle, const T& elapsed) {
   const T v = particles.velocity(particle);
-  return {two_sum(particles.position(particle), T(v * elapsed)), {v, T(0)}};
+  return fallen<T>({two_sum(particles.position(particle), T(v * elapsed)), {v, T(0)}}, particles, particle, elapsed);
 }
 
 // Times are local ones of the chain that the clock belongs to.
@@ -27,7 +35,8 @@ template <Real T> class Anchor {
 
   Flight<T> flight(const Particles<T>& particles, const Clock<T>& clock, const T& time) const {
     if (!collided_) return undisturbed(particles, particle_, clock.elapsed(time));
-    return {from_.x + T(from_.v.value() * difference(Pair<T>{time, T(0)}, since_)), from_.v};
+    const T flown = difference(Pair<T>{time, T(0)}, since_);
+    return fallen<T>({from_.x + T(from_.v.value() * flown), from_.v}, particles, particle_, flown);
   }
 
   T velocity(const Particles<T>& particles) const {

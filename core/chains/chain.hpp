@@ -57,14 +57,15 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
   { chain.account() } -> std::same_as<const Account<typename C::Scalar>&>;
 
-  // Enters the energy lost by a collision at a gap; all energy lost; the kinetic energy of all particles of the scene.
+  // Enters the energy lost by a collision at a gap; all energy lost.
   changing.lose(s, time);
   { chain.energy_lost() } -> std::convertible_to<typename C::Scalar>;
-  { chain.kinetic_energy() } -> std::convertible_to<typename C::Scalar>;
 
-  // Reading, at a local time not before the last collision: a gap; the outermost particles that have collided, and the
-  // number of particles between them, both included; the configuration.
+  // Reading, at a local time not before the last collision: a gap; the kinetic energy of all particles of the scene;
+  // the outermost particles that have collided, and the number of particles between them, both included; the
+  // configuration.
   { chain.gap_at(s, time) } -> std::convertible_to<typename C::Scalar>;
+  { chain.kinetic_energy(time) } -> std::convertible_to<typename C::Scalar>;
   { chain.front_left(time) } -> std::convertible_to<typename C::Scalar>;
   { chain.front_right(time) } -> std::convertible_to<typename C::Scalar>;
   { chain.collided_particles() } -> std::same_as<ParticleIndex>;

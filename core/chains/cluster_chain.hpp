@@ -135,7 +135,7 @@ template <Real T> class ClusterChain {
     return (undisturbed_place(right(front), time) - gap_at(front, time)).value();
   }
   // Of all particles of the scene, now; reads all held cells. (cluster_chain_configuration.hpp)
-  T kinetic_energy() const;
+  T kinetic_energy(const T& time) const;
 
   static auto state(auto& self) {
     return std::tie(self.line_, self.range_, self.vacated_, self.active_, self.beyond_, self.centre_, self.carried_);
@@ -197,6 +197,7 @@ template <Real T> class ClusterChain {
         range_(particles_->on_ring(), held.first, particles_->count() - 2 - held.last, 3),
         frame_(particles_->momentum() / particles_->total_mass()) {
     require_particles(*particles_, start);
+    require_no_gravity(*particles_, "particles that merge have none");
     lay_out({}, static_cast<std::size_t>(held.last - held.first + 2));
     for (Slot s = first(); s <= last(); ++s)
       line_.gaps.put(s, load(held.first + static_cast<ParticleIndex>(s - first()), T(0), s < last() || on_ring()));

@@ -10,7 +10,7 @@
 namespace cradle {
 
 // Particles that are not held move like the outermost held one.
-template <Real T> T ClusterChain<T>::kinetic_energy() const {
+template <Real T> T ClusterChain<T>::kinetic_energy(const T&) const {
   const T total = particles_->total_mass();
   const auto moving = relative_motion(total, T(0), [&](const T& c, const auto& add) {
     for (Slot s = first();; s = right(s)) {

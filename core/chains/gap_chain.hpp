@@ -7,6 +7,9 @@
 // No gap is a difference of positions, so gaps keep their relative precision down to underflow, however small they are
 // against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
 //
+// Under gravity (gravity.hpp) gaps to walls are parabolas of time, and collisions at them or beside them are made off
+// the hot path; all others are as without it.
+//
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
 // positions come from the centre of mass, velocities from the total momentum.
@@ -42,10 +45,11 @@ template <Real T> struct FrontMove {
   WallTally<T> wall;  // of the wall at this end
 };
 
-template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
+template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>> class GapChain {
  public:
   using Scalar = T;
   using Line = GapLine<T, Masses>;
+  static constexpr bool falls = Field::acts;
   static constexpr bool may_collapse = true;
   static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
 
@@ -76,15 +80,39 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   // Local time of the next collision of a gap that is closing.
-  T due(Slot s) const { return line_.due(s); }
-  double queue_due(Slot s) const { return line_.queue_due(s); }
+  T due(Slot s) const {
+    if constexpr (falls && !keys_are_exact)
+      if (field_.pulls(particle(s))) return line_.due(field_, s).value_or(far_away<T>());
+    return line_.due(s);
+  }
+  double queue_due(Slot s) const {
+    if constexpr (falls && !keys_are_exact)
+      if (field_.pulls(particle(s))) return line_.queue_due(field_, s);
+    return line_.queue_due(s);
+  }
+  // At the gap's local time; at another time; at its next collision.
   const T& closing(Slot s) const { return line_.closing(s); }
+  T closing_at(Slot s, const T& time) const {
+    if constexpr (falls)
+      if (field_.pulls(particle(s))) return line_.approach(field_, s).closing_after(line_.gaps.flown(s, time));
+    return closing(s);
+  }
+  T closing_when_due(Slot s) const {
+    if constexpr (falls)
+      if (field_.pulls(particle(s))) return line_.approach(field_, s).meeting_speed().value_or(T(0));
+    return closing(s);
+  }
 
   // ---- events (inlined by force, see gap_line.hpp)
   template <class Law>
   [[gnu::always_inline]] CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
-    if (!range_.inside(s, s)) [[unlikely]]
-      return collide_at_end(law, s, time);
+    if constexpr (falls) {  // beside the gap to a wall too
+      if (!range_.inside(s - 1, s + 1)) [[unlikely]]
+        return collide_at_end(law, s, time);
+    } else {
+      if (!range_.inside(s, s)) [[unlikely]]
+        return collide_at_end(law, s, time);
+    }
     return line_.strike(s - 1, s, s + 1, time, outcome(law, s, time), Notice::none);
   }
 
@@ -94,6 +122,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     line_.gaps.move_origin(local, [this](auto&& each) {
       for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
     });
+    foresee_walls();
     memory_.move_origin(local);
     for (Anchor<T>* anchor : {&left_, &right_}) anchor->move_origin(local);
     return T(0);
@@ -135,13 +164,17 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   }
 
   // ---- reading, at a local time not before the last collision
-  T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
+  T gap_at(Slot s, const T& time) const {
+    if constexpr (falls)
+      if (field_.pulls(particle(s))) return line_.approach(field_, s).gap_after(line_.gaps.flown(s, time));
+    return line_.gaps.gap_at(s, closing(s), time);
+  }
   // Positions of the outermost particles that have collided; there must be some.
   T front_left(const T& time) const;
   T front_right(const T& time) const;
   const Walls<T>& walls() const { return walls_; }
-  // Of all particles of the scene, now; reads all held gaps. (gap_chain_configuration.hpp)
-  T kinetic_energy() const;
+  // Of all particles of the scene; reads all held gaps. (gap_chain_configuration.hpp)
+  T kinetic_energy(const T& time) const;
 
   static auto state(auto& self) {
     return std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_);
@@ -161,7 +194,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     const T fastest = particles_->walled() ? far_away<T>() : T(T(2) + T(4) * particles_->energy_over_least_mass());
     for (Slot s = first(); s <= last(); ++s) {
       const T& w = closing(s);
-      require_state(line_.gaps[s].fits(w) && is_finite(line_.gaps.lag(s)) && !(fastest < magnitude(w)) &&
+      require_state(fits(s) && is_finite(line_.gaps.lag(s)) && !(fastest < magnitude(w)) &&
                         line_.has_mass(s, *particles_),
                     "gaps");
     }
@@ -197,10 +230,12 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
       : particles_(std::move(particles)), line_(*particles_, start),
         range_(particles_->on_ring(), held.first - particles_->gaps().first, particles_->gaps().last - held.last, 2),
-        walls_(particles_->walls()) {
+        walls_(particles_->walls()), field_(*particles_) {
     require_particles(*particles_, start);
+    if (!falls) require_no_gravity(*particles_, "use GapChain<T, Masses, Gravity<T>>");
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
+    foresee_walls();
     left_.take(particle(first()));
     right_.take(particle(last()) + 1);
     if (!on_ring()) return;
@@ -211,6 +246,27 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   Configuration<T> line_configuration(const T& time) const;
   Configuration<T> ring_configuration(const T& time) const;
   Flight<T> flight(const Anchor<T>& anchor, const T& time) const { return anchor.flight(*particles_, clock(), time); }
+
+  // Predicts the next collisions with walls under gravity, where all others have just been.
+  void foresee_walls() {
+    if constexpr (falls)
+      for (const Slot s : {first(), last()})
+        if (field_.pulls(particle(s))) line_.foresee(field_, s);
+  }
+  // Whether a loaded gap has numbers that a gap can have.
+  bool fits(Slot s) const {
+    const auto& gap = line_.gaps[s];
+    if constexpr (falls)
+      if (field_.pulls(particle(s)))  // it may be due while it opens
+        return is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing) && has_due(gap);
+    return gap.fits(gap.closing);
+  }
+  static bool has_due(const auto& gap) {
+    if constexpr (keys_are_exact)
+      return gap.due == gap.due;
+    else
+      return true;
+  }
 
   Slot slot(ParticleIndex particle) const {
     return static_cast<Slot>(particle - line_.particle_of_slot_0);
@@ -255,14 +311,29 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
     return law.visit([&](const auto& own) { return outcome_at_wall(own, s, time); });
   }
   template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
-    if constexpr (LawWithMemory<Law, T>) memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());
-    return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+    bool rested = true;
+    if constexpr (LawWithMemory<Law, T>)
+      rested = memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());
+    const T& mass = line_.masses[walls_.left_of(particle(s)) ? s + 1 : s];
+    if constexpr (falls) {
+      const T w = closing_when_due(s);
+      const bool below = below_cutoff(law, w);
+      Outcome<T> outcome =
+          walls_.strike(particle(s), w, mass, below || !rested ? T(1) : walls_.wall(particle(s)).restitution);
+      outcome.below_cutoff = below;
+      return outcome;
+    } else {
+      return walls_.strike(particle(s), closing(s), mass);
+    }
   }
   // A collision at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
     const Outcome<T> of_law = walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time);
     const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
-    return line_.strike(left(s), s, right(s), time, of_law, notice);
+    if constexpr (falls)
+      return line_.strike(field_, left(s), s, right(s), time, of_law, notice);
+    else
+      return line_.strike(left(s), s, right(s), time, of_law, notice);
   }
 
   // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the
@@ -276,6 +347,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain {
   T centre_{0};  // on a ring: centre of mass at the start
   Anchor<T> left_, right_;
   Walls<T> walls_;
+  [[no_unique_address]] Field field_;
 };
 
 }  // namespace cradle

@@ -8,12 +8,12 @@
 
 namespace cradle {
 
-template <Real T, class Masses> T GapChain<T, Masses>::front_left(const T& time) const {
+template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::front_left(const T& time) const {
   const Pair<T> x = flight(left_, time).x;
   const ParticleIndex outermost = front_particle(End::left);  // next to the anchor, if not the anchor
   return (outermost > left_.particle() ? x + gap_at(slot(outermost) - 1, time) : x).value();
 }
-template <Real T, class Masses> T GapChain<T, Masses>::front_right(const T& time) const {
+template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::front_right(const T& time) const {
   const Pair<T> x = flight(right_, time).x;
   const ParticleIndex outermost = front_particle(End::right);
   return (outermost < right_.particle() ? x - gap_at(slot(outermost), time) : x).value();
@@ -21,20 +21,24 @@ template <Real T, class Masses> T GapChain<T, Masses>::front_right(const T& time
 
 // Particles that are not held move like the outermost held one. If there is a wall, velocities are relative to it,
 // since its velocity is known. On a ring the last gap follows from the others.
-template <Real T, class Masses> T GapChain<T, Masses>::kinetic_energy() const {
-  const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
+template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::kinetic_energy(const T& time) const {
+  const T total = particles_->total_mass();
+  T drift = particles_->conserved_momentum() / total;
+  if constexpr (falls) drift += field_.acceleration() * clock().elapsed(time);
   const ParticleIndex count = particles_->count();
   const bool from_wall = particle(first()) < 0, to_wall = !on_ring() && particle(last()) + 1 == count;
   const T left = from_wall ? T(0) : particles_->mass_between(0, particle(first()) + 1);
   const T right = to_wall ? T(0) : particles_->mass_between(on_ring() ? count - 1 : particle(last()) + 1, count);
   const Slot end = on_ring() ? last() : last() + 1;
-  const T known = on_ring() || walls_.any() ? T(0) : T(left_.velocity(*particles_) - drift);
+  const T known = on_ring() || walls_.any() ? T(0)
+                  : falls                   ? T(flight(left_, time).v.value() - drift)
+                                            : T(left_.velocity(*particles_) - drift);
   T at_end(0);  // the last one's x, with c = 0
   const auto moving = relative_motion(total, known, [&](const T& c, const auto& add) {
     EnergySum<T> slowing;
     add(left, T(-c));
     for (Slot s = first(); s < end; ++s) {
-      slowing.add(closing(s));
+      slowing.add(closing_at(s, time));
       add(s + 1 < end ? line_.masses[s + 1] : right, less(slowing, c));
     }
     at_end = slowing.value();
@@ -45,11 +49,13 @@ template <Real T, class Masses> T GapChain<T, Masses>::kinetic_energy() const {
   return total * speed * speed / T(2) + moving.energy;
 }
 
-template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::configuration(const T& time) const {
+template <Real T, class Masses, class Field>
+Configuration<T> GapChain<T, Masses, Field>::configuration(const T& time) const {
   return on_ring() ? ring_configuration(time) : line_configuration(time);
 }
 
-template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_configuration(const T& time) const {
+template <Real T, class Masses, class Field>
+Configuration<T> GapChain<T, Masses, Field>::ring_configuration(const T& time) const {
   Configuration<T> c;
   c.time = clock().time(time);
   c.speeds_are_sums = !line_.exact_sums();
@@ -91,7 +97,8 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::ring_confi
   return c;
 }
 
-template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_configuration(const T& time) const {
+template <Real T, class Masses, class Field>
+Configuration<T> GapChain<T, Masses, Field>::line_configuration(const T& time) const {
   const bool collided = range_.has_fronts();
   const Slot from = collided && range_.front_left() > first() ? range_.front_left() - 1 : first();
   const Slot to = collided && range_.front_right() < last() ? range_.front_right() + 1 : last();
@@ -112,9 +119,12 @@ template <Real T, class Masses> Configuration<T> GapChain<T, Masses>::line_confi
   std::vector<Pair<T>> slowings{{}};  // from the left anchor to each particle
   for (Slot s = from; s <= to; ++s) {
     c.gap.push_back(gap_at(s, time));
-    c.closing_speed.push_back(closing(s));
+    c.closing_speed.push_back(closing_at(s, time));
     way.add(c.gap.back());
-    line_.add_closing(s, slowing);
+    if constexpr (falls)
+      slowing.add(c.closing_speed.back());
+    else
+      line_.add_closing(s, slowing);
     ways.push_back(way.value());
     slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
   }

@@ -6,9 +6,9 @@
 
 namespace cradle {
 
-template <Real T, class Masses>
-inline void GapChain<T, Masses>::continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left,
-                                               const FrontMove<T>& to_right) {
+template <Real T, class Masses, class Field>
+inline void GapChain<T, Masses, Field>::continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left,
+                                                      const FrontMove<T>& to_right) {
   line_.gaps.swap_gaps(after);
   if (on_ring()) return;
   range_.reach(to_left.reached, to_right.reached);
@@ -29,8 +29,8 @@ inline void GapChain<T, Masses>::continue_with(typename Line::Gaps& after, const
   for (const auto& collision : to_right.at_end) follow_end(End::right, right, collision.time, collision.handed);
 }
 
-template <Real T, class Masses>
-inline Notice GapChain<T, Masses>::widen(Slot s, const T& time, const Outcome<T>& outcome) {
+template <Real T, class Masses, class Field>
+inline Notice GapChain<T, Masses, Field>::widen(Slot s, const T& time, const Outcome<T>& outcome) {
   range_.reach(s, s);
   if (s == range_.front_left()) {
     const HeldRange::Beyond beyond = range_.beyond_left(s);

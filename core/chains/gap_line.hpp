@@ -4,11 +4,13 @@
 // (segments.hpp), handles its ends.
 
 #include <cstddef>
+#include <optional>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
 #include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/chains/masses.hpp"
 #include "cradle/core/chains/timed_gaps.hpp"
 #include "cradle/core/chains/watched_gap.hpp"
@@ -102,6 +104,48 @@ template <Real T, class MassesOf> class GapLine {
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
+  // ---- under gravity: the gaps to walls
+  template <class Field> Approach<T> approach(const Field& field, Slot s) const {
+    return field.approach(particle(s), gaps[s].gap, closing(s));
+  }
+  // The next collision there, a local time; nothing if there is none.
+  template <class Field> std::optional<T> due(const Field& field, Slot s) const {
+    const std::optional<T> wait = approach(field, s).meeting_in();
+    return wait ? std::optional<T>(gaps.after(s, *wait)) : std::nullopt;
+  }
+  template <class Field> double queue_due(const Field& field, Slot s) const {
+    const std::optional<T> time = due(field, s);
+    return time ? gaps.queue_time(*time) : EventQueue::never;
+  }
+  // The same, and enters it where keys are stored.
+  template <class Field> double foresee(const Field& field, Slot s) {
+    const double time = queue_due(field, s);
+    if constexpr (Gaps::keys_are_exact) gaps[s].due = time;
+    return time;
+  }
+  // The effect of a collision at a wall or beside the gap to one, off the hot path.
+  template <class Field>
+  CollisionResult<T> strike(const Field& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
+                            Notice notice) requires(!watched) {
+    const T since = gaps.flown(s, time);
+    notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
+    gaps.close(s, outcome.closing, since, time);
+    gaps[s].closing = outcome.closing;
+    gaps.forget(s);
+    const bool at_wall = field.pulls(particle(s));
+    if (at_wall && is_negative(since)) {  // late: it has fallen since then
+      const Approach<T> open = field.approach(particle(s), T(0), outcome.closing);
+      gaps[s].gap = open.gap_after(T(-since));
+      gaps[s].closing = open.closing_after(T(-since));
+    }
+    notice |= kick(field, p, outcome.to_left, since, time);
+    notice |= kick(field, n, outcome.to_right, since, time);
+    const auto predict = [&](Slot beside) {
+      return field.pulls(particle(beside)) ? foresee(field, beside) : gaps.predict(beside, closing(beside));
+    };
+    return {outcome, predict(p), at_wall ? foresee(field, s) : EventQueue::never, predict(n), notice, p, n};
+  }
+
   // There is no gap beyond the last particle: its slot holds a gap that always opens, whatever the collisions give it.
   void seal(Slot s, const T& time, const T& handed) { gaps.put(s, cell(T(1), time, T(-(handed + handed) - T(1)))); }
 
@@ -164,6 +208,21 @@ template <Real T, class MassesOf> class GapLine {
       gaps[s].closing += gain;
     if (gaps.below_floor(s)) [[unlikely]]
       return gaps.note(s, closing(s), high(gain), since, struck, particle(s), time);
+    return Notice::none;
+  }
+
+  // The same under gravity.
+  template <class Field>
+  Notice kick(const Field& field, Slot s, const T& gain, const T& struck, const T& time) requires(!watched) {
+    if (!field.pulls(particle(s))) return kick(s, gain, struck, time);
+    const T flown = gaps.flown(s, time);
+    const Approach<T> open = approach(field, s);
+    const bool late = is_negative(flown);
+    const T mean = late ? closing(s) : open.mean_closing(flown), now = late ? closing(s) : open.closing_after(flown);
+    const T since = gaps.kick(
+        s, mean, [&]() -> const T& { return gain; }, time);
+    gaps[s].closing = now + gain;
+    if (gaps.below_floor(s)) return gaps.note(s, T(mean + gain), gain, since, struck, particle(s), time);
     return Notice::none;
   }
 

@@ -3,6 +3,7 @@
 // position, a velocity and the time of its last collision, and differences of positions in absolute time give the next
 // collision of neighbours. It is plain on purpose: no streaming, no tuning. It is the reference twin of the chain in
 // gaps, and is compared with it in precision: in a collapsing core its differences lose their digits, which it counts.
+// Under gravity particles fly along parabolas.
 
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/engine/account.hpp"
 #include "cradle/core/engine/event_queue.hpp"
 #include "cradle/core/engine/ledger.hpp"
@@ -19,23 +21,28 @@
 
 namespace cradle {
 
-template <Real T> class PositionChain {
+template <Real T, class Field = NoGravity<T>> class PositionChain {
  public:
   using Scalar = T;
+  static constexpr bool falls = Field::acts;
   static constexpr bool keys_are_exact = false;
   static constexpr bool may_collapse = true;
 
   // Throws std::invalid_argument for particles on a ring.
   PositionChain(std::shared_ptr<const Particles<T>> particles, const T& start)
       : count_(static_cast<std::size_t>(particles->count())), start_(start), origin_(start),
-        first_particle_(particles->gaps().first), walls_(particles->walls()), of_walls_(particles),
+        first_particle_(particles->gaps().first), walls_(particles->walls()), of_walls_(particles), field_(*particles),
         lost_(particles->energy_to_lose()) {
     require_particles(*particles, start);
+    if (!falls) require_no_gravity(*particles, "use PositionChain<T, Gravity<T>>");
     if (particles->on_ring())
       throw std::invalid_argument("a ring in absolute positions (circumference " +
                                   in_message(particles->circumference()) + "): use a chain in gaps");
     for (ParticleIndex b = first_particle_; b <= particles->gaps().last + 1; ++b)
       particles_.push_back({particles->position(b), particles->velocity(b), start, particles->mass(b)});
+    if constexpr (falls) fall_.assign(particles_.size(), T(0));
+    if constexpr (falls)
+      for (ParticleIndex b = 0; b < count(); ++b) fall_[slot_of(b) - 2] = field_.acceleration();
     due_.assign(slots(), T(0));
     closing_.assign(slots(), T(0));
     for (Slot s = first(); s <= last(); ++s) predict(s, start);
@@ -64,16 +71,18 @@ template <Real T> class PositionChain {
   const T& due(Slot s) const { return due_[s]; }
   double queue_due(Slot s) const { return closing_[s] > T(0) ? queue_time(due_[s]) : EventQueue::never; }
 
+  // At the next collision; of a gap to a wall under gravity without one, 0.
   const T& closing(Slot s) const { return closing_[s]; }
+  T closing_when_due(Slot s) const { return closing_[s]; }
 
   template <class Law> CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
     Particle &left = at(s), &right = at(s + 1);
     const bool at_wall = walls_.beside(particle(s));
-    const Outcome<T> outcome = at_wall             ? strike_wall(s)
+    const Outcome<T> outcome = at_wall             ? strike_wall(law, s, time)
                                : left.m == right.m ? outcome_of(law, s, time, EqualMasses<T>{left.m, T(left.m / T(2))})
                                                    : outcome_of(law, s, time, TwoMasses<T>{left.m, right.m});
-    advance(left, time);
-    advance(right, time);
+    advance(s, time);
+    advance(s + 1, time);
     walls_.right_of(particle(s)) ? left.x = right.x : right.x = left.x;
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
@@ -133,15 +142,17 @@ template <Real T> class PositionChain {
     require_state(right, "numbers");
   }
 
-  T gap_at(Slot s, const T& time) const { return place(at(s + 1), time) - place(at(s), time); }
-  T front_left(const T& time) const { return place(at(outermost_left()), time); }
-  T front_right(const T& time) const { return place(at(outermost_right()), time); }
+  T gap_at(Slot s, const T& time) const { return place(s + 1, time) - place(s, time); }
+  T front_left(const T& time) const { return place(outermost_left(), time); }
+  T front_right(const T& time) const { return place(outermost_right(), time); }
   const Walls<T>& walls() const { return walls_; }
-  // Of all particles, now. Between walls their momentum is not conserved.
-  T kinetic_energy() const {
-    const T total = of_walls_->total_mass(), drift = of_walls_->conserved_momentum() / total;
+  // Of all particles. Between walls their momentum is not conserved.
+  T kinetic_energy(const T& time) const {
+    const T total = of_walls_->total_mass();
+    T drift = of_walls_->conserved_momentum() / total;
+    if constexpr (falls) drift += field_.acceleration() * (time - start_);
     const auto moving = relative_motion(total, walls_.any() ? T(0) : drift, [&](const T& c, const auto& add) {
-      for (Slot s = slot_of(0); s < slot_of(count()); ++s) add(at(s).m, T(at(s).v - c));
+      for (Slot s = slot_of(0); s < slot_of(count()); ++s) add(at(s).m, T(velocity(s, time) - c));
     });
     const T speed = walls_.any() ? moving.mean : drift;
     return total * speed * speed / T(2) + moving.energy;
@@ -159,12 +170,12 @@ template <Real T> class PositionChain {
     for (Slot s = from; s <= to + 1; ++s) {
       c.index.push_back(particle(s));
       c.m.push_back(at(s).m);
-      c.x.push_back(place(at(s), time));
-      c.v.push_back(at(s).v);
+      c.x.push_back(place(s, time));
+      c.v.push_back(velocity(s, time));
     }
     for (Slot s = from; s <= to; ++s) {
       c.gap.push_back(gap_at(s, time));
-      c.closing_speed.push_back(at(s).v - at(s + 1).v);
+      c.closing_speed.push_back(velocity(s, time) - velocity(s + 1, time));
     }
     leave_out_walls(c, count());
     return c;
@@ -179,8 +190,23 @@ template <Real T> class PositionChain {
     bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
   };
 
-  Outcome<T> strike_wall(Slot s) {
-    return walls_.strike(particle(s), closing_[s], at(walls_.left_of(particle(s)) ? s + 1 : s).m);
+  template <LawChoice Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {
+    return law.visit([&](const auto& own) { return strike_wall(own, s, time); });
+  }
+  template <class Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {
+    const Particle& struck = at(walls_.left_of(particle(s)) ? s + 1 : s);
+    if constexpr (falls) {
+      bool rested = true;
+      if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
+      const T& w = closing_[s];
+      const bool below = below_cutoff(law, w);
+      Outcome<T> outcome =
+          walls_.strike(particle(s), w, struck.m, below || !rested ? T(1) : walls_.wall(particle(s)).restitution);
+      outcome.below_cutoff = below;
+      return outcome;
+    } else {
+      return walls_.strike(particle(s), closing_[s], struck.m);
+    }
   }
   template <LawChoice Law, class Masses>
   Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
@@ -204,15 +230,38 @@ template <Real T> class PositionChain {
   Particle& at(Slot s) { return particles_[s - 2]; }  // the particle on the left of a gap
   const Particle& at(Slot s) const { return particles_[s - 2]; }
 
-  static T place(const Particle& p, const T& time) { return p.x + p.v * (time - p.time); }
-  static void advance(Particle& p, const T& time) {
-    p.x = place(p, time);
+  T place(Slot s, const T& time) const {
+    const Particle& p = at(s);
+    const T flown = time - p.time;
+    if constexpr (falls)
+      return p.x + (p.v + fall_[s - 2] * flown / T(2)) * flown;
+    else
+      return p.x + p.v * flown;
+  }
+  T velocity(Slot s, const T& time) const {
+    if constexpr (falls)
+      return at(s).v + fall_[s - 2] * (time - at(s).time);
+    else
+      return at(s).v;
+  }
+  void advance(Slot s, const T& time) {
+    Particle& p = at(s);
+    p.x = place(s, time);
+    p.v = velocity(s, time);
     p.time = time;
     p.collided = true;
   }
 
   void predict(Slot s, const T& now) {
-    closing_[s] = at(s).v - at(s + 1).v;
+    closing_[s] = velocity(s, now) - velocity(s + 1, now);
+    if constexpr (falls)
+      if (field_.pulls(particle(s))) {
+        const Approach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s]);
+        const auto wait = approach.meeting_in();
+        closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(0);
+        due_[s] = wait ? T(now + *wait) : T(0);
+        return;
+      }
     due_[s] = closing_[s] > T(0) ? T(now + gap_at(s, now) / closing_[s]) : T(0);
   }
 
@@ -223,7 +272,8 @@ template <Real T> class PositionChain {
     const T gap = gap_at(s, time), epsilon = std::numeric_limits<T>::epsilon();
     const T x_left = magnitude(at(s).x), x_right = magnitude(at(s + 1).x);
     const T unit = epsilon * (x_left < x_right ? x_right : x_left);
-    const T rounding = T(16) * (unit + epsilon * magnitude(time) * (magnitude(at(s).v) + magnitude(at(s + 1).v)));
+    const T rounding =
+        T(16) * (unit + epsilon * magnitude(time) * (magnitude(velocity(s, time)) + magnitude(velocity(s + 1, time))));
     if (gap < unit * T(1000000) && account_.unresolved++ == 0) account_.first_unresolved = {time, particle(s), gap};
     if (!(gap > T(0))) account_.enter({time, particle(s), gap}, rounding);
     return gap < floor_ ? Notice::gap_below_floor : Notice::none;
@@ -232,6 +282,7 @@ template <Real T> class PositionChain {
   std::size_t count_;
   std::vector<Particle> particles_;  // and walls
   std::vector<T> due_, closing_;
+  std::vector<T> fall_;  // under gravity: the acceleration of each, 0 of walls
   T floor_{0};
   T start_, origin_;
   ParticleIndex first_particle_;
@@ -239,6 +290,7 @@ template <Real T> class PositionChain {
   std::shared_ptr<const Particles<T>> of_walls_;
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;
   Account<T> account_;
+  [[no_unique_address]] Field field_;
   Ledger<T> lost_;
 };
 

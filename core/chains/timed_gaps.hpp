@@ -132,6 +132,11 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     else
       return collision_time(s, closing);
   }
+  // The time when a gap has aged by `wait` since its local time.
+  T after(Slot s, const T& wait) const {
+    const T time = cells_[s].time + wait;
+    return is_negative(cells_[s].time) ? T(time + lag_[s]) : time;
+  }
   double queue_due(Slot s, const T& closing) const {
     if constexpr (keys_are_exact)
       return cells_[s].due;

@@ -17,6 +17,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/engine/event_queue.hpp"
 #include "cradle/core/engine/gap_errors.hpp"
 #include "cradle/core/engine/two_gaps.hpp"
@@ -116,9 +117,11 @@ template <Real T> struct CollapseWatch {
   }
 
  private:
-  // Exact types have no square roots, and chains of particles that merge do not need them.
+  // Exact types have no square roots, and chains of particles that merge do not need them. Under gravity the theorem
+  // does not hold for gaps to walls.
   template <class Chain>
-  static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
+  static constexpr bool provable =
+      !std::numeric_limits<T>::is_exact && !FallingChain<Chain> && requires(const Chain& chain) {
     chain.particles();
   };
 

@@ -122,7 +122,10 @@ class Simulation {
   T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return chain_.energy_lost(); }
-  T kinetic_energy() const { return chain_.kinetic_energy(); }
+  // After the last collision; at a time between it and the time advanced to, which matters if particles fall.
+  T kinetic_energy() const { return chain_.kinetic_energy(last_collision_); }
+  T kinetic_energy(const T& time) const { return chain_.kinetic_energy(chain_.local_time(time)); }
+  static constexpr bool falls() { return FallingChain<Chain>; }
   // The start if there has been no collision.
   T last_collision_time() const { return chain_.stamp(last_collision_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report; }
@@ -236,8 +239,14 @@ class Simulation {
   }
   void notify_observer(Slot s) {
     const T time = chain_.due(s);
-    observer_({chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_,
-               chain_.closing(s)});
+    const auto notify = [&](const T& speed) {
+      observer_(
+          {chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_, speed});
+    };
+    if constexpr (FallingChain<Chain>)
+      notify(chain_.closing_when_due(s));
+    else
+      notify(chain_.closing(s));
   }
   // The same for all collisions of a time slab, before the chain takes them over. If the observer throws, the plain
   // loop makes those before.

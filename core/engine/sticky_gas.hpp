@@ -38,6 +38,7 @@ template <Real T> class StickyGas {
       : particles_(std::move(particles)), policy_(std::move(policy)), ring_(particles_->on_ring()), start_(start),
         time_(start), lost_(particles_->energy_to_lose()) {
     require_particles(*particles_, start);
+    require_no_gravity(*particles_, "leave gravity out, which merges no particles");
     const GapRange moving = ring_ ? GapRange{0, particles_->count() - 2} : particles_->gaps_in_motion();
     for (ParticleIndex b = moving.first; b <= moving.last + 1; ++b) held_.push_back(single(b));
   }
@@ -57,6 +58,8 @@ template <Real T> class StickyGas {
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
   // Of all particles of the scene; unheld particles move like the outermost held one.
+  static constexpr bool falls() { return false; }
+  T kinetic_energy(const T&) const { return kinetic_energy(); }
   T kinetic_energy() const {
     const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
     const auto moving = relative_motion(total, drift, [&](const T& c, const auto& add) {

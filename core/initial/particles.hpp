@@ -44,6 +44,18 @@ template <Real T> class Particles {
     return gives(wall(End::left)) || gives(wall(End::right));
   }
   Walls<T> walls() const { return {wall(End::left), wall(End::right), count()}; }
+
+  // The constant acceleration of all particles, positive to the right. Walls do not fall.
+  virtual T acceleration() const { return T(0); }
+  bool fall() const { return !(acceleration() == T(0)); }
+  bool falls(ParticleIndex particle) const { return fall() && particle >= 0 && particle < count(); }
+  // The wall towards which they fall; null if there is none.
+  const Wall<T>* floor() const {
+    return !fall() ? nullptr : wall(is_negative(acceleration()) ? End::left : End::right);
+  }
+  // The potential energy at the start, -a sum m x: 0 at x = 0.
+  virtual T potential_energy() const { return T(0); }
+  T mechanical_energy() const { return kinetic_energy() + potential_energy(); }
   // The range of all gaps.
   GapRange gaps() const {
     if (on_ring()) return {0, count() - 1};
@@ -88,6 +100,22 @@ template <Real T> class Particles {
     const T own = energy - (is_finite(square) ? T(square / twice) : T(p * (p / twice)));
     return own < least ? least : own;
   }
+  // The largest kinetic energy until a time since the start, E = mechanical_energy() at most if there is a floor: the
+  // potential energy is least with all particles there. Without one, particles fall for the time t, and
+  // (sqrt(E) + sqrt(M/2) a t)^2 <= 2 E + M a^2 t^2.
+  T most_kinetic_energy(const T& elapsed) const {
+    const T energy = driven() ? T(kinetic_energy() + energy_to_lose()) : T(kinetic_energy() + energy_of_fall());
+    if (!fall() || floor() != nullptr) return energy;
+    const T speed = acceleration() * elapsed;
+    return T(2) * energy + total_mass() * (speed * speed);
+  }
+  // What particles gain at most by falling to the floor.
+  T energy_of_fall() const {
+    if (floor() == nullptr) return T(0);
+    const T from_first = magnitude(T(position(0) - floor()->position)),
+            from_last = magnitude(T(position(count() - 1) - floor()->position));
+    return magnitude(acceleration()) * total_mass() * (from_first < from_last ? from_last : from_first);
+  }
   // Bounds the square of all future speeds, up to a factor 2: only walls add energy.
   T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }
   // Bounds the square of all future relative speeds; very large if walls give energy. For two particles it is at most E
@@ -119,6 +147,13 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   require(particles.total_mass(), "the mass");
   require(particles.momentum(), "the momentum");
   require(particles.kinetic_energy(), "the kinetic energy");
+}
+
+// For chains without gravity. Throws std::invalid_argument; `what_to_do` ends the message.
+template <Real T> void require_no_gravity(const Particles<T>& particles, const std::string& what_to_do) {
+  if (particles.fall())
+    throw std::invalid_argument("particles under gravity in a chain without it (acceleration " +
+                                in_message(particles.acceleration()) + "): " + what_to_do);
 }
 
 // Checks the requirements of all chains. Throws std::invalid_argument.

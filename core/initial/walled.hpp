@@ -1,5 +1,5 @@
 #pragma once
-// Particles on a line with walls at one end or both (wall.hpp).
+// Particles on a line with walls at one end or both (wall.hpp), with an acceleration (gravity), or both.
 
 #include <limits>
 #include <memory>
@@ -14,16 +14,27 @@ namespace cradle {
 
 template <Real T> class Walled final : public Particles<T> {
  public:
-  // Throws std::invalid_argument for particles on a ring, walls that are not outside the particles, and numbers out of
-  // range.
-  Walled(std::shared_ptr<const Particles<T>> particles, std::optional<Wall<T>> left, std::optional<Wall<T>> right)
-      : particles_(std::move(particles)), left_(std::move(left)), right_(std::move(right)) {
+  // Throws std::invalid_argument for particles on a ring, walls that are not outside the particles, a floor that keeps
+  // what falls on it, and numbers out of range.
+  Walled(std::shared_ptr<const Particles<T>> particles, std::optional<Wall<T>> left, std::optional<Wall<T>> right,
+         const T& acceleration = T(0))
+      : particles_(std::move(particles)), left_(std::move(left)), right_(std::move(right)),
+        acceleration_(acceleration) {
+    require_finite(acceleration_, "acceleration of the particles");
+    if (particles_->on_ring() && this->fall())
+      throw std::invalid_argument("gravity on a ring (circumference " + in_message(particles_->circumference()) +
+                                  "): leave it out, or give particles on a line");
     if (particles_->on_ring())
       throw std::invalid_argument("walls on a ring (circumference " + in_message(particles_->circumference()) +
                                   "): leave them out, or give particles on a line");
     if (left_) require_wall(*left_, "left"), require_outside(gap(-1), "left", left_->position, 0);
     if (right_)
       require_wall(*right_, "right"), require_outside(gap(count() - 1), "right", right_->position, count() - 1);
+    if (const Wall<T>* floor = this->floor();
+        floor != nullptr && !(floor->temperature > 0) && !is_positive(floor->restitution))
+      throw std::invalid_argument("a floor of restitution 0, on which particles come to rest (restitution " +
+                                  in_message(floor->restitution) + "): give it a small one");
+    if (this->fall()) potential_energy_ = -(acceleration_ * (total_mass() * particles_->centre_of_mass()));
   }
 
   ParticleIndex count() const override { return particles_->count(); }
@@ -53,6 +64,8 @@ template <Real T> class Walled final : public Particles<T> {
     return {left_ ? all.first : inner.first, right_ ? all.last : inner.last};
   }
 
+  T acceleration() const override { return acceleration_; }
+  T potential_energy() const override { return potential_energy_; }
   T kinetic_energy() const override { return particles_->kinetic_energy(); }
   T momentum() const override { return particles_->momentum(); }
   T conserved_momentum() const override { return particles_->conserved_momentum(); }
@@ -65,11 +78,12 @@ template <Real T> class Walled final : public Particles<T> {
   }
   // Walls may add energy: the ledger allows for a million times the initial energy, which costs 20 of its spare bits.
   T energy_to_lose() const override {
+    if (!this->walled()) return particles_->energy_to_lose();
     T twice_per_mass(0);
     for (const auto* wall : {&left_, &right_})
       if (*wall)
         twice_per_mass += (*wall)->speed * (*wall)->speed + exactly<T>((*wall)->temperature / to_double(least_mass()));
-    return T(1 << 20) * (kinetic_energy() + total_mass() * twice_per_mass);
+    return T(1 << 20) * (kinetic_energy() + this->energy_of_fall() + total_mass() * twice_per_mass);
   }
 
  private:
@@ -97,6 +111,7 @@ template <Real T> class Walled final : public Particles<T> {
 
   std::shared_ptr<const Particles<T>> particles_;
   std::optional<Wall<T>> left_, right_;
+  T acceleration_, potential_energy_{0};
 };
 
 }  // namespace cradle

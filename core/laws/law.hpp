@@ -177,6 +177,7 @@ template <Real T> class SpeedDependent {
     return {after, shares.left, shares.right, missing * half_sum * masses.reduced() * (w * w), w < cutoff_};
   }
   bool scale_free() const { return false; }
+  bool below_cutoff(const T& w) const { return w < cutoff_; }
 
  private:
   T missing_, cutoff_;

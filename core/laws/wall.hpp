@@ -79,6 +79,7 @@ template <Real T> class Walls {
       : walls_{left, right}, last_(particles - 1) {}
 
   bool any() const { return has(End::left) || has(End::right); }
+  const Wall<T>& wall(std::int64_t gap) const { return *walls_[at(left_of(gap) ? End::left : End::right)]; }
   bool has(End end) const { return walls_[at(end)] != nullptr; }
   // Whether there is a wall at this end of the gap right of a particle. (Copies of parts of a ring number particles
   // beyond its ends.)
@@ -88,16 +89,20 @@ template <Real T> class Walls {
 
   // The collision of a particle of this mass with the wall at the gap, with closing speed w > 0.
   Outcome<T> strike(std::int64_t gap, const T& w, const T& mass) {
+    return strike(gap, w, mass, walls_[at(left_of(gap) ? End::left : End::right)]->restitution);
+  }
+  // The same with another restitution than that of the wall, if it reflects.
+  Outcome<T> strike(std::int64_t gap, const T& w, const T& mass, const T& restitution) {
     const End end = left_of(gap) ? End::left : End::right;
     const Wall<T>& wall = *walls_[at(end)];
     WallTally<T>& tally = tallies_[at(end)];
     // Of impulse and final speed, the larger one is computed from the other, see law.hpp.
-    const T half = (T(1) + wall.restitution) * w / T(2);
-    const bool hard = !(wall.temperature > 0) && !(wall.restitution * T(2) < T(1));
-    const T after = hard ? T(w - (half + half)) : T(-outgoing(wall, end, w, mass, tally.collisions));
+    const T half = (T(1) + restitution) * w / T(2);
+    const bool hard = !(wall.temperature > 0) && !(restitution * T(2) < T(1));
+    const T after = hard ? T(w - (half + half)) : T(-outgoing(wall, end, w, mass, restitution, tally.collisions));
     const T handed = hard ? T(half + half) : T(w - after);
-    const T in_its_frame = wall.temperature > 0 ? T((w - after) * (w + after))
-                                                : T((T(1) - wall.restitution) * (T(1) + wall.restitution) * w * w);
+    const T in_its_frame =
+        wall.temperature > 0 ? T((w - after) * (w + after)) : T((T(1) - restitution) * (T(1) + restitution) * w * w);
     const T work = mass * handed * (end == End::left ? wall.speed : T(-wall.speed));
     const T lost = mass * in_its_frame / T(2) - work;
     tally.collisions += 1;
@@ -126,8 +131,9 @@ template <Real T> class Walls {
 
  private:
   static std::size_t at(End end) { return static_cast<std::size_t>(end); }
-  static T outgoing(const Wall<T>& wall, End end, const T& w, const T& mass, std::uint64_t collision) {
-    if (!(wall.temperature > 0)) return wall.restitution * w;
+  static T outgoing(const Wall<T>& wall, End end, const T& w, const T& mass, const T& restitution,
+                    std::uint64_t collision) {
+    if (!(wall.temperature > 0)) return restitution * w;
     return exactly<T>(thermal_speed(wall.seed, wall.replica, end, collision) *
                       std::sqrt(wall.temperature / to_double(mass)));
   }

@@ -16,6 +16,22 @@ template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>
   return particles.kinetic_energy() + (twice.value() - twice_before.value()) / T(2);
 }
 
+// Potential energy of all particles of the scene under gravity, -a sum m x, at a time since the start.
+template <Real T> T potential_energy(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed) {
+  const T a = particles.acceleration();
+  CompensatedSum<T> moment, moment_before, momentum_before;  // of the particles in the configuration
+  for (std::size_t j = 0; j < c.x.size(); ++j) moment.add(c.m[j] * c.x[j]);
+  if (c.from == 0 && c.to + 1 == particles.count()) return -(a * moment.value());
+  for (ParticleIndex b = c.from; b <= c.to; ++b) {
+    moment_before.add(particles.mass(b) * particles.position(b));
+    momentum_before.add(particles.mass(b) * particles.velocity(b));
+  }
+  const T mass = particles.mass_between(0, c.from) + particles.mass_between(c.to + 1, particles.count());
+  const T momentum = particles.momentum() - momentum_before.value();
+  const T of_others = momentum * elapsed + mass * (a * elapsed * elapsed / T(2));
+  return particles.potential_energy() - a * ((moment.value() - moment_before.value()) + of_others);
+}
+
 // Momentum that the particles of a configuration have gained since the start; zero except for rounding.
 template <Real T> T momentum_gained(const Configuration<T>& c, const Particles<T>& particles) {
   CompensatedSum<T> gained;

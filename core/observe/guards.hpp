@@ -5,7 +5,7 @@
 //   order     no two particles have changed places, unless the run's account records it
 //   past      the last collision is not later than the time of the check, nor earlier than that of the check before
 //   energy    the sum over all particles is what the ledger of losses leaves; no particle has more than there was
-//   momentum  is what it was at the start, except between walls
+//   momentum  is what it was at the start, with what gravity has added, except between walls
 //   closure   gaps and closing speeds add up to what the particles at the ends of the line give, or to the ring
 //
 // Bounds follow from the type, the number of collisions and the initial state, not from the present speeds: a light
@@ -32,7 +32,9 @@
 //                                   pushed outwards only,
 //
 // since errors of speeds have acted at most for the time t. Moving and thermal walls add energy: with them E is the
-// energy for which the ledger of losses is made (Walled::energy_to_lose).
+// energy for which the ledger of losses is made (Walled::energy_to_lose). Under gravity energies are sums of kinetic
+// and potential ones, E is the largest kinetic one (Particles::most_kinetic_energy), and an error dx of all places adds
+// |a| M dx to that of the energy.
 //
 // An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is smaller: for 5e8 collisions if velocities are
 // the particles' own, for 5e8 sqrt(E/(M U^2/2)) if they are sums. An error in a position is found if it exceeds delta U
@@ -70,7 +72,8 @@ template <Real T> T root_above(const T& x) {
   return root;
 }
 
-// `energy`: what the ledger leaves; `elapsed`: since the start; `ordered`: the account has no lost order.
+// `energy`: what the ledger leaves, potential energy included; `elapsed`: since the start; `ordered`: the account has
+// no lost order.
 template <Real T>
 GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, std::uint64_t collisions,
                       const T& energy, const T& elapsed, const T& last_collision, const T& collision_before,
@@ -85,12 +88,15 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   if (!(last_collision <= c.time + of_time) || last_collision < collision_before - of_time)
     report(Guard::past, last_collision, last_collision < collision_before ? collision_before : c.time);
 
+  const bool fall = particles.fall();
+  const T acceleration = particles.acceleration(), twice_weight = T(-2) * acceleration;  // of the mass 1
   CompensatedSum<T> twice, momentum;
   T fastest(0), most_energy(0);
   for (std::size_t j = 0; j < c.x.size(); ++j) {
     const T& v = c.v[j];
     const T p = c.m[j] * v, own = p * v;
     twice.add(own);
+    if (fall) twice.add(twice_weight * c.m[j] * c.x[j]);
     momentum.add(p);
     if (fastest < magnitude(v)) fastest = magnitude(v);
     if (most_energy < own) most_energy = own;
@@ -102,32 +108,36 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   for (ParticleIndex b = c.from; b <= c.to; ++b) {
     const T v = particles.velocity(b), p = particles.mass(b) * v;
     twice_before.add(p * v);
+    if (fall) twice_before.add(twice_weight * particles.mass(b) * particles.position(b));
     momentum_before.add(p);
     if (fastest_before < magnitude(v)) fastest_before = magnitude(v);
   }
-  const T start_energy = particles.kinetic_energy(), mass = particles.total_mass();
+  const T start_energy = particles.mechanical_energy(), mass = particles.total_mass();
   const T rest = all ? T(0) : T(start_energy - twice_before.value() / T(2));
   const T epsilon = std::numeric_limits<T>::epsilon();
   const T delta = T(8) * epsilon * (T(static_cast<std::int64_t>(collisions)) + T(particles.count()) + T(64));
   const bool driven = particles.driven();
-  const T twice_energy = T(2) * (driven ? T(start_energy + particles.energy_to_lose()) : start_energy);
-  const bool bounded_by_start = particles.identical_masses() && !driven;
+  const T twice_energy = T(2) * particles.most_kinetic_energy(elapsed);
+  const bool bounded_by_start = particles.identical_masses() && !driven && !fall;
   const T top_speed = bounded_by_start ? fastest_before : root_above(T(twice_energy / particles.least_mass()));
   const T all_as_one = root_above(T(twice_energy * mass));  // no momentum is larger
 
   const T of_sums = c.speeds_are_sums ? delta : T(delta * epsilon);
-  const T of_energy = delta * twice_energy + of_sums * top_speed * all_as_one;
+  const T extent_before = magnitude(particles.position(c.from)) + magnitude(particles.position(c.to));
+  const T extent = magnitude(c.x.front()) + magnitude(c.x.back()) + extent_before + particles.circumference();
+  const T of_place = delta * (extent + top_speed * magnitude(elapsed));
+  const T of_fall = fall ? T(magnitude(acceleration) * mass * of_place) : T(0);
+  const T of_energy = delta * twice_energy + of_sums * top_speed * all_as_one + of_fall;
   // No particle has more than the total energy.
   if (!(most_energy <= twice_energy + T(2) * of_energy)) report(Guard::energy, most_energy, twice_energy);
   const T off_energy = magnitude(T(rest + twice.value() / T(2) - energy));
   if (!(off_energy <= of_energy)) report(Guard::energy, off_energy, of_energy);
-  const T off_momentum = magnitude(T(momentum.value() - (all ? particles.momentum() : momentum_before.value())));
+  const T from_gravity = fall ? T(acceleration * elapsed * particles.mass_between(c.from, c.to + 1)) : T(0);
+  const T off_momentum =
+      magnitude(T(momentum.value() - ((all ? particles.momentum() : momentum_before.value()) + from_gravity)));
   const T of_momentum = delta * all_as_one + of_sums * top_speed * mass;
   if (!particles.walled() && !(off_momentum <= of_momentum)) report(Guard::momentum, off_momentum, of_momentum);
 
-  const T extent_before = magnitude(particles.position(c.from)) + magnitude(particles.position(c.to));
-  const T extent = magnitude(c.x.front()) + magnitude(c.x.back()) + extent_before + particles.circumference();
-  const T of_place = delta * (extent + top_speed * magnitude(elapsed));
   check.gap_min = c.gap.front();
   for (std::size_t j = 0; j < c.gap.size(); ++j) {
     if (c.gap[j] < check.gap_min) check.gap_min = c.gap[j];

@@ -74,13 +74,14 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
     const double x = to_double(c.x[j]);
     if (x >= range.from && x < range.to) visit(x, to_double(c.v[j]), to_double(c.m[j]));
   }
+  const T gained = particles.acceleration() * elapsed, fallen = gained * elapsed / T(2);
   const auto fly = [&](ParticleIndex particle) {
-    return to_double(T(particles.position(particle) + particles.velocity(particle) * elapsed));
+    return to_double(T(particles.position(particle) + particles.velocity(particle) * elapsed + fallen));
   };
   const auto visit_free = [&](ParticleIndex particle, double x) {
     constexpr ParticleIndex between_stops = 1 << 14;
     if (particle % between_stops == 0 && stopped && stopped()) throw WalkStopped();
-    visit(x, to_double(particles.velocity(particle)), to_double(particles.mass(particle)));
+    visit(x, to_double(T(particles.velocity(particle) + gained)), to_double(particles.mass(particle)));
   };
   // They fly in order: finds the first of [low, high) that is not to the left of a position.
   const auto first_from = [&](ParticleIndex low, ParticleIndex high, double place) {

@@ -43,13 +43,16 @@ template <class Run, Real T = typename Run::Scalar> WallTallies<T> wall_tallies(
 // Energy that walls have given to the particles.
 template <Real T> T given_by(const WallTallies<T>& walls) { return walls[0].given.value() + walls[1].given.value(); }
 
-// Kinetic energy of all particles of the scene, after the collisions made until now.
-template <class Run, Real T = typename Run::Scalar> T energy_now(const Run& run, const T& initial_energy) {
+// Kinetic energy of all particles of the scene, after the collisions made until now; of particles that fall at the
+// given time, by a sum, since the ledger has potential energy too.
+template <class Run, Real T = typename Run::Scalar>
+T energy_now(const Run& run, const T& initial_energy, const T& time) {
+  if (run.falls()) return run.kinetic_energy(time);
   const T left = initial_energy - run.energy_lost();
   bool by_walls = false;
   for (const WallTally<T>& wall : wall_tallies(run))
     by_walls = by_walls || !(wall.given.value() == T(0) && wall.dissipated.value() == T(0));
-  return T(left + left) < initial_energy || by_walls ? T(run.kinetic_energy()) : left;
+  return T(left + left) < initial_energy || by_walls ? T(run.kinetic_energy(time)) : left;
 }
 
 // A sample of a Simulation or a StickyGas. `time` must be between the last collision and the time advanced to.
@@ -57,9 +60,9 @@ template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
   const WallTallies<T> walls = wall_tallies(run);
   const T lost = run.energy_lost(), given = given_by(walls);
-  Sample<T> s{time,         energy_now(run, initial_energy), lost + given, given,
-              run.counts(), run.collided_particles(),        {},           {},
-              walls};
+  Sample<T> s{
+      time, energy_now(run, initial_energy, time), lost + given, given, run.counts(), run.collided_particles(), {}, {},
+      walls};
   if (s.particles > 0 && !run.on_ring()) {
     s.front_left = run.front_left(time);
     s.front_right = run.front_right(time);

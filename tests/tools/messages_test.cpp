@@ -34,7 +34,7 @@ class Messages : public ProgramTest {
 TEST_F(Messages, NameKeysThatThereAre) {
   const Names keys = matches("\n" + shell("cradle scenes --keys").out, R"(\n([a-z_.]+)  \()");
   ASSERT_GT(keys.size(), 60U);
-  const std::string key = R"(\b((?:law|initial|run|output|walls|sweep)\.[a-z_]+(?:\.[a-z_]+)*)(?![a-z0-9]))";
+  const std::string key = R"(\b((?:law|initial|run|output|walls|gravity|sweep)\.[a-z_]+(?:\.[a-z_]+)*)(?![a-z0-9]))";
   for (const std::string& name : matches(all, key)) {
     const auto table = keys.lower_bound(name + ".");
     EXPECT_TRUE(keys.contains(name) || (table != keys.end() && table->starts_with(name + "."))) << name;

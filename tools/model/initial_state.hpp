@@ -148,9 +148,10 @@ template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(
   try {
     auto particles = detail::particles_without_walls<T>(scene);
     require_sums(*particles);
-    if (!scene.walls.any()) return particles;
+    if (!scene.walls.any() && !scene.gravity.acts()) return particles;
     return std::make_shared<Walled<T>>(std::move(particles), detail::wall_of<T>(scene.walls.left, scene.initial),
-                                       detail::wall_of<T>(scene.walls.right, scene.initial));
+                                       detail::wall_of<T>(scene.walls.right, scene.initial),
+                                       scene.gravity.acts() ? number<T>(*scene.gravity.acceleration) : T(0));
   } catch (const std::invalid_argument& error) {
     throw Error({scene.name, 0, scene.walls.any() ? "initial, walls" : "initial"}, "the particles cannot be set up",
                 error.what(), "change the scene");

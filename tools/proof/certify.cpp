@@ -48,6 +48,9 @@ void check_certifiable(const Scene& scene) {
     throw Error({"", 0, scene.walls.left.position ? "walls.left.position" : "walls.right.position"},
                 "collisions with walls cannot be proved yet", "a wall",
                 "compare precisions with `cradle trust` instead");
+  if (scene.gravity.acts())
+    throw Error({"", 0, "gravity.acceleration"}, "particles under gravity cannot be proved yet",
+                scene.gravity.acceleration->text, "compare precisions with `cradle trust` instead");
   if (scene.law.cutoff_exponent)
     throw Error({"", 0, "law.cutoff_exponent"}, "no proof of a restitution that depends on the speed",
                 scene.law.cutoff_exponent->text,

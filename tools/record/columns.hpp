@@ -12,6 +12,7 @@
 
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/observe/clusters.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/dense_core.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tools/record/recorded.hpp"
@@ -39,6 +40,8 @@ template <Real T> class Moment {
   const DenseCore& core() const {
     return computed(core_, [&] { return dense_core(configuration()); });
   }
+  /// Of all particles of the scene under gravity.
+  T potential_energy() const { return cradle::potential_energy(configuration(), *particles_, T(state.time - start_)); }
   /// Energy minus that of the sticky gas from the same initial state, from the two ledgers: what they share cancels.
   T sticky_excess() const {
     StickyGas<T> sticky(particles_, start_);  // a new one: the result must not depend on earlier samples
@@ -91,6 +94,7 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
   using At = const Moment<T>&;
   using Whole = std::uint64_t;
   constexpr auto always = [](const Scene&) { return true; };
+  constexpr auto gravity = [](const Scene& scene) { return scene.gravity.acts(); };
   constexpr auto clouds = [](const Scene& scene) { return has_clouds(scene); };
   constexpr auto left_wall = [](const Scene& scene) { return scene.walls.left.position.has_value(); };
   constexpr auto right_wall = [](const Scene& scene) { return scene.walls.right.position.has_value(); };
@@ -102,6 +106,8 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
        filled_by<T, [](At at) { return at.state.time; }>()},
       {"energy", "m l^2/t^2", "kinetic energy of all particles of the scene", always,
        filled_by<T, [](At at) { return at.state.energy; }>()},
+      {"potential_energy", "m l^2/t^2", "potential energy of all particles under gravity, 0 at x = 0", gravity,
+       filled_by<T, [](At at) { return at.potential_energy(); }>()},
       {"energy_lost", "m l^2/t^2", "energy lost in collisions since the start, with walls too", always,
        filled_by<T, [](At at) { return at.state.energy_lost; }>()},
       {"collisions", "1", "collisions since the start, those below the cut-off and merges included", always,

@@ -22,7 +22,7 @@ template <Real T> class RunGuards {
 
  public:
   RunGuards(const Scene& scene, const cradle::Particles<T>& particles, const Engine<T>& engine)
-      : scene_(scene), particles_(particles), engine_(engine), energy_(particles.kinetic_energy()),
+      : scene_(scene), particles_(particles), engine_(engine), energy_(particles.mechanical_energy()),
         start_(number<T>(scene.run.start)), last_before_(start_) {}
 
   /// Checks all particles if that is due. Checks take about a hundredth of the time of the collisions. Whether one is

@@ -6,6 +6,8 @@
 #include <memory>
 #include <type_traits>
 
+#include <fmt/format.h>
+
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
@@ -53,6 +55,26 @@ template <Real T> BouncingLaw<T> bouncing_law(const Scene& scene) {
   return ContactTime<T>(law, number<T>(scene.run.contact_time));
 }
 
+// Of particles under gravity. Throws Error for masses that gaps cannot hold.
+template <Real T>
+std::unique_ptr<Engine<T>>
+falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
+                  const Policy<T>& policy, const Workers& workers, const BouncingLaw<T>& law) {
+  const T start = number<T>(scene.run.start);
+  const auto in = [&]<class Chain>(std::type_identity<Chain>) {
+    return std::make_unique<EngineOf<T, Simulation<T, BouncingLaw<T>, Chain>>>(workers, law, Chain(particles, start),
+                                                                               policy);
+  };
+  if (scene.run.coordinates == Coordinates::absolute) return in(std::type_identity<PositionChain<T, Gravity<T>>>{});
+  // Closing speeds alone lose the digits of heavy particles' velocities, and nothing watches over them under gravity.
+  if (far_apart(*particles) && sums_can_be_exact<T>)
+    throw Error({scene.name, 0, "gravity.acceleration"}, "masses too far apart for gaps under gravity",
+                fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
+                            to_double(particles->greatest_mass())),
+                "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
+  return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{});
+}
+
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
@@ -62,6 +84,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
     return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
   };
+  if (scene.gravity.acts()) return falling_engine_of<T>(scene, particles, policy, workers, bouncing_law<T>(scene));
   if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
   const BouncingLaw<T> law = bouncing_law<T>(scene);
   if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);

@@ -245,7 +245,7 @@ template <Real T> class SceneRun {
     end.collisions = counts.collisions;
     end.merges = counts.merges;
     end.time = to_double(time);
-    end.energy = to_double(energy_now(engine_, energy_));
+    end.energy = to_double(energy_now(engine_, energy_, time));
     end.energy_digits = energy_digits(engine_, scene_, to_double(energy_), end.energy);
     ReportedAccount account = reported(engine_.account());
     if (const auto particle = engine_.uncertain_at(time); particle && !account.uncertain && status == Status::reached) {
@@ -258,7 +258,7 @@ template <Real T> class SceneRun {
     for (const Attribute& attribute :
          {Attribute("simultaneous_collisions", account.simultaneous), Attribute("order_lost", account.order_lost),
           Attribute("unresolved_gaps", account.unresolved), Attribute("energy_digits", end.energy_digits),
-          Attribute("ledger_error", to_double(T(energy_ - engine_.energy_lost() - engine_.kinetic_energy())))})
+          Attribute("ledger_error", to_double(ledger_error(time)))})
       end.result.attributes.push_back(attribute);
     if (account.uncertain || account.uncertain_end)
       end.result.attributes.emplace_back("uncertain_from", account.first_uncertain.value);
@@ -270,6 +270,15 @@ template <Real T> class SceneRun {
       end.result.groups.push_back(collapse_table(collapse));
     }
     return end;
+  }
+
+  // What the ledger leaves of the energy minus the sums over particles.
+  T ledger_error(const T& time) const {
+    T error = energy_ - engine_.energy_lost() - engine_.kinetic_energy(time);
+    if (particles_->fall())
+      error += particles_->potential_energy() - cradle::potential_energy(engine_.configuration(time), *particles_,
+                                                                         T(time - number<T>(scene_.run.start)));
+    return error;
   }
 
   void put_tables(RunOutcome& end, const T& time) {

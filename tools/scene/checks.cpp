@@ -175,6 +175,29 @@ class Checks {
                 "give smaller speeds, or an earlier run.until");
   }
 
+  void particles_can_fall() const {
+    if (!scene_.gravity.acts()) return;
+    const Initial& initial = scene_.initial;
+    const std::string& acceleration = scene_.gravity.acceleration->text;
+    if (initial.on_ring())
+      throw Error(place("gravity.acceleration"), "gravity on a ring, which has no ends to fall to", acceleration,
+                  "remove [gravity], or give particles on a line");
+    if (initial.type == InitialType::clusters)
+      throw Error(place("gravity.acceleration"), "gravity on two clusters, which have a force of their own",
+                  acceleration, "remove [gravity], or give another initial state");
+    if (scene_.run.collapse == scene::CollapsePolicy::merge)
+      throw Error(place("gravity.acceleration"), "gravity on particles that merge", "run.collapse = \"merge\"",
+                  "remove [gravity], or choose another collapse policy");
+    if (scene_.output.core)
+      throw Error(place("output.core"), "nothing to compare the core with",
+                  "gravity, which the sticky gas does not have", "remove it");
+    const bool to_left = *scene_.gravity.acceleration < Decimal("0");
+    const WallAt& floor = to_left ? scene_.walls.left : scene_.walls.right;
+    if (floor.position && !floor.temperature && floor.restitution == Decimal("0"))
+      throw Error(place(to_left ? "walls.left.restitution" : "walls.right.restitution"),
+                  "a floor on which particles come to rest", "0", "give it a small restitution, 0.01 or so");
+  }
+
   void gas_between_walls() const {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::gas) return;
@@ -410,6 +433,7 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.two_clusters();
   checks.gas_between_walls();
   checks.walls_stand();
+  checks.particles_can_fall();
   checks.random_masses();
   checks.masses_repeat();
   checks.restitution_of_speed();

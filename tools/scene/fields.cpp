@@ -69,6 +69,8 @@ constexpr When right_reflects{
     thermal, "walls.right.temperature", "a right wall without temperature",
     [](const Scene& s) { return s.walls.right.position.has_value() && !s.walls.right.temperature; }};
 
+constexpr When may_fall{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
+
 constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
                     [](const Scene& s) { return s.run.precision == Precision::mpfr; }};
 
@@ -280,6 +282,10 @@ const Field all_fields[] = {
      "reflects them"},
     {"walls.right.restitution", walls_of<&WallPair::right, &WallAt::restitution>, "", "1", "[0, 1]", &right_reflects,
      "factor by which a collision with the right wall reduces the closing speed; 1 is elastic"},
+
+    {"gravity.acceleration", member<&Scene::gravity, &GravityOf::acceleration>, "l/t^2", "", any, &may_fall,
+     "constant acceleration of all particles, positive to the right; walls do not fall. The one that particles fall "
+     "towards is a floor. Collisions with walls slower than law.cutoff are elastic then; without it, no gravity"},
 
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},

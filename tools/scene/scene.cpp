@@ -100,8 +100,8 @@ std::optional<std::pair<Decimal, Decimal>> extent(const Scene& scene) {
 }
 
 bool operator==(const Scene& a, const Scene& b) {
-  return a.title == b.title && a.law == b.law && a.initial == b.initial && a.walls == b.walls && a.run == b.run &&
-         a.output == b.output && a.sweep == b.sweep;
+  return a.title == b.title && a.law == b.law && a.initial == b.initial && a.walls == b.walls &&
+         a.gravity == b.gravity && a.run == b.run && a.output == b.output && a.sweep == b.sweep;
 }
 
 Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {

@@ -111,6 +111,12 @@ struct WallPair {
   bool operator==(const WallPair&) const = default;
 };
 
+struct GravityOf {
+  std::optional<Decimal> acceleration;  // of all particles, positive to the right
+  bool acts() const { return acceleration && *acceleration != Decimal("0"); }
+  bool operator==(const GravityOf&) const = default;
+};
+
 struct Run {
   Decimal start;
   Decimal until;
@@ -246,6 +252,7 @@ struct Scene {
   scene::Law law;
   Initial initial;
   WallPair walls;
+  GravityOf gravity;
   Run run;
   Output output;
   Sweep sweep;

@@ -11,7 +11,7 @@ namespace cradle::tools {
 
 std::vector<Prediction> predictions(const Scene& scene) {
   Predictions table;
-  if (scene.walls.any()) return {};  // the paper has none
+  if (scene.walls.any() || scene.gravity.acts()) return {};  // the paper has none
   if (const auto predict = law_row(scene).predict) predict(scene, table);
   if (scene.initial.type == InitialType::ring && !unequal_masses(scene)) predict_cooling(scene, table);
   return std::move(table).take();

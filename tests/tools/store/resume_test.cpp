@@ -86,6 +86,8 @@ const std::string general =
     "speed = -0.5, density = 2 }, centre = { mass = 5, speed = 0.1 }, perturbation = 0.1 }\n";
 const std::string between_walls = "[walls]\nleft = { position = -60, temperature = 0.4 }\nright = { position = 50, "
                                   "speed = -0.05, restitution = 0.9 }\n";
+const std::string on_a_floor =
+    "[gravity]\nacceleration = -0.03\n[walls]\nleft = { position = -60, restitution = 0.9 }\n";
 const std::string wet = "law = { type = 'wet', loss = 0.01 }\n", sticky = "law.type = 'sticky'\n";
 const std::string watched =
     "output = { series = { points = 300, spacing = 'log' }, masses = [10, 100], scenario = true, "
@@ -123,6 +125,9 @@ const std::string scenes[] = {
         "coordinates = 'absolute'"),
     "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-2, cutoff_exponent = 3.5 }\n" + rows + outputs +
         to_100,
+    dry(list, on_a_floor),
+    dry(rows, "coordinates = 'absolute'\n" + on_a_floor),
+    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3\n[gravity]\nacceleration = 0.03\n" + between_walls),
 };
 
 Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }
@@ -209,7 +214,7 @@ TEST_P(Resume, EndsInTheSameBytesWhereverItIsCut) {
   }
 }
 
-// 25 scenes, six types, four cuts each with another one behind it.
+// 28 scenes, six types, four cuts each with another one behind it.
 INSTANTIATE_TEST_SUITE_P(
     Runs, Resume,
     testing::Values(case_of("DryRows", 0), case_of("DryRowsPositions", 1), case_of("ContactTime", 2),
@@ -220,7 +225,8 @@ INSTANTIATE_TEST_SUITE_P(
                     case_of("StickyRing", 15), case_of("Collapse", 16), case_of("Walls", 17),
                     case_of("WallsPositions", 18), case_of("WallsContactTime", 19), case_of("PatternRows", 20),
                     case_of("PatternRing", 21), case_of("Cold", 22), case_of("ColdPositions", 23),
-                    case_of("SpeedDependent", 24),
+                    case_of("SpeedDependent", 24), case_of("Gravity", 25), case_of("GravityPositions", 26),
+                    case_of("GravityContactTime", 27),
                     Case{"LargeWalls", large_walls.c_str(), {"double", "double-double"}, 2, 3},
                     Case{"LargeDry", large_dry.c_str(), {"double", "double-double"}, 1, 1},
                     Case{"LargeDryTagged", large_dry_tagged.c_str(), {"double", "double-double"}, 2, 1},

@@ -19,9 +19,10 @@ def with_error(table, name):
 
 
 def exact_current(result):
-    """The heat current of identical elastic particles between thermal walls at rest; None of others."""
+    """The heat current of identical elastic particles between thermal walls at rest; without gravity. Else None."""
     temperatures = [result.setting("walls", f"{side}.temperature") for side in ("left", "right")]
     moving = any(result.setting("walls", f"{side}.speed", 0.0) for side in ("left", "right"))
+    moving = moving or result.setting("gravity", "acceleration", 0.0) != 0
     masses = result.scene.get("initial", {}).get("masses", [1])
     if None in temperatures or moving or result.setting("law", "restitution", 0.0) != 1 or set(masses) != {1}:
         return None

@@ -38,7 +38,9 @@ def draw_particles(result, units, axes=None):
         axes[0].legend(loc="best", ncol=2)
     if series:
         time = series["time"] / units.t
-        axes[1].plot(time, series["energy"] / units.energy, color=BLUE, drawstyle="steps-post")
+        falling = "potential_energy" in series  # then energy changes between collisions too
+        axes[1].plot(time, series["energy"] / units.energy, color=BLUE,
+                     drawstyle="default" if falling else "steps-post")
         axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label())
         axes[1].set_ylim(bottom=0)
         if "collisions" in series:

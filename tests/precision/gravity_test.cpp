@@ -1,0 +1,186 @@
+// Gravity in every scalar type: a ball that bounces a thousand times, to the last bit; when random gaps to walls close,
+// against 200 digits; a column, in all types the same collisions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/precision/every_scalar.hpp"
+
+namespace gravity_in_types_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+template <class T> using Falling = GapChain<T, IndividualMasses<T>, Gravity<T>>;
+template <class T> using FallingRun = Simulation<T, Inelastic<T>, Falling<T>>;
+
+template <class T> Scene<T> under(const T& acceleration, const Scene<T>& particles, const Wall<T>& floor) {
+  return std::make_shared<Walled<T>>(particles, floor, std::nullopt, acceleration);
+}
+template <class T> std::vector<T> bounces(const T& acceleration, const T& height, std::size_t count, const T& until) {
+  const auto ball = under<T>(T(-acceleration), list<T>({height}, {T(0)}), Wall<T>{T(0)});
+  FallingRun<T> run(Inelastic<T>(T(1)), Falling<T>(ball, T(0)));
+  std::vector<T> times;
+  EXPECT_EQ(run.advance(until, [&](const Collision<T>& c) { times.push_back(c.time.value()); }), Status::reached);
+  EXPECT_EQ(times.size(), count);
+  EXPECT_EQ(run.energy_lost(), T(0));
+  return times;
+}
+
+template <class P> class FallIn : public InPrecision<P> {};
+TYPED_TEST_SUITE(FallIn, EveryPrecision, PrecisionName);
+
+// From the height k^2 with the acceleration 2 a ball is on the floor at the times k (2 n - 1). With k of less than half
+// the digits of the type every number on the way can be exact.
+TYPED_TEST(FallIn, ABallBouncesAThousandTimesToTheLastBit) {
+  using T = typename TestFixture::Scalar;
+  const T epsilon = std::numeric_limits<T>::epsilon();
+  T k(1);
+  while (k * k * k * k * T(81) * T(1 << 24) * epsilon < T(1) && k < T(std::int64_t{1} << 60)) k *= T(3);
+  ASSERT_GT(k, T(1));
+  const std::vector<T> times = bounces<T>(T(2), T(k * k), 1000, T(T(2000) * k));
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    const T exact = k * T(2 * static_cast<std::int64_t>(n) + 1);
+    if constexpr (RoundsToNearest<T>)
+      ASSERT_EQ(times[n], exact) << n;
+    else  // double-double: one root, one quotient and their sums
+      ASSERT_LE(magnitude(T(times[n] - exact)), T(8) * epsilon * exact) << n;
+  }
+}
+
+// A collision or a flight rounds a few numbers by u of the largest speed or height: the energy is off by 64 epsilon of
+// it for each at most. All types make the same collisions.
+TYPED_TEST(FallIn, AColumnKeepsItsEnergy) {
+  using T = typename TestFixture::Scalar;
+  const T until(6);
+  const auto column = under<T>(T(T(-3) / T(8)), rmix<T>(8), Wall<T>{T(-1)});
+  FallingRun<T> run(Inelastic<T>(T(1)), Falling<T>(column, T(0)));
+  Sequence found, wanted;
+  EXPECT_EQ(run.advance(until, [&](const Collision<T>& c) { found.add(c.left); }), Status::reached);
+  const auto c = configuration_at(run, until);
+  const T scale = column->mechanical_energy() + column->energy_of_fall();
+  const T error = sample(run, T(0), until).energy + potential_energy(c, *column, until) - column->mechanical_energy();
+  EXPECT_LE(magnitude(error), T(64) * T(static_cast<std::int64_t>(run.counts().collisions)) *
+                                  T(std::numeric_limits<T>::epsilon()) * scale);
+
+  const auto in_double = under<double>(-0.375, rmix<double>(8), Wall<double>{-1.});
+  FallingRun<double> twin(Inelastic<double>(1), Falling<double>(in_double, 0.));
+  twin.advance(6, [&](const Collision<double>& collision) { wanted.add(collision.left); });
+  EXPECT_EQ(found, wanted);
+  EXPECT_GT(run.counts().collisions, 20U);
+  Simulation<T, Inelastic<T>, PositionChain<T, Gravity<T>>> places(Inelastic<T>(T(1)),
+                                                                   PositionChain<T, Gravity<T>>(column, T(0)));
+  Sequence of_places;
+  places.advance(until, [&](const Collision<T>& collision) { of_places.add(collision.left); });
+  EXPECT_EQ(of_places, wanted);
+  const auto d = configuration_at(twin, 6.);
+  for (std::size_t j = 0; j < d.x.size(); ++j) EXPECT_NEAR(to_double(c.x[j]), d.x[j], 1e-12);
+}
+
+#ifdef CRADLE_WITH_MPFR
+using Reference = Mpfr<16>;
+constexpr unsigned reference_digits = 200;
+
+// The number, exactly: as a sum of doubles.
+template <class T> Reference exact(T x) {
+  Reference sum(0);
+  for (int part = 0; part < 8 && !(x == T(0)); ++part) {
+    const double leading = to_double(x);
+    sum += exactly<Reference>(leading);
+    x -= exactly<T>(leading);
+  }
+  return sum;
+}
+
+struct ByDigits {
+  bool meets;
+  Reference time, speed;
+};
+ByDigits by_digits(const Reference& g, const Reference& w, const Reference& p) {
+  const Reference square = w * w + Reference(2) * p * g;
+  if (!(square > Reference(0)) || (p < Reference(0) && !(w > Reference(0)))) return {false, {}, {}};
+  const Reference speed = sqrt(square);
+  return {true, Reference((speed - w) / p), speed};
+}
+
+template <class T> class ApproachIn : public testing::Test {};
+#ifdef CRADLE_WITH_FLOAT128
+using OfApproaches = testing::Types<double, long double, double_double, float128>;
+#else
+using OfApproaches = testing::Types<double, long double, double_double>;
+#endif
+TYPED_TEST_SUITE(ApproachIn, OfApproaches);
+
+// Random gaps, among them such that only just reach the ceiling or do not. Errors in units u of half an epsilon: the
+// speed has that of its square (u/2 after the root) and one of the root; the time twice that, less for the Newton step,
+// and those of a sum and a quotient.
+template <class T> void expect_right_meetings(int count) {
+  MpfrPrecision::set_bits(MpfrPrecision::bits_for(reference_digits));
+  const T epsilon = std::numeric_limits<T>::epsilon(), split = splitter<T>();
+  const T tolerance = RoundsToNearest<T> ? T(T(5) * epsilon / T(2)) : T(T(64) * epsilon);
+  std::int64_t draws = 0;
+  const auto draw = [&] {  // from 2^-24 to 2^24, either sign
+    const std::uint64_t bits = hash(draws++), more = hash(draws++);
+    T value = (T(static_cast<std::int64_t>(bits >> 2)) * T(std::int64_t{1} << 50) + T(std::int64_t(more >> 14))) /
+              T(std::int64_t{1} << 62);
+    for (std::uint64_t k = more & 0x3F; k > 0; --k) value /= T(2);
+    return bits & 1 ? T(-value) : value;
+  };
+  std::uint64_t met = 0, grazed = 0, missed = 0;
+  for (int k = 0; k < count; ++k) {
+    const T w = draw(), p = draw();
+    T g = magnitude(draw());
+    const bool near = k % 2 == 0 && p < T(0) && w > T(0);
+    if (near) {
+      g = w * w / (T(-2) * p);
+      g += g * epsilon * T(k % 14 - 7);
+    }
+    if (!(g > T(0)) || p == T(0)) continue;
+    const Approach<T> approach(g, w, p, split);
+    const auto time = approach.meeting_in(), speed = approach.meeting_speed();
+    const ByDigits wanted = by_digits(exact(g), exact(w), exact(p));
+    ASSERT_EQ(time.has_value(), speed.has_value());
+    if (near && !RoundsToNearest<T>) continue;
+    ASSERT_EQ(time.has_value(), wanted.meets) << k;
+    if (!time) {
+      ++missed;
+      continue;
+    }
+    ++(near ? grazed : met);
+    ASSERT_LE(magnitude(Reference(exact(*time) - wanted.time)), exact(tolerance) * wanted.time) << k;
+    ASSERT_LE(magnitude(Reference(exact(*speed) - wanted.speed)), exact(tolerance) * wanted.speed) << k;
+  }
+  EXPECT_GT(met, static_cast<std::uint64_t>(count) / 2);
+  EXPECT_GT(missed, static_cast<std::uint64_t>(count) / 10);
+  if (RoundsToNearest<T>) {
+    EXPECT_GT(grazed, static_cast<std::uint64_t>(count) / 50);
+  }
+}
+TYPED_TEST(ApproachIn, RandomGapsCloseWhenTheyDo) { expect_right_meetings<TypeParam>(4000); }
+TYPED_TEST(ApproachIn, SlowManyRandomGapsCloseWhenTheyDo) { expect_right_meetings<TypeParam>(100000); }
+
+// The times of a thousand bounces from a height that is not exact, against sqrt(2 h/a) (2 n - 1): the first fall and
+// the time between bounces have errors of 3 u at most, and so have all sums of them, but for one rounding.
+TYPED_TEST(ApproachIn, AThousandBouncesKeepTheirTimes) {
+  using T = TypeParam;
+  MpfrPrecision::set_bits(MpfrPrecision::bits_for(reference_digits));
+  for (int k = 1; k < 8; ++k) {
+    const T h = T(10 * k) / T(7), a = T(k + 3) / T(9);
+    const Reference first = sqrt(Reference(Reference(2) * exact(h) / exact(a)));
+    const auto times = bounces<T>(a, h, 1000, T(exactly<T>(to_double(Reference(Reference(2000) * first)))));
+    const Reference tolerance = exact(T(T(RoundsToNearest<T> ? 2 : 16) * T(std::numeric_limits<T>::epsilon())));
+    for (std::size_t n = 0; n < times.size(); ++n) {
+      const Reference wanted = first * Reference(2 * static_cast<std::int64_t>(n) + 1);
+      ASSERT_LE(magnitude(Reference(exact(times[n]) - wanted)), tolerance * wanted) << n;
+    }
+  }
+}
+#endif
+
+}  // namespace gravity_in_types_test

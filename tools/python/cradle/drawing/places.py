@@ -6,7 +6,8 @@ from .averages import with_error
 from .style import ORANGE, beside, shades, subplots, thinned
 
 PICTURES = (("structure_factor", "structure", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
-            ("pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)", "pair distribution $g(r)$", False))
+            ("pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)", "pair distribution $g(r)$",
+             False))
 
 
 def pictures(result, _theory, _units):

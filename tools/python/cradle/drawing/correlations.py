@@ -2,7 +2,7 @@
 (Jepsen, J. Math. Phys. 6, 405, 1965). Such particles pass each other's velocities on, so the tagged one is always the
 n-th in the line. It is to the right of y at time t if of all lines of flight more have come from its left to the right
 of y than the other way; these are two Poisson numbers, of means a(y) and b(y), and its own line is one more. So with
-their difference D, P(x > y) = P(D >= 1) + P(v > y/t) P(D = 0), and the mean square is 4 times the integral of y P(x > y).
+their difference D, P(x > y) = P(D >= 1) + P(v > y/t) P(D = 0); the mean square is 4 times the integral of y P(x > y).
 On a ring of N at rest as a whole the mean square is less by T t^2/N: the mean velocity, of variance T/N, is taken away.
 The velocity autocorrelation is half of its second derivative."""
 import math

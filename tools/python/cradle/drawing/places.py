@@ -8,7 +8,8 @@ from .style import ORANGE, beside, shades, stacked, subplots, thinned
 from .sweep import label_of
 
 PICTURES = (("structure_factor", "structure", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
-            ("pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)", "pair distribution $g(r)$", False))
+            ("pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)", "pair distribution $g(r)$",
+             False))
 
 
 def pictures(result, _theory, _units):

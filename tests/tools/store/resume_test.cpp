@@ -126,8 +126,8 @@ const std::string scenes[] = {
     "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-2, cutoff_exponent = 3.5 }\n" + rows + outputs +
         to_100,
     dry(list, on_a_floor),
-    dry(rows, "coordinates = 'absolute'\n" + on_a_floor),
-    dry(rows, "collapse = 'contact-time'\ncontact_time = 1e-3\n[gravity]\nacceleration = 0.03\n" + between_walls),
+    dry(list, "coordinates = 'absolute'\n" + on_a_floor),
+    dry(list, "collapse = 'contact-time'\ncontact_time = 1e-3\n[gravity]\nacceleration = 0.03\n" + between_walls),
 };
 
 Case case_of(const char* name, std::size_t scene) { return {name, scenes[scene].c_str()}; }

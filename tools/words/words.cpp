@@ -230,8 +230,11 @@ double seconds_since(std::chrono::steady_clock::time_point started) {
 }  // namespace
 
 WordReport report_word(const WordParticles& particles, const words::Word& word, const std::optional<Decimal>& at) {
+  WordReport report;
+  report.word = report.in_order = words::text_of(word);
+  if (particles.left_wall && particles.right_wall) return report;
   const auto started = std::chrono::steady_clock::now();
-  WordReport report = in_digits<WordReport>(
+  report = in_digits<WordReport>(
       particles.digits, [&]<class T>(std::type_identity<T>) { return Analyst<T>(particles, word).report(at); });
   report.word = words::text_of(word);
   report.seconds = seconds_since(started);
@@ -240,6 +243,7 @@ WordReport report_word(const WordParticles& particles, const words::Word& word, 
 
 std::vector<WordReport> search_words(const WordParticles& particles, std::size_t longest,
                                      const std::function<void(const WordReport&)>& found, std::size_t& tried) {
+  if (particles.left_wall && particles.right_wall) return {};  // all gaps together are as long as they were
   return in_digits<std::vector<WordReport>>(particles.digits, [&]<class T>(std::type_identity<T>) {
     std::vector<WordReport> all;
     words::for_each_word(particles.gaps(), longest, particles.symmetric(), [&](const words::Word& word) {

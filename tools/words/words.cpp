@@ -234,7 +234,7 @@ WordReport report_word(const WordParticles& particles, const words::Word& word, 
   report.word = report.in_order = words::text_of(word);
   if (particles.left_wall && particles.right_wall) return report;
   const auto started = std::chrono::steady_clock::now();
-  WordReport report = in_digits<WordReport>(
+  report = in_digits<WordReport>(
       particles.digits, [&]<class T>(std::type_identity<T>) { return Analyst<T>(particles, word).report(at); });
   report.word = words::text_of(word);
   report.seconds = seconds_since(started);

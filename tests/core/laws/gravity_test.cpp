@@ -246,8 +246,7 @@ TEST(Gravity, AnElasticColumnIsBallsThatBounceAlone) {
   const Inelastic<double> law(1);
   expect_balls(falling(column, law), x, v, 0.7);
   expect_balls(placed(column, law), x, v, 0.7);
-  // From the heights 1, 9, 25, ... they meet on the floor again and again, and rounding decides in which order: some
-  // collisions are late.
+  // From the heights 1, 9, 25, ... they meet on the floor again and again, several at a time.
   const std::vector<double> squares{0.3, 2.7, 7.5, 14.7, 24.3, 36.3}, at_rest(6, 0.);
   const auto meeting = under(-0.7, list(squares, at_rest), Wall<double>{0.});
   expect_balls(falling(meeting, law), squares, at_rest, 0.7);

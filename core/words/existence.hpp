@@ -23,7 +23,7 @@ namespace cradle::words {
 
 enum class Verdict { none, degenerate, exists };
 
-// Degenerate: no margin is negative, but some are 0, so far as the type can tell.
+// Degenerate: no margin is negative, but some are 0, as far as the type resolves.
 template <Real T> Verdict verdict(const std::vector<Margin<T>>& margins, const T& tolerance) {
   Verdict found = Verdict::exists;
   for (const Margin<T>& margin : margins) {

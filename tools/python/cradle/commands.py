@@ -23,7 +23,8 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
 
     scene: a scene file, the name of a bundled scene, nested dicts as result.scene has them, or the text of a scene
         (with line breaks), as result.scene_text.
-    set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`.
+    set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`; the same as
+        nested dicts, `{"law": {"restitution": 0.9}}`, which leave the other keys of a table; None unsets a key.
     Common to all commands, as keywords:
     output: the result file; by default the scene's name with .h5 in the working folder, as in the program.
     seed: replaces the scene's.
@@ -97,10 +98,19 @@ def compute(command, ending, scene, set, options, *, output: str | os.PathLike |
             threads: int | None = None, progress: bool | Show | None = None) -> Result:
     with scene_file(scene) as (path, name):
         output = os.fspath(output) if output is not None else name + ending
-        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed)]
-        for key, value in (set or {}).items():
-            words += ["--set", f"{key}={bare(value)}"]
+        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *assignments(set)]
         return called(words, output, threads, progress)
+
+
+def assignments(set: Settings, table: str = "") -> list[str]:
+    """Options --set. The keys of a nested table are set one by one; a table under a dotted key replaces it."""
+    words = []
+    for key, value in (set or {}).items():
+        if isinstance(value, Mapping) and "." not in key:
+            words += assignments(value, f"{table}{key}.")
+        else:
+            words += ["--set", f"{table}{key}={'' if value is None else bare(value)}"]
+    return words
 
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:

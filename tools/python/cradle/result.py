@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
 from builtins import open as builtins_open  # hidden by ours
 from functools import cached_property
 from typing import Any
@@ -238,6 +239,33 @@ class Result:
         """`time`, `uncertainty`, `gap`, ... if the run ended at inelastic collapse; else empty."""
         return self.table("collapse").attributes
 
+    def keys(self) -> list[str]:
+        """The names of the groups in the file, those of statistics of an ensemble without `ensemble/`."""
+        inner = self._group("ensemble")
+        return [name for name in (*reading(self.path, lambda: list(self.file)), *(inner or ())) if name != "ensemble"]
+
+    def __getitem__(self, path: str) -> Any:
+        """By path, as in the file: `result["series/energy"]`, `result["snapshots/0001/gap"]`; of an ensemble
+        `result["series/energy/mean"]`. Raises KeyError if the file does not have it."""
+        name, _, rest = path.partition("/")
+        if name not in self.keys() and name != "ensemble":
+            raise KeyError(f"{name}: not in {self.path}, which has {', '.join(self.keys())}")
+        found = getattr(self, name, None)
+        if not isinstance(found, (Table, Tables)):
+            found = self.table(name) if name in self.file else self.table(f"ensemble/{name}")
+        return found[rest] if rest else found
+
+    def __contains__(self, path: object) -> bool:
+        try:
+            return isinstance(path, str) and self[path] is not None
+        except KeyError:
+            return False
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    _ipython_key_completions_ = keys
+
     def table(self, name: str) -> Table:
         """Any group by its path, `"zone"`, `"scenario"`, `"meetings"`; empty if it does not exist."""
         return Table(self._group(name), f"{self.path}: {name}")
@@ -253,9 +281,9 @@ class Result:
         return exact[f"{name}_low"].fractions(), exact[f"{name}_high"].fractions()
 
     def __repr__(self) -> str:
-        name = self.attributes.get("name", "")
         parts = [("series", len(self.series)), ("snapshots", len(self.snapshots)), ("profiles", len(self.profiles)),
                  ("events", len(self.events)), ("points", len(self.points)), ("trust", len(self.trust))]
         held = [what if what in ("series", "events") else f"{count} {what}" for what, count in parts if count]
-        precision = self.attributes.get("precision", "")
-        return f"<{self.label or self.kind} {name}: {self.outcome}; {precision}; {', '.join(held) or 'empty'}>"
+        about = self.attributes
+        end = f"{about.get('replicas', 0)} replicas" if self.label else f"{self.outcome}; {about.get('precision', '')}"
+        return f"<{self.kind} {self.label or about.get('name', '')}: {end}; {', '.join(held) or 'empty'}>"

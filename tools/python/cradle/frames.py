@@ -1,0 +1,58 @@
+"""Tables as pandas.DataFrame and xarray.Dataset, both optional. Inner tables are flattened, `energy.mean`."""
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .errors import missing
+
+if TYPE_CHECKING:
+    from .tables import Column, Table
+
+
+def imported(name: str) -> Any:
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise missing(name) from None
+
+
+def flat(table: Table, before: str = "") -> Iterator[tuple[str, Column]]:
+    """Names and columns, those of inner tables too."""
+    for name, item in table.items():
+        if name in table.columns:
+            yield before + name, item
+        else:
+            yield from flat(item, f"{before}{name}.")
+
+
+def data_frame(table: Table):
+    """See Table.to_pandas."""
+    pandas = imported("pandas")
+    columns, units = {}, {}
+    for name, column in flat(table):
+        sides = {name: column.values} if column.ndim == 1 else {f"{name}[{k}]": v for k, v in enumerate(column.values.T)}
+        for label, values in sides.items():
+            columns[label], units[label] = pandas.Series(values), column.unit
+    frame = pandas.DataFrame(columns)
+    frame.attrs.update(table.attributes, units=units)
+    return frame
+
+
+def data_set(table: Table):
+    """See Table.to_xarray."""
+    xarray = imported("xarray")
+    columns = dict(flat(table))
+    length = max((len(column) for column in columns.values()), default=0)
+    along = next((name for name in ("time", "index", "x") if name in columns and columns[name].ndim == 1), "row")
+    variables = {}
+    for name, column in columns.items():
+        # Gaps lie between particles: one fewer.
+        first = along if len(column) == length else f"between_{along}"
+        dims = (first, "side")[:column.ndim]
+        about = {key: value for key, value in (("units", column.unit), ("long_name", column.description)) if value}
+        variables[name] = (dims, column.values, about)
+    return xarray.Dataset(variables, attrs=dict(table.attributes))

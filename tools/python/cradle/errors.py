@@ -19,5 +19,5 @@ class Error(Exception):
 
 
 def missing(module: str) -> Error:
-    return Error(f"Python module {module} is missing: install the Debian package python3-{module}, or with pip {module}",
-                 BAD_FILE)
+    return Error(f"Python module {module} is missing: install the Debian package python3-{module}, or {module} with "
+                 "pip", BAD_FILE)

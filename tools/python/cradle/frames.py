@@ -34,8 +34,8 @@ def data_frame(table: Table):
     pandas = imported("pandas")
     columns, units = {}, {}
     for name, column in flat(table):
-        sides = {name: column.values} if column.ndim == 1 else {f"{name}[{k}]": v for k, v in enumerate(column.values.T)}
-        for label, values in sides.items():
+        wide = [(f"{name}[{k}]", side) for k, side in enumerate(column.values.T)] if column.ndim > 1 else []
+        for label, values in wide or [(name, column.values)]:
             columns[label], units[label] = pandas.Series(values), column.unit
     frame = pandas.DataFrame(columns)
     frame.attrs.update(table.attributes, units=units)

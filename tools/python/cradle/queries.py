@@ -51,7 +51,7 @@ def new(path: str | os.PathLike = "shock.toml", scene: Scene | None = None) -> s
 
 
 class Check(dict):
-    """Values of a scene by key, defaults included: `{"law.restitution": 0.999, ...}`. Printed, it is the program's text.
+    """Values of a scene by key, defaults included, `{"law.restitution": 0.999, ...}`; printed, the program's text.
 
     text: the output of `cradle check`, with what the run is expected to cost.
     collisions, seconds, megabytes: the same as numbers; None if not known beforehand.

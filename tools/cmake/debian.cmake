@@ -1,7 +1,7 @@
 # `cpack -G DEB` in the build tree makes cradle_VERSION_ARCHITECTURE.deb of what `cmake --install` installs. Its
 # dependencies are those of the libraries that the program was linked with, so it is for the release of Debian it was
-# built on; with the preset `portable` it is for every processor. The Python package is where Debian's Python finds it.
-# The same file is the script that cpack runs between installing and packing.
+# built on; with the preset `portable` it is for every processor. The Python package and zsh's completion are where
+# Debian's find them. The same file is the script that cpack runs between installing and packing.
 
 if(CPACK_TEMPORARY_INSTALL_DIRECTORY)
   set(_usr ${CPACK_TEMPORARY_INSTALL_DIRECTORY}${CPACK_PACKAGING_INSTALL_PREFIX})
@@ -9,6 +9,7 @@ if(CPACK_TEMPORARY_INSTALL_DIRECTORY)
   file(MAKE_DIRECTORY ${_packages})
   file(RENAME ${_usr}/${CPACK_CRADLE_PYTHON_DIR}/cradle ${_packages}/cradle)
   file(REMOVE_RECURSE ${_usr}/${CPACK_CRADLE_PYTHON_DIR})
+  file(RENAME ${_usr}/share/zsh/site-functions ${_usr}/share/zsh/vendor-completions)
   return()
 endif()
 

@@ -1,7 +1,7 @@
 # The test `package`: `cpack -G DEB` of the build tree, unpacked as apt would unpack it; the program runs in it, Python
 # finds the package beside it, and the dependencies name the libraries. Skipped without Debian's tools.
-# tests/bare_debian.sh tries what apt makes of it on a machine that has nothing. Included from tests/CMakeLists.txt; the same file is the
-# script that the test runs. Everything must have been built.
+# tests/bare_debian.sh tries what apt makes of it on a machine that has nothing. Included from tests/CMakeLists.txt; the
+# same file is the script that the test runs. Everything must have been built.
 
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   add_test(NAME package

@@ -5,11 +5,12 @@ import importlib
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from .errors import missing
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
+
     from .tables import Column, Table
 
 
@@ -29,22 +30,22 @@ def flat(table: Table, before: str = "") -> Iterator[tuple[str, Column]]:
             yield from flat(item, f"{before}{name}.")
 
 
-def data_frame(table: Table):
+def data_frame(table: Table) -> pandas.DataFrame:
     """See Table.to_pandas."""
-    pandas = imported("pandas")
+    module = imported("pandas")
     columns, units = {}, {}
     for name, column in flat(table):
         wide = [(f"{name}[{k}]", side) for k, side in enumerate(column.values.T)] if column.ndim > 1 else []
         for label, values in wide or [(name, column.values)]:
-            columns[label], units[label] = pandas.Series(values), column.unit
-    frame = pandas.DataFrame(columns)
+            columns[label], units[label] = module.Series(values), column.unit
+    frame = module.DataFrame(columns)
     frame.attrs.update(table.attributes, units=units)
     return frame
 
 
-def data_set(table: Table):
+def data_set(table: Table) -> xarray.Dataset:
     """See Table.to_xarray."""
-    xarray = imported("xarray")
+    module = imported("xarray")
     columns = dict(flat(table))
     length = max((len(column) for column in columns.values()), default=0)
     along = next((name for name in ("time", "index", "x") if name in columns and columns[name].ndim == 1), "row")
@@ -55,4 +56,4 @@ def data_set(table: Table):
         dims = (first, "side")[:column.ndim]
         about = {key: value for key, value in (("units", column.unit), ("long_name", column.description)) if value}
         variables[name] = (dims, column.values, about)
-    return xarray.Dataset(variables, attrs=dict(table.attributes))
+    return module.Dataset(variables, attrs=dict(table.attributes))

@@ -100,7 +100,7 @@ def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: 
         raise Error(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg", BAD_INPUT)
     from .drawing.pictures import write_file
     opened = result if isinstance(result, Result) else open(result)
-    paths = []
+    paths: list[str] = []
     for name, draw in drawings(opened, theory).items():
         paths.append(f"{base}-{name}{extension}" if paths else base + extension)
         write_file(draw(), paths[-1])
@@ -129,7 +129,7 @@ class Pictures(ModuleType):
 
 def _function(name: str, text: str):
     def picture(result: Result | str | os.PathLike, axes=None, theory: bool = True) -> Figure:
-        return sys.modules[__name__](result, name, axes, theory)
+        return Pictures.__call__(module, result, name, axes, theory)
 
     picture.__name__ = picture.__qualname__ = name
     picture.__doc__ = f"{text} result, axes and theory as in cradle.plot; returns the matplotlib figure."
@@ -137,4 +137,5 @@ def _function(name: str, text: str):
 
 
 globals().update({name: _function(name, text) for name, text in PICTURES.items()})
-sys.modules[__name__].__class__ = Pictures
+module = sys.modules[__name__]
+module.__class__ = Pictures

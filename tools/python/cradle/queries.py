@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from . import program
-from .commands import Scene, Settings, assignments, option, scene_file
+from .commands import Scene, Settings, option, scene_file, settings
 from .errors import DIFFERS, DONE
 from .result import Result
 from .scene import parse_toml
@@ -83,7 +83,7 @@ def check(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Che
     Raises Error, as run() would, for whatever is wrong with it.
     """
     with scene_file(scene) as (path, _):
-        return Check(program.call(["check", path, *assignments(set), *option("--seed", seed)]).out)
+        return Check(program.call(["check", path, *settings(set), *option("--seed", seed)]).out)
 
 
 def theory(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Table:
@@ -93,7 +93,7 @@ def theory(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Ta
     corrected), "discrete" (the exact recursion) or "printed" (with the misprint). No rows: nothing is predicted.
     """
     with scene_file(scene) as (path, name):
-        out = program.call(["theory", path, "--csv", *assignments(set), *option("--seed", seed)]).out
+        out = program.call(["theory", path, "--csv", *settings(set), *option("--seed", seed)]).out
     rows = list(csv.DictReader(io.StringIO(out)))
     memory = h5py.File(f"theory of {name}", "w", driver="core", backing_store=False, track_order=True)
     for column in ("quantity", "equation", "form"):

@@ -4,13 +4,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
-from .errors import BAD_FILE, BAD_INPUT, Error
+from .errors import BAD_FILE, BAD_INPUT, Error, missing
 from .frames import data_frame, data_set, imported
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 UNREADABLE = (OSError, KeyError, ValueError, RuntimeError, TypeError)  # of h5py, on files that are damaged or closed
 
@@ -98,7 +102,7 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
     def __iter__(self) -> Iterator:
         return iter(self.values)
 
-    def fractions(self) -> list[Fraction]:
+    def fractions(self) -> list:
         """Every number exactly: the decimal of a text, the stored binary number of a float64.
 
         Columns of width two give a list for each row. NaN raises ValueError, as in Python.
@@ -110,7 +114,10 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
 
         They are rounded here; mpmath rounds sums and products to mpmath.mp.dps, which is not changed.
         """
-        mpmath = imported("mpmath")
+        try:
+            import mpmath
+        except ImportError:
+            raise missing("mpmath") from None
         if digits is None:
             digits = max((len(text) for text in self.values.ravel().tolist()), default=17) if self.is_text else 17
         with mpmath.workdps(digits):
@@ -178,12 +185,12 @@ class Table(Mapping):
     def __dir__(self):
         return [*super().__dir__(), *self._names, *self.attributes]
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """A pandas.DataFrame of all columns, those of inner tables as `energy.mean`, of columns of width two `x[0]`,
         `x[1]`; shorter ones (gaps) end with NaN. `frame.attrs["units"]` has the units by column."""
         return data_frame(self)
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """An xarray.Dataset of all columns, those of inner tables as `energy.mean`, over `time`, `index`, `x` or the
         row's number, with units as attributes."""
         return data_set(self)
@@ -235,14 +242,14 @@ class Tables(Sequence):
                         "times, or method=\"nearest\"", BAD_INPUT)
         return self[nearest]
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """A pandas.DataFrame of all tables, one below the other, with the column `time` first."""
-        pandas = imported("pandas")
+        module = imported("pandas")
         frames = [table.to_pandas() for table in self]
         for frame, time in zip(frames, self.times):
             if "time" not in frame:
                 frame.insert(0, "time", time)
-        return pandas.concat(frames, ignore_index=True) if frames else pandas.DataFrame()
+        return module.concat(frames, ignore_index=True) if frames else module.DataFrame()
 
     def __getitem__(self, index):
         """By number, slice or, `tables["0001/gap"]`, path."""

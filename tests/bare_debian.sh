@@ -6,7 +6,11 @@ set -euo pipefail
 suite=$1 package=$(realpath "$2") root=${3:-$(mktemp -d)}
 [[ -x $root/usr/bin/apt-get ]] || debootstrap --variant=minbase "$suite" "$root"
 cp "$package" "$root/tmp/cradle.deb"
-for folder in proc dev; do mountpoint -q "$root/$folder" || mount --rbind "/$folder" "$root/$folder"; done
+for folder in proc dev; do
+  mountpoint -q "$root/$folder" && continue
+  mount --rbind "/$folder" "$root/$folder"
+  mount --make-rslave "$root/$folder"  # else unmounting it there unmounts it here
+done
 trap 'umount -Rl "$root/proc" "$root/dev"' EXIT
 chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive HOME=/root bash -euxc '
   cd /root

@@ -14,22 +14,25 @@ from setuptools.command.build_ext import build_ext
 TREE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 BUILD = os.path.join(TREE, "build", "release")
 TARGET = "cradle_module"
+MADE = os.path.join(BUILD, "tools", "_live" + sysconfig.get_config_var("EXT_SUFFIX"))
 
 
 class BuildModule(build_ext):
     def build_extension(self, extension):
         subprocess.run(["cmake", "--build", BUILD, "--target", TARGET, "--parallel", str(os.cpu_count())], check=True)
-        name = "_live" + sysconfig.get_config_var("EXT_SUFFIX")
         path = self.get_ext_fullpath(extension.name)
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        shutil.copy(os.path.join(BUILD, "tools", name), path)
+        shutil.copy(MADE, path)
 
 
 def has_module():
-    """Configures the build tree for this Python; says whether it has the module then."""
+    """Whether the build tree has the module for this Python, after configuring it if it has not been made yet."""
     if not (shutil.which("cmake") and os.path.exists(os.path.join(TREE, "CMakePresets.json"))):
         return False
-    words = ["cmake", "--preset", "release", f"-DPython_EXECUTABLE={sys.executable}"]
+    if os.path.exists(MADE):
+        return True
+    python = getattr(sys, "_base_executable", sys.executable)  # an environment may be gone at the next build
+    words = ["cmake", "--preset", "release", f"-DPython_EXECUTABLE={python}"]
     if not os.path.exists(os.path.join(BUILD, "CMakeCache.txt")):
         words += ["-DCRADLE_TESTS=OFF", "-DCRADLE_BENCH=OFF"]
         words += [] if shutil.which("ninja") else ["-G", "Unix Makefiles"]

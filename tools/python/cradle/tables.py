@@ -185,6 +185,9 @@ class Table(Mapping):
     def __dir__(self):
         return [*super().__dir__(), *self._names, *self.attributes]
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
     def to_pandas(self) -> pandas.DataFrame:
         """A pandas.DataFrame of all columns, those of inner tables as `energy.mean`, of columns of width two `x[0]`,
         `x[1]`; shorter ones (gaps) end with NaN. `frame.attrs["units"]` has the units by column."""

@@ -50,7 +50,7 @@ def new(path: str | os.PathLike = "shock.toml", scene: Scene | None = None) -> s
     return path
 
 
-class Check(dict):
+class Check(dict[str, Any]):
     """Values of a scene by key, defaults included, `{"law.restitution": 0.999, ...}`; printed, the program's text.
 
     text: the output of `cradle check`, with what the run is expected to cost.
@@ -110,7 +110,7 @@ class Difference(NamedTuple):
     what: str
 
 
-class Differences(list):
+class Differences(list[Difference]):
     """A list of Difference, empty and so false if two results are the same. Printed, it is the program's summary."""
 
     def __init__(self, text: str):

@@ -2,8 +2,8 @@
 # Shared by quickstart.sh and test.sh, which source it. `set_up program|tests` makes sure that everything needed to
 # build the program (and its tests) is installed: it installs what is missing with apt, as root or through sudo. If it
 # cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no network, root or apt. MPI
-# and Highway are optional, and so is what tests look with (Chromium at reports, pip and dpkg at packages): they are
-# installed if that needs no password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on bare Debian
+# and Highway are optional, and so is Chromium, in which tests inspect reports: they are installed if that needs no
+# password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on bare Debian
 # 12 and Debian 13.
 
 preset=release

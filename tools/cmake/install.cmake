@@ -1,5 +1,6 @@
 # cmake --install: headers, the package config for find_package(cradle), the documents, the program with its manual page
-# and completions, the scenes, and the Python package with its module where that is built. `cpack -G DEB` packs the same.
+# and completions, the scenes, and the Python package with its module where that is built. `cpack -G DEB` packs the
+# same.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS cradle_options cradle_core cradle_steps cradle_ensemble cradle_precision cradle

@@ -34,7 +34,7 @@ struct RunTables {
   std::optional<Group> averages;  // with its bins
   std::vector<Group> histograms;  // with their bins
   // With their lags, wave numbers and distances.
-  std::optional<Group> correlations, structure, structure_at, pair_distribution, pair_distribution_at;
+  std::optional<Group> correlations, structure_average, structure, pair_distribution_average, pair_distribution;
   std::vector<std::string> summary;  // names of RunOutcome::summary
 };
 /// Throws Error if the extent of the zone is unknown.

@@ -58,7 +58,8 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   std::erase_if(groups, [](const Group& g) {
     const std::string_view name = rounded_name(g.name);
     constexpr std::array<std::string_view, 8> of_all{
-        "zone", "averages", "correlations", "structure", "pair_distribution", "scenario", "collapse", "initial"};
+        "zone",     "averages", "correlations", "structure_average", "pair_distribution_average",
+        "scenario", "collapse", "initial"};
     return std::find(of_all.begin(), of_all.end(), name) != of_all.end() || name.starts_with("histograms/");
   });
   // The file returns attributes in another order than they were written.

@@ -139,19 +139,20 @@ class Result:
     mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "The same; of an ensemble the means.",
                                  "profiles", "ensemble/profiles")
     averages: Table = part(Table, """Averages over time in bins: `x`, `density`, `temperature`, `heat_current`, ... of
-        shape (bins,), with `_error`; of an ensemble tables.""", "averages", "ensemble/averages")
+        shape (bins,), with `_sem`; of an ensemble tables.""", "averages", "ensemble/averages")
     histograms: Table = part(Table, """What a run counted, a table each: `result.histograms.free_flight` has `low`,
         `high` and `count` of shape (bins,); of an ensemble `count` is a table.""", "histograms", "ensemble/histograms")
-    correlations: Table = part(Table, """Of tagged particles: `lag`, `mean_square_displacement`,
-        `velocity_autocorrelation` of shape (lags,), with `_error`; of an ensemble tables.""", "correlations",
+    correlations: Table = part(Table, """Of tagged particles: `lag`, `msd` (mean-square displacement), `vacf`
+        (velocity autocorrelation) of shape (lags,), with `_sem`; of an ensemble tables.""", "correlations",
                                "ensemble/correlations")
-    structure: Table = part(Table, """The average structure factor: `k`, `structure_factor` of shape (waves,), with
-        `_error`; of an ensemble a table.""", "structure", "ensemble/structure")
-    structure_at: Tables = part(Tables, "The same at times.", "structure_at", "ensemble/structure_at")
-    pair_distribution: Table = part(Table, """The average pair distribution: `distance`, `pair_distribution` of shape
-        (bins,), with `_error`; of an ensemble a table.""", "pair_distribution", "ensemble/pair_distribution")
-    pair_distribution_at: Tables = part(Tables, "The same at times.", "pair_distribution_at",
-                                        "ensemble/pair_distribution_at")
+    structure: Tables = part(Tables, """The structure factor at times: `k`, `s` of shape (waves,); of an ensemble `s`
+        is a table.""", "structure", "ensemble/structure")
+    structure_average: Table = part(Table, "The same, averaged over times, with `s_sem`.", "structure_average",
+                                    "ensemble/structure_average")
+    pair_distribution: Tables = part(Tables, """The pair distribution at times: `distance`, `pair_distribution` of
+        shape (bins,); of an ensemble the latter is a table.""", "pair_distribution", "ensemble/pair_distribution")
+    pair_distribution_average: Table = part(Table, "The same, averaged over times, with `pair_distribution_sem`.",
+                                            "pair_distribution_average", "ensemble/pair_distribution_average")
     masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
     events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
         `interval`, `closing_speed`, `kind`.""", "events")

@@ -15,7 +15,7 @@ def pictures(result, _theory, _units):
 def with_error(table, name):
     """Values and standard errors of a quantity, of a run or of an ensemble."""
     quantity = table[name]
-    return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table[name + "_error"])
+    return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table[name + "_sem"])
 
 
 def exact_current(result):

@@ -46,7 +46,8 @@ SEE = {
     "collapse": "How much the time of the collapse depends on the random start.",
     "scenarios": "Where the curves leave 0 or 1, chance decides whether the clusters pass or stick.",
     "regimes": "One column for each point, one colour for each outcome.",
-    "sweep": "Each panel is one number of the result against what was varied; bars are standard errors over replicas.",
+    "parameters": "Each panel is one number of the result against what was varied; bars are standard errors over "
+                  "replicas.",
     "words": "A thick bar is where the motion is stable; an open end is not proved.",
     "trust": "A curve that falls shows digits being lost; up to its vertical line a run has made the right "
              "collisions.",

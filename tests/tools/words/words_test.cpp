@@ -90,7 +90,7 @@ TEST_F(WordsCommand, RunsKeepTheirWordForAsLongAsTheirDigitsLast) {
     write("word.toml", "[law]\ntype = 'inelastic'\nrestitution = " + restitution +
                            "\n[initial]\ntype = 'list'\nword = 'ababcb'\n[run]\nuntil = 5\nprecision = 'mpfr'\n"
                            "digits = 230\nstop_gap = '1e-2000'\n[output]\nevents = true\nseries = { points = 3 }\n");
-    shell("cradle run word.toml --quiet -o word.h5");
+    shell("cradle run word.toml --quiet --force -o word.h5");
     const auto left = numbers<std::uint64_t>(read("word.h5"), "events", "left");
     EXPECT_NEAR(static_cast<double>(periods_kept(left, "ababcb")), 766 * std::log(2.) / std::log(factor), 2)
         << restitution;
@@ -102,7 +102,8 @@ TEST_F(WordsCommand, ScenesStartFromAWordInEveryType) {
                      "until = 5\nstop_gap = 1e-30\n[output]\nevents = true\nseries = { points = 3 }\n");
   for (const char* type : {"double", "long double", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
     const std::string digits = std::string(type) == "mpfr" ? " --set run.digits=60" : "";
-    shell("cradle run word.toml --quiet -o word.h5 --set 'run.precision=\"" + std::string(type) + "\"'" + digits);
+    shell("cradle run word.toml --quiet --force -o word.h5 --set 'run.precision=\"" + std::string(type) + "\"'" +
+          digits);
     const auto left = numbers<std::uint64_t>(read("word.h5"), "events", "left");
     // Errors of 1e-16 grow by 15,000 in a period.
     EXPECT_GE(periods_kept(left, "ababcb"), 3U) << type;

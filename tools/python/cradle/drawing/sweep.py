@@ -134,7 +134,7 @@ def draw_widths(result, keys, axes=None):
                       label=given)
         fine = np.geomspace(values[cut].min(), values[cut].max(), 200)
         axes.plot(fine, model_width(fine, at, spacing) if key == SPEED else model_width(at, fine, spacing), line,
-                  color=colour, label=f"(13), {given}")
+                  color=colour, label=f"Eq. (13), {given}")
         axes.set_xlabel(r"$u_0$ (circles)" if key == SPEED else r"$E_\mathrm{loss}$ (squares)", color=colour)
         axes.set(xscale="log", yscale="log")
     ax.set_ylabel(r"width of the zone $2L$" if spacing != 1 else r"width of the zone $2L\,/\,l$")

@@ -16,6 +16,7 @@
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/progress.hpp"
 #include "cradle/tools/support/time_left.hpp"
+#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
@@ -73,7 +74,7 @@ Exit info_of_run(const InfoArguments& options) {
     TimeLeft pace;
     pace.add(0, scene.run.start.value);
     for (const RunStatus& status : journal.statuses) pace.add(status.seconds, status.time);
-    const auto left = pace.until(until);
+    const auto left = expected_cost(scene).collapse ? std::nullopt : pace.until(until);
     fmt::print(
         "{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
         line("collisions", fmt::format("{}", now.collisions)),

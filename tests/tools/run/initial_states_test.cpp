@@ -72,7 +72,7 @@ TEST_F(InitialStates, CanBeProved) {
   for (const std::string& scene : random_scenes) {
     if (has(scene, "'gas'")) continue;  // walls have no proof
     write("s.toml", scene);
-    run("certify s.toml --quiet -o proved.h5");
+    run("certify s.toml --quiet --force -o proved.h5");
   }
 }
 

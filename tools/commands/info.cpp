@@ -15,6 +15,8 @@
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/progress.hpp"
+#include "cradle/tools/support/time_left.hpp"
+#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
@@ -68,13 +70,16 @@ Exit info_of_run(const InfoArguments& options) {
              file_of(options.file, ".part"));
   if (!journal.statuses.empty()) {
     const RunStatus& now = journal.statuses.back();
-    const double start = scene.run.start.value, until = scene.run.until.value;
-    const double left = now.time > start ? now.seconds * (until - now.time) / (now.time - start) : 0;
+    const double until = scene.run.until.value;
+    TimeLeft pace;
+    pace.add(0, scene.run.start.value);
+    for (const RunStatus& status : journal.statuses) pace.add(status.seconds, status.time);
+    const auto left = expected_cost(scene).collapse ? std::nullopt : pace.until(until);
     fmt::print(
         "{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
         line("collisions", fmt::format("{}", now.collisions)),
         line("collisions/s", fmt::format("{:.3g} over the last minute", collisions_per_second(journal.statuses))),
-        line("computing", fmt::format("{}, {} left at this pace", duration(now.seconds), duration(left))));
+        line("computing", duration(now.seconds) + (left ? fmt::format(", {} left", duration(*left)) : "")));
     for (const auto& [name, value] : {std::pair("smallest gap", now.gap_min), std::pair("closure gap", now.closure_gap),
                                       std::pair("closure speed", now.closure_speed)})
       if (!std::isnan(value)) fmt::print("{}", line(name, fmt::format("{:.6g}", value)));

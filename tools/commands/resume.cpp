@@ -6,6 +6,7 @@
 #include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/store/ensemble_store.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
+#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -36,7 +37,10 @@ Exit resume(const ResumeArguments& options) {
     if (!options.quiet) fmt::print("{}\n", files.over());
     return files.over_status();
   }
-  if (!options.quiet) fmt::print("{}: continuing from {}\n", file, files.resumed_from());
+  if (!options.quiet) {
+    notify(files.not_extended());
+    fmt::print("{}: continuing from {}\n", file, files.resumed_from());
+  }
   return run_command(files, file, options, interrupt);
 }
 

@@ -27,6 +27,7 @@ struct RunOptions {
   Interrupt* interrupt = nullptr;   // says whether to stop; heeded once there is something to keep
   Workers workers = {};             // for a run that is cut into segments
   RunStore* store = nullptr;        // stores the rows safely; without one the result has them
+  bool predictable = true;          // whether the pace so far says how long the rest takes; run_scene decides
 };
 
 struct RunOutcome {

@@ -99,7 +99,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
 
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {
   const auto particles = initial_particles<T>(scene);
-  Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
+  Progress progress(options.progress, scene.run.start.value, scene.run.until.value, options.predictable);
   const auto engine = engine_of<T>(scene, particles, policy_of<T>(scene, options, progress), options.workers,
                                    scene.output.observes_collisions() || options.observer != nullptr);
   return SceneRun<T>(scene, particles, *engine, options, progress)();

@@ -17,7 +17,7 @@ class Certified : public ProgramTest {
     return group == nullptr ? T() : attribute<T>(group->attributes, name, "certificate");
   }
   Printed certify(const std::string& what, int status = 0, const std::string& name = "a.h5") const {
-    return shell("cradle certify " + what + " -o " + name, status);
+    return shell("cradle certify " + what + " --force -o " + name, status);
   }
   Printed certify_list(const std::string& law, const std::string& x, const std::string& v, const std::string& until,
                        int status = 0) const {

@@ -77,7 +77,7 @@ class Run(unittest.TestCase):
         for keys, speed, kind, count in (({"law.cutoff": 0.3}, 0.3, 1, "collisions_below_cutoff"),
                                          ({"run.collapse": "merge", "run.merge_speed": 0.1}, 0.1, 2, "merges")):
             keys = small.SHOCK | {"law.restitution": 0.9, "output.events": True} | keys
-            with cradle.run("fig2", set=keys, output="kinds.h5") as result:
+            with cradle.run("fig2", set=keys, output="kinds.h5", force=True) as result:
                 found = result.events.kind == kind
                 np.testing.assert_array_equal(found, result.events.closing_speed < speed)
                 self.assertEqual(found.sum(), result.series[count][-1])

@@ -218,7 +218,7 @@ TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
   for (const std::string scene : {"dry", "wet"})
     for (const std::string precision : {"double", "double-double"}) {
       SCOPED_TRACE(scene + " in " + precision);
-      const std::string run = "cradle run " + scene + ".toml --quiet --set run.precision=" + precision;
+      const std::string run = "cradle run " + scene + ".toml --quiet --force --set run.precision=" + precision;
       for (const std::string threads : {"1", "2", "8"}) {
         shell(run + " --threads " + threads + " -o " + threads + ".h5", 0);
         expect_same("1.h5", threads + ".h5");

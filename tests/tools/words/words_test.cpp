@@ -74,7 +74,7 @@ TEST_F(WordsCommand, SearchesAllWords) {
 // Three particles at a wall: with the mirror image of the wall six, if the wall were elastic.
 TEST_F(WordsCommand, KnowsWallsAndMasses) {
   EXPECT_TRUE(has(shell("cradle words 3 abcb --walls left -o a.h5", 0).out, "right of a wall"));
-  EXPECT_TRUE(has(shell("cradle words 3 abcdcb --walls both -o a.h5", 0).out, "nowhere"));
+  EXPECT_TRUE(has(shell("cradle words 3 abcdcb --walls both -o b.h5", 0).out, "nowhere"));
   // A light particle between two heavy ones collapses up to a larger restitution than between equal ones.
   shell("cradle words 3 ab --masses 4,1,4 -o light.h5 && cradle words 3 ab --masses 1,4,1 -o heavy.h5", 0);
   EXPECT_GT(numbers(read("light.h5"), "words", "high").front(), 0.08);
@@ -85,12 +85,12 @@ TEST_F(WordsCommand, KnowsWallsAndMasses) {
 // are 766 bits. How large it has to be to change a collision, and how large it was, is worth a period or two.
 TEST_F(WordsCommand, RunsKeepTheirWordForAsLongAsTheirDigitsLast) {
   for (const std::string restitution : {"0.09", "0.1", "0.101"}) {
-    shell("cradle words 4 ababcb --digits 10 -o factor.h5 --at " + restitution, 0);
+    shell("cradle words 4 ababcb --digits 10 --force -o factor.h5 --at " + restitution, 0);
     const double factor = numbers(read("factor.h5"), "words", "factor").front();
     write("word.toml", "[law]\ntype = 'inelastic'\nrestitution = " + restitution +
                            "\n[initial]\ntype = 'list'\nword = 'ababcb'\n[run]\nuntil = 5\nprecision = 'mpfr'\n"
                            "digits = 230\nstop_gap = '1e-2000'\n[output]\nevents = true\nseries = { points = 3 }\n");
-    shell("cradle run word.toml --quiet -o word.h5");
+    shell("cradle run word.toml --quiet --force -o word.h5");
     const auto left = numbers<std::uint64_t>(read("word.h5"), "events", "left");
     EXPECT_NEAR(static_cast<double>(periods_kept(left, "ababcb")), 766 * std::log(2.) / std::log(factor), 2)
         << restitution;
@@ -102,7 +102,8 @@ TEST_F(WordsCommand, ScenesStartFromAWordInEveryType) {
                      "until = 5\nstop_gap = 1e-30\n[output]\nevents = true\nseries = { points = 3 }\n");
   for (const char* type : {"double", "long double", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
     const std::string digits = std::string(type) == "mpfr" ? " --set run.digits=60" : "";
-    shell("cradle run word.toml --quiet -o word.h5 --set 'run.precision=\"" + std::string(type) + "\"'" + digits);
+    shell("cradle run word.toml --quiet --force -o word.h5 --set 'run.precision=\"" + std::string(type) + "\"'" +
+          digits);
     const auto left = numbers<std::uint64_t>(read("word.h5"), "events", "left");
     // Errors of 1e-16 grow by 15,000 in a period.
     EXPECT_GE(periods_kept(left, "ababcb"), 3U) << type;

@@ -27,6 +27,7 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
         nested dicts, `{"law": {"restitution": 0.9}}`, which leave the other keys of a table; None unsets a key.
     Common to all commands, as keywords:
     output: the result file; by default the scene's name with .h5 in the working folder, as in the program.
+    force: True replaces what output holds, also what this call would not make again.
     seed: replaces the scene's.
     threads: how many at most; by default all processors. It never changes a result.
     progress: True, False, or a function of the finished share and a line of text; by default on terminals and in
@@ -95,11 +96,12 @@ def option(name: str, value: Any) -> list[str]:
     return [] if value is None else [name, str(value)]
 
 
-def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, seed: int | None = None,
-            threads: int | None = None, progress: bool | Show | None = None) -> Result:
+def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, force: bool = False,
+            seed: int | None = None, threads: int | None = None, progress: bool | Show | None = None) -> Result:
     with scene_file(scene) as (path, name):
         output = os.fspath(output) if output is not None else name + ending
         words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]
+        words += ["--force"] * force
         return called(words, output, threads, progress)
 
 

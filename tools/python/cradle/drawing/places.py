@@ -4,7 +4,7 @@ particles in equilibrium are an example."""
 import numpy as np
 
 from .averages import with_error
-from .style import ORANGE, beside, shades, stacked, subplots, thinned
+from .style import ORANGE, beside, distinct, shades, stacked, subplots, thinned
 from .sweep import label_of
 
 PICTURES = (("structure_factor", "structure", "s", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
@@ -47,9 +47,9 @@ def draw_points(result, axes, group, name, along, xlabel, ylabel, log):
     times = thinned(getattr(points[0], group).times)
     figure, panels = stacked(axes, len(times), height=2.4, sharex=True)
     for ax, time in zip(panels, times):
-        for point, colour in zip(points, shades(len(points))):
+        for point, colour, label in zip(points, shades(len(points)), distinct(map(label_of, points), points)):
             table = getattr(point, group).at(time, "nearest")
-            ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label_of(point))
+            ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label)
         ax.axhline(1, color=ORANGE, lw=1, ls="--")
         ax.set(ylabel=ylabel, title=f"$t={time:.5g}$")
         if log:

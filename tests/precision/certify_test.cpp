@@ -158,6 +158,42 @@ TEST(Certify, WhatIsProvedOfWetParticlesIsWhatFiftyDigitsGive) {
 }
 #endif
 
+// Elastic particles of nearly equal masses that all approach each other, and so had no collisions before, make n - 1,
+// n (n - 1)/2 or (n + 1) n (n - 1)/6 collisions in all (A. Knauf and M. Stepan, arXiv 1109.6242); none is left.
+TEST(Certify, ElasticParticlesOfNearlyEqualMassesMakeAsManyCollisionsAsTheyCan) {
+  using Texts = std::vector<std::string>;
+  const auto proved_of = [](const Texts& x, const Texts& v, const Texts& m) -> std::uint64_t {
+    const auto list = [&]<class T>(T) {
+      std::vector<T> columns[3];
+      for (std::size_t k = 0; k < x.size(); ++k)
+        for (const auto& [to, from] : {std::pair{0, &x}, {1, &v}, {2, &m}})
+          columns[to].push_back(from_text<T>((*from)[k]));
+      return std::make_shared<List<T>>(columns[0], columns[1], columns[2]);
+    };
+    Collisions collisions;
+    Simulation run(Inelastic<double>(1.), GapChain<double, IndividualMasses<double>>(list(0.), 0.));
+    run.advance(100., [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.right); });
+    Checker<B> checker(list(B()), CertainLaw<B>());
+    EXPECT_FALSE(checker.state_at(B(0)).over);
+    EXPECT_FALSE(checker.collisions(collisions));
+    const CertainState<B> end = checker.state_at(B(100));
+    EXPECT_FALSE(end.doubt);
+    EXPECT_TRUE(end.over);
+    return checker.proved().collisions;
+  };
+  EXPECT_EQ(proved_of({"0.617", "0.927", "0.953"}, {"-0.6", "-0.914", "-0.929"}, {"1", "1.05", "0.99"}), 2U);
+  EXPECT_EQ(proved_of({"-0.81", "-0.54", "0.11"}, {"0.78", "0.57", "-0.1"}, {"1", "1", "1.01"}), 3U);
+  EXPECT_EQ(proved_of({"-0.753", "-0.749", "0.877"}, {"0.787", "0.774", "-0.9"}, {"1", "0.95", "1"}), 4U);
+  EXPECT_EQ(proved_of({"-1.641", "-0.559", "-0.178", "0.603"}, {"0.973", "0.9415", "0.9339", "-0.3165"},
+                      {"0.98", "1.07", "1.1", "1.1"}),
+            3U);
+  EXPECT_EQ(proved_of({"-0.818", "-0.4", "-0.325", "0.141"}, {"0.8", "0.39", "0.3", "-0.134"}, {"1", "1", "1", "1.02"}),
+            6U);
+  EXPECT_EQ(proved_of({"-1.000002459", "-0.999374889", "-0.972827509", "1"}, {"1", "0.999359194", "0.97232206", "-1"},
+                      {"0.9171516", "0.9097226", "0.966177", "1.0627597"}),
+            10U);
+}
+
 TEST(Certify, FrontsAreTheOutermostOfAllRegions) {
   const std::vector<B> places{B(0), B(1), B(10), B(11), B(20), B(21)}, speeds{B(1), B(0), B(0), B(0), B(1), B(0)};
   CertainLaw<B> law;

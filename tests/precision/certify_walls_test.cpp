@@ -149,6 +149,69 @@ TEST(CertifyWalls, SideBySideCollisionsAreThoseOfOneByOne) {
   EXPECT_GE(alone, 500U);
 }
 
+// By the line that it had before, particle 0 would have met the wall at t = 2, and this is later, at t = 4.
+TEST(CertifyWalls, ACollisionWithAWallBeforeTheLastOneOfItsParticleIsRefuted) {
+  const auto list =
+      std::make_shared<List<B>>(std::vector<B>{B(1), B(3)}, std::vector<B>{B(-1), B(double_double(-1.5), 0)});
+  Checker<B> checker(std::make_shared<Walled<B>>(list, Wall<B>{B(0)}, std::nullopt), CertainLaw<B>());
+  ASSERT_FALSE(checker.collision(0, 1));
+  const auto doubt = checker.collision(-1, 0);
+  ASSERT_TRUE(doubt);
+  EXPECT_EQ(doubt->check, Check::later);
+  EXPECT_TRUE(doubt->refuted);
+}
+
+// Balls of the start that are wide: every state in them has its own motion, which stays within the balls.
+constexpr double spread = 0x1p-26;
+std::shared_ptr<const Particles<B>> wide_particles(const Drawn& d) {
+  const auto narrow = particles_of<B>(d);
+  std::vector<B> x, v, m;
+  for (ParticleIndex b = 0; b < narrow->count(); ++b) {
+    x.push_back(B::widened(narrow->position(b), spread));
+    v.push_back(B::widened(narrow->velocity(b), spread));
+    m.push_back(narrow->mass(b));
+  }
+  const auto wall = [&](End end) {
+    return narrow->wall(end) == nullptr ? std::optional<Wall<B>>() : std::optional(*narrow->wall(end));
+  };
+  return std::make_shared<Walled<B>>(std::make_shared<List<B>>(x, v, m), wall(End::left), wall(End::right));
+}
+// At an end of each ball, or in its middle.
+template <class T> Gas<T> off_the_middle(Gas<T> gas, std::uint64_t number) {
+  std::uint64_t index = 0;
+  const auto off = [&] { return T(static_cast<int>(random_bits(17, number, index++) % 3) - 1) * T(spread); };
+  for (auto& cell : gas.cells) cell.origin += off(), cell.v += off();
+  return gas;
+}
+
+TEST(CertifyWalls, EveryStateInTheBallsOfTheStartStaysInThem) {
+  std::uint64_t counted = 0;
+  for (std::uint64_t number = 0; number < 200; ++number) {
+    SCOPED_TRACE(number);
+    const Drawn d = draw_with_walls(number);
+    Gas<Rational> gas = off_the_middle(gas_of(d), number);
+    Collisions collisions;
+    while (collisions.size() < most_collisions)
+      if (const auto next = gas.next(until))
+        collisions.push_back(*next);
+      else
+        break;
+    gas.time = until;
+    Checker<B> checker(wide_particles(d), law_of(d));
+    if (collisions.size() == most_collisions || !proved(checker, collisions)) continue;
+    ++counted;
+    const CertainState<B> end = checker.state_at(B(until));
+    EXPECT_TRUE(holds(end.energy, gas.energy()));
+    checker.for_each(B(until), [&](ParticleIndex particle, const B&, const B& x, const B& v) {
+      EXPECT_TRUE(holds(x, gas.place(gas.cell_of(particle)))) << particle;
+      EXPECT_TRUE(holds(v, gas.cell_of(particle).v)) << particle;
+    });
+    for (std::size_t side = 0; side < 2; ++side)
+      if (d.walls[side]) expect_account(end.walls[side], *gas.walls[side]);
+  }
+  EXPECT_GE(counted, 100U);
+}
+
 TEST(CertifyWalls, WhereNothingApproachesAnyMoreTheyAreOver) {
   const auto over = [](const std::vector<int>& v, const std::vector<int>& walls) {
     std::vector<B> x, speeds;
@@ -248,6 +311,37 @@ TEST(CertifyRestitutionOfSpeed, WhatIsProvedIsWhatAHundredDigitsGive) {
   }
   EXPECT_GE(counted, 200U);
   EXPECT_GE(collisions_proved, 1500U);
+}
+
+TEST(CertifyRestitutionOfSpeed, EveryStateInTheBallsOfTheStartStaysInThem) {
+  std::uint64_t counted = 0;
+  for (std::uint64_t number = 0; number < 150; ++number) {
+    SCOPED_TRACE(number);
+    Drawn d = draw(number, false);
+    d.length = 0;
+    if (d.cutoff == 0) d.cutoff = 32;
+    const char* const exponent = number % 2 == 0 ? "4" : "1.5";
+    CertainLaw<B> certain = law_of(d);
+    certain.cutoff_exponent = from_text<B>(exponent);
+    Gas<bin_float> gas = off_the_middle(converted<bin_float>(gas_of(d)), number);
+    gas.cutoff_exponent = decimal<bin_float>(exponent);
+    Collisions collisions;
+    while (collisions.size() < most_collisions)
+      if (const auto next = gas.next(bin_float(until)))
+        collisions.push_back(*next);
+      else
+        break;
+    gas.time = bin_float(until);
+    Checker<B> checker(wide_particles(d), certain);
+    if (collisions.size() == most_collisions || !proved(checker, collisions)) continue;
+    ++counted;
+    EXPECT_TRUE(holds_wide(checker.state_at(B(until)).energy, gas.energy()));
+    checker.for_each(B(until), [&](ParticleIndex particle, const B&, const B& x, const B& v) {
+      EXPECT_TRUE(holds_wide(x, gas.place(gas.cell_of(particle)))) << particle;
+      EXPECT_TRUE(holds_wide(v, gas.cell_of(particle).v)) << particle;
+    });
+  }
+  EXPECT_GE(counted, 75U);
 }
 
 // A shock of identical particles: the errors of velocities are averaged, sigma = 4 and eps = 0.5 (certain_law.hpp).

@@ -132,7 +132,7 @@ inline Gas<Rational> gas_of(const Drawn& d) {
 
 template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn& d) {
   std::vector<T> x, v, m;
-  const auto unit = [](int n) { return T(T(n) / T(64)); };
+  const auto unit = [](int n) { return n % 64 == 0 ? T(n / 64) : T(T(n) / T(64)); };  // exact masses may be identical
   int place = 0;
   for (std::size_t b = 0; b < d.gaps.size(); ++b) {
     x.push_back(unit(place)), v.push_back(unit(d.velocities[b])), m.push_back(unit(d.masses[b]));

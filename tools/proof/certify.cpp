@@ -38,19 +38,8 @@ std::vector<unsigned> rising_digits() {
 #endif
 }
 
-namespace {
-
-// What has no proof in a scene: the key, what it is, and what to do instead.
-struct NotProvable {
-  const char *key, *what;
-  std::string found;
-  const char* instead;
-};
-
-constexpr const char* compare_precisions = "compare precisions with `cradle trust` instead";
-
-// Each is a reason of its own, the first one is reported; none if the scene can be proved.
 std::optional<NotProvable> not_provable(const Scene& scene) {
+  constexpr const char* compare_precisions = "compare precisions with `cradle trust` instead";
   if (scene.initial.type == InitialType::clusters)
     return {{"initial.type", "no collisions to prove", "clusters, a model", "give a scene of particles"}};
   if (!law_row(scene).provable)
@@ -61,8 +50,6 @@ std::optional<NotProvable> not_provable(const Scene& scene) {
     return {{"gravity.acceleration", "gravity is not provable", scene.gravity.acceleration->text, compare_precisions}};
   return {};
 }
-
-}  // namespace
 
 void check_certifiable(const Scene& scene) {
   check_built(scene);
@@ -168,6 +155,7 @@ std::string Certified::not_proved() const {
 }
 
 Certified certify(const Scene& requested, const CertifyOptions& options) {
+  check_certifiable(requested);
   Scene scene = requested;
   std::vector<Attempt> attempts;
   // One of them checks what the others propose.
@@ -240,10 +228,14 @@ std::string certificate_text(const Certified& run) {
       text += fmt::format(", smallest gap 1e{:.1f}, gaps known to 1e{:.1f} of themselves", last.least_gap,
                           last.widest_of_gap);
     text += '\n';
-    for (std::size_t k = 0; k < last.walls.size(); ++k)
-      if (const auto& wall = last.walls[k])
-        text += fmt::format("  {:<10}{} collisions, energy given {}\n", k == 0 ? "left wall" : "right wall",
-                            wall->collisions, shown(wall->given));
+    for (const End end : {End::left, End::right})
+      if (const auto& wall = last.walls[static_cast<std::size_t>(end)]) {
+        const bool left = end == End::left;
+        const WallAt& of = left ? run.scene.walls.left : run.scene.walls.right;
+        text += fmt::format("  walls     {}: {} collisions", left ? "left" : "right", wall->collisions);
+        if (of.temperature || of.speed != Decimal("0")) text += fmt::format(", energy given {}", shown(wall->given));
+        text += '\n';
+      }
     if (run.proved() && last.over)
       text += "  after it  no particles approach each other: there are no more collisions\n";
   }

@@ -36,9 +36,9 @@
 // left cell continues at v_r + J/m_r <= v_l and the right one at v_l - J/m_l >= v_r, slower and faster as after a
 // bounce.
 //
-// Walls (certain_wall.hpp) have world lines as well, which nothing changes. Next to the left one, particle 0 is only hit
-// on its right between two collisions with the wall: its place is concave and that of the wall linear, so the gap is
-// concave and the argument holds. So it does at the right one.
+// Walls (certain_wall.hpp) have world lines as well, which nothing changes. Next to the left one, particle 0 is only
+// hit on its right between two collisions with the wall: its place is concave and that of the wall linear, so the gap
+// is concave and the argument holds. So it does at the right one.
 //
 // With a restitution of 0, w' = 0: particles stay together until one of them is hit, and the next collision fails 2.
 // Particles that merge have no gap any more. Particles that pass change places, and their gap is one of cells in the
@@ -187,13 +187,11 @@ template <Enclosing N> class Checker {
     state.walls = accounts_, state.sizes = of_walls_;
     const auto meets = [&](ParticleIndex b) { return b == now.l || b == now.r; };
     N before{0}, present{0};
-    for (ParticleIndex b = lines_.first(); b <= lines_.last(); ++b) {
-      if (lines_.is_wall(b)) {
-        const N x = place_at(b, time);
-        state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
-        check_pair(b, x, time, now, state);
-        continue;
-      }
+    const bool walled = walls_[0] || walls_[1];
+    if (walled) check_walls(time, now, state);
+    const ParticleIndex first = walled ? std::max<ParticleIndex>(lines_.first(), 0) : lines_.first(),
+                        last = walled ? std::min(lines_.last(), lines_.count() - 1) : lines_.last();
+    for (ParticleIndex b = first; b <= last; ++b) {
       const N mass = lines_.particles().mass(b), speed = lines_.particles().velocity(b);
       before += mass * squared(speed);
       state.sizes.add(to_double(mass), to_double(speed));
@@ -284,7 +282,15 @@ template <Enclosing N> class Checker {
 
   static N squared(const N& x) { return x * x; }
   static double power_of_ten(auto radius) { return static_cast<double>(std::log10(radius)); }
-  N place_at(ParticleIndex b, const N& time) const {
+  [[gnu::noinline]] void check_walls(const N& time, const Meeting& now, CertainState<N>& state) const {
+    for (const ParticleIndex b : {lines_.first(), lines_.last()}) {
+      if (!lines_.is_wall(b)) continue;
+      const N x = place_at(b, time);
+      state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
+      check_pair(b, x, time, now, state);
+    }
+  }
+  [[gnu::always_inline]] N place_at(ParticleIndex b, const N& time) const {
     const Line& line = lines_[b];
     return line.place + line.velocity * (of_collisions_ ? time - origin(line) : time);
   }

@@ -398,7 +398,7 @@ template <class T> struct Comparison {
         if ((side == 0 ? scene.walls.left : scene.walls.right).dissipates())
           row(*bounds, exact, k, wall + "_lost", gas.walls[side]->lost);
       }
-      if (!joined || series->columns.size() < 10) continue;
+      if (!joined || series->columns[1].name != "energy") continue;  // bounds alone, where the run did not end
       EXPECT_EQ(values_of<Whole>(*series, "collisions")[k], gas.collisions);
       EXPECT_EQ(values_of<Whole>(*series, "merges")[k], gas.merges);
       if (scene.law.restitution != Decimal("1") || scene.law.type != LawType::inelastic) {

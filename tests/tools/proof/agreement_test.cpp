@@ -58,6 +58,7 @@ initial = {type = "list", x = [1, 2, 3, 4], v = [1, -1, 0.5, 0], m = [1, 2, 1, 1
 walls.left = {position = 0, temperature = 1}
 walls.right = {position = 5, speed = 0.01, restitution = 0.8}
 run.until = 20
+output.series = {points = 4}
 )";
 
 std::string moved(const std::string& number, double by) {

@@ -171,7 +171,7 @@ TEST_F(Certified, GravityIsRefusedByName) {
   write("list.toml", "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.1}\nrun.until = 10\n"
                      "initial = {type = \"list\", x = [1, 2, 3], v = [1, -1, 0.5]}\n"
                      "walls.left.position = 0\ngravity.acceleration = -1\n");
-  EXPECT_TRUE(has(certify("list.toml", 2).err, "gravity.acceleration: gravity is not provable (-1): "));
+  EXPECT_TRUE(has(certify("list.toml", 2).err, "gravity.acceleration: gravity is not provable (found -1): "));
   const Printed trusted = shell("cradle trust list.toml --digits 16,31 -o trust.h5", 0);
   EXPECT_FALSE(has(trusted.out, "to the end\n"));
 }

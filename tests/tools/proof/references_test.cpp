@@ -538,7 +538,7 @@ TEST(Certificates, OfRowsHoldWhatRationalsGive) { EXPECT_GT(compare_all(draw_row
 
 TEST(Certificates, BetweenWallsHoldWhatRationalsGive) { EXPECT_GT(compare_all(draw_walled, 1, 60).proved, 45U); }
 
-TEST(SlowCertificates, BetweenWalls) { EXPECT_GT(compare_all(draw_walled, 500000, 500).proved, 350U); }
+TEST(SlowCertificates, BetweenWalls) { EXPECT_GT(compare_all(draw_walled, 500000, 560).proved, 500U); }
 TEST(SlowCertificates, OfLists) { EXPECT_GT(compare_all(draw_list, 100000, 3000).proved, 2000U); }
 TEST(SlowCertificates, OfRings) { EXPECT_GT(compare_all(draw_ring, 200000, 1000).proved, 600U); }
 TEST(SlowCertificates, OfColdGases) { EXPECT_GT(compare_all(draw_cold, 300000, 500).proved, 300U); }

@@ -176,6 +176,7 @@ ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const Trus
   constexpr std::uint64_t few = 1'000'000;
   const unsigned most = reference.outcome.collisions < few ? 1000 : digits_of(reference.scene.run);
   ProvedTrace proof;
+  if (not_provable(scene)) return proof;
   CertifyOptions how{rising_digits(), options.progress, options.interrupt, {}};
   std::erase_if(how.digits, [&](unsigned digits) { return digits > std::max(most, 31U); });
   how.make = [&](const Scene& of, unsigned digits) {

@@ -216,7 +216,8 @@ class Result:
     def enclosure(self, name: str) -> tuple[list, list]:
         """Proved lower and upper bounds of a quantity of the series, as two lists of Fractions.
 
-        name: "energy", "front_left" or "front_right". Raises Error if the file has no proof of it.
+        name: "energy", "front_left", "front_right", "wall_left_energy", "wall_left_lost" and so on. Raises Error if the
+            file has no proof of it.
         """
         exact = self.exact.get("series", {})
         if f"{name}_low" not in exact:

@@ -7,8 +7,8 @@
 // No gap is a difference of positions, so gaps keep their relative precision down to underflow, however small they are
 // against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
 //
-// Under gravity (gravity.hpp) gaps to walls are parabolas of time, and collisions at them or beside them are made off
-// the hot path; all others are as without it.
+// Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions at
+// them or beside them are made off the hot path; all others are as without it.
 //
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
@@ -94,7 +94,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   const T& closing(Slot s) const { return line_.closing(s); }
   T closing_at(Slot s, const T& time) const {
     if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.approach(field_, s).closing_after(line_.gaps.flown(s, time));
+      if (field_.pulls(particle(s))) return line_.closing_at(field_, s, time);
     return closing(s);
   }
   T closing_when_due(Slot s) const {
@@ -166,7 +166,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const {
     if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.approach(field_, s).gap_after(line_.gaps.flown(s, time));
+      if (field_.pulls(particle(s))) return line_.gap_at(field_, s, time);
     return line_.gaps.gap_at(s, closing(s), time);
   }
   // Positions of the outermost particles that have collided; there must be some.
@@ -319,7 +319,8 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
       const T w = closing_when_due(s);
       const bool below = below_cutoff(law, w);
       Outcome<T> outcome =
-          walls_.strike(particle(s), w, mass, below || !rested ? T(1) : walls_.wall(particle(s)).restitution);
+          walls_.strike(particle(s), w, mass, below || !rested ? T(1) : walls_.wall(particle(s)).restitution,
+                        field_.shaken_at(particle(s), clock().since_start(time)));
       outcome.below_cutoff = below;
       return outcome;
     } else {

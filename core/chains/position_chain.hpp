@@ -3,12 +3,13 @@
 // position, a velocity and the time of its last collision, and differences of positions in absolute time give the next
 // collision of neighbours. It is plain on purpose: no streaming, no tuning. It is the reference twin of the chain in
 // gaps, and is compared with it in precision: in a collapsing core its differences lose their digits, which it counts.
-// Under gravity particles fly along parabolas.
+// Under gravity particles fly along parabolas; shaken walls are where their motion says.
 
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/gravity.hpp"
@@ -201,7 +202,8 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
       const T& w = closing_[s];
       const bool below = below_cutoff(law, w);
       Outcome<T> outcome =
-          walls_.strike(particle(s), w, struck.m, below || !rested ? T(1) : walls_.wall(particle(s)).restitution);
+          walls_.strike(particle(s), w, struck.m, below || !rested ? T(1) : walls_.wall(particle(s)).restitution,
+                        field_.shaken_at(particle(s), since_start(time)));
       outcome.below_cutoff = below;
       return outcome;
     } else {
@@ -227,6 +229,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     return count_ + (walls_.has(End::left) ? 1 : 0) + (walls_.has(End::right) ? 1 : 0);
   }
 
+  Pair<T> since_start(const T& time) const { return two_sum(time, T(-start_)); }
   Particle& at(Slot s) { return particles_[s - 2]; }  // the particle on the left of a gap
   const Particle& at(Slot s) const { return particles_[s - 2]; }
 
@@ -234,11 +237,15 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     const Particle& p = at(s);
     const T flown = time - p.time;
     if constexpr (falls)
+      if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).x.value();
+    if constexpr (falls)
       return p.x + (p.v + fall_[s - 2] * flown / T(2)) * flown;
     else
       return p.x + p.v * flown;
   }
   T velocity(Slot s, const T& time) const {
+    if constexpr (falls)
+      if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).v.value();
     if constexpr (falls)
       return at(s).v + fall_[s - 2] * (time - at(s).time);
     else
@@ -256,7 +263,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     closing_[s] = velocity(s, now) - velocity(s + 1, now);
     if constexpr (falls)
       if (field_.pulls(particle(s))) {
-        const Approach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s]);
+        const WallApproach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s], since_start(now));
         const auto wait = approach.meeting_in();
         closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(0);
         due_[s] = wait ? T(now + *wait) : T(0);

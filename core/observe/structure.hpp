@@ -22,7 +22,7 @@
 
 #include "cradle/core/observe/octave_steps.hpp"
 #include "cradle/core/observe/profile.hpp"
-#include "cradle/core/observe/turns.hpp"
+#include "cradle/core/laws/turns.hpp"
 
 namespace cradle {
 

@@ -7,8 +7,8 @@
 // No gap is a difference of positions, so gaps keep their relative precision down to underflow, however small they are
 // against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
 //
-// Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions at
-// them or beside them are made off the hot path; all others are as without it.
+// Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions
+// at them or beside them are made off the hot path; all others are as without it.
 //
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
@@ -173,6 +173,14 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   T front_left(const T& time) const;
   T front_right(const T& time) const;
   const Walls<T>& walls() const { return walls_; }
+  // The accounts of the walls until a local time, with what they have given to particles that rest on them since.
+  Walls<T> walls_at(const T& time) const requires(falls) {
+    Walls<T> all = walls_;
+    const auto carry = [&](const Carried& more) { all.carry(more.end, more.energy, more.momentum); };
+    carry(carried(first(), time));
+    if (first() < last()) carry(carried(last(), time));
+    return all;
+  }
   // Of all particles of the scene; reads all held gaps. (gap_chain_configuration.hpp)
   T kinetic_energy(const T& time) const;
 
@@ -245,7 +253,19 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
 
   Configuration<T> line_configuration(const T& time) const;
   Configuration<T> ring_configuration(const T& time) const;
-  Flight<T> flight(const Anchor<T>& anchor, const T& time) const { return anchor.flight(*particles_, clock(), time); }
+  Flight<T> flight(const Anchor<T>& anchor, const T& time) const {
+    if constexpr (falls)
+      if (particles_->holding() != nullptr && particles_->wall_at(anchor.particle()) == nullptr) return from_wall(time);
+    return anchor.flight(*particles_, clock(), time);
+  }
+  // Of a single particle, from the wall that may hold it.
+  Flight<T> from_wall(const T& time) const {
+    const bool left = particles_->holding() == particles_->wall(End::left);
+    const Slot s = left ? first() : last();
+    const T gap = gap_at(s, time), closing = closing_at(s, time);
+    const Flight<T> wall = at_wall(*particles_, left ? -1 : count(), clock().since_start(time));
+    return left ? Flight<T>{wall.x + gap, wall.v - closing} : Flight<T>{wall.x - gap, wall.v + closing};
+  }
 
   // Predicts the next collisions with walls under gravity, where all others have just been.
   void foresee_walls() {
@@ -317,10 +337,10 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     const T& mass = line_.masses[walls_.left_of(particle(s)) ? s + 1 : s];
     if constexpr (falls) {
       const T w = closing_when_due(s);
-      const bool below = below_cutoff(law, w);
-      Outcome<T> outcome =
-          walls_.strike(particle(s), w, mass, below || !rested ? T(1) : walls_.wall(particle(s)).restitution,
-                        field_.shaken_at(particle(s), clock().since_start(time)));
+      const Pair<T> elapsed = clock().since_start(time);
+      const bool stays = field_.holds(particle(s), w, elapsed), below = !stays && below_cutoff(law, w);
+      const T restitution = stays ? T(0) : below || !rested ? T(1) : walls_.wall(particle(s)).restitution;
+      Outcome<T> outcome = walls_.strike(particle(s), w, mass, restitution, field_.shaken_at(particle(s), elapsed));
       outcome.below_cutoff = below;
       return outcome;
     } else {
@@ -329,12 +349,42 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   }
   // A collision at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
+    if constexpr (falls) {
+      for (const Slot beside : {s - 1, s, s + 1})
+        if (const Carried more = carried(beside, time); !(more.momentum == T(0))) {
+          walls_.carry(more.end, more.energy, more.momentum);
+          line_.gaps.lose(beside, T(-more.energy));
+        }
+    }
     const Outcome<T> of_law = walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time);
     const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
     if constexpr (falls)
       return line_.strike(field_, left(s), s, right(s), time, of_law, notice);
     else
       return line_.strike(left(s), s, right(s), time, of_law, notice);
+  }
+
+  // What a wall has given, until a local time, to a particle at this gap that rests on it: m a (x - x') and m a t less.
+  struct Carried {
+    End end;
+    T energy{0}, momentum{0};
+  };
+  Carried carried(Slot s, const T& time) const {
+    const End end = walls_.left_of(particle(s)) ? End::left : End::right;
+    if (s < first() || s > last() || !field_.pulls(particle(s))) return {end};
+    if (!(line_.gaps[s].gap == T(0) && closing(s) == T(0))) return {end};
+    const Pair<T> since = line_.gaps.since_start(s);
+    const T rested = line_.approach(field_, s).rested(line_.gaps.flown(s, time), clock().since_start(time));
+    if (!is_positive(rested)) return {end};
+    const ParticleIndex wall = end == End::left ? -1 : count();
+    const T mass = line_.masses[end == End::left ? s + 1 : s], a = field_.acceleration();
+    const Flight<T> from = at_wall(*particles_, wall, since), to = at_wall(*particles_, wall, since + rested);
+    const T gained = difference(to.v, from.v);
+    const bool jumps =
+        particles_->wall(end)->motion != nullptr && particles_->wall(end)->motion->shape() == Shape::sawtooth;
+    const T way = jumps ? T(from.v.value() * rested) : difference(to.x, from.x);
+    return {end, T(mass * (gained * (to.v.value() + from.v.value()) / T(2) - a * way)),
+            T(mass * (gained - a * rested))};
   }
 
   // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the

@@ -1,10 +1,10 @@
 #pragma once
 // Gravity and shaken walls as a chain sees them: a pull on the gaps to walls, or a motion of these walls, and nothing
-// else (laws/approach.hpp, laws/shaken_approach.hpp). Whether there is either is a type, chosen once: without it a chain
+// else (laws/wall_approach.hpp). Whether there is either is a type, chosen once: without it a chain
 // has none of this.
 
 #include "cradle/core/initial/particles.hpp"
-#include "cradle/core/laws/shaken_approach.hpp"
+#include "cradle/core/laws/wall_approach.hpp"
 
 namespace cradle {
 
@@ -22,11 +22,17 @@ template <Real T> class Gravity {
   // Of a gap that it pulls, at a time since the start.
   WallApproach<T> approach(ParticleIndex gap, const T& size, const T& closing, const Pair<T>& since) const {
     const bool left = gap == left_.gap;
-    return {size, closing, left ? T(-acceleration_) : acceleration_, splitter_, (left ? left_ : right_).motion, since};
+    return {size, closing, left ? T(-acceleration_) : acceleration_, splitter_, (left ? left_ : right_).wall, since};
+  }
+  // Whether a particle that meets the wall at this speed stays on it.
+  bool holds(ParticleIndex gap, const T& speed, const Pair<T>& elapsed) const {
+    const AtEnd& end = gap == left_.gap ? left_ : right_;
+    return end.gap == gap && end.wall.holds && speed < end.rest_speed &&
+           end.wall.presses(gap == left_.gap ? T(-acceleration_) : acceleration_, elapsed);
   }
   // The speed towards the particles at which the wall at a gap is shaken.
   T shaken_at(ParticleIndex gap, const Pair<T>& elapsed) const {
-    const WallMotion<T>* motion = gap == left_.gap ? left_.motion : gap == right_.gap ? right_.motion : nullptr;
+    const WallMotion<T>* motion = (gap == left_.gap ? left_ : gap == right_.gap ? right_ : AtEnd{}).wall.motion;
     return motion != nullptr ? motion->speed(motion->at(elapsed).rest) : T(0);
   }
 
@@ -34,12 +40,17 @@ template <Real T> class Gravity {
   static constexpr ParticleIndex none = std::numeric_limits<ParticleIndex>::min();
   struct AtEnd {
     ParticleIndex gap = none;
-    const WallMotion<T>* motion = nullptr;
+    HoldingWall<T> wall = {};
+    T rest_speed{0};
   };
   static AtEnd end(const Particles<T>& particles, End end) {
     const Wall<T>* wall = particles.wall(end);
     if (wall == nullptr || !(particles.fall() || wall->motion != nullptr)) return {};
-    return {end == End::left ? -1 : particles.count() - 1, wall->motion.get()};
+    const T pull = end == End::left ? T(-particles.acceleration()) : particles.acceleration();
+    const WallMotion<T>* motion = wall->motion.get();
+    return {end == End::left ? -1 : particles.count() - 1,
+            {motion, wall->holds(), motion != nullptr ? motion->release(pull) : std::nullopt},
+            wall->rest_speed};
   }
 
   T acceleration_, splitter_;

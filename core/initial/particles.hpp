@@ -49,6 +49,12 @@ template <Real T> class Particles {
     const Wall<T>* wall = wall_at(particle);
     return wall != nullptr && wall->motion != nullptr;
   }
+  // The wall on which particles can rest; null if there is none.
+  const Wall<T>* holding() const {
+    for (const End end : {End::left, End::right})
+      if (const Wall<T>* wall = this->wall(end); wall != nullptr && wall->holds()) return wall;
+    return nullptr;
+  }
   bool shaken() const { return shaken(-1) || shaken(count()); }
   // How far a shaken wall is from its place, and its speed there, a time after the start; 0 of all others.
   struct Shift {
@@ -166,11 +172,15 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   require(particles.kinetic_energy(), "the kinetic energy");
 }
 
-// For chains without gravity. Throws std::invalid_argument; `what_to_do` ends the message.
+// For chains without gravity and shaken walls. Throws std::invalid_argument; `what_to_do` ends the message.
 template <Real T> void require_no_gravity(const Particles<T>& particles, const std::string& what_to_do) {
   if (particles.fall())
     throw std::invalid_argument("particles under gravity in a chain without it (acceleration " +
                                 in_message(particles.acceleration()) + "): " + what_to_do);
+  for (const End end : {End::left, End::right})
+    if (const Wall<T>* wall = particles.wall(end); wall != nullptr && wall->motion != nullptr)
+      throw std::invalid_argument("a shaken wall in a chain without them (amplitude " +
+                                  in_message(wall->motion->amplitude()) + "): " + what_to_do);
 }
 
 // Checks the requirements of all chains. Throws std::invalid_argument.

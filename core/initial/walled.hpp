@@ -1,6 +1,6 @@
 #pragma once
-// Particles on a line with walls at one end or both (wall.hpp), with an acceleration (gravity), or both. Shaken walls are
-// where they are at the start.
+// Particles on a line with walls at one end or both (wall.hpp), with an acceleration (gravity), or both. Shaken walls
+// are where they are at the start.
 
 #include <limits>
 #include <memory>
@@ -31,12 +31,17 @@ template <Real T> class Walled final : public Particles<T> {
     if (left_) require_wall(*left_, "left"), require_outside(gap(-1), "left", position(-1), 0);
     if (right_)
       require_wall(*right_, "right"), require_outside(gap(count() - 1), "right", position(count()), count() - 1);
+    if (const Wall<T>* wall = this->holding(); wall != nullptr && count() > 1)
+      throw std::invalid_argument("several particles over a wall on which only one can rest (" +
+                                  std::to_string(count()) + " particles, rest speed " + in_message(wall->rest_speed) +
+                                  "): leave the rest speed out");
     for (const auto* wall : {&left_, &right_})
       if (*wall && (&**wall == this->floor() || (*wall)->motion != nullptr) && !((*wall)->temperature > 0) &&
-          !is_positive((*wall)->restitution))
+          !is_positive((*wall)->restitution) && !is_positive((*wall)->rest_speed))
         throw std::invalid_argument("a floor or shaken wall of restitution 0, on which particles come to rest "
                                     "(restitution " +
-                                    in_message((*wall)->restitution) + "): give it a small one");
+                                    in_message((*wall)->restitution) +
+                                    "): give it a rest speed, or a small restitution");
     if (this->fall()) potential_energy_ = -(acceleration_ * (total_mass() * particles_->centre_of_mass()));
   }
 
@@ -98,6 +103,9 @@ template <Real T> class Walled final : public Particles<T> {
   static void require_wall(const Wall<T>& wall, const std::string& which) {
     require_finite(wall.position, "position of the " + which + " wall");
     require_finite(wall.speed, "speed of the " + which + " wall");
+    if (is_negative(wall.rest_speed) || !is_finite(wall.rest_speed))
+      throw std::invalid_argument("rest speed of the " + which + " wall is out of range (" +
+                                  in_message(wall.rest_speed) + "): give 0 or more");
     if (is_negative(wall.restitution) || T(1) < wall.restitution)
       throw std::invalid_argument("restitution of the " + which + " wall is out of range (" +
                                   in_message(wall.restitution) + "): give a number from 0 to 1");

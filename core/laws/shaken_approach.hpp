@@ -38,8 +38,12 @@ template <Real T> class ShakenApproach {
   // As an Approach, with the motion of the wall and the time since the start.
   ShakenApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>& motion,
                  const Pair<T>& since)
-      : gap_(gap), closing_(closing), pull_(pull), splitter_(splitter), motion_(motion), since_(since),
-        phase_(motion.at(since)), place_(motion.place(phase_.rest)), speed_(motion.speed(phase_.rest)) {}
+      : ShakenApproach(gap, closing, pull, splitter, motion, since, motion.at(since), T(0)) {}
+  // With the phase at that time; `open`: how long the gap surely does not close.
+  ShakenApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>& motion,
+                 const Pair<T>& since, const Phase<T>& phase, const T& open)
+      : gap_(gap), closing_(closing), pull_(pull), splitter_(splitter), motion_(motion), since_(since), phase_(phase),
+        place_(motion.place(phase.rest)), speed_(motion.speed(phase.rest)), open_(open) {}
 
   // After a time; `now` is then the time since the start.
   State after(const T& time, const Pair<T>& now) const {
@@ -139,8 +143,10 @@ template <Real T> class ShakenApproach {
   }
   Arc next(const Arc& arc) const {
     const Approach<T> here = on(arc);
-    return {T(arc.time + arc.left), T(motion_.period() / T(2)),
-            {here.gap_after(arc.left), here.closing_after(arc.left)}, !arc.upper};
+    return {T(arc.time + arc.left),
+            T(motion_.period() / T(2)),
+            {here.gap_after(arc.left), here.closing_after(arc.left)},
+            !arc.upper};
   }
   State on_arcs(const T& time, const Pair<T>& now) const {
     Arc arc = this_arc();
@@ -163,7 +169,9 @@ template <Real T> class ShakenApproach {
       if (arc.left < *free) {
         const T more = whole_below(T((*free - arc.left) / half)), until = arc.left + more * half;
         const bool even = nearest_whole(T(more / T(2))) * T(2) == more;
-        arc = {T(arc.time + until), half, {to_place.gap_after(until), to_place.closing_after(until)},
+        arc = {T(arc.time + until),
+               half,
+               {to_place.gap_after(until), to_place.closing_after(until)},
                even ? !arc.upper : arc.upper};
         arc.state.closing += speed_at_start(arc.upper);
         continue;
@@ -208,7 +216,7 @@ template <Real T> class ShakenApproach {
     using std::sqrt;
     const T never = last_chance(), square = motion_.frequency() * motion_.frequency();
     const T greatest = pull_ + motion_.curving(), changing = motion_.curving() * motion_.frequency();
-    for (T time(0);;) {
+    for (T time = open_;;) {
       const auto [state, place, speed] = on_sine(time, time_at(time));
       const auto& [gap, closing] = state;
       const T rate = pull_ - square * place;
@@ -240,44 +248,7 @@ template <Real T> class ShakenApproach {
   Pair<T> since_;
   Phase<T> phase_;
   T place_, speed_;  // of the wall, at the time 0
-};
-
-// The gap to any wall: shaken, or not.
-template <Real T> class WallApproach {
- public:
-  // motion: null for a wall that is not shaken.
-  WallApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>* motion,
-               const Pair<T>& since)
-      : straight_(gap, closing, pull, splitter) {
-    if (motion != nullptr) shaken_.emplace(gap, closing, pull, splitter, *motion, since);
-  }
-
-  // After a time, which is `now` since the start: the closing speed, its mean until then, and the gap.
-  T closing_after(const T& time, const Pair<T>& now) const {
-    return shaken_ ? shaken_->after(time, now).closing : straight_.closing_after(time);
-  }
-  T gap_after(const T& time, const Pair<T>& now) const {
-    return shaken_ ? shaken_->after(time, now).gap : straight_.gap_after(time);
-  }
-  T mean_closing(const T& time, const Pair<T>& now) const {
-    if (!shaken_) return straight_.mean_closing(time);
-    return time == T(0) ? straight_.closing_after(time) : T((straight_.gap_after(T(0)) - gap_after(time, now)) / time);
-  }
-  // The next collision, as in approach.hpp.
-  std::optional<T> meeting_in() const {
-    if (!shaken_) return straight_.meeting_in();
-    const auto meeting = shaken_->meeting();
-    return meeting ? std::optional<T>(meeting->in) : std::nullopt;
-  }
-  std::optional<T> meeting_speed() const {
-    if (!shaken_) return straight_.meeting_speed();
-    const auto meeting = shaken_->meeting();
-    return meeting ? std::optional<T>(meeting->speed) : std::nullopt;
-  }
-
- private:
-  Approach<T> straight_;
-  std::optional<ShakenApproach<T>> shaken_;
+  T open_;
 };
 
 }  // namespace cradle

@@ -1,7 +1,8 @@
 #pragma once
 // Walls at the ends of a line: particles of infinite mass with a constant speed, or shaken about a place that has it
-// (wall_motion.hpp). The left one counts as particle -1, the right one as particle N, and the gap to a wall is a gap like
-// any other. A collision with a wall, closing at the speed w > 0, obeys the wall's own law, in the frame of the wall:
+// (wall_motion.hpp). The left one counts as particle -1, the right one as particle N, and the gap to a wall is a gap
+// like any other. A collision with a wall, closing at the speed w > 0, obeys the wall's own law, in the frame of the
+// wall:
 //
 //   reflecting   w' = -r w, r the restitution of the wall
 //   thermal      w' = -v, v from the density (m v/T) exp(-m v^2/2T) of speeds at which particles of mass m in
@@ -39,7 +40,9 @@ template <Real T> struct Wall {
   double temperature = 0;  // of a thermal wall, > 0
   std::uint64_t seed = 1, replica = 0;
   std::shared_ptr<const WallMotion<T>> motion = nullptr;  // of a shaken wall
+  T rest_speed{0};  // particles that meet it more slowly stay on it while it presses them, under gravity or if shaken
 
+  bool holds() const { return is_positive(rest_speed) && !(temperature > 0); }
   bool moves() const { return !(speed == T(0)) || motion != nullptr; }
   T fastest() const { return magnitude(speed) + (motion != nullptr ? motion->fastest() : T(0)); }
 };
@@ -57,6 +60,8 @@ template <Real T> struct WallTally {
 };
 // Of the left wall and of the right one, in the order of End.
 template <Real T> using WallTallies = std::array<WallTally<T>, 2>;
+// Energy that walls have given to the particles.
+template <Real T> T given_by(const WallTallies<T>& walls) { return walls[0].given.value() + walls[1].given.value(); }
 
 // The speed after collision number k of a particle of mass 1 with a wall of temperature 1.
 inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, std::uint64_t collision) {
@@ -130,6 +135,11 @@ template <Real T> class Walls {
     return false;
   }
 
+  // Enters what a wall has given to a particle that it holds.
+  void carry(End end, const T& energy, const T& momentum) {
+    tallies_[at(end)].given.add(energy);
+    tallies_[at(end)].momentum.add(momentum);
+  }
   const WallTally<T>& tally(End end) const { return tallies_[at(end)]; }
   const WallTallies<T>& tallies() const { return tallies_; }
   void continue_with(const WallTally<T>& left, const WallTally<T>& right) { tallies_ = {left, right}; }

@@ -10,6 +10,7 @@
 // in wall_approach.hpp.
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -20,9 +21,7 @@ namespace cradle {
 enum class Shape : std::uint8_t { sawtooth, parabola, sine };
 
 // Whole turns and the rest, in [-1/2, 1/2): the sawtooth has jumped so many times.
-template <Real T> struct Phase {
-  T whole, rest;
-};
+template <Real T> struct Phase { T whole, rest; };
 
 template <Real T> class WallMotion {
  public:
@@ -75,6 +74,23 @@ template <Real T> class WallMotion {
   T speed(const T& y) const {
     if (shape_ == Shape::sine) return fastest_ * circle_.at_turns(y).cos;
     return shape_ == Shape::sawtooth ? fastest_ : T(fastest_ * (T(1) - T(4) * magnitude(y)));
+  }
+  T acceleration(const T& y) const {
+    if (shape_ == Shape::sine) return -(curving_ * circle_.at_turns(y).sin);
+    return is_negative(y) ? curving_ : T(-curving_);
+  }
+  // The phase from -1/4 to 1/2 at which it ceases to press a particle of this pull, or drops from under it; nothing if
+  // it never does. Of the sine by bisection, to the last bit.
+  std::optional<T> release(const T& pull) const {
+    if (shape_ == Shape::sawtooth) return T(1) / T(2);
+    if (!(pull < curving_)) return {};
+    if (shape_ == Shape::parabola) return T(0);
+    T low = T(-1) / T(4), high = T(1) / T(4);
+    for (;;) {
+      const T middle = (low + high) / T(2);
+      if (!(low < middle && middle < high)) return high;
+      (is_positive(T(pull + acceleration(middle))) ? low : high) = middle;
+    }
   }
 
  private:

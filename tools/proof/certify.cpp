@@ -44,6 +44,10 @@ void check_certifiable(const Scene& scene) {
   if (!law_row(scene).provable)
     throw Error({"", 0, "law.type"}, "no proof of this law", value_text(*find_field("law.type", scene), scene).value(),
                 "compare precisions with `cradle trust` instead");
+  if (scene.walls.shaken())
+    throw Error({"", 0, scene.walls.left.shaken() ? "walls.left.motion" : "walls.right.motion"},
+                "collisions with shaken walls cannot be proved", "a shaken wall",
+                "compare precisions with `cradle trust` instead");
   if (scene.walls.any())
     throw Error({"", 0, scene.walls.left.position ? "walls.left.position" : "walls.right.position"},
                 "collisions with walls cannot be proved yet", "a wall",

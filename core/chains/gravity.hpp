@@ -32,7 +32,8 @@ template <Real T> class Gravity {
   }
   // The speed towards the particles at which the wall at a gap is shaken.
   T shaken_at(ParticleIndex gap, const Pair<T>& elapsed) const {
-    const WallMotion<T>* motion = (gap == left_.gap ? left_ : gap == right_.gap ? right_ : AtEnd{}).wall.motion;
+    if (!pulls(gap)) return T(0);
+    const WallMotion<T>* motion = (gap == left_.gap ? left_ : right_).wall.motion;
     return motion != nullptr ? motion->speed(motion->at(elapsed).rest) : T(0);
   }
 

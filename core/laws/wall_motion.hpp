@@ -48,7 +48,6 @@ template <Real T> class WallMotion {
   Shape shape() const { return shape_; }
   const T& amplitude() const { return amplitude_; }
   const T& frequency() const { return frequency_; }
-  T turns_per_time() const { return turns_per_time_.value(); }
   T period() const { return T(1) / turns_per_time_.value(); }
   const Circle<T>& circle() const { return circle_; }
   // The largest speed, and the largest acceleration.

@@ -176,9 +176,9 @@ class Draws {
   std::int64_t count_ = 0;
 };
 
-// No minimum before the time found is below zero, and there the gap is zero: by at most 64 roundings, in units u of the
-// sizes that are added up and of the time of the phase. A third of the gaps is moved so that it touches zero within a
-// few roundings, or 1e-9 of its size.
+// No minimum before the time found is below zero, and there the gap is zero: by at most 64 roundings (512 in
+// double-double), in units u of the sizes that are added up and of the time of the phase. A third of the gaps is moved
+// so that it touches zero within a few roundings, or 1e-9 of its size.
 template <class T> void expect_never_late(int count) {
   Draws draw;
   const Reference u = exact(T(std::numeric_limits<T>::epsilon())) / 2;
@@ -214,7 +214,7 @@ template <class T> void expect_never_late(int count) {
     const Reference end = meeting ? exact(meeting->in) : Reference(40 * period);
     const Reference sizes = wide.gap + c.amplitude + (abs(wide.closing) + speed) * end + abs(wide.pull) * end * end / 2;
     const Reference at_end = abs(wide.closing) + speed + abs(wide.pull) * end;
-    const Reference tolerance = 64 * u * (sizes + at_end * (c.since + end));
+    const Reference tolerance = (RoundsToNearest<T> ? 64 : 512) * u * (sizes + at_end * (c.since + end));
     if (meeting) {
       ++met;
       grazed += graze;

@@ -173,14 +173,9 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   T front_left(const T& time) const;
   T front_right(const T& time) const;
   const Walls<T>& walls() const { return walls_; }
-  // The accounts of the walls until a local time, with what they have given to particles that rest on them since.
-  Walls<T> walls_at(const T& time) const requires(falls) {
-    Walls<T> all = walls_;
-    const auto carry = [&](const Carried& more) { all.carry(more.end, more.energy, more.momentum); };
-    carry(carried(first(), time));
-    if (first() < last()) carry(carried(last(), time));
-    return all;
-  }
+  // The accounts of the walls until a local time, with what they have given to a particle that rests on one since.
+  // (gap_chain_walls.hpp)
+  Walls<T> walls_at(const T& time) const requires(falls);
   // Of all particles of the scene; reads all held gaps. (gap_chain_configuration.hpp)
   T kinetic_energy(const T& time) const;
 
@@ -258,14 +253,8 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
       if (particles_->holding() != nullptr && particles_->wall_at(anchor.particle()) == nullptr) return from_wall(time);
     return anchor.flight(*particles_, clock(), time);
   }
-  // Of a single particle, from the wall that may hold it.
-  Flight<T> from_wall(const T& time) const {
-    const bool left = particles_->holding() == particles_->wall(End::left);
-    const Slot s = left ? first() : last();
-    const T gap = gap_at(s, time), closing = closing_at(s, time);
-    const Flight<T> wall = at_wall(*particles_, left ? -1 : count(), clock().since_start(time));
-    return left ? Flight<T>{wall.x + gap, wall.v - closing} : Flight<T>{wall.x - gap, wall.v + closing};
-  }
+  // Of a single particle, from the wall that may hold it. (gap_chain_walls.hpp)
+  Flight<T> from_wall(const T& time) const;
 
   // Predicts the next collisions with walls under gravity, where all others have just been.
   void foresee_walls() {
@@ -364,28 +353,12 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
       return line_.strike(left(s), s, right(s), time, of_law, notice);
   }
 
-  // What a wall has given, until a local time, to a particle at this gap that rests on it: m a (x - x') and m a t less.
+  // What a wall has given, until a local time, to a particle at this gap that rests on it. (gap_chain_walls.hpp)
   struct Carried {
     End end;
     T energy{0}, momentum{0};
   };
-  Carried carried(Slot s, const T& time) const {
-    const End end = walls_.left_of(particle(s)) ? End::left : End::right;
-    if (s < first() || s > last() || !field_.pulls(particle(s))) return {end};
-    if (!(line_.gaps[s].gap == T(0) && closing(s) == T(0))) return {end};
-    const Pair<T> since = line_.gaps.since_start(s);
-    const T rested = line_.approach(field_, s).rested(line_.gaps.flown(s, time), clock().since_start(time));
-    if (!is_positive(rested)) return {end};
-    const ParticleIndex wall = end == End::left ? -1 : count();
-    const T mass = line_.masses[end == End::left ? s + 1 : s], a = field_.acceleration();
-    const Flight<T> from = at_wall(*particles_, wall, since), to = at_wall(*particles_, wall, since + rested);
-    const T gained = difference(to.v, from.v);
-    const bool jumps =
-        particles_->wall(end)->motion != nullptr && particles_->wall(end)->motion->shape() == Shape::sawtooth;
-    const T way = jumps ? T(from.v.value() * rested) : difference(to.x, from.x);
-    return {end, T(mass * (gained * (to.v.value() + from.v.value()) / T(2) - a * way)),
-            T(mass * (gained - a * rested))};
-  }
+  Carried carried(Slot s, const T& time) const;
 
   // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the
   // last one.
@@ -405,3 +378,4 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
 
 #include "cradle/core/chains/gap_chain_configuration.hpp"
 #include "cradle/core/chains/gap_chain_ends.hpp"
+#include "cradle/core/chains/gap_chain_walls.hpp"

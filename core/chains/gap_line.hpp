@@ -140,8 +140,7 @@ template <Real T, class MassesOf> class GapLine {
     gaps.forget(s);
     const bool at_wall = field.pulls(particle(s));
     if (at_wall && is_negative(since)) {  // late: it has fallen since then
-      const WallApproach<T> open =
-          field.approach(particle(s), T(0), outcome.closing, gaps.clock().since_start(time));
+      const WallApproach<T> open = field.approach(particle(s), T(0), outcome.closing, gaps.clock().since_start(time));
       gaps[s].gap = open.gap_after(T(-since), gaps.since_start(s));
       gaps[s].closing = open.closing_after(T(-since), gaps.since_start(s));
     }

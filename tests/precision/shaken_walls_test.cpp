@@ -177,8 +177,8 @@ class Draws {
 };
 
 // No minimum before the time found is below zero, and there the gap is zero: by at most 64 roundings (512 in
-// double-double), in units u of the sizes that are added up and of the time of the phase. A third of the gaps is moved
-// so that it touches zero within a few roundings, or 1e-9 of its size.
+// double-double, whose operations have errors of several units), in units u of the sizes that are added up and of the
+// time of the phase. A third of the gaps is moved so that it touches zero within a few roundings, or 1e-9 of its size.
 template <class T> void expect_never_late(int count) {
   Draws draw;
   const Reference u = exact(T(std::numeric_limits<T>::epsilon())) / 2;

@@ -274,6 +274,25 @@ TEST(ShakenWalls, ABallIsLetGoAtTheExactTime) {
   EXPECT_GT(flights, 5);
 }
 
+// A wall that presses again, after the phase at which it would let go, holds until its next turn: a sine that
+// accelerates by 2 p lets go at a twelfth of a turn, the parabola in the middle, the sawtooth at its tip.
+TEST(ShakenWalls, AWallHoldsUntilItLetsGo) {
+  const double pull = 0.5, turn = 2 * std::numbers::pi;
+  const auto let_go = [&](Shape shape, double from) {
+    const WallMotion<double> motion(shape, shape == Shape::parabola ? std::numbers::pi * std::numbers::pi / 8 : 1, 1,
+                                    0);
+    const Pair<double> since{from * turn, 0}, late{20, 0};
+    const WallApproach<double> approach(0, 0, pull, splitter<double>(), {&motion, true, motion.release(pull)}, since);
+    return (since.high + approach.rested(20 - since.high, late)) / turn;
+  };
+  for (const auto& [from, to] : {std::pair(-0.4, 1. / 12), std::pair(0., 1. / 12), std::pair(0.47, 13. / 12)})
+    EXPECT_NEAR(let_go(Shape::sine, from), to, 1e-15);
+  EXPECT_EQ(let_go(Shape::sine, 0.25), 0.25);  // it does not press there
+  EXPECT_NEAR(let_go(Shape::parabola, -0.3), 0, 1e-15);
+  EXPECT_NEAR(let_go(Shape::sawtooth, -0.3), 0.5, 1e-15);
+  EXPECT_NEAR(let_go(Shape::sawtooth, 0.3), 0.5, 1e-15);
+}
+
 TEST(ShakenWalls, ARestingStateIsSaved) {
   const auto particles = between(-1, list<double>({0.3}, {0}), wall(0, {Shape::sine, 0.2, 3, 0.2}, 0.25, 0, 0.05));
   expect_same_from_anywhere([&] { return run_of(particles, Inelastic<double>(1)); }, 0.5, 0.73, 12,

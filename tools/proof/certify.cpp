@@ -45,6 +45,9 @@ std::optional<NotProvable> not_provable(const Scene& scene) {
   if (!law_row(scene).provable)
     return {{"law.type", "no proof of this law", value_text(*find_field("law.type", scene), scene).value(),
              compare_precisions}};
+  if (scene.walls.shaken())
+    return {{scene.walls.left.shaken() ? "walls.left.motion" : "walls.right.motion", "shaken walls are not provable",
+             "a shaken wall", compare_precisions}};
   // Between a particle that falls and a wall that it falls away from the gap is not concave (core/README.md).
   if (scene.gravity.acts())
     return {{"gravity.acceleration", "gravity is not provable", scene.gravity.acceleration->text, compare_precisions}};

@@ -274,7 +274,7 @@ template <Real T> class SceneRun {
 
   // What the ledger leaves of the energy minus the sums over particles.
   T ledger_error(const T& time) const {
-    T error = energy_ - engine_.energy_lost() - engine_.kinetic_energy(time);
+    T error = energy_ - engine_.energy_lost(time) - engine_.kinetic_energy(time);
     if (particles_->fall())
       error += particles_->potential_energy() - cradle::potential_energy(engine_.configuration(time), *particles_,
                                                                          T(time - number<T>(scene_.run.start)));

@@ -31,6 +31,7 @@ enum class Spacing { linear, log };
 namespace scene {
 
 enum class HotPlace { middle, left };
+enum class Motion { none, sawtooth, parabola, sine };
 enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Meeting { energy, pass, stick };
 
@@ -101,6 +102,10 @@ struct WallAt {
   Decimal speed;                       // positive to the right
   std::optional<Decimal> temperature;  // of a thermal wall; without one it reflects
   Decimal restitution;                 // of a reflecting wall
+  scene::Motion motion = scene::Motion::none;
+  Decimal amplitude, frequency, phase;  // of a shaken wall; the frequency is angular
+  std::optional<Decimal> rest_speed;    // of a single particle that can rest on it
+  bool shaken() const { return motion != scene::Motion::none; }
   bool dissipates() const { return position && !temperature && restitution < Decimal("1"); }
   bool operator==(const WallAt&) const = default;
 };
@@ -108,6 +113,7 @@ struct WallAt {
 struct WallPair {
   WallAt left, right;
   bool any() const { return left.position || right.position; }
+  bool shaken() const { return left.shaken() || right.shaken(); }
   bool operator==(const WallPair&) const = default;
 };
 

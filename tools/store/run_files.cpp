@@ -35,7 +35,7 @@ RunFiles::RunFiles(std::string file, const Scene& scene) : file_(std::move(file)
                 fmt::format("continue with `cradle resume {}`, or remove it, or give another -o FILE", file_));
   };
   if (const auto header = journal_header(path); header && !header->of_run()) {
-    refuse("replicas of an ensemble that is not finished", "");
+    refuse("work of another command that is not finished", header->kind);
   } else if (header) {
     const auto statuses = read_run_journal(path, Reading::ends).statuses;
     if (!statuses.empty() && statuses.back().seconds > worth_keeping)

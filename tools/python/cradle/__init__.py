@@ -19,7 +19,7 @@ from .errors import Error
 
 if TYPE_CHECKING:
     from . import plot
-    from .commands import certify, ensemble, resume, run, sweep, trust
+    from .commands import certify, ensemble, resume, run, sweep, threshold, trust
     from .page import report
     from .result import Result, open
     from .tables import Column, Table, Tables
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"  # the program's
 
 _WHERE = {name: module for module, names in {
-    "commands": ("certify", "ensemble", "resume", "run", "sweep", "trust"), "page": ("report",), "plot": ("plot",),
-    "result": ("Result", "open"), "tables": ("Column", "Table", "Tables")}.items() for name in names}
+    "commands": ("certify", "ensemble", "resume", "run", "sweep", "threshold", "trust"), "page": ("report",),
+    "plot": ("plot",), "result": ("Result", "open"), "tables": ("Column", "Table", "Tables")}.items() for name in names}
 __all__ = ["Error", *_WHERE]
 
 

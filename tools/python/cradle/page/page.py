@@ -114,8 +114,8 @@ def command_of(result: Result) -> list[str]:
     elif len(result.trust):
         words = ["trust", f"{name}.toml"]
         words += ["--both"] * any(table.attributes.get("coordinates") == "absolute" for table in result.trust)
-    elif result.kind == "words":
-        words = shlex.split(str(result.table("words").attributes["command"]))
+    elif result.kind in ("words", "threshold"):
+        words = shlex.split(str(result.table(result.kind).attributes["command"]))
     elif result.kind == "sweep":
         words = ["sweep", f"{name}.toml"]
         planned = result.scene.get("sweep", {})

@@ -31,5 +31,6 @@ def draw(table, axes=None):
     ax.set_yscale("log")
     ax.set(xlabel="value tried", ylabel="distance from the threshold")
     ax.legend(loc="lower left")
-    ax.set_title(f"{about['key']} = {about['low_digits']} to {about['high_digits']}", fontsize="medium")
+    lines = "\n" if len(about["low_digits"]) > 20 else " "
+    ax.set_title(f"{about['key']} = {about['low_digits']}{lines}to {about['high_digits']}", fontsize="medium")
     return figure

@@ -28,10 +28,11 @@ Exit run_threshold(const ThresholdArguments& options) {
   Interrupt interrupt;
   note_signals(interrupt);
   const Threshold found = find_threshold(question, output,
-                                         {options.progress ? Progress::Show::always
+                                         {interrupt,
+                                          options.progress ? Progress::Show::always
                                           : options.quiet  ? Progress::Show::never
                                                            : Progress::Show::on_terminal,
-                                          &interrupt, options.threads, !options.no_proof});
+                                          options.threads, !options.no_proof});
   write_or_keep(threshold_result(question, found, question.command(options.scene)), output);
   ::unlink((output + ".part").c_str());
   fmt::print("{}", threshold_text(question, found));

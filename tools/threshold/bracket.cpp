@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <stdexcept>
 #include <string>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -36,7 +39,9 @@ Scaled scaled(const Decimal& number) {
   text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
   parts.mantissa = Whole(text);
   if (negative) parts.mantissa = -parts.mantissa;
-  if (std::abs(parts.exponent) > most_digits) throw std::invalid_argument("a number of too many digits");
+  if (std::abs(parts.exponent) > most_digits)
+    throw Error({"", 0, "--vary"}, "a number of too many digits", number.text,
+                fmt::format("give ends between 1e-{0} and 1e{0}", most_digits));
   return parts;
 }
 

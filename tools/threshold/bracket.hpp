@@ -12,7 +12,7 @@ namespace cradle::tools {
 class Bracket {
  public:
   /// low < high, of which `digits` significant ones are wanted, counted from the first of the larger end; `whole`: only
-  /// whole numbers. Throws std::invalid_argument for ends that differ by more than 10^5000.
+  /// whole numbers. Throws Error for numbers of thousands of digits.
   Bracket(Decimal low, Decimal high, unsigned digits, bool whole);
 
   const Decimal& low() const { return low_; }

@@ -52,47 +52,45 @@ unsigned digits_of(const Run& run) {
 Question::Question(std::string scene, std::vector<std::string> overrides, const std::string& vary,
                    const std::string& compare, unsigned digits)
     : scene_(std::move(scene)), vary_(vary), overrides_(std::move(overrides)), digits_(digits) {
-  const auto equals = vary.find('='), colon = vary.find(':', equals);
-  const auto low = plain_decimal(vary.substr(std::min(equals, vary.size() - 1) + 1, colon - equals - 1)),
-             high = plain_decimal(vary.substr(std::min(colon, vary.size() - 1) + 1));
-  if (equals == vary.npos || equals == 0 || colon == vary.npos || !low || !high)
-    throw wrong("not a key and two numbers", vary, "give KEY=LOW:HIGH");
+  const auto equals = std::min(vary.find('='), vary.size()), colon = std::min(vary.find(':', equals), vary.size());
+  key_ = vary.substr(0, equals);
+  const auto low = plain_decimal(vary.substr(equals, colon - equals).erase(0, 1)),
+             high = plain_decimal(vary.substr(colon).erase(0, 1));
+  if (key_.empty() || !low || !high) throw wrong("not a key and two numbers", vary, "give KEY=LOW:HIGH");
   low_ = Decimal(*low), high_ = Decimal(*high);
   if (low_ >= high_) throw wrong("no range", vary, "give the lower number first");
-  key_ = vary.substr(0, equals);
-  const Scene given = read_scene(scene_, overrides_);
+  choose_key(read_scene(scene_, overrides_));
+  auto assigned = overrides_;
+  assigned.push_back(assignment(low_));
+  at_low_ = read_scene(scene_, assigned);
+  choose_outcome(compare);
+  const bool more = digits_ > digits_of(at_low_.run), fixed = at_low_.initial.type == InitialType::clusters;
+  if (fixed && more)
+    throw Error({"", 0, "--digits"}, "more digits than this model has", fmt::format("{}", digits_), "give 15 at most");
+  wide_ = !whole_ && more;
+}
+
+void Question::choose_key(const Scene& given) {
   const auto bracket = key_.find('[');
   const Field& field = field_of(key_.substr(0, bracket), given);
   const std::string_view type = type_name(field);
-  if (bracket == key_.npos) {
-    if (type != "number" && type != "integer")
-      throw wrong("not a key with a number", fmt::format("{}, {}", key_, type),
-                  type == "list of numbers" ? fmt::format("give one of its numbers, {}[0]=LOW:HIGH", key_)
-                                            : "give a key with a number");
-  } else {
-    for (const Decimal& item : numbers_of(field, given)) items_.push_back(item.text);
-    const auto index =
-        decimal_integer(plain_decimal(key_.substr(bracket + 1, key_.size() - bracket - 2)).value_or("-"));
-    if (!key_.ends_with(']') || type != "list of numbers" || !index || *index >= items_.size())
-      throw wrong("not a number of a list", key_,
-                  items_.empty() ? "give a key with a number"
-                                 : fmt::format("give {}[0] to {}[{}]", field.key, field.key, items_.size() - 1));
-    item_ = static_cast<std::size_t>(*index);
-  }
+  const bool list = type == "list of numbers";
   whole_ = type == "integer";
-  at_low_ = read_scene(scene_, [&] {
-    auto all = overrides_;
-    all.push_back(assignment(low_));
-    return all;
-  }());
-  choose(compare);
-  const bool fixed = at_low_.initial.type == InitialType::clusters;
-  wide_ = !whole_ && !fixed && digits_ > digits_of(at_low_.run);
-  if (fixed && digits_ > digits_of(at_low_.run))
-    throw Error({"", 0, "--digits"}, "more digits than this model has", fmt::format("{}", digits_), "give 15 at most");
+  if (bracket == key_.npos) {
+    if (type == "number" || whole_) return;
+    throw wrong("not a key with a number", fmt::format("{}, {}", key_, type),
+                list ? fmt::format("give one of its numbers, {}[0]=LOW:HIGH", key_) : "give a key with a number");
+  }
+  for (const Decimal& item : numbers_of(field, given)) items_.push_back(item.text);
+  const auto index = decimal_integer(plain_decimal(key_.substr(bracket + 1, key_.size() - bracket - 2)).value_or("-"));
+  if (!key_.ends_with(']') || !list || !index || *index >= items_.size())
+    throw wrong("not a number of a list", key_,
+                items_.empty() ? "give a key with a number"
+                               : fmt::format("give {}[0] to {}[{}]", field.key, field.key, items_.size() - 1));
+  item_ = static_cast<std::size_t>(*index);
 }
 
-void Question::choose(const std::string& compare) {
+void Question::choose_outcome(const std::string& compare) {
   const bool pair = at_low_.initial.type == InitialType::clusters || at_low_.output.scenario;
   compare_ = pair                         ? Compare::pair
              : particles_merge(at_low_)   ? Compare::merges
@@ -134,9 +132,9 @@ std::optional<Scene> Question::scene_at(const Decimal& value, bool wide) const {
   if (wide) {
     if (at_low_.initial.type == InitialType::clusters) return {};
 #ifdef CRADLE_WITH_MPFR
-    if (at_low_.run.precision == Precision::mpfr && at_low_.run.digits >= digits_ + 20) return {};
+    if (at_low_.run.precision == Precision::mpfr && at_low_.run.digits >= wide_digits()) return {};
     all.emplace_back("run.precision=mpfr");
-    all.push_back(fmt::format("run.digits={}", std::min(std::max(digits_ + 20, 50U), 1000U)));
+    all.push_back(fmt::format("run.digits={}", wide_digits()));
 #else
     if (at_low_.run.precision == Precision::cpp_bin_float) return {};
     all.emplace_back("run.precision=cpp_bin_float");
@@ -163,7 +161,7 @@ std::optional<std::string> Question::outcome(const RunOutcome& run) const {
 }
 
 std::uint64_t Question::identity() const {
-  std::string text = std::string(version) + '\n' + key_ + '\n' + std::string(what().name) + '\n';
+  std::string text = fmt::format("{}\n{}\n{}\n{} {}\n", version, key_, what().name, wide_, wide_digits());
   for (const Decimal& end : {low_, high_}) text += end.text + '\n' + effective_toml(scene_at(end, false).value());
   return crc64(text);
 }

@@ -1,6 +1,7 @@
 // What `cradle threshold` asks: a scene, a key of it that varies, and what of a run is compared.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -50,14 +51,16 @@ class Question {
   bool wide_from_the_start() const { return wide_; }
   /// The outcome as text; nothing if the run has none.
   std::optional<std::string> outcome(const RunOutcome& run) const;
-  /// Of scenes that are not the same question, this differs.
+  /// Differs between questions, and between numbers of digits that need runs in other types.
   std::uint64_t identity() const;
   /// What follows `cradle` to ask it again.
   std::string command(const std::string& scene_file) const;
 
  private:
   std::string assignment(const Decimal& value) const;
-  void choose(const std::string& compare);
+  void choose_key(const Scene& given);
+  void choose_outcome(const std::string& compare);
+  std::uint64_t wide_digits() const { return std::min(std::max(digits_ + 20, 50U), 1000U); }
 
   std::string scene_, key_, vary_;
   std::vector<std::string> overrides_;

@@ -71,7 +71,7 @@ class Search {
       const auto collisions = counts(3), merges = counts(4);
       for (std::size_t k = 0; k < value.size(); ++k)
         known_[value[k]] = {value[k], outcome.at(k), collisions.at(k), merges.at(k), how.at(k)};
-    } catch (const Error&) {
+    } catch (const std::exception&) {
       // Another file, which the new result replaces.
     }
   }
@@ -88,7 +88,7 @@ class Search {
   }
 
   const RunAt& at(const Decimal& value) {
-    if (options_.interrupt->signal() != 0) throw interrupted(*options_.interrupt);
+    if (options_.interrupt.signal() != 0) throw interrupted(options_.interrupt);
     draw();
     const auto known = known_.find(value.text);
     if (known != known_.end()) return runs_.emplace_back(known->second);
@@ -108,8 +108,8 @@ class Search {
       const auto scene = question_.scene_at(value, wide);
       if (!scene) continue;
       const RunOutcome run =
-          run_scene(without_tables(*scene), {Progress::Show::never, nullptr, options_.interrupt, workers(threads_)});
-      if (run.end == RunEnd::interrupted) throw interrupted(*options_.interrupt);
+          run_scene(without_tables(*scene), {Progress::Show::never, nullptr, &options_.interrupt, workers(threads_)});
+      if (run.end == RunEnd::interrupted) throw interrupted(options_.interrupt);
       last = fmt::format("{} in {}", end_row(run.end).text, precision_name(scene->run));
       if (const auto outcome = question_.outcome(run))
         return {value.text, *outcome, run.collisions, run.merges, precision_name(scene->run)};
@@ -148,7 +148,7 @@ class Search {
     }
     CertifyOptions how;
     how.progress = options_.progress;
-    how.interrupt = options_.interrupt;
+    how.interrupt = &options_.interrupt;
     how.threads = options_.threads;
     const Certified proof = certify(scene, how);
     if (!proof.proved()) return seen("; the proof is undecided " + proof.undecided());

@@ -38,8 +38,8 @@ struct Threshold {
 };
 
 struct ThresholdOptions {
+  Interrupt& interrupt;
   Progress::Show progress = Progress::Show::on_terminal;
-  Interrupt* interrupt = nullptr;
   unsigned threads = 0;
   bool prove = true;
 };

@@ -162,8 +162,8 @@ class Result:
         `_replicas`.""", "sweep")
     trust: Tables = part(Tables, """One table per precision of a comparison: attributes `precision`,
         `collisions_right_until`, ...""", "trust")
-    threshold: Table = part(Table, """One row per value that was tried: `value`, `value_digits`, `outcome`, `collisions`,
-        `how`; attributes `key`, `low_digits`, `high_digits`, `low_proved`, ...""", "threshold")
+    threshold: Table = part(Table, """One row per value that was tried: `value`, `value_digits`, `outcome`, `how`,
+        `collisions`; attributes `key`, `low_digits`, `high_digits`, `low_proved`, ...""", "threshold")
     certificate: Table = part(Table, """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`,
         `gap`, `widest`, ...""", "certificate")
     exact: Table = part(Table, """Decimal texts: all digits of a run in a type wider than double,

@@ -19,8 +19,9 @@ COLLAPSE = {"time": "collapse", "last_collision": "last collision", "gap": "smal
 def numbers(result: Result) -> str:
     """The HTML of the numbers; for ensembles and sweeps see tables.py."""
     known = proved(result)
-    entries = [*known, *threshold(result), *sequence(result), *(entry for entry in ends(result) if entry[0] not in {label for label, *_ in known}),
-               *collapse(result), *snapshots(result), *zone(result), *scenario(result)]
+    measured = (entry for entry in ends(result) if entry[0] not in {label for label, *_ in known})
+    entries = [*known, *threshold(result), *sequence(result), *measured, *collapse(result), *snapshots(result),
+               *zone(result), *scenario(result)]
     proof = certificate(result) if result.certificate.attributes else ""
     note = ""
     if not proof and result.kind == "run" and entries:

@@ -65,5 +65,6 @@ void add_merge(CommandLine& program);
 void add_completion(CommandLine& program);
 void add_manual(CommandLine& program);
 void add_words(CommandLine& program);
+void add_threshold(CommandLine& program);
 
 }  // namespace cradle::tools

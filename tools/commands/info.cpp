@@ -31,9 +31,18 @@ std::string file_of(const std::string& path, std::string_view ending) {
   return path.substr(0, path.size() - (path.ends_with(ending) ? ending.size() : 0));
 }
 
+// A record is a run.
+Exit info_of_threshold(JournalReader& reader) {
+  std::uint64_t runs = 0;
+  for (std::string record; reader.next(record);) ++runs;
+  fmt::print("journal of a threshold of {}: {} runs; the same command continues it\n", reader.header().name, runs);
+  return Exit::done;
+}
+
 Exit info_of_study(const InfoArguments& options) {
   JournalReader reader(options.file);
   const JournalHeader& journal = reader.header();
+  if (journal.kind == threshold_kind) return info_of_threshold(reader);
   std::vector<std::uint64_t> replicas(journal.points.size());
   while (const auto record = reader.next<EnsembleRecord>())
     if (record->point < replicas.size()) replicas[record->point] += record->replicas();

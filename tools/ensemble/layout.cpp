@@ -50,6 +50,7 @@ Scene replica_scene(const Scene& scene, std::uint64_t index) {
   if (!scene.output.every_replica) replica.output.snapshots.clear();
   replica.output.masses.clear();
   replica.output.events = false;
+  replica.output.word.reset();
   return replica;
 }
 

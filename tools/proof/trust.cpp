@@ -59,15 +59,7 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
   scene.run.precision = digits == 16 ? Precision::double_ : digits == 31 ? Precision::double_double : Precision::mpfr;
   scene.run.digits = scene.run.precision == Precision::mpfr ? digits : 0;
   scene.run.coordinates = coordinates;
-  scene.output.events = false;
-  scene.output.snapshots.clear();
-  scene.output.profiles.times.clear();
-  scene.output.averages = {};
-  scene.output.histograms.clear();
-  scene.output.correlations = {};
-  scene.output.structure = {};
-  scene.output.pair_distribution = {};
-  return scene;
+  return without_tables(std::move(scene));
 }
 
 unsigned digits_of(const Run& run) { return run.precision == Precision::mpfr ? static_cast<unsigned>(run.digits) : 31; }

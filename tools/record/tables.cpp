@@ -179,6 +179,15 @@ Group events_table() {
            {"kind", "1", "0 by the law, 1 below the cut-off or within the contact time, 2 merged", {}, 1, true}}};
 }
 
+Group sequence_table() {
+  return {"sequence",
+          {},
+          {{"letters", "1", "gaps from the left that close one after the other", {}},
+           {"repeats", "1", "how often these letters follow each other", {}},
+           {"first", "1", "number of the first of these collisions, from 0", {}},
+           {"time", "t", "time of that collision, rounded", {}}}};
+}
+
 Group initial_table() {
   return {
       "initial",

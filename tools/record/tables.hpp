@@ -59,6 +59,8 @@ Group correlations_table(const Scene& scene);
 Group structure_table(const std::string& name, const Scene& scene);
 Group pair_distribution_table(const std::string& name, const Scene& scene);
 Group events_table();
+/// The collisions as letters (output.word).
+Group sequence_table();
 /// The initial state of the particles that events refer to.
 Group initial_table();
 /// The tables of the model of two clusters.

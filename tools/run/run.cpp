@@ -79,6 +79,21 @@ PlannedTimes planned_times(const Scene& scene) {
   return in_precision<PlannedTimes>(scene, [&]<class T>(std::type_identity<T>) { return planned_in<T>(scene); });
 }
 
+Scene without_tables(Scene scene) {
+  Output& output = scene.output;
+  output.events = false;
+  output.word.reset();
+  output.snapshots.clear();
+  output.profiles.times.clear();
+  output.masses.clear();
+  output.averages = {};
+  output.histograms.clear();
+  output.correlations = {};
+  output.structure = {};
+  output.pair_distribution = {};
+  return scene;
+}
+
 RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
   check_built(scene);
   if (scene.initial.type == InitialType::clusters) return run_clusters(scene, options);

@@ -62,6 +62,9 @@ struct PlannedTimes {
 };
 PlannedTimes planned_times(const Scene& scene);
 
+/// The scene without tables that are only written: it makes the same collisions, and its series is the same.
+Scene without_tables(Scene scene);
+
 /// Runs the scene in its precision, coordinates and law. Throws Error for what this build cannot do.
 RunOutcome run_scene(const Scene& scene, const RunOptions& options);
 

@@ -10,6 +10,7 @@
 
 #include "cradle/core/observe/averages.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
+#include "cradle/core/words/word.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -475,6 +476,21 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.places_are_on_a_length();
   checks.numbers_fit();
   checks.samples_can_be_kept();
+}
+
+void check_word(const Place& place, const Scene& scene) {
+  if (particles_merge(scene) || scene.initial.on_ring())
+    throw Error(place, "letters are of particles on a line that bounce",
+                scene.initial.on_ring() ? "a ring" : "particles that merge", "remove it, or give output.events");
+  const std::size_t gaps = scene.gaps(), most = 26;
+  if (gaps < 2 || gaps > most)
+    throw Error(place, "not a few particles", fmt::format("{} gaps", gaps), fmt::format("give 2 to {}", most));
+  if (*scene.output.word == any_word) return;
+  try {
+    words::read_word(*scene.output.word, gaps);
+  } catch (const words::BadWord& bad) {
+    throw Error(place, bad.what(), bad.found, bad.advice);
+  }
 }
 
 }  // namespace cradle::tools

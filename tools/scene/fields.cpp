@@ -439,6 +439,9 @@ const Field all_fields[] = {
      "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
      "the energy beyond that of the sticky gas that began alike"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every collision"},
+    {"output.word", output_of<&Output::word>, "", "", "", &list,
+     "write the order of the collisions compactly, as letters, which are gaps from the left, and say where it leaves "
+     "this word; \"any\": of no word in particular. For up to 26 particles on a line that bounce"},
     {"output.every_replica", output_of<&Output::every_replica>, "", "false", "", &always,
      "in an ensemble, keep the snapshots and profiles of every replica beside the statistics"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",

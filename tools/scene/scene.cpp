@@ -84,6 +84,7 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
     start_from_word(word->second.place, scene);
   else if (scene.initial.file)
     read_list(path.parent_path() / *scene.initial.file, scene);
+  if (scene.output.word) check_word(entries.at("output.word").place, scene);
   return scene;
 }
 
@@ -119,7 +120,7 @@ bool Output::has_histogram(std::string_view name) const {
 
 bool Output::observes_collisions() const {
   const auto of_collisions = [](const std::string& name) { return name != "gap" && name != "cluster"; };
-  return events || std::ranges::any_of(histograms, of_collisions);
+  return events || word || std::ranges::any_of(histograms, of_collisions);
 }
 
 bool unequal_masses(const Scene& scene) {

@@ -217,6 +217,9 @@ struct Checkpoint {
   bool operator==(const Checkpoint&) const = default;
 };
 
+/// The value of output.word that names no word.
+inline constexpr std::string_view any_word = "any";
+
 /// All lists of times are increasing and without repetition, within [run.start, run.until].
 struct Output {
   Series series;
@@ -233,7 +236,8 @@ struct Output {
   bool scenario = false;  // wet rows: whether to decide between the two scenarios of Fig. 9
   bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
-  bool every_replica = false;  // ensembles: whether the snapshots and profiles of every replica are kept
+  std::optional<std::string> word;  // the collisions of a few particles as letters, compared with this word
+  bool every_replica = false;       // ensembles: whether the snapshots and profiles of every replica are kept
   Checkpoint checkpoint;
 
   bool has_histogram(std::string_view name) const;
@@ -262,6 +266,11 @@ struct Scene {
   Run run;
   Output output;
   Sweep sweep;
+
+  /// Of a list on a line: between particles, and to walls.
+  std::size_t gaps() const {
+    return initial.x.size() - 1 + walls.left.position.has_value() + walls.right.position.has_value();
+  }
 };
 
 /// Whether masses differ or are not 1: formulas for particles of mass 1 do not apply then.

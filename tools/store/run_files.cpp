@@ -37,7 +37,7 @@ RunFiles::RunFiles(std::string file, const Scene& scene, Force force) : file_(st
   };
   const auto header = force == Force::yes ? std::nullopt : journal_header(path);
   if (header && !header->of_run()) {
-    refuse("replicas of an ensemble that is not finished", "");
+    refuse("work of another command that is not finished", header->kind);
   } else if (header) {
     const auto statuses = read_run_journal(path, Reading::ends).statuses;
     const bool same = scene_of(*header, path) == scene;

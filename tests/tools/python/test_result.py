@@ -215,6 +215,20 @@ class Others(unittest.TestCase):
             self.assertEqual(result.kind, "trust")
             self.assertEqual([table.precision for table in result.trust][-1], "mpfr, 50 digits")
 
+    def test_threshold_has_the_values_that_were_tried(self):
+        with cradle.open(small.threshold()) as result:
+            self.assertEqual(result.kind, "threshold")
+            about = result.threshold.attributes
+            self.assertEqual((about["low_digits"], about["high_digits"]), ("0.071796", "0.071797"))
+            self.assertEqual((about["low_proved"], about["high_proved"]), (1, 1))
+            self.assertEqual(result.threshold.value_digits[0], "0.05")
+
+    def test_sequence_of_collisions(self):
+        with cradle.run("collapse3", set={"output.word": "ab"}, output="sequence.h5") as result:
+            self.assertEqual(result.sequence.letters[0], "ab")
+            self.assertEqual(result.sequence.attributes["periods"], result.sequence.repeats[0])
+            self.assertEqual(result.sequence.attributes["follows"], 1)
+
     def test_every_kind_has_a_short_text(self):
         for make in small.ALL:
             with cradle.open(make()) as result:

@@ -85,6 +85,19 @@ def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), r
     return compute("certify", "-certified.h5", scene, set, options, **common)
 
 
+def threshold(scene: Scene, vary: Settings, set: Settings = None, *, outcome: str | None = None,
+              digits: int | None = None, proof: bool = True, **common) -> Result:
+    """Finds the value of a key at which the outcome of a run changes; `result.threshold.attributes` has `low_digits`
+    and `high_digits`, between which it does, with `low_outcome`, `low_proved`, ...; its rows are the values tried.
+
+    vary: the key and its range, `{"law.restitution": "0.05:0.1"}`. outcome: what is compared. digits: of the value.
+    proof: whether the last two outcomes are to be proved. Other arguments as in run().
+    """
+    (key, values), = vary.items()
+    options = ["--vary", f"{key}={bare(values, ':')}", *option("--outcome", outcome), *option("--digits", digits)]
+    return compute("threshold", "-threshold.h5", scene, set, options + ["--no-proof"] * (not proof), **common)
+
+
 def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
            progress: bool | Show | None = None) -> Result:
     """Continues a run, an ensemble or a sweep that was stopped, or, with `until`, extends it; returns its result."""

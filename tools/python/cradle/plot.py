@@ -61,6 +61,7 @@ PICTURES = {
     "regimes": "What the replicas have come to, in shares.",
     "parameters": "What depends on the parameters that were varied.",
     "words": "For which restitutions words of collapse exist, and where they are stable.",
+    "threshold": "How a threshold was closed in: its distance from the values that were tried.",
     "trust": "Digits that runs of rising precision share with the last one.",
     "certificate": "Of a proof: smallest gap, and how well places and gaps are known.",
 }

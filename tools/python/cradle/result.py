@@ -89,7 +89,7 @@ class Result:
 
     @property
     def kind(self) -> str:
-        """"run", "ensemble", "sweep", "trust", "words" or "point"."""
+        """"run", "ensemble", "sweep", "trust", "words", "threshold" or "point"."""
         if self.label:
             return "point"
         return self.attributes.get("kind") or ("trust" if len(self.trust) else "run")
@@ -156,11 +156,15 @@ class Result:
     masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
     events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
         `interval`, `closing_speed`, `kind`.""", "events")
+    sequence: Table = part(Table, """The order of the collisions (output.word), one row for each repetition: `letters`,
+        `repeats`, `first`, `time`; attributes `word`, `periods`, `kept`, `left_at`.""", "sequence")
     replicas: Table = part(Table, "One row per replica: `index`, `outcome`, `collisions`, `energy`, ...", "replicas")
     sweep: Table = part(Table, """One row per point: the keys that vary, then every number with `_error` and
         `_replicas`.""", "sweep")
     trust: Tables = part(Tables, """One table per precision of a comparison: attributes `precision`,
         `collisions_right_until`, ...""", "trust")
+    threshold: Table = part(Table, """One row per value that was tried: `value`, `value_digits`, `outcome`, `how`,
+        `collisions`; attributes `key`, `low_digits`, `high_digits`, `low_proved`, ...""", "threshold")
     certificate: Table = part(Table, """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`,
         `gap`, `widest`, ...""", "certificate")
     exact: Table = part(Table, """Decimal texts: all digits of a run in a type wider than double,

@@ -8,15 +8,15 @@ import matplotlib.pyplot as plt
 from ..errors import BAD_FILE, Error
 from ..files import whole
 from . import (averages, beyond, blast, clusters, cooling, correlations, domino, energy, ensemble, floors, histograms,
-               onset, particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, walls, words,
-               zone)
+               onset, particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, threshold,
+               walls, words, zone)
 from .finish import finish
 from .style import Units, style
 from .theory import Theory
 
 CLASSICS = (onset, floors, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
-ALONE = (words, proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
+ALONE = (words, threshold, proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 MEASURED = (averages, histograms, correlations, places)  # behind the others
 

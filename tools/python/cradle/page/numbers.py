@@ -19,8 +19,9 @@ COLLAPSE = {"time": "collapse", "last_collision": "last collision", "gap": "smal
 def numbers(result: Result) -> str:
     """The HTML of the numbers; for ensembles and sweeps see tables.py."""
     known = proved(result)
-    entries = [*known, *(entry for entry in ends(result) if entry[0] not in {label for label, *_ in known}),
-               *collapse(result), *snapshots(result), *zone(result), *scenario(result)]
+    measured = (entry for entry in ends(result) if entry[0] not in {label for label, *_ in known})
+    entries = [*known, *threshold(result), *sequence(result), *measured, *collapse(result), *snapshots(result),
+               *zone(result), *scenario(result)]
     proof = certificate(result) if result.certificate.attributes else ""
     return proof + (rows(entries) if entries else "")
 
@@ -28,6 +29,22 @@ def numbers(result: Result) -> str:
 def counted(result: Result) -> str:
     """How well the number of collisions is known: not, unless all of them are proved."""
     return tag("proved" if result.certificate.attributes.get("verdict") == "proved" else "unknown")
+
+
+def threshold(result: Result) -> list[tuple[str, str, str]]:
+    """The two values between which the outcome changes."""
+    found = result.threshold.attributes
+    return [(str(found["key"]), text(found[f"{end}_digits"]), text(f"{found[f'{end}_outcome']}: {found[f'{end}_how']}"))
+            for end in ("low", "high") if found]
+
+
+def sequence(result: Result) -> list[tuple[str, str, str]]:
+    """How far the collisions follow the word of the scene."""
+    found = result.sequence.attributes
+    if "word" not in found:
+        return []
+    about = "followed to the end" if found["follows"] else f"left at t = {number(found['left_at'])}"
+    return [(f"periods of {text(found['word'])}", number(found["periods"]), about)]
 
 
 def last(table: Table, name: str):

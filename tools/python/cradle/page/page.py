@@ -121,8 +121,8 @@ def command_of(result: Result) -> list[str]:
     if made_by:  # with its options
         command, *options = shlex.split(str(made_by))
         words = [command, f"{name}.toml", *map(shlex.quote, options)]
-    elif result.kind == "words":
-        words = shlex.split(str(result.table("words").attributes["command"]))
+    elif result.kind in ("words", "threshold"):
+        words = shlex.split(str(result.table(result.kind).attributes["command"]))
     elif result.kind == "sweep":
         words = ["sweep", f"{name}.toml"]
         planned = result.scene.get("sweep", {})

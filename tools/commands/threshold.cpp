@@ -14,8 +14,8 @@ namespace cradle::tools {
 
 namespace {
 
-struct ThresholdArguments : CommonOptions {
-  std::string vary, outcome, output;
+struct ThresholdArguments : CommonOptions, OutputOptions {
+  std::string vary, outcome;
   std::uint64_t digits = 12;
   bool no_proof = false;
 };
@@ -23,7 +23,7 @@ struct ThresholdArguments : CommonOptions {
 Exit run_threshold(const ThresholdArguments& options) {
   const Question question(options.scene, options.all_overrides(), options.vary, options.outcome,
                           static_cast<unsigned>(options.digits));
-  const std::string output = options.output.empty() ? options.read().name + "-threshold.h5" : options.output;
+  const std::string output = options.output_or(options.read().name + "-threshold.h5");
   const FileClaim claim(output);
   Interrupt interrupt;
   note_signals(interrupt);
@@ -32,7 +32,7 @@ Exit run_threshold(const ThresholdArguments& options) {
                                           options.progress ? Progress::Show::always
                                           : options.quiet  ? Progress::Show::never
                                                            : Progress::Show::on_terminal,
-                                          options.threads, !options.no_proof});
+                                          options.threads, !options.no_proof, options.force()});
   write_or_keep(threshold_result(question, found, question.command(options.scene)), output);
   ::unlink((output + ".part").c_str());
   fmt::print("{}", threshold_text(question, found));
@@ -53,7 +53,7 @@ void add_threshold(CommandLine& program) {
                  "what is compared: collapse, gap, collisions, merges or pair (default: what suits the scene)");
   command.option("--digits", options->digits, {1, 900}, "digits of the value (default: 12)");
   command.flag("--no-proof", options->no_proof, "does not prove the outcomes of the last two runs");
-  command.option("-o,--output", options->output, "result file (default: the scene's name with -threshold.h5)");
+  add_output_options(command, *options, "result file (default: the scene's name with -threshold.h5)");
   command.note("An interrupted search is continued by the same command.");
   command.does([options] { return run_threshold(*options); });
 }

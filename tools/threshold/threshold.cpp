@@ -57,12 +57,17 @@ class Search {
  private:
   void take_result(const std::string& file) {
     std::error_code unreadable;
-    if (!std::filesystem::is_regular_file(file, unreadable)) return;
+    if (!std::filesystem::exists(file, unreadable) || took(file) || options_.force == Force::yes) return;
+    throw Error({file, 0, ""}, "not a result that this command makes again", "something else",
+                "give another -o FILE, or --force to replace it");
+  }
+  // Whether the file holds a search that this one continues.
+  bool took(const std::string& file) {
     try {
       const Result result = read_result(file);
       const Group* table = result.find(kind);
       if (table == nullptr || attribute<std::uint64_t>(result.attributes, "identity", file) != question_.identity())
-        return;
+        return false;
       const auto texts = [&](std::size_t k) { return std::get<std::vector<std::string>>(table->columns.at(k).values); };
       const auto counts = [&](std::size_t k) {
         return std::get<std::vector<std::uint64_t>>(table->columns.at(k).values);
@@ -71,8 +76,9 @@ class Search {
       const auto collisions = counts(3), merges = counts(4);
       for (std::size_t k = 0; k < value.size(); ++k)
         known_[value[k]] = {value[k], outcome.at(k), collisions.at(k), merges.at(k), how.at(k)};
+      return true;
     } catch (const std::exception&) {
-      // Another file, which the new result replaces.
+      return false;
     }
   }
 

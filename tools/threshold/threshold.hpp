@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cradle/tools/result/result.hpp"
+#include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/progress.hpp"
 #include "cradle/tools/threshold/bracket.hpp"
@@ -42,6 +43,7 @@ struct ThresholdOptions {
   Progress::Show progress = Progress::Show::on_terminal;
   unsigned threads = 0;
   bool prove = true;
+  Force force = Force::no;
 };
 
 /// Continues what `file` and its journal hold of this question. Throws Error: Exit::bad_input if the outcome is the

@@ -20,6 +20,9 @@ if(CRADLE_TOOLS)
       CACHE STRING "where the Python package is installed, below the prefix: to be in PYTHONPATH")
   install(DIRECTORY tools/python/cradle DESTINATION ${CRADLE_PYTHON_DIR}
           PATTERN __pycache__ EXCLUDE)
+  if(TARGET cradle_module)
+    install(TARGETS cradle_module LIBRARY DESTINATION ${CRADLE_PYTHON_DIR}/cradle)
+  endif()
   # What the program prints of itself.
   set(_texts ${PROJECT_BINARY_DIR}/installed_texts)
   file(MAKE_DIRECTORY ${_texts})

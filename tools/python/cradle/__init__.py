@@ -22,13 +22,15 @@ if TYPE_CHECKING:
     from .commands import certify, ensemble, resume, run, sweep, trust
     from .page import report
     from .result import Result, open
+    from .simulation import Collision, Simulation
     from .tables import Column, Table, Tables
 
 __version__ = "0.1.0"  # the program's
 
 _WHERE = {name: module for module, names in {
     "commands": ("certify", "ensemble", "resume", "run", "sweep", "trust"), "page": ("report",), "plot": ("plot",),
-    "result": ("Result", "open"), "tables": ("Column", "Table", "Tables")}.items() for name in names}
+    "result": ("Result", "open"), "simulation": ("Collision", "Simulation"),
+    "tables": ("Column", "Table", "Tables")}.items() for name in names}
 __all__ = ["Error", *_WHERE]
 
 

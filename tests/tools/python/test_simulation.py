@@ -31,11 +31,14 @@ SCENES = {
     "events": ("fig2", small.SHOCK | EVENTS),
     "segments": ("fig2", {"initial.particles": 4000, "run.until": 600, "output.snapshots": [300]}),
     "positions": ("fig2", small.SHOCK | {"run.coordinates": "absolute", "run.precision": "long double"}),
-    "wet": ("fig5", {"initial.particles": 200, "run.until": 40}),
+    "wet": ("fig6", {"initial.particles": 200, "run.until": 40}),
     "sticky": ("cooling", {"initial.particles": 200, "run.until": 40}),
     "collapse": ("collapse3", {}),
-    "wall": ("classics/splash", {"initial.particles": 100, "run.until": 20, "output.snapshots": [20]}),
-    "histograms": ("fig2", small.SHOCK | {"output.histograms": ["closing_speed", "gap"]}),
+    "walls": ("classics/heat_conduction", {"run.until": 800, "output.series.every": 100, "output.averages.from": 100,
+                                           "output.histograms": ["closing_speed", "gap"],
+                                           "output.counting.every": 10}),
+    "gravity": ("classics/heat_conduction", {"run.until": 50, "gravity.acceleration": -0.1, "output.series.every": 5,
+                                             "output.averages": {}}),
     "double-double": ("fig2", WIDE | {"run.precision": "double-double"}),
     "mpfr": ("fig2", WIDE | {"run.precision": "mpfr", "run.digits": 50}),
     "cpp_bin_float": ("fig2", WIDE | {"run.precision": "cpp_bin_float"}),
@@ -172,7 +175,7 @@ class Functions(unittest.TestCase):
 
         def fail(collision):
             seen.append(collision)
-            if len(seen) == 300_000:
+            if len(seen) == 100_000:
                 raise LookupError
         sim.on_collision(fail)
         with self.assertRaises(LookupError):

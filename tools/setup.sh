@@ -36,6 +36,11 @@ option  | MPI launcher          | command mpirun               | openmpi-bin
 option  | pybind11              | header pybind11/pybind11.h   | pybind11-dev
 option  | Python headers        | python-header                | python3-dev
 look    | Chromium              | command chromium             | chromium
+look    | dpkg-shlibdeps        | command dpkg-shlibdeps       | dpkg-dev
+look    | pip                   | python pip                   | python3-pip
+look    | setuptools            | python setuptools            | python3-setuptools
+look    | wheel                 | python wheel                 | python3-wheel
+look    | venv                  | python ensurepip             | python3-venv
 TABLE
 }
 

@@ -49,6 +49,13 @@ TEST_F(Commands, TheoryKnowsTheTurnoverOfTheFront) {
   EXPECT_TRUE(has(shell("cradle theory fig2").out, "misprinted"));
 }
 
+TEST_F(Commands, TheoryThatIsNotThereIsOneSentence) {
+  EXPECT_TRUE(begins(shell("cradle theory classics/domino", 0).out, "no predictions: "));
+  const std::string sticky = shell("cradle theory fig1", 0).out, ring = shell("cradle theory cooling", 0).out;
+  EXPECT_FALSE(has(sticky, "Misprints")) << "of a table without printed forms";
+  EXPECT_EQ(has(ring, "Misprints"), has(shell("cradle theory cooling --csv").out, ",printed,"));
+}
+
 TEST_F(Commands, ScenesAreListedAndPrinted) {
   const Printed list = shell("cradle scenes");
   for (const auto* name : {"fig2", "fig3", "fig4", "collapse3"}) {

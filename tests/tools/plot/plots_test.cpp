@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"BeyondSweep",
              "cradle sweep beyond --vary law.cutoff=1e-3,1e-2 --replicas 2 --set initial.particles=400 "
              "--set law.restitution=0.97 --set run.until=420",
-             {"rates", "sweep"}},
+             {"rates", "parameters"}},
         Kind{"SpaceTime", "cradle run fig5", {}},
         Kind{"WetShock",
              "cradle run fig6 --set initial.particles=400 --set law.loss=0.01 --set run.until=150 "
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
              "cradle sweep fig8 --cuts --vary initial.speed=0.5,1 --vary law.loss=0.01,0.02 --replicas 2 "
              "--set initial.particles=1000 --set run.until=500 --set output.zone.from=100 "
              "--set output.zone.samples=100 --set output.series.points=20",
-             {"sweep"}},
+             {"parameters"}},
         Kind{"MapSweep",
              "cradle sweep fig2 --vary law.restitution=0.5,0.9 --vary initial.speed=0.5,1 --set initial.particles=40 "
              "--set run.until=10 --set output.snapshots=[] --set output.series.points=5 "

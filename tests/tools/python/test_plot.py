@@ -33,6 +33,17 @@ class Pictures(unittest.TestCase):
                     self.assertGreater(len(figure.axes), 0, name)
                     plt.close(figure)
 
+    def test_the_module_is_the_main_picture_and_completes_to_pictures(self):
+        figure = cradle.plot(small.shock())
+        main = cradle.plot.shock(small.shock())
+        self.assertEqual(cradle.plot.names(small.shock())[0], "shock")
+        self.assertEqual([len(ax.lines) for ax in figure.axes], [len(ax.lines) for ax in main.axes])
+        self.assertEqual(len(cradle.plot(small.shock(), "energy").axes), len(cradle.plot.energy(small.shock()).axes))
+        with self.assertRaisesRegex(cradle.Error, "no domino picture"):
+            cradle.plot(small.shock(), "domino")
+        plt.close("all")
+        self.assertEqual(set(dir(cradle.plot)), {"names", "save", *cradle.plot.PICTURES})
+
     def test_all_have_a_text_and_the_same_arguments(self):
         for name in cradle.plot.PICTURES:
             function = getattr(cradle.plot, name)

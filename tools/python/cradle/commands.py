@@ -23,7 +23,8 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
 
     scene: a scene file, the name of a bundled scene, nested dicts as result.scene has them, or the text of a scene
         (with line breaks), as result.scene_text.
-    set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`.
+    set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`; the same as
+        nested dicts, `{"law": {"restitution": 0.9}}`, which leave the other keys of a table; None unsets a key.
     Common to all commands, as keywords:
     output: the result file; by default the scene's name with .h5 in the working folder, as in the program.
     seed: replaces the scene's.
@@ -42,7 +43,8 @@ def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 
     spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Other arguments as in run().
     Raises Error; if replicas failed (5) its `result` has the others.
     """
-    options = ["--replicas", replicas, "--first", first, *(word for text in spread for word in ("--spread", text))]
+    options = ["--replicas", str(replicas), "--first", str(first)]
+    options += [word for text in spread for word in ("--spread", text)]
     return compute("ensemble", "-ensemble.h5", scene, set, options, **common)
 
 
@@ -97,10 +99,23 @@ def compute(command, ending, scene, set, options, *, output: str | os.PathLike |
             threads: int | None = None, progress: bool | Show | None = None) -> Result:
     with scene_file(scene) as (path, name):
         output = os.fspath(output) if output is not None else name + ending
-        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed)]
-        for key, value in (set or {}).items():
-            words += ["--set", f"{key}={bare(value)}"]
+        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]
         return called(words, output, threads, progress)
+
+
+def assignments(set: Settings, table: str = "") -> list[str]:
+    """The arguments of --set. The keys of a nested table are set one by one; a table under a dotted key replaces it."""
+    found = []
+    for key, value in (set or {}).items():
+        if isinstance(value, Mapping) and "." not in key:
+            found += assignments(value, f"{table}{key}.")
+        else:
+            found.append(f"{table}{key}={'' if value is None else bare(value)}")
+    return found
+
+
+def settings(set: Settings) -> list[str]:
+    return [word for assignment in assignments(set) for word in ("--set", assignment)]
 
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:

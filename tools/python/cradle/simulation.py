@@ -14,11 +14,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from . import program
-from .commands import Scene, Settings, bare
-from .errors import BAD_FILE, BAD_INPUT, Error
+from .commands import Scene, Settings, assignments
+from .errors import BAD_FILE, BAD_INPUT, Error, missing
 from .result import Result, open
 from .scene import parse_toml, scene_text
-from .tables import missing
 
 if TYPE_CHECKING:
     import numpy as np
@@ -70,8 +69,7 @@ class Simulation:
     def __init__(self, scene: Scene, set: Settings = None, *, seed: int | None = None, threads: int | None = None,
                  restitution: Callable[[float], float] | None = None):
         source, is_text, name = source_of(scene)
-        settings = [f"{key}={bare(value)}" for key, value in (set or {}).items()]
-        settings += [] if seed is None else [f"initial.seed={seed}"]
+        settings = assignments(set) + ([] if seed is None else [f"initial.seed={seed}"])
         self._begin(module().Run(source, is_text, name, settings, threads or 0, restitution is not None), restitution)
 
     def _begin(self, run, restitution=None) -> None:

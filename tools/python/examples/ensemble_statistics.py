@@ -11,6 +11,7 @@ import numpy as np
 import cradle
 
 replicas = 20
+print(f"{replicas} replicas of 400 particles; those that replicas.h5 has already are not run again", flush=True)
 
 # %%
 result = cradle.ensemble("fig4", replicas, output="replicas.h5", spread=["energy=0:60:60"],

@@ -48,7 +48,7 @@ def draw_points(result, axes, name, group, along, xlabel, ylabel, log):
     figure, panels = stacked(axes, len(times), height=2.4, sharex=True)
     for ax, time in zip(panels, times):
         for point, colour in zip(points, shades(len(points))):
-            table = getattr(point, group).at(time)
+            table = getattr(point, group).at(time, "nearest")
             ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label_of(point))
         ax.axhline(1, color=ORANGE, lw=1, ls="--")
         ax.set(ylabel=ylabel, title=f"$t={time:.5g}$")

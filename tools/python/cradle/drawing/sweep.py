@@ -24,7 +24,7 @@ def pictures(result, theory, units):
         found.append(("zone", lambda axes=None: draw_widths(result, keys, axes)))
     if numbers(result) and not cooling_points(result):
         draw = draw_map if is_grid(keys) else draw_cuts
-        found.append(("sweep", lambda axes=None: draw(result, keys, axes)))
+        found.append(("parameters", lambda axes=None: draw(result, keys, axes)))
     return found
 
 

@@ -41,6 +41,7 @@ SCENES = {
                                              "output.averages": {}}),
     "double-double": ("fig2", WIDE | {"run.precision": "double-double"}),
     "mpfr": ("fig2", WIDE | {"run.precision": "mpfr", "run.digits": 50}),
+    "float128": ("fig2", WIDE | {"run.precision": "float128"}),
     "cpp_bin_float": ("fig2", WIDE | {"run.precision": "cpp_bin_float"}),
 }
 
@@ -52,7 +53,8 @@ def shock(**more):
 class Bytes(unittest.TestCase):
     def test_those_of_cradle_run(self):
         for name, (scene, settings) in SCENES.items():
-            with self.subTest(name):
+            with self.subTest(name), warnings.catch_warnings():
+                warnings.simplefilter("ignore", RuntimeWarning)  # that collisions are uncertain
                 with cradle.run(scene, set=settings, output="run.h5", progress=False) as run:
                     sim = cradle.Simulation(scene, set=settings, threads=2)
                     sim.step(7)

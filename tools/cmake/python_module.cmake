@@ -38,7 +38,8 @@ if(CRADLE_PYTHON_MODULE AND Python_Development.Module_FOUND AND pybind11_FOUND)
                                    VISIBILITY_INLINES_HIDDEN ON)
   pybind11_add_module(cradle_module MODULE NO_EXTRAS ${CMAKE_CURRENT_SOURCE_DIR}/python/module/module.cpp)
   set_target_properties(cradle_module PROPERTIES OUTPUT_NAME _live CXX_VISIBILITY_PRESET hidden
-                                                 VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF)
+                                                 VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF
+                                                 CRADLE_PYTHON_VERSION ${Python_VERSION})
   target_compile_options(cradle_module PRIVATE $<$<CONFIG:Release>:-O2>)
   target_link_libraries(cradle_module PRIVATE cradle_tools cradle_build)
 endif()

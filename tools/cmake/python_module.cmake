@@ -1,7 +1,7 @@
 # The Python module for live simulations (tools/python/module), for the interpreter that pictures take: the first of
-# $CRADLE_PYTHON, python3 and /usr/bin/python3 with h5py and numpy. It is built where that one's headers and pybind11 are
-# found. The libraries it shares with the program are then position-independent; what they define is hidden, so that
-# calls within the module stay direct.
+# $CRADLE_PYTHON, python3 and /usr/bin/python3 with h5py and numpy. It is built where that one's headers and pybind11
+# are found. The libraries it shares with the program are then position-independent; what they define is hidden, so that
+# calls within the module stay direct. With sanitizers it is left out: Python would have to be started with theirs.
 option(CRADLE_PYTHON_MODULE "build the Python module for live simulations, where Python and pybind11 are found" ON)
 
 function(_find_python result)
@@ -18,7 +18,7 @@ function(_find_python result)
   endforeach()
 endfunction()
 
-if(CRADLE_PYTHON_MODULE)
+if(CRADLE_PYTHON_MODULE AND NOT CMAKE_CXX_FLAGS MATCHES fsanitize)
   if(NOT Python_EXECUTABLE)
     _find_python(Python_EXECUTABLE)
   endif()
@@ -31,7 +31,7 @@ if(CRADLE_PYTHON_MODULE)
   endif()
 endif()
 
-if(CRADLE_PYTHON_MODULE AND Python_Development.Module_FOUND AND pybind11_FOUND)
+if(Python_Development.Module_FOUND AND pybind11_FOUND)
   message(STATUS "Python module: for ${Python_EXECUTABLE}")
   set_target_properties(cradle_texts cradle_tools cradle_steps
                         PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden

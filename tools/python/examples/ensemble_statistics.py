@@ -37,7 +37,6 @@ left.legend()
 right.hist(values, bins=12)
 right.set(xlabel=f"energy at the end in {energy.mean.unit}", ylabel="replicas")
 figure.savefig("replicas.png")
-figure
 
 # %%
 print("report:", cradle.report(result))

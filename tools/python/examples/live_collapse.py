@@ -70,7 +70,6 @@ left.legend()
 right.bar(list(pairs), list(pairs.values()), width=1)
 right.set(xlabel="number of the left particle", ylabel="collisions of 20000")
 figure.savefig("live_collapse.png")
-figure
 
 # %% [markdown]
 # ## A restitution of one's own

@@ -16,7 +16,7 @@ import weakref
 import cradle
 import numpy as np
 import small
-from cradle import simulation
+from cradle import program, simulation
 
 try:
     simulation.module()
@@ -340,6 +340,16 @@ class Calls(unittest.TestCase):
         for call in (sim.advance, sim.step, lambda: sim.save("no.checkpoint")):
             with self.assertRaisesRegex(cradle.Error, "the run is over .found reached the end at t = 60"):
                 call()
+
+    def test_the_program_says_how_a_checkpoint_continues(self):
+        sim = shock()
+        sim.advance(10)
+        sim.save("said.checkpoint")
+        said = program.call(["info", "said.checkpoint"]).out
+        self.assertIn('cradle.Simulation.load("said.checkpoint") in Python continues from it', said)
+        self.assertRegex(said, "t = 10, [0-9]+ collisions")
+        with self.assertRaisesRegex(cradle.Error, "a checkpoint, not a result.*Simulation.load"):
+            cradle.open("said.checkpoint")
 
     def test_what_is_lost_is_a_warning(self):
         settings = small.SHOCK | {"law.restitution": 0.3, "law.cutoff": 0, "run.coordinates": "absolute"}

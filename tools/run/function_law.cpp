@@ -45,6 +45,7 @@ std::unique_ptr<Engine<double>> engine_with(const std::function<double(double)>&
   if (scene.run.collapse == scene::CollapsePolicy::contact_time) refuse("run.collapse", "give \"cutoff\" or \"stop\"");
   if (scene.run.coordinates == Coordinates::absolute) refuse("run.coordinates", "give \"gaps\"");
   if (scene.gravity.acts()) refuse("gravity.acceleration", "remove it");
+  if (scene.walls.shaken()) refuse("walls", "give walls without motion");
   if (to_be_watched(*particles)) refuse("initial", "give masses that are not so far apart");
   return std::make_unique<EngineOf<double, FunctionRun>>(
       Workers(), FunctionLaw(restitution),

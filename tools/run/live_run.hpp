@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/store/overwrite.hpp"
 
 namespace cradle::tools {
 
@@ -65,8 +66,8 @@ class LiveRun {
 
   /// Writes a file from which `load_live_run` continues. Throws Error, also if the run is over.
   virtual void save(const std::string& path) = 0;
-  /// Writes the result of a run that is over. Throws Error.
-  virtual void write(const std::string& path) = 0;
+  /// Writes the result of a run that is over. It replaces only what `cradle run` would replace. Throws Error.
+  virtual void write(const std::string& path, Force force) = 0;
 };
 
 /// Throws Error for scenes that cannot be run, or not in this way.

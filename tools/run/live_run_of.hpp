@@ -28,8 +28,8 @@ template <Real T> class LiveRunOf final : public LiveRun {
  public:
   LiveRunOf(const Scene& scene, const LiveOptions& options, StateReader* from)
       : scene_(scene), restitution_(options.restitution), threads_(thread_count(options.threads)),
-        store_(options.poll), options_{Progress::Show::never, nullptr, nullptr, workers_of_calls(), &store_},
-        progress_(Progress::Show::never, scene.run.start.value, scene.run.until.value),
+        store_(options.poll), options_{Progress::Show::never, nullptr, nullptr, workers_of_calls(), &store_, false},
+        progress_(Progress::Show::never, scene.run.start.value, scene.run.until.value, false),
         particles_(initial_particles<T>(scene_)), engine_(engine()),
         run_(scene_, particles_, *engine_, options_, progress_), time_(number<T>(scene_.run.start)),
         end_(number<T>(scene_.run.until)) {
@@ -100,15 +100,16 @@ template <Real T> class LiveRunOf final : public LiveRun {
     run_.save(to);
     to.finish();
   }
-  void write(const std::string& path) override {
+  void write(const std::string& path, Force force) override {
     require_own_law("written");
     if (!over_)
       throw Error({scene_.name, 0, ""}, "not at its end", "t = " + to_text(time_),
                   "advance to run.until = " + scene_.run.until.text + " first, or save a checkpoint");
     const FileClaim claim(path);
+    check_overwrite(path, "run", &scene_, force);
     if (!without_collisions(scene_)) return store_.write(over_->result, path);
     MemoryStore store({});
-    const RunOutcome direct = run_scene(scene_, {Progress::Show::never, nullptr, nullptr, {}, &store});
+    const RunOutcome direct = run_scene(scene_, {Progress::Show::never, nullptr, nullptr, {}, &store, false});
     store.write(direct.result, path);
   }
 

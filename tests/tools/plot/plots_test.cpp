@@ -110,6 +110,11 @@ INSTANTIATE_TEST_SUITE_P(
              "cradle sweep classics/collapse_number --vary initial.particles=6,10,14 --replicas 5 "
              "--set law.restitution=0.5",
              {}},
+        Kind{"Marbles", "cradle sweep classics/marbles --replicas 2 --set run.until=20", {}},
+        Kind{"BetweenWalls", "cradle sweep classics/between_walls --replicas 1 --set run.until=5", {}},
+        Kind{
+            "Bouncing", "cradle sweep classics/bouncing --vary walls.left.amplitude=1,1.4,1.7 --set run.until=100", {}},
+        Kind{"Column", "cradle sweep classics/column --set run.until=40", {}},
         Kind{"Universality",
              "cradle sweep classics/universality --set initial.particles=200 --set run.until=50 "
              "--set output.series.points=20",

@@ -77,7 +77,7 @@ class Run(unittest.TestCase):
         for keys, speed, kind, count in (({"law.cutoff": 0.3}, 0.3, 1, "collisions_below_cutoff"),
                                          ({"run.collapse": "merge", "run.merge_speed": 0.1}, 0.1, 2, "merges")):
             keys = small.SHOCK | {"law.restitution": 0.9, "output.events": True} | keys
-            with cradle.run("fig2", set=keys, output="kinds.h5") as result:
+            with cradle.run("fig2", set=keys, output="kinds.h5", force=True) as result:
                 found = result.events.kind == kind
                 np.testing.assert_array_equal(found, result.events.closing_speed < speed)
                 self.assertEqual(found.sum(), result.series[count][-1])
@@ -152,16 +152,16 @@ class Others(unittest.TestCase):
         with cradle.open(small.tagged()) as run, cradle.open(small.tagged_ensemble()) as ensemble:
             self.assertEqual(run.correlations.attributes["particles"], 100)
             self.assertEqual(run.correlations.lag[4], 1)
-            self.assertEqual(run.correlations.mean_square_displacement.unit, "l^2")
-            self.assertGreater(run.correlations.velocity_autocorrelation_error[0], 0)
+            self.assertEqual(run.correlations.msd.unit, "l^2")
+            self.assertGreater(run.correlations.vacf_sem[0], 0)
             self.assertEqual(ensemble.correlations.lag.values.tolist(), run.correlations.lag.values.tolist())
-            self.assertGreater(ensemble.correlations.mean_square_displacement.sem[1], 0)
-            self.assertEqual(run.structure_at.times.tolist(), [10, 40])
-            self.assertEqual(len(run.structure_at.at(10).structure_factor), len(run.structure.k))
-            self.assertEqual(ensemble.structure_at.at(40).structure_factor.mean.shape, run.structure.k.shape)
-            self.assertEqual(len(run.pair_distribution.pair_distribution_error), 50)
-            self.assertAlmostEqual(run.pair_distribution.distance[0], 0.1)
-            self.assertEqual(len(ensemble.pair_distribution_at), 1)
+            self.assertGreater(ensemble.correlations.msd.sem[1], 0)
+            self.assertEqual(run.structure.times.tolist(), [10, 40])
+            self.assertEqual(len(run.structure.at(10).s), len(run.structure_average.k))
+            self.assertEqual(ensemble.structure.at(40).s.mean.shape, run.structure_average.k.shape)
+            self.assertEqual(len(run.pair_distribution_average.pair_distribution_sem), 50)
+            self.assertAlmostEqual(run.pair_distribution_average.distance[0], 0.1)
+            self.assertEqual(len(ensemble.pair_distribution), 1)
             self.assertEqual(set(cradle.plot.names(run)) & {"correlations", "structure_factor", "pair_distribution"},
                              {"correlations", "structure_factor", "pair_distribution"})
 
@@ -214,6 +214,20 @@ class Others(unittest.TestCase):
         with cradle.open(small.trust()) as result:
             self.assertEqual(result.kind, "trust")
             self.assertEqual([table.precision for table in result.trust][-1], "mpfr, 50 digits")
+
+    def test_threshold_has_the_values_that_were_tried(self):
+        with cradle.open(small.threshold()) as result:
+            self.assertEqual(result.kind, "threshold")
+            about = result.threshold.attributes
+            self.assertEqual((about["low_digits"], about["high_digits"]), ("0.071796", "0.071797"))
+            self.assertEqual((about["low_proved"], about["high_proved"]), (1, 1))
+            self.assertEqual(result.threshold.value_digits[0], "0.05")
+
+    def test_sequence_of_collisions(self):
+        with cradle.run("collapse3", set={"output.word": "ab"}, output="sequence.h5") as result:
+            self.assertEqual(result.sequence.letters[0], "ab")
+            self.assertEqual(result.sequence.attributes["periods"], result.sequence.repeats[0])
+            self.assertEqual(result.sequence.attributes["follows"], 1)
 
     def test_every_kind_has_a_short_text(self):
         for make in small.ALL:

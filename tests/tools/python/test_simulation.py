@@ -4,6 +4,7 @@ change nothing; other threads run; nothing is kept alive."""
 import filecmp
 import gc
 import os
+import shutil
 import signal
 import sys
 import tempfile
@@ -55,7 +56,7 @@ class Bytes(unittest.TestCase):
         for name, (scene, settings) in SCENES.items():
             with self.subTest(name), warnings.catch_warnings():
                 warnings.simplefilter("ignore", RuntimeWarning)  # that collisions are uncertain
-                with cradle.run(scene, set=settings, output="run.h5", progress=False) as run:
+                with cradle.run(scene, set=settings, output="run.h5", progress=False, force=True) as run:
                     sim = cradle.Simulation(scene, set=settings, threads=2)
                     sim.step(7)
                     self.assertEqual(sim.collisions, 7)
@@ -70,7 +71,7 @@ class Bytes(unittest.TestCase):
                         self.assertEqual((other.outcome, other.collisions),
                                          (run.outcome, run.series.collisions[-1] if name != "sticky" else
                                           other.collisions))
-                        with other.write("live.h5") as live:
+                        with other.write("live.h5", force=True) as live:
                             self.assertEqual(live.status, run.status)
                         self.assertTrue(filecmp.cmp("run.h5", "live.h5", shallow=False))
 
@@ -337,6 +338,9 @@ class Calls(unittest.TestCase):
             self.assertIn(raised.exception.status, (2, 4))
         self.assertEqual(sim.time, 30)
         sim.advance()
+        shutil.copy(small.tagged(), "others.h5")
+        with self.assertRaisesRegex(cradle.Error, "others.h5.*force"):
+            sim.write("others.h5")
         for call in (sim.advance, sim.step, lambda: sim.save("no.checkpoint")):
             with self.assertRaisesRegex(cradle.Error, "the run is over .found reached the end at t = 60"):
                 call()

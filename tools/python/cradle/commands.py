@@ -27,6 +27,7 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
         nested dicts, `{"law": {"restitution": 0.9}}`, which leave the other keys of a table; None unsets a key.
     Common to all commands, as keywords:
     output: the result file; by default the scene's name with .h5 in the working folder, as in the program.
+    force: True replaces what output holds, also what this call would not make again.
     seed: replaces the scene's.
     threads: how many at most; by default all processors. It never changes a result.
     progress: True, False, or a function of the finished share and a line of text; by default on terminals and in
@@ -84,6 +85,19 @@ def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), r
     return compute("certify", "-certified.h5", scene, set, options, **common)
 
 
+def threshold(scene: Scene, vary: Settings, set: Settings = None, *, outcome: str | None = None,
+              digits: int | None = None, proof: bool = True, **common) -> Result:
+    """Finds the value of a key at which the outcome of a run changes; `result.threshold.attributes` has `low_digits`
+    and `high_digits`, between which it does, with `low_outcome`, `low_proved`, ...; its rows are the values tried.
+
+    vary: the key and its range, `{"law.restitution": "0.05:0.1"}`. outcome: what is compared. digits: of the value.
+    proof: whether the last two outcomes are to be proved. Other arguments as in run().
+    """
+    (key, values), = vary.items()
+    options = ["--vary", f"{key}={bare(values, ':')}", *option("--outcome", outcome), *option("--digits", digits)]
+    return compute("threshold", "-threshold.h5", scene, set, options + ["--no-proof"] * (not proof), **common)
+
+
 def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
            progress: bool | Show | None = None) -> Result:
     """Continues a run, an ensemble or a sweep that was stopped, or, with `until`, extends it; returns its result."""
@@ -95,11 +109,12 @@ def option(name: str, value: Any) -> list[str]:
     return [] if value is None else [name, str(value)]
 
 
-def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, seed: int | None = None,
-            threads: int | None = None, progress: bool | Show | None = None) -> Result:
+def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, force: bool = False,
+            seed: int | None = None, threads: int | None = None, progress: bool | Show | None = None) -> Result:
     with scene_file(scene) as (path, name):
         output = os.fspath(output) if output is not None else name + ending
         words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]
+        words += ["--force"] * force
         return called(words, output, threads, progress)
 
 

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 from . import program
 from .errors import BAD_FILE, BAD_INPUT, Error
+from .files import check_replaced, made_from
 from .result import Result, open
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ PICTURES = {
     "regimes": "What the replicas have come to, in shares.",
     "parameters": "What depends on the parameters that were varied.",
     "words": "For which restitutions words of collapse exist, and where they are stable.",
+    "threshold": "How a threshold was closed in: its distance from the values that were tried.",
     "trust": "Digits that runs of rising precision share with the last one.",
     "certificate": "Of a proof: smallest gap, and how well places and gaps are known.",
 }
@@ -90,9 +92,11 @@ def names(result: Result | str | os.PathLike) -> list[str]:
     return list(drawings(result, theory=False))
 
 
-def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: bool = True) -> list[str]:
+def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: bool = True,
+         force: bool = True) -> list[str]:
     """Writes all pictures: the main one to output (.png, .pdf or .svg), others with their names before the extension.
 
+    force: False replaces only pictures that were made from a result of the same name.
     Returns their paths. Same result, same bytes. Raises Error.
     """
     base, extension = os.path.splitext(os.fspath(output))
@@ -100,10 +104,13 @@ def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: 
         raise Error(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg", BAD_INPUT)
     from .drawing.pictures import write_file
     opened = result if isinstance(result, Result) else open(result)
-    paths: list[str] = []
-    for name, draw in drawings(opened, theory).items():
-        paths.append(f"{base}-{name}{extension}" if paths else base + extension)
-        write_file(draw(), paths[-1])
+    found, mark = drawings(opened, theory), made_from("plot", opened.path)
+    paths = [f"{base}-{name}{extension}" if number else base + extension for number, name in enumerate(found)]
+    if not force:
+        for path in paths:
+            check_replaced(path, mark)
+    for path, draw in zip(paths, found.values()):
+        write_file(draw(), path, mark)
     if not paths:
         raise Error(f"{opened.path} holds nothing to draw (no series, snapshots or profiles): "
                     "give the file of a completed run", BAD_FILE)

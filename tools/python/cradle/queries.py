@@ -132,9 +132,13 @@ def diff(first: File, second: File, rtol: float = 0) -> Differences:
     return Differences(program.call(words, (DONE, DIFFERS)).out)
 
 
-def export(result: File, folder: str | os.PathLike) -> list[str]:
-    """Writes a result as CSV, one file per group with all digits, and its scene; returns their paths."""
-    return program.call(["export", path_of(result), "--to", os.fspath(folder)]).out.splitlines()
+def export(result: File, folder: str | os.PathLike, force: bool = False) -> list[str]:
+    """Writes a result as CSV, one file per group with all digits, and its scene; returns their paths.
+
+    force: True replaces what the folder holds, also what was exported from another result.
+    """
+    words = ["export", path_of(result), "--to", os.fspath(folder), *["--force"] * force]
+    return program.call(words).out.splitlines()
 
 
 def path_of(result: File) -> str:

@@ -89,7 +89,7 @@ class Result:
 
     @property
     def kind(self) -> str:
-        """"run", "ensemble", "sweep", "trust", "words" or "point"."""
+        """"run", "ensemble", "sweep", "trust", "words", "threshold" or "point"."""
         if self.label:
             return "point"
         return self.attributes.get("kind") or ("trust" if len(self.trust) else "run")
@@ -139,27 +139,32 @@ class Result:
     mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "The same; of an ensemble the means.",
                                  "profiles", "ensemble/profiles")
     averages: Table = part(Table, """Averages over time in bins: `x`, `density`, `temperature`, `heat_current`, ... of
-        shape (bins,), with `_error`; of an ensemble tables.""", "averages", "ensemble/averages")
+        shape (bins,), with `_sem`; of an ensemble tables.""", "averages", "ensemble/averages")
     histograms: Table = part(Table, """What a run counted, a table each: `result.histograms.free_flight` has `low`,
         `high` and `count` of shape (bins,); of an ensemble `count` is a table.""", "histograms", "ensemble/histograms")
-    correlations: Table = part(Table, """Of tagged particles: `lag`, `mean_square_displacement`,
-        `velocity_autocorrelation` of shape (lags,), with `_error`; of an ensemble tables.""", "correlations",
+    correlations: Table = part(Table, """Of tagged particles: `lag`, `msd` (mean-square displacement), `vacf`
+        (velocity autocorrelation) of shape (lags,), with `_sem`; of an ensemble tables.""", "correlations",
                                "ensemble/correlations")
-    structure: Table = part(Table, """The average structure factor: `k`, `structure_factor` of shape (waves,), with
-        `_error`; of an ensemble a table.""", "structure", "ensemble/structure")
-    structure_at: Tables = part(Tables, "The same at times.", "structure_at", "ensemble/structure_at")
-    pair_distribution: Table = part(Table, """The average pair distribution: `distance`, `pair_distribution` of shape
-        (bins,), with `_error`; of an ensemble a table.""", "pair_distribution", "ensemble/pair_distribution")
-    pair_distribution_at: Tables = part(Tables, "The same at times.", "pair_distribution_at",
-                                        "ensemble/pair_distribution_at")
+    structure: Tables = part(Tables, """The structure factor at times: `k`, `s` of shape (waves,); of an ensemble `s`
+        is a table.""", "structure", "ensemble/structure")
+    structure_average: Table = part(Table, "The same, averaged over times, with `s_sem`.", "structure_average",
+                                    "ensemble/structure_average")
+    pair_distribution: Tables = part(Tables, """The pair distribution at times: `distance`, `pair_distribution` of
+        shape (bins,); of an ensemble the latter is a table.""", "pair_distribution", "ensemble/pair_distribution")
+    pair_distribution_average: Table = part(Table, "The same, averaged over times, with `pair_distribution_sem`.",
+                                            "pair_distribution_average", "ensemble/pair_distribution_average")
     masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
     events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
         `interval`, `closing_speed`, `kind`.""", "events")
+    sequence: Table = part(Table, """The order of the collisions (output.word), one row for each repetition: `letters`,
+        `repeats`, `first`, `time`; attributes `word`, `periods`, `kept`, `left_at`.""", "sequence")
     replicas: Table = part(Table, "One row per replica: `index`, `outcome`, `collisions`, `energy`, ...", "replicas")
     sweep: Table = part(Table, """One row per point: the keys that vary, then every number with `_error` and
         `_replicas`.""", "sweep")
     trust: Tables = part(Tables, """One table per precision of a comparison: attributes `precision`,
         `collisions_right_until`, ...""", "trust")
+    threshold: Table = part(Table, """One row per value that was tried: `value`, `value_digits`, `outcome`, `how`,
+        `collisions`; attributes `key`, `low_digits`, `high_digits`, `low_proved`, ...""", "threshold")
     certificate: Table = part(Table, """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`,
         `gap`, `widest`, ...""", "certificate")
     exact: Table = part(Table, """Decimal texts: all digits of a run in a type wider than double,
@@ -215,7 +220,8 @@ class Result:
     def enclosure(self, name: str) -> tuple[list, list]:
         """Proved lower and upper bounds of a quantity of the series, as two lists of Fractions.
 
-        name: "energy", "front_left" or "front_right". Raises Error if the file has no proof of it.
+        name: "energy", "front_left", "front_right", "wall_left_energy", "wall_left_lost" and so on. Raises Error if the
+            file has no proof of it.
         """
         exact = self.exact.get("series", {})
         if f"{name}_low" not in exact:

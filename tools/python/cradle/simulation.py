@@ -274,13 +274,14 @@ class Simulation:
 
     # ---- files
 
-    def write(self, output: str | os.PathLike | None = None) -> Result:
+    def write(self, output: str | os.PathLike | None = None, *, force: bool = False) -> Result:
         """Writes the result of a run that is over and opens it: the bytes of `cradle run`.
 
-        output: by default the scene's name with .h5 in the working folder. Raises Error before the end.
+        output: by default the scene's name with .h5 in the working folder. force: replaces what output holds, also what
+            the same run would not make again. Raises Error before the end.
         """
         output = self.name + ".h5" if output is None else os.fspath(output)
-        self._run.write(output)
+        self._run.write(output, force)
         result = open(output)
         _, result.status, report, warning = self._run.over
         result.text = report + warning

@@ -212,7 +212,10 @@ PYBIND11_MODULE(_live, module) {
            })
       .def("save", [](HeldRun& held, const std::string& path) { held.use([&](LiveRun& run) { run.save(path); }); })
       // With the lock: HDF5 may be the one of h5py.
-      .def("write", [](HeldRun& held, const std::string& path) { held.use([&](LiveRun& run) { run.write(path); }); })
+      .def("write",
+           [](HeldRun& held, const std::string& path, bool force) {
+             held.use([&](LiveRun& run) { run.write(path, force ? Force::yes : Force::no); });
+           })
       .def_property_readonly("index", &index_of)
       .def_property_readonly("name", reads([](LiveRun& run) { return run.scene().name; }))
       .def_property_readonly("scene", reads([](LiveRun& run) { return effective_toml(run.scene()); }))

@@ -62,11 +62,6 @@ TEST(Certify, CollisionsOfTheExactGasAreProved) {
   EXPECT_GE(counted, 400U);
 }
 
-bool shares_a_particle(const std::pair<ParticleIndex, ParticleIndex>& a,
-                       const std::pair<ParticleIndex, ParticleIndex>& b) {
-  return a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second;
-}
-
 TEST(Certify, ARunThatIsWrongInOneCollisionIsNeverProved) {
   std::uint64_t mutants = 0, of_side = 0;
   for (std::uint64_t number = 0; number < 500; ++number) {

@@ -51,9 +51,6 @@ std::optional<NotProvable> not_provable(const Scene& scene) {
   if (const auto& left = scene.walls.left.rest_speed; left || scene.walls.right.rest_speed)
     return {{left ? "walls.left.rest_speed" : "walls.right.rest_speed", "rest on a wall is not provable",
              (left ? left : scene.walls.right.rest_speed)->text, compare_precisions}};
-  // Between a particle that falls and a wall that it falls away from the gap is not concave (core/README.md).
-  if (scene.gravity.acts())
-    return {{"gravity.acceleration", "gravity is not provable", scene.gravity.acceleration->text, compare_precisions}};
   return {};
 }
 
@@ -79,6 +76,10 @@ const char* question(Check check) {
     return "the gap between them is positive: the second exceeds the first";
   case Check::before:
     return "its last collision was before: the second time exceeds the first";
+  case Check::reaches:
+    return "it falls on the wall: the square of its speed there, the second, exceeds the first";
+  case Check::turns:
+    return "the gap stays open between two collisions under gravity: the second exceeds the first";
   case Check::agreement:
     return "the run has the number that is proved: first against second";
   }

@@ -75,7 +75,7 @@ template <Enclosing N> class Checker {
       : laws_(law), motion_(std::move(particles), law), walls_(motion_.lines.particles()) {
     if constexpr (SideBySide<N>)
       if (law.bounces_only() && !motion_.of_collisions && motion_.lines.identical_masses() && !law.contact_time)
-        in_levels_.emplace(Bounces<N>(laws_.bouncing, law.cutoff ? *law.cutoff : N(-1), law.elastic));
+        in_levels_.emplace(laws_.bouncing, law.cutoff ? *law.cutoff : N(-1), law.elastic);
   }
 
   // The particles at the start.

@@ -24,7 +24,9 @@ template <SideBySide N> class InLevels<N> {
   using Pair = std::pair<ParticleIndex, ParticleIndex>;
   static constexpr std::size_t most = 2048;  // so that lists stay in the nearest caches
 
-  explicit InLevels(Bounces<N> bounces) : bounces_(std::move(bounces)) {}
+  // As Bounces.
+  InLevels(const typename N::Share& share, const N& cutoff, bool always_elastic)
+      : bounces_(share, cutoff, always_elastic) {}
 
   // At most `most` of them. neighbours(left, right): whether they are, taking in what stands beside them;
   // collide(left, right): makes one alone. The last one always is, since a run may end with it.

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cradle/core/initial/rows.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"
 
 namespace certify_gravity_test {
@@ -285,6 +286,58 @@ TEST(CertifyGravity, ATouchIsFoundAtTheNextCollision) {
   EXPECT_EQ(found->check, Check::turns);
   EXPECT_EQ(found->left, 1);
   EXPECT_EQ(found->right, 2);
+}
+
+// The gap 1 - 2 t + 3 t^2/4 closes at t = 2/3, still closing there, and turns at t = 4/3.
+TEST(CertifyGravity, AGapThatHasClosedIsNotOpen) {
+  const auto closes = [](double before, double until_time, double gap = 1) {
+    return CertainApproach<B>{B(gap), B(2), B(-1.5)}.closes(B(before), B(until_time));
+  };
+  EXPECT_FALSE(closes(0, 0.625));
+  for (const double time : {0.75, 1., 1.25, 1.375, 3.}) {
+    const auto open = closes(0, time);
+    ASSERT_TRUE(open) << time;
+    EXPECT_TRUE(open->refuted) << time;
+  }
+  EXPECT_FALSE(closes(0, 3, 1.375)) << "4/3 is enough";
+  EXPECT_FALSE(closes(2.5, 3)) << "opens after the other root, at t = 2";
+}
+// The new line goes through the place of the wall at any time at which the collision can have been.
+TEST(CertifyGravity, ALineFromAWallHoldsAllThatItsTimeMayBe) {
+  const double radius = 0x1p-12, acceleration = -0.5, of_wall = 0.25;
+  for (const double restitution : {0., 0.5}) {
+    const CertainLaw<B> law = elastic();
+    Wall<B> wall = wall_at(1, restitution);
+    wall.speed = B(of_wall);
+    Motion<B> motion(thrown({B(0)}, {B(1)}, acceleration, {}, wall), law);
+    CertainWalls<B> walls(motion.lines.particles());
+    ASSERT_FALSE(walls.strike(motion, {1, 0, B(2) + B(double_double(0), radius), B(0.5)}, false));
+    for (const double off : {-radius, 0., radius}) {
+      const Rational time = Rational(2) + exactly(off), a = exactly(acceleration), v = exactly(of_wall);
+      const Rational after = v - exactly(0.5 * restitution) - a * time;  // as seen by one who falls
+      EXPECT_TRUE(holds(motion.lines[0].velocity, after));
+      EXPECT_TRUE(holds(motion.lines[0].place, 1 + v * time - a * time * time / 2 - after * exactly(off)));
+    }
+  }
+}
+
+// Of rows few particles are held; the others fall as well.
+TEST(CertifyGravity, ParticlesThatAreNotHeldFallToo) {
+  const auto rows = std::make_shared<Rows<B>>(Row<B>{20, B(1), B(1)}, Row<B>{10, B(-0.5), B(1)}, std::nullopt,
+                                              [](ParticleIndex) { return std::int64_t{0}; });
+  const Checker<B> checker(std::make_shared<Walled<B>>(rows, std::nullopt, std::nullopt, B(0.75)), elastic());
+  const CertainState<B> now = checker.state_at(B(0.25));
+  ASSERT_FALSE(now.doubt);
+  EXPECT_LT(now.sizes.particles, 30U);
+  EXPECT_TRUE(holds(now.energy, exactly(20 * 1.1875 * 1.1875 / 2 + 10 * 0.3125 * 0.3125 / 2)));
+  EXPECT_LT(now.energy.radius(), 1e-28);
+}
+TEST(CertifyGravity, OverAFloorTheyAreNeverOver) {
+  const auto over = [](const std::optional<Wall<B>>& left, const std::optional<Wall<B>>& right) {
+    return Checker<B>(thrown({B(0.25), B(0.5)}, {B(1), B(2)}, -0.5, left, right), elastic()).state_at(B(0)).over;
+  };
+  EXPECT_TRUE(over({}, {}));
+  EXPECT_FALSE(over(wall_at(0), {}));
 }
 
 // Below the cut-off a floor is elastic, within the contact time too; above it is not. Which is which must be certain.

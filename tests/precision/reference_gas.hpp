@@ -44,7 +44,7 @@ template <class T> struct Gas {
 
   T time{0};
   std::uint64_t collisions = 0, below_cutoff = 0, merges = 0;
-  std::optional<std::int64_t> latest{};  // gap that closed at this time
+  std::optional<std::int64_t> latest{};  // the gap that closed last
   bool tied = false;                     // three particles met at one time: the motion after that is undefined
 
   // Makes all collisions up to a time, or the first `most`.
@@ -133,7 +133,7 @@ template <class T> struct Gas {
       const Cell& cell = left ? cells.front() : cells.back();
       const T p = left ? T(-acceleration) : acceleration,
               w = left ? T(walls[0]->v - velocity(cell)) : T(velocity(cell) - walls[1]->v);
-      if (latest && *latest == (left ? -1 : last())) {
+      if (latest && *latest == (left ? -1 : last()) && *cell.touched == time) {
         const T back = -2 * w / p;
         return back > 0 ? std::optional(T(time + back)) : std::nullopt;
       }

@@ -266,7 +266,7 @@ void compare_side_by_side(const std::shared_ptr<const Particles<B>>& particles, 
                           const Pairs& collisions, std::size_t piece, bool proves) {
   Checker<B> one(particles, law), many(particles, law);
   std::optional<Doubt<B>> doubt;
-  std::optional<Checker<B>::DoubtAt> at;
+  std::optional<DoubtAt<B>> at;
   for (std::size_t k = 0; k < collisions.size() && !doubt; k += piece) {
     const std::span<const Checker<B>::Pair> some =
         std::span(collisions).subspan(k, std::min(piece, collisions.size() - k));

@@ -156,16 +156,16 @@ template <class T> struct Gas {
     const bool below = acceleration != 0 && law != GasLaw::contact_time && size < cutoff,
                soon = acceleration != 0 && law == GasLaw::contact_time && cell.touched &&
                       time - *cell.touched < contact_time;
-    const T restitution = below || soon ? T(1) : wall.restitution;
+    const T of_wall = below || soon ? T(1) : wall.restitution;
     const T after = wall.random_speed ? T(left ? T(wall.v + wall.random_speed(wall.collisions, cell.m))
                                                : T(wall.v - wall.random_speed(wall.collisions, cell.m)))
-                                      : T(wall.v - restitution * relative);
+                                      : T(wall.v - of_wall * relative);
     cell.v += after - before;
     cell.origin = x - cell.v * time;
     cell.touched = time;
     // The energy of the particle changes by what is given, less what is lost.
     const T gain = cell.m * (after * after - before * before) / 2, inner = cell.m * relative * relative / 2;
-    const T lost = wall.random_speed ? T(0) : T(inner * (1 - restitution * restitution));
+    const T lost = wall.random_speed ? T(0) : T(inner * (1 - of_wall * of_wall));
     wall.lost += lost;
     wall.given += gain + lost;
     wall.momentum += cell.m * (after - before);

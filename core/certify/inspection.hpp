@@ -39,8 +39,8 @@ template <Enclosing N> class Inspection {
       state.sizes.add(to_double(mass), to_double(speed));
       if (!lines_.is_cluster(b)) continue;
       const Line& line = lines_[b];
-      present += lines_.mass(b) * squared(motion_.velocity_at(b, time_));
-      const N x = motion_.place_at(b, time_);
+      present += lines_.mass(b) * squared(motion_.falls ? motion_.velocity_at(b, time_) : line.velocity);
+      const N x = b == ahead_ ? place_ahead_ : motion_.place_at(b, time_);
       state.widest = std::max(state.widest, power_of_ten(x.radius()));
       state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
       if (line.touched && !meets(b))
@@ -110,7 +110,8 @@ template <Enclosing N> class Inspection {
     return next;
   }
   void check_gap(ParticleIndex b, ParticleIndex next, const N& x) {
-    N gap = motion_.place_at(next, time_) - x;
+    ahead_ = next, place_ahead_ = motion_.place_at(next, time_);
+    N gap = place_ahead_ - x;
     if (b == lines_.seam()) gap += motion_.length;
     if (const Order order = motion_.compare(N(0), gap); order != Order::less && !state.doubt)
       state.doubt = Doubt<N>{Check::gap, order == Order::greater, b, next, N(0), gap};
@@ -124,6 +125,8 @@ template <Enclosing N> class Inspection {
   const CertainWalls<N>& walls_;
   const N& time_;
   const LastMeeting<N>& now_;
+  ParticleIndex ahead_ = WorldLines<N>::none;  // the one whose place was last needed, for a gap
+  N place_ahead_{0};
 };
 
 }  // namespace cradle

@@ -179,6 +179,12 @@ template <Real T> class SpeedDependent {
   bool scale_free() const { return false; }
   bool below_cutoff(const T& w) const { return w < cutoff_; }
 
+  // The law's numbers as they are used in computing: 1 - eps, delta, the functions of (w/delta)^sigma.
+  const T& missing() const { return missing_; }
+  const T& delta() const { return cutoff_; }
+  const Power<T>& power() const { return power_; }
+  const ExponentialRise<T>& rise() const { return rise_; }
+
  private:
   T missing_, cutoff_;
   Power<T> power_;

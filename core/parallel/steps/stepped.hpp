@@ -13,6 +13,7 @@
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/laws/law.hpp"
+#include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
 
@@ -23,29 +24,29 @@ template <class Law, class Masses>
 requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<double, Masses>> final
     : private StepScalars {
  public:
-  static constexpr bool possible = true, on_rings = true;
+  static constexpr bool possible = true, on_rings = true, partly = true;
   using Part = GapSegment<double, Masses>;
   using Report = typename Part::Report;
 
-  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
-  bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
+  // Makes all collisions of the task on what the part has taken, or some of them.
+  bool run(const Steps& steps, Part& part, const Law& law, const SegmentTask<double>& of, Report& report) {
     if (report.pace.rest > 0) return --report.pace.rest, false;
     part_ = &part, law_ = &law, report_ = &report;
-    const StepTask task = task_of(stop, most);
+    const StepTask task = task_of(of);
     if (!(task.rounder > 0)) return false;  // a plain sum
+    shortest_ = task.shortest;
     fill();
-    made_ = {};
+    made_ = {}, collisions = 0;
     ledger_ = part.line_.gaps.ledger();
     StepResult inner;
     StepPace& pace = report.pace;
     const bool done = steps.run(line_, task, *this, pace, inner);
     pace.made(done);
     if (!done) return false;
-    report.counts = made_.counts;
-    report.counts.collisions += inner.collisions;
-    report.counts.below_cutoff += inner.below_cutoff;
+    report.counts.collisions = collisions + inner.collisions;
+    report.counts.below_cutoff = made_.below_cutoff + inner.below_cutoff;
     report.last_collision = std::max(made_.last, inner.last);
-    if (report.counts.collisions >= most) return false;
+    report.reached = inner.reached, report.steps = inner.steps;
     ledger_.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
     part.line_.gaps.set_ledger(ledger_);
     part.line_.gaps.drop_lags(Part::first(), line_.gaps());
@@ -56,28 +57,45 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   static constexpr bool equal = std::same_as<Masses, IdenticalMasses<double>>;
 
   struct Made {
-    Counts counts;
+    std::uint64_t below_cutoff = 0;
     double last = -StepLine::never;
   };
 
-  StepTask task_of(double stop, std::uint64_t most) const {
+  StepTask task_of(const SegmentTask<double>& of) const {
     const auto& gaps = part_->line_.gaps;
     StepTask task;
-    if constexpr (std::same_as<Law, Inelastic<double>>)
-      if (!report_->observe) {  // else `outcomes` is to log every collision
-        task.law = law_->soft() ? StepLaw::soft : StepLaw::hard;
-        task.restitution = law_->restitution();
-        task.half_sum = law_->half_sum();
-        task.cutoff = law_->cutoff();
-        task.lost = law_->lost_share();
-        if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
-        task.unequal = !equal;
+    if (!report_->observe) {  // else `outcomes` is to log every collision
+      if (const auto* law = law_as<Inelastic<double>>(*law_)) {
+        task.law = law->soft() ? StepLaw::soft : StepLaw::hard;
+        task.restitution = law->restitution();
+        task.half_sum = law->half_sum();
+        task.cutoff = law->cutoff();
+        task.lost = law->lost_share();
+      } else if (const auto* of_speed = law_as<SpeedDependent<double>>(*law_)) {
+        const auto &power = of_speed->power(), &rise = of_speed->rise();
+        task.law = StepLaw::of_speed;
+        task.cutoff = of_speed->delta();
+        task.lost = 1;
+        task.of_speed = {of_speed->missing(),
+                         power.exponent(),
+                         power.ln2(),
+                         rise.all(),
+                         power.whole(),
+                         power.odd().data(),
+                         rise.reciprocals().data(),
+                         power.odd().size(),
+                         rise.reciprocals().size()};
       }
+      if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
+      task.unequal = !equal;
+    }
     task.floor = gaps.floor();
     task.rounder = gaps.ledger().rounder();
     task.per_fine = gaps.ledger().per_fine();
-    task.stop = stop;
-    task.most = most;
+    if (!of.in_epoch) task.shortest = 0x1p-20;  // any request of the chain is for the plain loop
+    task.stop = of.stop;
+    task.most = of.most;
+    task.partly = of.partly;
     return task;
   }
 
@@ -105,7 +123,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   bool collide(std::size_t i) override {
     Gap<double>& cell = line_.cells[i];
     const double time = cell.due, closing = cell.closing, since = flown(i, time);
-    if (since <= time * 0x1p-40 || is_negative(since)) return false;
+    if (since <= time * shortest_ || is_negative(since)) return false;
     const Slot s = Part::first() + i;
     const Outcome<double> outcome = part_->outcome_at_edge(*law_, s, closing);
     const auto edge = part_->at_edge(s, time, closing, outcome, *report_);
@@ -121,8 +139,8 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     if (right < line_.gaps() && !kick(right, outcome.to_right, time)) return false;
     if (!edge.own) return true;
     ledger_.add(outcome.energy_lost);
-    ++made_.counts.collisions;
-    made_.counts.below_cutoff += outcome.below_cutoff;
+    ++collisions;
+    made_.below_cutoff += outcome.below_cutoff;
     made_.last = std::max(made_.last, time);
     return true;
   }
@@ -156,13 +174,14 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
           (*law_)(line_.cells[gaps[k]].closing, part_->line_.masses.of_pair(Part::first() + gaps[k]));
       line_.after[k] = outcome.closing, line_.to_left[k] = outcome.to_left, line_.to_right[k] = outcome.to_right;
       ledger_.add(outcome.energy_lost);
-      made_.counts.below_cutoff += outcome.below_cutoff;
+      made_.below_cutoff += outcome.below_cutoff;
       log(gaps[k], outcome.below_cutoff);
     }
   }
 
   void keep() override {
-    kept_ = {made_,
+    kept_ = {collisions,
+             made_,
              ledger_,
              part_->edges(),
              report_->left.size(),
@@ -172,7 +191,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
              report_->observed.size()};
   }
   void restore() override {
-    made_ = kept_.made, ledger_ = kept_.ledger;
+    collisions = kept_.collisions, made_ = kept_.made, ledger_ = kept_.ledger;
     part_->set_edges(kept_.edges);
     report_->left.resize(kept_.left), report_->right.resize(kept_.right);
     report_->to_left.at_end.resize(kept_.at_left), report_->to_right.at_end.resize(kept_.at_right);
@@ -181,6 +200,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   }
 
   struct Kept {
+    std::uint64_t collisions;
     Made made;
     Ledger<double> ledger;
     typename Part::Edges edges;
@@ -192,6 +212,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   const Law* law_ = nullptr;
   Report* report_ = nullptr;
   Made made_;  // at edges; by other laws all that is below the cut-off
+  double shortest_ = 0;
   Ledger<double> ledger_;
   Kept kept_;
 };

@@ -170,22 +170,23 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
   Collisions collisions(task, result);
   int passes = 0;
   for (scan(line, l, end); l.count > 0; ++passes, std::swap(l.candidates, l.waiting), l.count = l.later) {
-    if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return -1;
+    if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return wrong_order;
     if (passes % reach == reach - 1) [[unlikely]]
       for (std::size_t k = 0; k < l.count; ++k) line.guard(l.candidates[k] / StepLine::tile);
     decide(l, end);
-    if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
+    if (l.firsts + l.at_edges == 0 && l.later > 0) return wrong_order;  // at the same time
     collisions.make(line, l, task, scalars, end);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
       const std::size_t i = l.edges[k], left = line.left_of(i), right = line.right_of(i);
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
-      if (!scalars.collide(i)) return -1;
+      if (!scalars.collide(i)) return wrong_order;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
     }
     result.collisions += l.firsts;
   }
   renew_bounds(l);
-  return collisions.report(task, end, result) || planted(2) ? passes : -1;
+  const int failure = collisions.report(task, end, result);
+  return failure == 0 || planted(2) ? passes : failure;
 }
 
 std::size_t width() { return lanes; }
@@ -205,6 +206,9 @@ bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& p
 #endif
   if (task.pairs) return false;
   if (task.law == StepLaw::any) return run_steps(step<Doubles<StepLaw::any, false>>, line, task, scalars, pace, result);
+  if (task.law == StepLaw::of_speed)
+    return task.unequal ? run_steps(step<Doubles<StepLaw::of_speed, true>>, line, task, scalars, pace, result)
+                        : run_steps(step<Doubles<StepLaw::of_speed, false>>, line, task, scalars, pace, result);
   return run_by<Doubles>(task, line, scalars, pace, result);
 }
 

@@ -25,8 +25,8 @@ line() {
   local scene=() digits=()
   while (($#)) && [[ $1 != -- ]]; do scene+=("$1"); shift; done
   (($#)) && shift && digits=("$@")
-  run=$(seconds "$repeats" "$cradle" run "${scene[@]}" --threads 1 -o run.h5)
-  proof=$(seconds "$repeats" "$cradle" certify "${scene[@]}" "${digits[@]}" -o proof.h5)
+  run=$(seconds "$repeats" "$cradle" run "${scene[@]}" --threads 1 -o run.h5 --force)
+  proof=$(seconds "$repeats" "$cradle" certify "${scene[@]}" "${digits[@]}" -o proof.h5 --force)
   local verdict collisions balls energy until
   grep -qE '^(proved|undecided)' last || { echo "$name: no verdict" >&2; cat last >&2; exit 1; }
   verdict=$(grep -oE '^(proved|undecided)' last | head -1)

@@ -18,7 +18,7 @@ TOML
 instructions() {
   local until=$1
   shift
-  valgrind --tool=callgrind --callgrind-out-file=/dev/null "$cradle" run gas.toml --threads 1 -o run.h5 \
+  valgrind --tool=callgrind --callgrind-out-file=/dev/null "$cradle" run gas.toml --threads 1 -o run.h5 --force \
     --set "run.until=$until" "$@" >out 2>&1
   sed -n 's/.*Collected : \([0-9]*\).*/\1/p' out
   sed -n 's/.*, \([0-9]*\) collisions, .*/\1/p' out

@@ -195,11 +195,17 @@ template <class M> class Ball {
     explicit Share(const Ball& c)
         : c_(c), size_(c.size()), rest_((Ball(1) - c).size()),
           rounding_(up((Of::sum_error() + Of::product_error() * 2) * size_)) {}
+    // A share that depends on the difference w of the numbers that it combines: c is its value in the middle of w,
+    // `slope` encloses the derivative of c(w) w in all of w. By the mean value theorem the radius is |1 - slope| r_x +
+    // |slope| r_y; and the rounding of w acts with the slope.
+    Share(const Ball& c, const Ball& slope)
+        : c_(c), size_(slope.size()), rest_((Ball(1) - slope).size()),
+          rounding_(up((Of::sum_error() + Of::product_error() * 2) * (c.size() + size_))) {}
 
    private:
     friend Ball;
     Ball c_;
-    Radius size_, rest_;  // of c, of 1 - c
+    Radius size_, rest_;  // of c, of 1 - c; or of the slope
     Radius rounding_;
   };
   // Moves two numbers towards each other, given `apart` = x - y: (1 - c) x + c y and (1 - d) y + d x. The radius is |1

@@ -87,7 +87,7 @@ halted() {
     [ ! -e "$1" ] && [ -e "$1.part" ] && break
     kill -CONT $pid; wait $pid
   done
-  cradle run $dry --set run.until=$until --quiet -o whole.h5
+  cradle run $dry --set run.until=$until --quiet -o whole.h5 --force
 }
 
 # ---- signals

@@ -1,5 +1,5 @@
-# The test `install`: cmake --install into a scratch prefix of the build tree (with the manual page, completions and
-# the Python package), then the program in tests/install/ finds
+# The test `install`: cmake --install into a scratch prefix of the build tree (with the manual page, completions,
+# documents, scenes and the Python package), then the program in tests/install/ finds
 # Cradle there, is built and run; it is compiled without contraction of multiply-adds, which the result depends on, and
 # sees the library alone. The same with Cradle in a subfolder of its own tree; and where a library is missing,
 # find_package(cradle) says so instead of ending the user's configuration. Included from tests/CMakeLists.txt; the same
@@ -51,7 +51,8 @@ endfunction()
 
 foreach(file bin/cradle share/man/man1/cradle.1 share/bash-completion/completions/cradle
              share/zsh/site-functions/_cradle
-             share/fish/vendor_completions.d/cradle.fish share/cradle/python/cradle/__init__.py
+             share/fish/vendor_completions.d/cradle.fish share/doc/cradle/core/README.md share/cradle/scenes/fig2.toml
+             share/cradle/python/cradle/__init__.py
              share/cradle/python/cradle/page/page.css share/cradle/python/cradle/cite.bib)
   if(NOT EXISTS ${SCRATCH}/prefix/${file})
     message(FATAL_ERROR "${file} is not installed: see tools/cmake/install.cmake")

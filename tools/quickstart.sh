@@ -27,5 +27,9 @@ Made:
   $(ls -m out/fig2*.png)
                  pictures of it; compare the first with Fig. 2 of the paper
   $cradle
-                 the program: --help lists its commands, scenes the scenes that come with it
+                 the program
+
+To call it as \`cradle\`, type this (or append it to ~/.profile):
+  export PATH=$PWD/$build/tools:\$PATH
+Then \`cradle --help\` lists its commands, \`cradle scenes\` the scenes that come with it.
 DONE

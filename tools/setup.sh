@@ -34,6 +34,11 @@ option  | Highway               | header hwy/highway.h         | libhwy-dev
 option  | MPI compiler          | command mpicc                | libopenmpi-dev
 option  | MPI launcher          | command mpirun               | openmpi-bin
 look    | Chromium              | command chromium             | chromium
+look    | dpkg-shlibdeps        | command dpkg-shlibdeps       | dpkg-dev
+look    | pip                   | python pip                   | python3-pip
+look    | setuptools            | python setuptools            | python3-setuptools
+look    | wheel                 | python wheel                 | python3-wheel
+look    | venv                  | python ensurepip             | python3-venv
 TABLE
 }
 

@@ -6,10 +6,15 @@
 //
 // in places at the start and velocities alike: c_l = J/(m_l w), c_r = J/(m_r w) for the impulse J. Among identical
 // particles c = (1 + eps)/2 for both, 1 in an elastic collision; particles that merge meet in c_l = m_r/(m_l + m_r).
+//
+// A restitution r(w) = eps + (1 - eps) exp(-y), y = (w/delta)^sigma, has c = (1 + r(w))/2. The errors of velocities do
+// not grow by c but by the derivative of the impulse, d(c w)/dw = (1 + eps + (1 - eps)(1 - sigma y) exp(-y))/2: at most
+// 1, at least (1 + eps - (1 - eps) sigma exp(-1 - 1/sigma))/2. Where that is not negative they are averaged.
 
 #include <optional>
 #include <utility>
 
+#include "cradle/core/certify/certain_power.hpp"
 #include "cradle/core/certify/enclosing.hpp"
 #include "cradle/core/laws/law.hpp"
 
@@ -21,13 +26,16 @@ template <Enclosing N> struct CertainLaw {
 
   Kind kind = Kind::inelastic;
   N restitution{1};
-  bool elastic = false;                // restitution is 1
-  std::optional<N> cutoff = {};        // none: 0
-  std::optional<N> contact_time = {};  // elastic where either particle had a collision less than that before
-  N merge_speed{0};                    // merging: particles stick below
-  N loss{0};                           // wet: energy per collision
+  bool elastic = false;                   // restitution is 1
+  std::optional<N> cutoff = {};           // none: 0
+  std::optional<N> cutoff_exponent = {};  // sigma, of a restitution r(w); then the cut-off is delta
+  std::optional<N> contact_time = {};     // elastic where either particle had a collision less than that before
+  N merge_speed{0};                       // merging: particles stick below
+  N loss{0};                              // wet: energy per collision
 
   bool bounces_only() const { return kind == Kind::inelastic; }
+  // Whether velocities after a collision are linear functions of those before.
+  bool linear() const { return kind != Kind::wet && !cutoff_exponent; }
 };
 
 // Two particles that meet, as the law sees them. `rest`: since the last collision of either, where it had one.
@@ -46,7 +54,7 @@ template <Enclosing N> struct CertainOutcome {
   bool right_heavier = false;  // of two that merge
   // Nothing: (1 + eps)/2, of identical particles.
   std::optional<typename N::Share> left, right;
-  // Wet: after the collision, known better than by the shares.
+  // Wet, r(w): after the collision, known better than by the shares.
   std::optional<N> left_velocity, right_velocity;
 
   void clear() {
@@ -63,7 +71,9 @@ template <Enclosing N> class CertainLaws {
   using Kind = typename CertainLaw<N>::Kind;
   using Open = std::optional<std::pair<N, N>>;
 
-  explicit CertainLaws(const CertainLaw<N>& of) : law(of), bouncing((N(1) + of.restitution) / N(2)) {}
+  explicit CertainLaws(const CertainLaw<N>& of) : law(of), bouncing((N(1) + of.restitution) / N(2)) {
+    if (law.cutoff_exponent) fall_.emplace(*law.cutoff_exponent);
+  }
 
   template <class Compare>
   Open operator()(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass, bool identical,
@@ -81,6 +91,7 @@ template <Enclosing N> class CertainLaws {
       if (order == Order::open) return {{w, *law.cutoff}};
       outcome.below_cutoff = order == Order::less;
     }
+    if (law.cutoff_exponent) return of_speed(collision, l_mass, r_mass, identical, outcome), std::nullopt;
     for (const auto* rest : {&collision.left_rest, &collision.right_rest}) {
       if (!*rest) continue;
       const Order order = compare(**rest, *law.contact_time);
@@ -100,6 +111,9 @@ template <Enclosing N> class CertainLaws {
   typename N::Share bouncing;
 
  private:
+  using Share = typename N::Share;
+  std::optional<CertainFall<N>> fall_;
+
   template <class Compare>
   void merged(const N& l_mass, const N& r_mass, Compare compare, CertainOutcome<N>& outcome) const {
     const N all = l_mass + r_mass;
@@ -107,6 +121,21 @@ template <Enclosing N> class CertainLaws {
     outcome.right_heavier = compare(l_mass, r_mass) == Order::less;
     outcome.left.emplace(r_mass / all);
     outcome.right.emplace(l_mass / all);
+  }
+
+  void of_speed(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass, bool identical,
+                CertainOutcome<N>& outcome) const {
+    const N &w = collision.closing, &eps = law.restitution, missing = N(1) - eps;
+    const auto falls = [&](const N& speed) { return (*fall_)(speed / *law.cutoff); };
+    const auto [fall, weighted] = falls(w);
+    const N twice = N(1) + eps + missing * fall, in_middle = N(1) + eps + missing * falls(N(w.middle(), 0)).fall,
+            slope = N(1) + eps + missing * (fall - *law.cutoff_exponent * weighted);
+    const N half = N(1) / N(2), all = l_mass + r_mass, l = identical ? half : r_mass / all,
+            r = identical ? half : l_mass / all;
+    outcome.left.emplace(l * twice), outcome.right.emplace(r * twice);
+    const Share left(l * in_middle, l * slope), right(r * in_middle, r * slope);
+    const auto velocities = N::combined(*collision.left_velocity, *collision.right_velocity, w, left, right);
+    outcome.left_velocity = velocities.left, outcome.right_velocity = velocities.right;
   }
 
   // J(w) = mu (w - w') falls with w, at the rate mu (w/w' - 1). So v_l' = v_l - J(w)/m_l is J at the middle of w, and

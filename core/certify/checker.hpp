@@ -36,12 +36,17 @@
 // left cell continues at v_r + J/m_r <= v_l and the right one at v_l - J/m_l >= v_r, slower and faster as after a
 // bounce.
 //
+// Walls (certain_wall.hpp) have world lines as well, which nothing changes. Next to the left one, particle 0 is only
+// hit on its right between two collisions with the wall: its place is concave and that of the wall linear, so the gap
+// is concave and the argument holds. So it does at the right one.
+//
 // With a restitution of 0, w' = 0: particles stay together until one of them is hit, and the next collision fails 2.
 // Particles that merge have no gap any more. Particles that pass change places, and their gap is one of cells in the
 // order of the line, as it is in the engine. On a ring the argument holds for the images. Particles of a row that no
 // collision has reached fly in order, by how they were placed (rows.hpp).
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -52,6 +57,7 @@
 #include <vector>
 
 #include "cradle/core/certify/certain_law.hpp"
+#include "cradle/core/certify/certain_wall.hpp"
 #include "cradle/core/certify/side_by_side.hpp"
 #include "cradle/core/certify/world_lines.hpp"
 
@@ -71,6 +77,9 @@ template <Enclosing N> struct Doubt {
 struct Sizes {
   std::uint64_t particles = 0;
   double mass = 0, least_mass = 0, start_energy = 0, start_speed = 0, place = 0;  // speed, place: the largest
+  // Of walls: the largest speed of one, or of a particle that comes from one, and the energy that they have given,
+  // without what they have taken.
+  double wall_speed = 0, wall_energy = 0;
 
   void add(double of_mass, double speed) {
     least_mass = particles++ == 0 ? of_mass : std::min(least_mass, of_mass);
@@ -84,7 +93,9 @@ struct Sizes {
 template <Enclosing N> struct CertainState {
   std::optional<Doubt<N>> doubt;
   N energy{0};
-  N time{0}, closing{0};                     // at a collision: of it
+  N time{0}, closing{0};  // at a collision: of it
+  CertainAccounts<N> walls;
+  bool over = true;                          // no neighbours approach each other: there is no collision any more
   std::optional<N> front_left, front_right;  // places of the outermost particles that have collided, on a line
   // In powers of ten: the largest radius of a place, the smallest gap, the largest radius of one against itself.
   double widest = nothing, least_gap = -nothing, widest_of_gap = nothing;
@@ -99,9 +110,11 @@ template <Enclosing N> class Checker {
 
   Checker(std::shared_ptr<const Particles<N>> particles, const CertainLaw<N>& law)
       : laws_(law), lines_(std::move(particles), !law.bounces_only()), length_(lines_.particles().circumference()),
-        half_(N(1) / N(2)), of_collisions_(law.kind == CertainLaw<N>::Kind::wet) {
+        half_(N(1) / N(2)), of_collisions_(!law.linear()) {
+    for (const End end : {End::left, End::right})
+      if (const Wall<N>* wall = lines_.particles().wall(end)) walls_[number_of(end)].emplace(*wall, end);
     if constexpr (SideBySide<N>)
-      if (law.bounces_only() && lines_.identical_masses() && !law.contact_time)
+      if (law.bounces_only() && law.linear() && lines_.identical_masses() && !law.contact_time)
         bounces_.emplace(laws_.bouncing, law.cutoff ? *law.cutoff : N(-1), law.elastic);
   }
 
@@ -153,7 +166,7 @@ template <Enclosing N> class Checker {
   // f(index, mass, place, velocity) for every particle or cluster held, by index.
   template <class F> void for_each(const N& time, F f) const {
     for (ParticleIndex b = lines_.first(); b <= lines_.last(); ++b)
-      if (lines_.is_cluster(b)) f(b, lines_.mass(b), place_at(b, time), lines_[b].velocity);
+      if (lines_.is_cluster(b) && !lines_.is_wall(b)) f(b, lines_.mass(b), place_at(b, time), lines_[b].velocity);
   }
 
   // Collisions proved, those of them that were below a threshold, those that merged, and those of which times and sides
@@ -171,9 +184,14 @@ template <Enclosing N> class Checker {
 
   CertainState<N> state_at(const N& time, const Meeting& now) const {
     CertainState<N> state;
+    state.walls = accounts_, state.sizes = of_walls_;
     const auto meets = [&](ParticleIndex b) { return b == now.l || b == now.r; };
     N before{0}, present{0};
-    for (ParticleIndex b = lines_.first(); b <= lines_.last(); ++b) {
+    const bool walled = walls_[0] || walls_[1];
+    if (walled) check_walls(time, now, state);
+    const ParticleIndex first = walled ? std::max<ParticleIndex>(lines_.first(), 0) : lines_.first(),
+                        last = walled ? std::min(lines_.last(), lines_.count() - 1) : lines_.last();
+    for (ParticleIndex b = first; b <= last; ++b) {
       const N mass = lines_.particles().mass(b), speed = lines_.particles().velocity(b);
       before += mass * squared(speed);
       state.sizes.add(to_double(mass), to_double(speed));
@@ -186,8 +204,7 @@ template <Enclosing N> class Checker {
       if (line.touched && !meets(b))
         if (const Order order = compare(line.changed, time); order != Order::less && !state.doubt)
           state.doubt = Doubt<N>{Check::before, order == Order::greater, b, b, line.changed, time};
-      const ParticleIndex next = lines_.right(b);
-      if (next != lines_.none && next != b && !(b == now.l && next == now.r)) check_gap(b, next, x, time, state);
+      const ParticleIndex next = check_pair(b, x, time, now, state);
       if (lines_.on_ring() || !line.touched) continue;
       // Particles that no collision has reached stay between those that one has, in the order of their numbers: the
       // first of several separate regions begins at the front on the left, the last one ends at that on the right.
@@ -195,7 +212,7 @@ template <Enclosing N> class Checker {
       if (begins && !state.front_left) state.front_left = x;
       if (next == lines_.none || !lines_[next].touched) state.front_right = x;
     }
-    const bool all = lines_.first() == 0 && lines_.last() + 1 == lines_.count();
+    const bool all = lines_.first() <= 0 && lines_.last() + 1 >= lines_.count();
     const N twice = all ? present : lines_.particles().kinetic_energy() * N(2) - before + present;
     state.energy = twice * half_;
     return state;
@@ -265,7 +282,15 @@ template <Enclosing N> class Checker {
 
   static N squared(const N& x) { return x * x; }
   static double power_of_ten(auto radius) { return static_cast<double>(std::log10(radius)); }
-  N place_at(ParticleIndex b, const N& time) const {
+  [[gnu::noinline]] void check_walls(const N& time, const Meeting& now, CertainState<N>& state) const {
+    for (const ParticleIndex b : {lines_.first(), lines_.last()}) {
+      if (!lines_.is_wall(b)) continue;
+      const N x = place_at(b, time);
+      state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
+      check_pair(b, x, time, now, state);
+    }
+  }
+  [[gnu::always_inline]] N place_at(ParticleIndex b, const N& time) const {
     const Line& line = lines_[b];
     return line.place + line.velocity * (of_collisions_ ? time - origin(line) : time);
   }
@@ -277,6 +302,17 @@ template <Enclosing N> class Checker {
     return order_in_balls(x, y);
   }
 
+  // The gap right of b, which is at x; returns the particle there.
+  ParticleIndex check_pair(ParticleIndex b, const N& x, const N& time, const Meeting& now,
+                           CertainState<N>& state) const {
+    const ParticleIndex next = lines_.right(b);
+    if (next == lines_.none || next == b) return next;
+    if (!(b == now.l && next == now.r)) check_gap(b, next, x, time, state);
+    if (!state.over) return next;
+    const N closing = lines_[b].velocity - lines_[next].velocity;
+    state.over = is_negative(closing) || closing == zero_;
+    return next;
+  }
   void check_gap(ParticleIndex b, ParticleIndex next, const N& x, const N& time, CertainState<N>& state) const {
     N gap = place_at(next, time) - x;
     if (b == lines_.seam()) gap += length_;
@@ -291,8 +327,8 @@ template <Enclosing N> class Checker {
   struct Places {
     N left, right, time{0};
   };
-  // Errors of wet particles act on places from one collision to the next, and would from the start if that were the
-  // time that places are of: these are of a time near the collision. The other laws are linear, and know no time.
+  // Where a law is not linear, errors of velocities act on places from one collision to the next, and would from the
+  // start if that were the time that places are of: these are of a time near the collision. Other laws know no time.
   Places places_of(const Line& l, const Line& r, const N& closing, bool over_seam) const {
     Places at{l.place, r.place};
     if (over_seam) at.left -= length_;
@@ -321,6 +357,7 @@ template <Enclosing N> class Checker {
       if (const Order order = compare(line->changed, time); order != Order::less)
         return Doubt<N>{Check::later, order == Order::greater, -1, -1, line->changed, time};
     }
+    if (lines_.is_wall(at_l) || lines_.is_wall(at_r)) return strike_wall(at_l, at_r, at, closing, after, time);
     CertainOutcome<N>& outcome = outcome_;
     outcome.clear();
     if (const auto open = outcome_of(at_l, at_r, closing, time, outcome))
@@ -339,6 +376,33 @@ template <Enclosing N> class Checker {
     proved_.merges += outcome.event == Event::merge;
     if (outcome.event == Event::merge) lines_.merge(at_l, at_r);
     if (outcome.event == Event::pass) lines_.pass(at_l, at_r);
+    return std::nullopt;
+  }
+
+  // Of one that is known to be later than the last one of the particle.
+  std::optional<Doubt<N>> strike_wall(ParticleIndex at_l, ParticleIndex at_r, const Places& places, const N& closing,
+                                      const N& after, const N& time) {
+    const End end = lines_.is_wall(at_l) ? End::left : End::right;
+    const bool left = end == End::left;
+    const ParticleIndex struck = left ? at_r : at_l;
+    Line& line = lines_[struck];
+    const N mass = lines_.mass(struck), &wall_place = left ? places.left : places.right;
+    N place = left ? places.right : places.left;
+    CertainAccount<N>& account = accounts_[number_of(end)];
+    const double given = to_double(account.given);
+    const typename CertainWall<N>::Meeting meeting{
+        place, line.velocity, wall_place, lines_[left ? at_l : at_r].velocity, closing, after};
+    if (!(*walls_[number_of(end)])(meeting, mass, account))
+      return Doubt<N>{Check::side, false, -1, -1, mass, N(to_double(mass))};
+    line.place = place;
+    line.changed = of_collisions_ ? N::widened(places.time, after.size()) : time;
+    line.touched = true;
+    of_walls_.wall_speed = std::max(
+        {of_walls_.wall_speed, std::abs(to_double(line.velocity)), std::abs(to_double(meeting.wall_velocity))});
+    of_walls_.wall_energy += std::max(0., to_double(account.given) - given);
+    last_ = {at_l, at_r, time, closing};
+    ++proved_.collisions;
+    proved_.in_doubles += !needed_balls_;
     return std::nullopt;
   }
 
@@ -375,11 +439,17 @@ template <Enclosing N> class Checker {
     r.velocity = outcome.right_velocity ? *outcome.right_velocity : velocities.right;
   }
 
+  static std::size_t number_of(End end) { return static_cast<std::size_t>(end); }
+
   CertainLaws<N> laws_;
   WorldLines<N> lines_;
+  std::array<std::optional<CertainWall<N>>, 2> walls_;
+  CertainAccounts<N> accounts_;
+  Sizes of_walls_;  // only what walls add to them
   N length_, zero_{0};
   N half_;
-  bool of_collisions_;  // places are of the time of a particle's last collision, not of the start
+  bool of_collisions_;  // laws that are not linear: places are of the time of a particle's last collision, not of the
+                        // start
   Proved proved_;
   Meeting last_;
   CertainOutcome<N> outcome_;  // of the collision at hand

@@ -17,10 +17,16 @@ concept Enclosing = Real<N> && requires(const N x, const N y, const typename N::
   { order_in_doubles(x, y) } -> std::same_as<Order>;
   { order_in_balls(x, y) } -> std::same_as<Order>;
   typename N::Share;
+  N(1.5);  // doubles are exact
   // The number in its middle, how far it may be from that, and the same with more room.
   N(x.middle(), 0);
   { N::widened(x, x.radius()) } -> std::same_as<N>;
-  // (1 - c) x + c y and (1 - d) y + d x, given x - y, with shares c and d.
+  // Bounds on its size.
+  { x.size() } -> std::same_as<decltype(x.radius())>;
+  { x.least_size() } -> std::same_as<decltype(x.radius())>;
+  // (1 - c) x + c y and (1 - d) y + d x, given x - y, with shares c and d: numbers, or functions of x - y.
+  requires std::constructible_from<typename N::Share, const N&>;
+  requires std::constructible_from<typename N::Share, const N&, const N&>;
   { N::combined(x, y, x, c, c).left } -> std::convertible_to<N>;
   { N::combined(x, y, x, c, c).right } -> std::convertible_to<N>;
 };

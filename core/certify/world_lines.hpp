@@ -2,8 +2,10 @@
 // The world lines of a run's particles, x = place + velocity t, t since the start, and who is whose neighbour. Of
 // incoming rows only particles that have had a collision are held, and one more on each side: the others fly on as they
 // began, in order. Particles that only bounce are neighbours by their numbers; those that merge or pass are linked.
+// Walls are held as lines -1 and N, which no collision changes.
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -92,6 +94,7 @@ template <Enclosing N> class WorldLines {
     return b;
   }
   bool is_cluster(ParticleIndex b) const { return !linked_ || links_[b].part_of == b; }
+  bool is_wall(ParticleIndex b) const { return b < 0 || b >= count(); }
   bool holds(ParticleIndex b) const { return b >= first() && b <= last(); }
   Line& operator[](ParticleIndex b) { return lines_[b]; }
   const Line& operator[](ParticleIndex b) const { return lines_[b]; }
@@ -145,7 +148,12 @@ template <Enclosing N> class WorldLines {
     ParticleIndex left = none, right = none, part_of = none;
   };
 
-  Line line_of(ParticleIndex b) const { return {particles_->position(b), particles_->velocity(b)}; }
+  Line line_of(ParticleIndex b) const {
+    Line line{particles_->position(b), particles_->velocity(b)};
+    // Nothing is later: its collisions are left out where many are computed side by side.
+    if (is_wall(b)) line.changed = N(std::numeric_limits<double>::infinity());
+    return line;
+  }
   void take_in_right(ParticleIndex b) {
     const bool alone = lines_.empty();
     lines_.push_right(line_of(b));

@@ -28,12 +28,21 @@ template <Real T> Flight<T> undisturbed(const Particles<T>& particles, ParticleI
   return fallen<T>({two_sum(particles.position(particle), T(v * elapsed)), {v, T(0)}}, particles, particle, elapsed);
 }
 
+// The flight of a wall.
+template <Real T> Flight<T> at_wall(const Particles<T>& particles, ParticleIndex particle, const Pair<T>& elapsed) {
+  const Wall<T>& wall = *particles.wall_at(particle);
+  const Flight<T> straight{two_sum(wall.position, T(wall.speed * elapsed.value())), {wall.speed, T(0)}};
+  const auto shift = particles.shift(particle, elapsed);
+  return {straight.x + shift.x, straight.v + shift.v};
+}
+
 // Times are local ones of the chain that the clock belongs to.
 template <Real T> class Anchor {
  public:
   ParticleIndex particle() const { return particle_; }
 
   Flight<T> flight(const Particles<T>& particles, const Clock<T>& clock, const T& time) const {
+    if (particles.shaken(particle_)) return at_wall(particles, particle_, clock.since_start(time));
     if (!collided_) return undisturbed(particles, particle_, clock.elapsed(time));
     const T flown = difference(Pair<T>{time, T(0)}, since_);
     return fallen<T>({from_.x + T(from_.v.value() * flown), from_.v}, particles, particle_, flown);

@@ -7,8 +7,8 @@
 // No gap is a difference of positions, so gaps keep their relative precision down to underflow, however small they are
 // against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
 //
-// Under gravity (gravity.hpp) gaps to walls are parabolas of time, and collisions at them or beside them are made off
-// the hot path; all others are as without it.
+// Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions
+// at them or beside them are made off the hot path; all others are as without it.
 //
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
@@ -94,7 +94,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   const T& closing(Slot s) const { return line_.closing(s); }
   T closing_at(Slot s, const T& time) const {
     if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.approach(field_, s).closing_after(line_.gaps.flown(s, time));
+      if (field_.pulls(particle(s))) return line_.closing_at(field_, s, time);
     return closing(s);
   }
   T closing_when_due(Slot s) const {
@@ -166,13 +166,16 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const {
     if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.approach(field_, s).gap_after(line_.gaps.flown(s, time));
+      if (field_.pulls(particle(s))) return line_.gap_at(field_, s, time);
     return line_.gaps.gap_at(s, closing(s), time);
   }
   // Positions of the outermost particles that have collided; there must be some.
   T front_left(const T& time) const;
   T front_right(const T& time) const;
   const Walls<T>& walls() const { return walls_; }
+  // The accounts of the walls until a local time, with what they have given to a particle that rests on one since.
+  // (gap_chain_walls.hpp)
+  Walls<T> walls_at(const T& time) const requires(falls);
   // Of all particles of the scene; reads all held gaps. (gap_chain_configuration.hpp)
   T kinetic_energy(const T& time) const;
 
@@ -246,7 +249,13 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
 
   Configuration<T> line_configuration(const T& time) const;
   Configuration<T> ring_configuration(const T& time) const;
-  Flight<T> flight(const Anchor<T>& anchor, const T& time) const { return anchor.flight(*particles_, clock(), time); }
+  Flight<T> flight(const Anchor<T>& anchor, const T& time) const {
+    if constexpr (falls)
+      if (particles_->holding() != nullptr && particles_->wall_at(anchor.particle()) == nullptr) return from_wall(time);
+    return anchor.flight(*particles_, clock(), time);
+  }
+  // Of a single particle, from the wall that may hold it. (gap_chain_walls.hpp)
+  Flight<T> from_wall(const T& time) const;
 
   // Predicts the next collisions with walls under gravity, where all others have just been.
   void foresee_walls() {
@@ -318,9 +327,10 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     const T& mass = line_.masses[walls_.left_of(particle(s)) ? s + 1 : s];
     if constexpr (falls) {
       const T w = closing_when_due(s);
-      const bool below = below_cutoff(law, w);
-      Outcome<T> outcome =
-          walls_.strike(particle(s), w, mass, below || !rested ? T(1) : walls_.wall(particle(s)).restitution);
+      const Pair<T> elapsed = clock().since_start(time);
+      const bool stays = field_.holds(particle(s), w, elapsed), below = !stays && below_cutoff(law, w);
+      const T restitution = stays ? T(0) : below || !rested ? T(1) : walls_.wall(particle(s)).restitution;
+      Outcome<T> outcome = walls_.strike(particle(s), w, mass, restitution, field_.shaken_at(particle(s), elapsed));
       outcome.below_cutoff = below;
       return outcome;
     } else {
@@ -329,6 +339,13 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   }
   // A collision at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
+    if constexpr (falls) {
+      for (const Slot beside : {s - 1, s, s + 1})
+        if (const Carried more = carried(beside, time); !(more.momentum == T(0))) {
+          walls_.carry(more.end, more.energy, more.momentum);
+          line_.gaps.lose(beside, T(-more.energy));
+        }
+    }
     const Outcome<T> of_law = walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time);
     const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
     if constexpr (falls)
@@ -336,6 +353,13 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     else
       return line_.strike(left(s), s, right(s), time, of_law, notice);
   }
+
+  // What a wall has given, until a local time, to a particle at this gap that rests on it. (gap_chain_walls.hpp)
+  struct Carried {
+    End end;
+    T energy{0}, momentum{0};
+  };
+  Carried carried(Slot s, const T& time) const;
 
   // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the
   // last one.
@@ -355,3 +379,4 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
 
 #include "cradle/core/chains/gap_chain_configuration.hpp"
 #include "cradle/core/chains/gap_chain_ends.hpp"
+#include "cradle/core/chains/gap_chain_walls.hpp"

@@ -43,8 +43,9 @@ template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::kinet
     }
     at_end = slowing.value();
   });
-  const T speed = from_wall ? T(particles_->velocity(-1) - moving.mean)
-                  : to_wall ? T(particles_->velocity(count) + (at_end - moving.mean))
+  const Pair<T> elapsed = clock().since_start(time);
+  const T speed = from_wall ? T(at_wall(*particles_, -1, elapsed).v.value() - moving.mean)
+                  : to_wall ? T(at_wall(*particles_, count, elapsed).v.value() + (at_end - moving.mean))
                             : drift;
   return total * speed * speed / T(2) + moving.energy;
 }

@@ -104,9 +104,15 @@ template <Real T, class MassesOf> class GapLine {
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
-  // ---- under gravity: the gaps to walls
-  template <class Field> Approach<T> approach(const Field& field, Slot s) const {
-    return field.approach(particle(s), gaps[s].gap, closing(s));
+  // ---- under gravity, or to shaken walls: the gaps to walls
+  template <class Field> WallApproach<T> approach(const Field& field, Slot s) const {
+    return field.approach(particle(s), gaps[s].gap, closing(s), gaps.since_start(s));
+  }
+  template <class Field> T gap_at(const Field& field, Slot s, const T& time) const {
+    return approach(field, s).gap_after(gaps.flown(s, time), gaps.clock().since_start(time));
+  }
+  template <class Field> T closing_at(const Field& field, Slot s, const T& time) const {
+    return approach(field, s).closing_after(gaps.flown(s, time), gaps.clock().since_start(time));
   }
   // The next collision there, a local time; nothing if there is none.
   template <class Field> std::optional<T> due(const Field& field, Slot s) const {
@@ -134,9 +140,9 @@ template <Real T, class MassesOf> class GapLine {
     gaps.forget(s);
     const bool at_wall = field.pulls(particle(s));
     if (at_wall && is_negative(since)) {  // late: it has fallen since then
-      const Approach<T> open = field.approach(particle(s), T(0), outcome.closing);
-      gaps[s].gap = open.gap_after(T(-since));
-      gaps[s].closing = open.closing_after(T(-since));
+      const WallApproach<T> open = field.approach(particle(s), T(0), outcome.closing, gaps.clock().since_start(time));
+      gaps[s].gap = open.gap_after(T(-since), gaps.since_start(s));
+      gaps[s].closing = open.closing_after(T(-since), gaps.since_start(s));
     }
     notice |= kick(field, p, outcome.to_left, since, time);
     notice |= kick(field, n, outcome.to_right, since, time);
@@ -216,9 +222,11 @@ template <Real T, class MassesOf> class GapLine {
   Notice kick(const Field& field, Slot s, const T& gain, const T& struck, const T& time) requires(!watched) {
     if (!field.pulls(particle(s))) return kick(s, gain, struck, time);
     const T flown = gaps.flown(s, time);
-    const Approach<T> open = approach(field, s);
+    const WallApproach<T> open = approach(field, s);
+    const Pair<T> at = gaps.clock().since_start(time);
     const bool late = is_negative(flown);
-    const T mean = late ? closing(s) : open.mean_closing(flown), now = late ? closing(s) : open.closing_after(flown);
+    const T mean = late ? closing(s) : open.mean_closing(flown, at),
+            now = late ? closing(s) : open.closing_after(flown, at);
     const T since = gaps.kick(
         s, mean, [&]() -> const T& { return gain; }, time);
     gaps[s].closing = now + gain;

@@ -3,12 +3,13 @@
 // position, a velocity and the time of its last collision, and differences of positions in absolute time give the next
 // collision of neighbours. It is plain on purpose: no streaming, no tuning. It is the reference twin of the chain in
 // gaps, and is compared with it in precision: in a collapsing core its differences lose their digits, which it counts.
-// Under gravity particles fly along parabolas.
+// Under gravity particles fly along parabolas; shaken walls are where their motion says.
 
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/gravity.hpp"
@@ -28,7 +29,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   static constexpr bool keys_are_exact = false;
   static constexpr bool may_collapse = true;
 
-  // Throws std::invalid_argument for particles on a ring.
+  // Throws std::invalid_argument for particles on a ring, and for walls that hold particles.
   PositionChain(std::shared_ptr<const Particles<T>> particles, const T& start)
       : count_(static_cast<std::size_t>(particles->count())), start_(start), origin_(start),
         first_particle_(particles->gaps().first), walls_(particles->walls()), of_walls_(particles), field_(*particles),
@@ -40,6 +41,9 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
                                   in_message(particles->circumference()) + "): use a chain in gaps");
     for (ParticleIndex b = first_particle_; b <= particles->gaps().last + 1; ++b)
       particles_.push_back({particles->position(b), particles->velocity(b), start, particles->mass(b)});
+    if (const Wall<T>* wall = particles->holding())
+      throw std::invalid_argument("a particle that rests on a wall in absolute positions (rest speed " +
+                                  in_message(wall->rest_speed) + "): use a chain in gaps");
     if constexpr (falls) fall_.assign(particles_.size(), T(0));
     if constexpr (falls)
       for (ParticleIndex b = 0; b < count(); ++b) fall_[slot_of(b) - 2] = field_.acceleration();
@@ -201,7 +205,8 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
       const T& w = closing_[s];
       const bool below = below_cutoff(law, w);
       Outcome<T> outcome =
-          walls_.strike(particle(s), w, struck.m, below || !rested ? T(1) : walls_.wall(particle(s)).restitution);
+          walls_.strike(particle(s), w, struck.m, below || !rested ? T(1) : walls_.wall(particle(s)).restitution,
+                        field_.shaken_at(particle(s), since_start(time)));
       outcome.below_cutoff = below;
       return outcome;
     } else {
@@ -227,6 +232,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     return count_ + (walls_.has(End::left) ? 1 : 0) + (walls_.has(End::right) ? 1 : 0);
   }
 
+  Pair<T> since_start(const T& time) const { return two_sum(time, T(-start_)); }
   Particle& at(Slot s) { return particles_[s - 2]; }  // the particle on the left of a gap
   const Particle& at(Slot s) const { return particles_[s - 2]; }
 
@@ -234,11 +240,15 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     const Particle& p = at(s);
     const T flown = time - p.time;
     if constexpr (falls)
+      if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).x.value();
+    if constexpr (falls)
       return p.x + (p.v + fall_[s - 2] * flown / T(2)) * flown;
     else
       return p.x + p.v * flown;
   }
   T velocity(Slot s, const T& time) const {
+    if constexpr (falls)
+      if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).v.value();
     if constexpr (falls)
       return at(s).v + fall_[s - 2] * (time - at(s).time);
     else
@@ -256,7 +266,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     closing_[s] = velocity(s, now) - velocity(s + 1, now);
     if constexpr (falls)
       if (field_.pulls(particle(s))) {
-        const Approach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s]);
+        const WallApproach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s], since_start(now));
         const auto wait = approach.meeting_in();
         closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(0);
         due_[s] = wait ? T(now + *wait) : T(0);

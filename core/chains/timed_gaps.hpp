@@ -125,6 +125,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       way -= lag_[s];
     return way;
   }
+  // The local time of a gap, as a time since the start.
+  Pair<T> since_start(Slot s) const { return clock_.since_start(cells_[s].time) + lag_[s]; }
   // Local time of the next collision of a gap that is closing.
   T due(Slot s, const T& closing) const {
     if constexpr (keys_are_exact)

@@ -122,6 +122,20 @@ class Simulation {
   T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return chain_.energy_lost(); }
+  // At a time between the last collision and the time advanced to, which matters if a wall carries a particle.
+  T energy_lost(const T& time) const {
+    if constexpr (FallingChain<Chain>)
+      return chain_.energy_lost() - (given_by(wall_tallies(time)) - given_by(chain_.walls().tallies()));
+    else
+      return chain_.energy_lost();
+  }
+  WallTallies<T> wall_tallies(const T& time) const requires requires(const Chain& c) { c.walls(); }
+  {
+    if constexpr (requires { chain_.walls_at(time); })
+      return chain_.walls_at(chain_.local_time(time)).tallies();
+    else
+      return chain_.walls().tallies();
+  }
   // After the last collision; at a time between it and the time advanced to, which matters if particles fall.
   T kinetic_energy() const { return chain_.kinetic_energy(last_collision_); }
   T kinetic_energy(const T& time) const { return chain_.kinetic_energy(chain_.local_time(time)); }

@@ -57,6 +57,7 @@ template <Real T> class StickyGas {
 
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return lost_.value(); }
+  T energy_lost(const T&) const { return energy_lost(); }
   // Of all particles of the scene; unheld particles move like the outermost held one.
   static constexpr bool falls() { return false; }
   T kinetic_energy(const T&) const { return kinetic_energy(); }

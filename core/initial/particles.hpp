@@ -39,11 +39,33 @@ template <Real T> class Particles {
   virtual const Wall<T>* wall(End) const { return nullptr; }
   bool walled() const { return wall(End::left) != nullptr || wall(End::right) != nullptr; }
   // Whether walls can give energy: one moves or is thermal.
-  bool driven() const {
-    const auto gives = [](const Wall<T>* w) { return w != nullptr && (w->temperature > 0 || !(w->speed == T(0))); };
-    return gives(wall(End::left)) || gives(wall(End::right));
-  }
+  bool driven() const { return walls().give_energy(); }
   Walls<T> walls() const { return {wall(End::left), wall(End::right), count()}; }
+  // The wall with a particle's number; null if it is none.
+  const Wall<T>* wall_at(ParticleIndex particle) const {
+    return particle < 0 ? wall(End::left) : particle >= count() ? wall(End::right) : nullptr;
+  }
+  bool shaken(ParticleIndex particle) const {
+    const Wall<T>* wall = wall_at(particle);
+    return wall != nullptr && wall->motion != nullptr;
+  }
+  // The wall on which particles can rest; null if there is none.
+  const Wall<T>* holding() const {
+    for (const End end : {End::left, End::right})
+      if (const Wall<T>* wall = this->wall(end); wall != nullptr && wall->holds()) return wall;
+    return nullptr;
+  }
+  bool shaken() const { return shaken(-1) || shaken(count()); }
+  // How far a shaken wall is from its place, and its speed there, a time after the start; 0 of all others.
+  struct Shift {
+    T x{0}, v{0};
+  };
+  Shift shift(ParticleIndex particle, const Pair<T>& elapsed) const {
+    if (!shaken(particle)) return {};
+    const WallMotion<T>& motion = *wall_at(particle)->motion;
+    const T y = motion.at(elapsed).rest, x = motion.place(y), v = motion.speed(y);
+    return particle < 0 ? Shift{x, v} : Shift{T(-x), T(-v)};
+  }
 
   // The constant acceleration of all particles, positive to the right. Walls do not fall.
   virtual T acceleration() const { return T(0); }
@@ -113,8 +135,9 @@ template <Real T> class Particles {
   T energy_of_fall() const {
     if (floor() == nullptr) return T(0);
     const T from_first = magnitude(T(position(0) - floor()->position)),
-            from_last = magnitude(T(position(count() - 1) - floor()->position));
-    return magnitude(acceleration()) * total_mass() * (from_first < from_last ? from_last : from_first);
+            from_last = magnitude(T(position(count() - 1) - floor()->position)),
+            below = floor()->motion != nullptr ? floor()->motion->amplitude() : T(0);
+    return magnitude(acceleration()) * total_mass() * ((from_first < from_last ? from_last : from_first) + below);
   }
   // Bounds the square of all future speeds, up to a factor 2: only walls add energy.
   T energy_over_least_mass() const { return kinetic_energy() / least_mass(); }
@@ -149,11 +172,15 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   require(particles.kinetic_energy(), "the kinetic energy");
 }
 
-// For chains without gravity. Throws std::invalid_argument; `what_to_do` ends the message.
+// For chains without gravity and shaken walls. Throws std::invalid_argument; `what_to_do` ends the message.
 template <Real T> void require_no_gravity(const Particles<T>& particles, const std::string& what_to_do) {
   if (particles.fall())
     throw std::invalid_argument("particles under gravity in a chain without it (acceleration " +
                                 in_message(particles.acceleration()) + "): " + what_to_do);
+  for (const End end : {End::left, End::right})
+    if (const Wall<T>* wall = particles.wall(end); wall != nullptr && wall->motion != nullptr)
+      throw std::invalid_argument("a shaken wall in a chain without them (amplitude " +
+                                  in_message(wall->motion->amplitude()) + "): " + what_to_do);
 }
 
 // Checks the requirements of all chains. Throws std::invalid_argument.

@@ -1,5 +1,6 @@
 #pragma once
-// Particles on a line with walls at one end or both (wall.hpp), with an acceleration (gravity), or both.
+// Particles on a line with walls at one end or both (wall.hpp), with an acceleration (gravity), or both. Shaken walls
+// are where they are at the start.
 
 #include <limits>
 #include <memory>
@@ -27,22 +28,29 @@ template <Real T> class Walled final : public Particles<T> {
     if (particles_->on_ring())
       throw std::invalid_argument("walls on a ring (circumference " + in_message(particles_->circumference()) +
                                   "): leave them out, or give particles on a line");
-    if (left_) require_wall(*left_, "left"), require_outside(gap(-1), "left", left_->position, 0);
+    if (left_) require_wall(*left_, "left"), require_outside(gap(-1), "left", position(-1), 0);
     if (right_)
-      require_wall(*right_, "right"), require_outside(gap(count() - 1), "right", right_->position, count() - 1);
-    if (const Wall<T>* floor = this->floor();
-        floor != nullptr && !(floor->temperature > 0) && !is_positive(floor->restitution))
-      throw std::invalid_argument("a floor of restitution 0, on which particles come to rest (restitution " +
-                                  in_message(floor->restitution) + "): give it a small one");
+      require_wall(*right_, "right"), require_outside(gap(count() - 1), "right", position(count()), count() - 1);
+    if (const Wall<T>* wall = this->holding(); wall != nullptr && count() > 1)
+      throw std::invalid_argument("several particles over a wall on which only one can rest (" +
+                                  std::to_string(count()) + " particles, rest speed " + in_message(wall->rest_speed) +
+                                  "): leave the rest speed out");
+    for (const auto* wall : {&left_, &right_})
+      if (*wall && (&**wall == this->floor() || (*wall)->motion != nullptr) && !((*wall)->temperature > 0) &&
+          !is_positive((*wall)->restitution) && !is_positive((*wall)->rest_speed))
+        throw std::invalid_argument("a floor or shaken wall of restitution 0, on which particles come to rest "
+                                    "(restitution " +
+                                    in_message((*wall)->restitution) +
+                                    "): give it a rest speed, or a small restitution");
     if (this->fall()) potential_energy_ = -(acceleration_ * (total_mass() * particles_->centre_of_mass()));
   }
 
   ParticleIndex count() const override { return particles_->count(); }
   T position(ParticleIndex particle) const override {
-    return is_wall(particle) ? at(particle).position : particles_->position(particle);
+    return is_wall(particle) ? T(at(particle).position + at_start(particle).x) : particles_->position(particle);
   }
   T velocity(ParticleIndex particle) const override {
-    return is_wall(particle) ? at(particle).speed : particles_->velocity(particle);
+    return is_wall(particle) ? T(at(particle).speed + at_start(particle).v) : particles_->velocity(particle);
   }
   T mass(ParticleIndex particle) const override { return particles_->mass(is_wall(particle) ? 0 : particle); }
   bool identical_masses() const override { return particles_->identical_masses(); }
@@ -82,17 +90,22 @@ template <Real T> class Walled final : public Particles<T> {
     T twice_per_mass(0);
     for (const auto* wall : {&left_, &right_})
       if (*wall)
-        twice_per_mass += (*wall)->speed * (*wall)->speed + exactly<T>((*wall)->temperature / to_double(least_mass()));
+        twice_per_mass +=
+            (*wall)->fastest() * (*wall)->fastest() + exactly<T>((*wall)->temperature / to_double(least_mass()));
     return T(1 << 20) * (kinetic_energy() + this->energy_of_fall() + total_mass() * twice_per_mass);
   }
 
  private:
   bool is_wall(ParticleIndex particle) const { return particle < 0 || particle >= count(); }
   const Wall<T>& at(ParticleIndex particle) const { return particle < 0 ? *left_ : *right_; }
+  auto at_start(ParticleIndex particle) const { return this->shift(particle, Pair<T>{}); }
 
   static void require_wall(const Wall<T>& wall, const std::string& which) {
     require_finite(wall.position, "position of the " + which + " wall");
     require_finite(wall.speed, "speed of the " + which + " wall");
+    if (is_negative(wall.rest_speed) || !is_finite(wall.rest_speed))
+      throw std::invalid_argument("rest speed of the " + which + " wall is out of range (" +
+                                  in_message(wall.rest_speed) + "): give 0 or more");
     if (is_negative(wall.restitution) || T(1) < wall.restitution)
       throw std::invalid_argument("restitution of the " + which + " wall is out of range (" +
                                   in_message(wall.restitution) + "): give a number from 0 to 1");

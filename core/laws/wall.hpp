@@ -1,7 +1,8 @@
 #pragma once
-// Walls at the ends of a line: particles of infinite mass with a constant speed. The left one counts as particle -1,
-// the right one as particle N, and the gap to a wall is a gap like any other. A collision with a wall, closing at the
-// speed w > 0, obeys the wall's own law, in the frame of the wall:
+// Walls at the ends of a line: particles of infinite mass with a constant speed, or shaken about a place that has it
+// (wall_motion.hpp). The left one counts as particle -1, the right one as particle N, and the gap to a wall is a gap
+// like any other. A collision with a wall, closing at the speed w > 0, obeys the wall's own law, in the frame of the
+// wall:
 //
 //   reflecting   w' = -r w, r the restitution of the wall
 //   thermal      w' = -v, v from the density (m v/T) exp(-m v^2/2T) of speeds at which particles of mass m in
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <tuple>
 
@@ -25,6 +27,7 @@
 #include "cradle/core/initial/counter_rng.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/portable_log.hpp"
+#include "cradle/core/laws/wall_motion.hpp"
 
 namespace cradle {
 
@@ -36,6 +39,12 @@ template <Real T> struct Wall {
   T restitution{1};        // of a reflecting wall, in [0, 1]
   double temperature = 0;  // of a thermal wall, > 0
   std::uint64_t seed = 1, replica = 0;
+  std::shared_ptr<const WallMotion<T>> motion = nullptr;  // of a shaken wall
+  T rest_speed{0};  // particles that meet it more slowly stay on it while it presses them, under gravity or if shaken
+
+  bool holds() const { return is_positive(rest_speed) && !(temperature > 0); }
+  bool moves() const { return !(speed == T(0)) || motion != nullptr; }
+  T fastest() const { return magnitude(speed) + (motion != nullptr ? motion->fastest() : T(0)); }
 };
 
 // The account of a wall: its collisions, the energy (m l^2/t^2) and the momentum (m l/t, positive to the right) that it
@@ -51,6 +60,8 @@ template <Real T> struct WallTally {
 };
 // Of the left wall and of the right one, in the order of End.
 template <Real T> using WallTallies = std::array<WallTally<T>, 2>;
+// Energy that walls have given to the particles.
+template <Real T> T given_by(const WallTallies<T>& walls) { return walls[0].given.value() + walls[1].given.value(); }
 
 // The speed after collision number k of a particle of mass 1 with a wall of temperature 1.
 inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, std::uint64_t collision) {
@@ -91,8 +102,9 @@ template <Real T> class Walls {
   Outcome<T> strike(std::int64_t gap, const T& w, const T& mass) {
     return strike(gap, w, mass, walls_[at(left_of(gap) ? End::left : End::right)]->restitution);
   }
-  // The same with another restitution than that of the wall, if it reflects.
-  Outcome<T> strike(std::int64_t gap, const T& w, const T& mass, const T& restitution) {
+  // The same with another restitution than that of the wall, if it reflects, and at the speed towards the particles
+  // at which it is shaken.
+  Outcome<T> strike(std::int64_t gap, const T& w, const T& mass, const T& restitution, const T& shaken = T(0)) {
     const End end = left_of(gap) ? End::left : End::right;
     const Wall<T>& wall = *walls_[at(end)];
     WallTally<T>& tally = tallies_[at(end)];
@@ -103,7 +115,7 @@ template <Real T> class Walls {
     const T handed = hard ? T(half + half) : T(w - after);
     const T in_its_frame =
         wall.temperature > 0 ? T((w - after) * (w + after)) : T((T(1) - restitution) * (T(1) + restitution) * w * w);
-    const T work = mass * handed * (end == End::left ? wall.speed : T(-wall.speed));
+    const T work = mass * handed * ((end == End::left ? wall.speed : T(-wall.speed)) + shaken);
     const T lost = mass * in_its_frame / T(2) - work;
     tally.collisions += 1;
     tally.momentum.add(mass * (end == End::left ? handed : T(-handed)));
@@ -119,10 +131,15 @@ template <Real T> class Walls {
   }
   bool give_energy() const {
     for (const auto* wall : walls_)
-      if (wall != nullptr && (wall->temperature > 0 || wall->speed != T(0))) return true;
+      if (wall != nullptr && (wall->temperature > 0 || wall->moves())) return true;
     return false;
   }
 
+  // Enters what a wall has given to a particle that it holds.
+  void carry(End end, const T& energy, const T& momentum) {
+    tallies_[at(end)].given.add(energy);
+    tallies_[at(end)].momentum.add(momentum);
+  }
   const WallTally<T>& tally(End end) const { return tallies_[at(end)]; }
   const WallTallies<T>& tallies() const { return tallies_; }
   void continue_with(const WallTally<T>& left, const WallTally<T>& right) { tallies_ = {left, right}; }

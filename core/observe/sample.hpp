@@ -31,26 +31,21 @@ template <Real T> struct Sample {
   WallTallies<T> walls = {};
 };
 
-// The accounts of a run's walls; of a wall that is not there, an empty one.
-template <class Run, Real T = typename Run::Scalar> WallTallies<T> wall_tallies(const Run& run) {
-  if constexpr (requires { run.wall_tallies(); })
-    return run.wall_tallies();
-  else if constexpr (requires { run.chain().walls(); })
-    return run.chain().walls().tallies();
+// The accounts of a run's walls at a time; of a wall that is not there, an empty one.
+template <class Run, Real T = typename Run::Scalar> WallTallies<T> wall_tallies(const Run& run, const T& time) {
+  if constexpr (requires { run.wall_tallies(time); })
+    return run.wall_tallies(time);
   else
     return {};
 }
-// Energy that walls have given to the particles.
-template <Real T> T given_by(const WallTallies<T>& walls) { return walls[0].given.value() + walls[1].given.value(); }
-
 // Kinetic energy of all particles of the scene, after the collisions made until now; of particles that fall at the
 // given time, by a sum, since the ledger has potential energy too.
 template <class Run, Real T = typename Run::Scalar>
 T energy_now(const Run& run, const T& initial_energy, const T& time) {
   if (run.falls()) return run.kinetic_energy(time);
-  const T left = initial_energy - run.energy_lost();
+  const T left = initial_energy - run.energy_lost(time);
   bool by_walls = false;
-  for (const WallTally<T>& wall : wall_tallies(run))
+  for (const WallTally<T>& wall : wall_tallies(run, time))
     by_walls = by_walls || !(wall.given.value() == T(0) && wall.dissipated.value() == T(0));
   return T(left + left) < initial_energy || by_walls ? T(run.kinetic_energy(time)) : left;
 }
@@ -58,8 +53,8 @@ T energy_now(const Run& run, const T& initial_energy, const T& time) {
 // A sample of a Simulation or a StickyGas. `time` must be between the last collision and the time advanced to.
 template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
-  const WallTallies<T> walls = wall_tallies(run);
-  const T lost = run.energy_lost(), given = given_by(walls);
+  const WallTallies<T> walls = wall_tallies(run, time);
+  const T lost = run.energy_lost(time), given = given_by(walls);
   Sample<T> s{
       time, energy_now(run, initial_energy, time), lost + given, given, run.counts(), run.collided_particles(), {}, {},
       walls};

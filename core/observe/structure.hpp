@@ -20,9 +20,9 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/laws/turns.hpp"
 #include "cradle/core/observe/octave_steps.hpp"
 #include "cradle/core/observe/profile.hpp"
-#include "cradle/core/observe/turns.hpp"
 
 namespace cradle {
 

@@ -102,7 +102,7 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
                                            "core/observe/profile.hpp",
                                            "core/observe/scenario.hpp",
                                            "core/observe/structure.hpp",
-                                           "core/observe/turns.hpp",
+                                           "core/laws/turns.hpp",
                                            "core/observe/zone.hpp",
                                            "core/initial/ring.hpp",
                                            "core/initial/rows.hpp",

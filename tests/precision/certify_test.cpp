@@ -7,163 +7,15 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/certify/checker.hpp"
-#include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/counter_rng.hpp"
-#include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/core/observe/trace.hpp"
-#include "cradle/precision/ball.hpp"
-#include "cradle/precision/ball_text.hpp"
-#include "cradle/tests/precision/reference_gas.hpp"
+#include "cradle/tests/precision/drawn_scenes.hpp"
 
 namespace certify_test {
 
 using namespace cradle;
 using namespace cradle::test;
-
-using B = Ball<double_double>;
-using Collisions = std::vector<std::pair<ParticleIndex, ParticleIndex>>;
-
-Rational exact(const B& x) { return exactly(x.middle().high()) + exactly(x.middle().low()); }
-bool holds(const B& x, const Rational& number) {
-  const Rational off = exact(x) - number;
-  return (off < 0 ? -off : off) <= exactly(x.radius());
-}
-
-// Multiples of 1/64, so that all types have the same particles; coefficients as decimals.
-struct Drawn {
-  std::vector<int> gaps, velocities, masses;
-  const char* restitution = "1";
-  int cutoff = 0, length = 0;
-  bool sticky = false;
-};
-
-Drawn draw(std::uint64_t number, bool sticky) {
-  std::uint64_t index = 0;
-  const auto below = [&](int bound) {
-    return static_cast<int>(random_bits(11, number, index++) % static_cast<std::uint64_t>(bound));
-  };
-  Drawn d;
-  d.sticky = sticky;
-  const int particles = 3 + below(5);
-  const bool equal = below(2) == 0, small = below(8) == 0;  // few numbers to choose from: ties, cut-offs hit exactly
-  for (int b = 0; b < particles; ++b) {
-    d.gaps.push_back(small ? 64 : 1 + below(200));
-    d.velocities.push_back(small ? 64 * (below(5) - 2) : below(512) - 256);
-    d.masses.push_back(equal ? 64 : 16 + below(200));
-  }
-  constexpr const char* coefficients[] = {"1", "0.999", "0.999999", "0.5", "0.9", "0.1", "0.95"};
-  d.restitution = coefficients[below(7)];
-  d.cutoff = below(3) == 0 ? 0 : small ? 64 : 1 + below(40);
-  if (below(3) == 0) {
-    d.length = 50;
-    for (const int gap : d.gaps) d.length += gap;
-  }
-  return d;
-}
-
-Gas<Rational> gas_of(const Drawn& d) {
-  Gas<Rational> gas;
-  Rational place(0);
-  for (std::size_t b = 0; b < d.gaps.size(); place += Rational(d.gaps[b++]) / 64)
-    gas.cells.push_back(
-        {place, Rational(d.velocities[b]) / 64, Rational(d.masses[b]) / 64, {static_cast<ParticleIndex>(b)}});
-  gas.restitution = decimal<Rational>(d.restitution);
-  gas.cutoff = Rational(d.cutoff) / 64;
-  gas.length = Rational(d.length) / 64;
-  gas.law = d.sticky ? GasLaw::sticky : GasLaw::inelastic;
-  return gas;
-}
-
-template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn& d) {
-  std::vector<T> x, v, m;
-  const auto unit = [](int n) { return T(T(n) / T(64)); };
-  int place = 0;
-  for (std::size_t b = 0; b < d.gaps.size(); ++b) {
-    x.push_back(unit(place)), v.push_back(unit(d.velocities[b])), m.push_back(unit(d.masses[b]));
-    place += d.gaps[b];
-  }
-  return std::make_shared<List<T>>(x, v, m, unit(d.length));
-}
-
-CertainLaw<B> law_of(const Drawn& d) {
-  CertainLaw<B> law;
-  if (d.sticky) law.kind = CertainLaw<B>::Kind::sticky;
-  law.restitution = from_text<B>(d.restitution);
-  law.elastic = std::string(d.restitution) == "1";
-  if (d.cutoff > 0) law.cutoff = B(d.cutoff) / B(64);
-  return law;
-}
-
-constexpr int until = 4;
-constexpr std::size_t most_collisions = 60;
-
-// What a run reports beside its collisions. A collision on the wrong side of the cut-off may leave their sequence
-// unchanged.
-struct Said {
-  std::uint64_t below;
-  Rational energy;
-};
-
-// Whether these are proved to be the collisions of the scene; `checker` is left where they end.
-bool proved(Checker<B>& checker, const Collisions& collisions, const std::optional<Said>& said = {}) {
-  if (checker.begin()) return false;
-  for (const auto& [left, right] : collisions)
-    if (checker.collision(left, right)) return false;
-  const auto end = checker.state_at(B(until));
-  return !end.doubt && (!said || (checker.proved().below_cutoff == said->below && holds(end.energy, said->energy)));
-}
-
-// All of them, in the exact gas; `wrong`: that one on the wrong side of the cut-off.
-struct ExactRun {
-  Collisions collisions;
-  std::uint64_t digest = 0, below = 0;
-  bool tied = false, ended = false;
-  Gas<Rational> gas;
-};
-ExactRun exact_run(const Drawn& d, std::size_t wrong = most_collisions) {
-  ExactRun run;
-  run.gas = gas_of(d);
-  Trace trace;
-  while (run.collisions.size() < most_collisions) {
-    const auto collision = run.gas.next(until, run.collisions.size() == wrong);
-    if (!collision) break;
-    run.collisions.push_back(*collision);
-    trace.collision(collision->first, collision->second);
-  }
-  run.ended = run.collisions.size() < most_collisions;
-  if (run.ended) run.gas.time = until;
-  run.digest = trace.digest();
-  run.tied = run.gas.tied;
-  run.below = run.gas.below_cutoff;
-  return run;
-}
-
-// The collisions that the engine makes in doubles.
-template <class Run> Collisions made(Run&& run) {
-  Collisions collisions;
-  run.advance(until, [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.right); });
-  return collisions;
-}
-Collisions made(const Drawn& d) {
-  const auto particles = particles_of<double>(d);
-  const Inelastic<double> law(std::stod(d.restitution), d.cutoff / 64.);
-  if (d.sticky) {
-    const InelasticMerging<double> merging(Inelastic<double>(0.), std::numeric_limits<double>::max());
-    return made(Simulation(merging, ClusterChain<double>(particles, 0.)));
-  }
-  return made(Simulation(law, GapChain<double, IndividualMasses<double>>(particles, 0.)));
-}
-
-std::uint64_t digest_of(const Collisions& collisions) {
-  Trace trace;
-  for (const auto& [left, right] : collisions) trace.collision(left, right);
-  return trace.digest();
-}
+using namespace cradle::test::drawn;
 
 void compare_with_the_exact_gas(bool sticky, std::uint64_t scenes, std::uint64_t least_proved) {
   std::uint64_t counted = 0;
@@ -305,6 +157,42 @@ TEST(Certify, WhatIsProvedOfWetParticlesIsWhatFiftyDigitsGive) {
   EXPECT_GE(merged, 100U);
 }
 #endif
+
+// Elastic particles of nearly equal masses that all approach each other, and so had no collisions before, make n - 1,
+// n (n - 1)/2 or (n + 1) n (n - 1)/6 collisions in all (A. Knauf and M. Stepan, arXiv 1109.6242); none is left.
+TEST(Certify, ElasticParticlesOfNearlyEqualMassesMakeAsManyCollisionsAsTheyCan) {
+  using Texts = std::vector<std::string>;
+  const auto proved_of = [](const Texts& x, const Texts& v, const Texts& m) -> std::uint64_t {
+    const auto list = [&]<class T>(T) {
+      std::vector<T> columns[3];
+      for (std::size_t k = 0; k < x.size(); ++k)
+        for (const auto& [to, from] : {std::pair{0, &x}, {1, &v}, {2, &m}})
+          columns[to].push_back(from_text<T>((*from)[k]));
+      return std::make_shared<List<T>>(columns[0], columns[1], columns[2]);
+    };
+    Collisions collisions;
+    Simulation run(Inelastic<double>(1.), GapChain<double, IndividualMasses<double>>(list(0.), 0.));
+    run.advance(100., [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.right); });
+    Checker<B> checker(list(B()), CertainLaw<B>());
+    EXPECT_FALSE(checker.state_at(B(0)).over);
+    EXPECT_FALSE(checker.collisions(collisions));
+    const CertainState<B> end = checker.state_at(B(100));
+    EXPECT_FALSE(end.doubt);
+    EXPECT_TRUE(end.over);
+    return checker.proved().collisions;
+  };
+  EXPECT_EQ(proved_of({"0.617", "0.927", "0.953"}, {"-0.6", "-0.914", "-0.929"}, {"1", "1.05", "0.99"}), 2U);
+  EXPECT_EQ(proved_of({"-0.81", "-0.54", "0.11"}, {"0.78", "0.57", "-0.1"}, {"1", "1", "1.01"}), 3U);
+  EXPECT_EQ(proved_of({"-0.753", "-0.749", "0.877"}, {"0.787", "0.774", "-0.9"}, {"1", "0.95", "1"}), 4U);
+  EXPECT_EQ(proved_of({"-1.641", "-0.559", "-0.178", "0.603"}, {"0.973", "0.9415", "0.9339", "-0.3165"},
+                      {"0.98", "1.07", "1.1", "1.1"}),
+            3U);
+  EXPECT_EQ(proved_of({"-0.818", "-0.4", "-0.325", "0.141"}, {"0.8", "0.39", "0.3", "-0.134"}, {"1", "1", "1", "1.02"}),
+            6U);
+  EXPECT_EQ(proved_of({"-1.000002459", "-0.999374889", "-0.972827509", "1"}, {"1", "0.999359194", "0.97232206", "-1"},
+                      {"0.9171516", "0.9097226", "0.966177", "1.0627597"}),
+            10U);
+}
 
 TEST(Certify, FrontsAreTheOutermostOfAllRegions) {
   const std::vector<B> places{B(0), B(1), B(10), B(11), B(20), B(21)}, speeds{B(1), B(0), B(0), B(0), B(1), B(0)};

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,6 +19,14 @@ namespace cradle::test {
 
 enum class GasLaw { inelastic, contact_time, merging, sticky, wet };
 
+// A wall on either side of particles that bounce, with its account; its place is at time 0.
+template <class T> struct GasWall {
+  T origin, v, restitution;
+  std::function<T(std::uint64_t collision, const T& mass)> random_speed{};  // of a thermal wall
+  std::uint64_t collisions = 0;
+  T given{0}, momentum{0}, lost{0};
+};
+
 // Merged particles are one cell; cells are ordered from left to right, on a ring up to the seam.
 template <class T> struct Gas {
   struct Cell {
@@ -26,6 +37,8 @@ template <class T> struct Gas {
   std::vector<Cell> cells;
   GasLaw law = GasLaw::inelastic;
   T restitution{1}, cutoff{0}, contact_time{0}, merge_speed{0}, loss{0}, length{0};
+  T cutoff_exponent{0};                              // above 0: the restitution depends on the speed
+  std::array<std::optional<GasWall<T>>, 2> walls{};  // left, right
 
   T time{0};
   std::uint64_t collisions = 0, below_cutoff = 0, merges = 0;
@@ -39,20 +52,28 @@ template <class T> struct Gas {
   // Makes the next collision not after `until`; `wrong_side`: as if it were on the other side of the cut-off.
   std::optional<std::pair<std::int64_t, std::int64_t>> next(const T& until, bool wrong_side = false) {
     std::optional<T> first;
-    std::vector<std::size_t> together;
-    for (std::size_t k = 0; k < pairs() && !tied; ++k) {
-      const T w = cells[k].v - cells[after(k)].v;
-      if (!(w > 0)) continue;
-      const T due = (cells[after(k)].origin + seam(k) - cells[k].origin) / w;
+    std::vector<std::int64_t> together;  // gaps, by the cell on their left; -1: the left wall
+    const auto may_meet = [&](std::int64_t gap, const T& apart, const T& w) {
+      if (!(w > 0)) return;
+      const T due = apart / w;
       if (!first || due < *first) first = due, together.clear();
-      if (due == *first) together.push_back(k);
-    }
+      if (due == *first) together.push_back(gap);
+    };
+    for (std::size_t k = 0; k < pairs() && !tied; ++k)
+      may_meet(static_cast<std::int64_t>(k), cells[after(k)].origin + seam(k) - cells[k].origin,
+               cells[k].v - cells[after(k)].v);
+    if (walls[0] && !tied) may_meet(-1, cells.front().origin - walls[0]->origin, walls[0]->v - cells.front().v);
+    if (walls[1] && !tied) may_meet(last(), walls[1]->origin - cells.back().origin, cells.back().v - walls[1]->v);
     if (!first || *first > until) return std::nullopt;
     time = *first;
-    for (const std::size_t a : together)
-      for (const std::size_t b : together) tied = tied || (a != b && (after(a) == b || after(b) == a));
+    for (const std::int64_t a : together)
+      for (const std::int64_t b : together)
+        tied = tied || a - b == 1 ||
+               (length > 0 && a != b && after(static_cast<std::size_t>(b)) == static_cast<std::size_t>(a));
     if (tied) return std::nullopt;
-    const std::size_t k = together.front();
+    const std::int64_t gap = together.front();
+    if (gap < 0 || (walls[1] && gap == last())) return strike(gap < 0);
+    const auto k = static_cast<std::size_t>(gap);
     const std::pair collision{cells[k].particles.front(), cells[after(k)].particles.front()};
     collide(k, wrong_side);
     return collision;
@@ -79,11 +100,37 @@ template <class T> struct Gas {
   }
   T place(const Cell& cell) const { return cell.origin + cell.v * time; }
   T gap_after(std::size_t k) const { return place(cells[after(k)]) - place(cells[k]) + seam(k); }
+  T gap_to_wall(bool left) const {
+    const GasWall<T>& wall = *walls[left ? 0 : 1];
+    const T at = wall.origin + wall.v * time;
+    return left ? T(place(cells.front()) - at) : T(at - place(cells.back()));
+  }
   std::size_t pairs() const { return cells.size() < 2 ? 0 : length > 0 ? cells.size() : cells.size() - 1; }
 
  private:
+  std::int64_t last() const { return static_cast<std::int64_t>(cells.size()) - 1; }
   std::size_t after(std::size_t k) const { return k + 1 < cells.size() ? k + 1 : 0; }
   T seam(std::size_t k) const { return k + 1 < cells.size() ? T(0) : length; }
+
+  std::pair<std::int64_t, std::int64_t> strike(bool left) {
+    Cell& cell = left ? cells.front() : cells.back();
+    GasWall<T>& wall = *walls[left ? 0 : 1];
+    const T x = place(cell), before = cell.v, relative = before - wall.v;
+    cell.v = wall.random_speed ? T(left ? T(wall.v + wall.random_speed(wall.collisions, cell.m))
+                                        : T(wall.v - wall.random_speed(wall.collisions, cell.m)))
+                               : T(wall.v - wall.restitution * relative);
+    cell.origin = x - cell.v * time;
+    cell.touched = time;
+    // The energy of the particle changes by what is given, less what is lost.
+    const T gain = cell.m * (cell.v * cell.v - before * before) / 2, inner = cell.m * relative * relative / 2;
+    const T lost = wall.random_speed ? T(0) : T(inner * (1 - wall.restitution * wall.restitution));
+    wall.lost += lost;
+    wall.given += gain + lost;
+    wall.momentum += cell.m * (cell.v - before);
+    ++wall.collisions, ++collisions;
+    const std::int64_t particle = cell.particles.front();
+    return left ? std::pair{std::int64_t{-1}, particle} : std::pair{particle, last() + 1};
+  }
 
   void collide(std::size_t k, bool wrong_side) {
     Cell &l = cells[k], &r = cells[after(k)];
@@ -99,7 +146,7 @@ template <class T> struct Gas {
     if (law == GasLaw::wet) return pass(k, after_bridge(w, reduced), x_l, x_r);
     const bool below = memory || (law != GasLaw::merging && (w < cutoff) != wrong_side);
     below_cutoff += below;
-    const T impulse = reduced * w * (1 + (below ? T(1) : restitution));
+    const T impulse = reduced * w * (1 + (cutoff_exponent > 0 ? at_speed(w) : below ? T(1) : restitution));
     l.v -= impulse / l.m;
     r.v += impulse / r.m;
     l.origin = x_l - l.v * time;
@@ -113,6 +160,12 @@ template <class T> struct Gas {
     l.origin = x - l.v * time;
     l.particles.insert(l.particles.end(), r.particles.begin(), r.particles.end());
     cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(after(k)));
+  }
+  T at_speed(const T& w) const {
+    if constexpr (std::is_same_v<T, Rational>)
+      return w;
+    else
+      return T(restitution + (1 - restitution) * exp(T(-pow(T(w / cutoff), cutoff_exponent))));
   }
   // The closing speed is now a speed of separation.
   T after_bridge(const T& w, const T& reduced) const {

@@ -63,12 +63,13 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
         std::string("cradle run fig9 -o model.h5 --quiet --set run.until=10"),
         std::string("cradle trust collapse3 -o trust.h5 --quiet --digits 16,31"),
         std::string("cradle words 3 ab -o words.h5 --quiet --digits 10"),
+        std::string("cradle threshold collapse3 -o threshold.h5 --quiet --vary law.restitution=0.05:0.1 --digits 3"),
         "cradle ensemble fig2 -o ensemble.h5 --replicas 3 --spread energy=0:10:5 --set output.profiles.times=[30]" +
             small,
         "cradle sweep fig8 -o sweep.h5 --vary law.loss=0.01,0.02 --replicas 2 --set output.zone.from=20" + small}) {
     shell(command, 0);
   }
-  shell("cradle run collapse3 -o collapse.h5 --quiet", 3);
+  shell("cradle run collapse3 -o collapse.h5 --quiet --set output.word=ab", 3);
 
   const Names documented = matches(page, "`/?([A-Za-z_0-9/.]+)`");
   const auto expect = [&](const std::string& name, const std::string& file) {
@@ -76,7 +77,8 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
         << file << " holds " << name << ", tools/README.md does not name it: add it there";
   };
   std::size_t groups = 0;
-  for (const char* file : {"dry", "wet", "walls", "model", "trust", "words", "collapse", "ensemble", "sweep"}) {
+  for (const char* file :
+       {"dry", "wet", "walls", "model", "trust", "words", "threshold", "collapse", "ensemble", "sweep"}) {
     const tools::Result result = tools::read_result((folder / (std::string(file) + ".h5")).string());
     for (const auto& [name, value] : result.attributes) expect(name, file);
     for (const tools::Group& group : result.groups) {

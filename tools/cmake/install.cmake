@@ -1,5 +1,6 @@
-# cmake --install: headers, the package config for find_package(cradle), the program with its manual page and
-# completions, and the Python package.
+# cmake --install: headers, the package config for find_package(cradle), the documents, the program with its manual page
+# and completions, the scenes, and the Python package with its module where that is built. `cpack -G DEB` packs the
+# same.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS cradle_options cradle_core cradle_steps cradle_ensemble cradle_precision cradle
@@ -15,11 +16,24 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cradle-config-version.cma
 install(FILES ${PROJECT_BINARY_DIR}/cradle-config.cmake ${PROJECT_BINARY_DIR}/cradle-config-version.cmake
               tools/cmake/mpfr.cmake DESTINATION ${_package})
 
+# In the folders of the tree, so that links from one to the other work.
+foreach(_document README.md .github/CHANGELOG.md .github/CONTRIBUTING.md bench/README.md bench/pictures/fig2.png
+                  core/README.md tests/README.md tools/KEYS.md tools/README.md)
+  get_filename_component(_folder ${_document} DIRECTORY)
+  install(FILES ${_document} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${_folder})
+endforeach()
+install(DIRECTORY bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY tools/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools/python)
+
 if(CRADLE_TOOLS)
+  install(DIRECTORY tools/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/cradle)
   set(CRADLE_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/cradle/python
       CACHE STRING "where the Python package is installed, below the prefix: to be in PYTHONPATH")
   install(DIRECTORY tools/python/cradle DESTINATION ${CRADLE_PYTHON_DIR}
           PATTERN __pycache__ EXCLUDE)
+  if(TARGET cradle_module)
+    install(TARGETS cradle_module LIBRARY DESTINATION ${CRADLE_PYTHON_DIR}/cradle)
+  endif()
   # What the program prints of itself.
   set(_texts ${PROJECT_BINARY_DIR}/installed_texts)
   file(MAKE_DIRECTORY ${_texts})
@@ -36,4 +50,8 @@ if(CRADLE_TOOLS)
                                   OUTPUT_FILE \"${_texts}/${_file}\" COMMAND_ERROR_IS_FATAL ANY)")
     install(FILES ${_texts}/${_file} DESTINATION ${_folder})
   endforeach()
+endif()
+
+if(CRADLE_TOOLS AND PROJECT_IS_TOP_LEVEL)
+  include(tools/cmake/debian.cmake)
 endif()

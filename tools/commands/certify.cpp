@@ -1,6 +1,7 @@
 #include "cradle/tools/proof/certify.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -16,17 +17,22 @@ namespace cradle::tools {
 
 namespace {
 
-struct CertifyArguments : CommonOptions {
+struct CertifyArguments : CommonOptions, OutputOptions {
   std::vector<unsigned> digits;
-  std::string output;
   std::uint64_t replicas = 0;
+
+  std::string command() const {
+    return fmt::format("certify{}{}", digits.empty() ? "" : fmt::format(" --digits {}", fmt::join(digits, ",")),
+                       replicas == 0 ? "" : fmt::format(" --replicas {}", replicas));
+  }
 };
 
 Exit run_certify(const CertifyArguments& options) {
   const Scene scene = options.read();
   check_certifiable(scene);
-  const std::string output = options.output.empty() ? scene.name + "-certified.h5" : options.output;
+  const std::string output = options.output_or(scene.name + "-certified.h5");
   const FileClaim claim(output);
+  check_overwrite(output, options.command(), &scene, options.force());
   Interrupt interrupt;
   note_signals(interrupt);
   CertifyOptions how{{},
@@ -38,7 +44,9 @@ Exit run_certify(const CertifyArguments& options) {
   how.threads = options.threads;
   if (options.replicas > 0) {
     const CertifiedReplicas run = certify_replicas(scene, options.replicas, options.threads, how);
-    write_or_keep(replicas_result(run), output);
+    Result result = replicas_result(run);
+    say_how_made(result, options.command(), scene);
+    write_or_keep(result, output);
     fmt::print("{}", replicas_text(run));
     if (!options.quiet) fmt::print("wrote {}\n", output);
     const bool all = std::all_of(run.replicas.begin(), run.replicas.end(), [](const auto& r) { return r.proved; });
@@ -47,7 +55,9 @@ Exit run_certify(const CertifyArguments& options) {
   Certified run = certify(scene, how);
   const std::string text = certificate_text(run), report = run.outcome.report, warning = run.outcome.warning;
   const bool proved = run.proved();
-  write_or_keep(certified_result(std::move(run)), output);
+  Result result = certified_result(std::move(run));
+  say_how_made(result, options.command(), scene);
+  write_or_keep(result, output);
   fmt::print("{}{}{}", text, report.empty() ? "" : "estimated by the run:\n", report);
   notify(warning);
   if (!options.quiet) fmt::print("wrote {}\n", output);
@@ -66,7 +76,7 @@ void add_certify(CommandLine& program) {
                "31,50,100,200,400,800)");
   command.option("--replicas", options->replicas, {1, 1'000'000},
                  "prove so many replicas with different perturbations, and give statistics of those that are");
-  command.option("-o,--output", options->output, "result file (default: the scene's name with -certified.h5)");
+  add_output_options(command, *options, "result file (default: the scene's name with -certified.h5)");
   command.note("exit status: 0 proved, 5 undecided");
   command.does([options] { return run_certify(*options); });
 }

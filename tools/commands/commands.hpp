@@ -8,6 +8,7 @@
 
 #include "cradle/tools/commands/options.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/store/overwrite.hpp"
 
 namespace cradle::tools {
 
@@ -18,6 +19,18 @@ struct RunningOptions {
 };
 void add_running_options(Command& command, RunningOptions& options);
 
+/// Where a command writes.
+struct OutputOptions {
+  std::string output;
+  bool forced = false;
+
+  /// The place, or this one if none is given.
+  std::string output_or(const std::string& standard) const { return output.empty() ? standard : output; }
+  Force force() const { return forced ? Force::yes : Force::no; }
+};
+/// `what` describes -o: "result file (default: ...)".
+void add_output_options(Command& command, OutputOptions& options, const std::string& what, Needed needed = Needed::no);
+
 /// Options that every command that computes a scene accepts.
 struct CommonOptions : RunningOptions {
   std::string scene;
@@ -26,7 +39,9 @@ struct CommonOptions : RunningOptions {
 
   /// The assignments of --set and --seed.
   std::vector<std::string> all_overrides() const;
+  /// The scene; what reading it left out is printed, unless --quiet.
   Scene read() const;
+  std::string left_out() const;
 };
 void add_common_options(Command& command, CommonOptions& options);
 
@@ -50,5 +65,6 @@ void add_merge(CommandLine& program);
 void add_completion(CommandLine& program);
 void add_manual(CommandLine& program);
 void add_words(CommandLine& program);
+void add_threshold(CommandLine& program);
 
 }  // namespace cradle::tools

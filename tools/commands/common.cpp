@@ -1,4 +1,6 @@
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/scene/overrides.hpp"
+#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -8,11 +10,23 @@ std::vector<std::string> CommonOptions::all_overrides() const {
   return all;
 }
 
-Scene CommonOptions::read() const { return read_scene(scene, all_overrides()); }
+Scene CommonOptions::read() const {
+  Scene read = read_scene(scene, all_overrides());
+  if (!quiet) notify(left_out());
+  return read;
+}
+
+std::string CommonOptions::left_out() const { return times_left_out(scene, all_overrides()); }
+
+void add_output_options(Command& command, OutputOptions& options, const std::string& what, Needed needed) {
+  command.option("-o,--output", options.output, what, needed);
+  command.flag("--force", options.forced, "replace what is there, also what this command would not make again");
+}
 
 void add_common_options(Command& command, CommonOptions& options) {
   command.argument("SCENE", options.scene, "scene file, or the name of a bundled scene");
-  command.repeated("--set", options.overrides, "table.key=value instead of what the scene says; may be repeated",
+  command.repeated("--set", options.overrides,
+                   "table.key=value instead of what the scene says, table.key= to remove a key; may be repeated",
                    "KEY=VALUE");
   command.option("--seed", options.seed, "instead of initial.seed");
   add_running_options(command, options);

@@ -8,10 +8,9 @@ namespace cradle::tools {
 
 namespace {
 
-struct EnsembleArguments : CommonOptions {
+struct EnsembleArguments : CommonOptions, OutputOptions {
   std::uint64_t replicas = 0, first = 0;
   std::vector<std::string> spreads;
-  std::string output;
 };
 
 // NAME=FROM:TO:BINS
@@ -34,12 +33,14 @@ SpreadRequest spread(const std::string& text) {
 }
 
 StudyPlan plan(const EnsembleArguments& options) {
-  const Scene scene = options.read();
+  const Scene scene = read_scene(options.scene, options.all_overrides());
   std::vector<SpreadRequest> spreads;
   for (const std::string& text : options.spreads) spreads.push_back(spread(text));
   return {ensemble_of(scene, std::move(spreads)),
           {options.first, options.replicas},
-          options.output.empty() ? scene.name + "-ensemble.h5" : options.output};
+          options.output_or(scene.name + "-ensemble.h5"),
+          options.force(),
+          options.left_out()};
 }
 
 }  // namespace
@@ -56,9 +57,9 @@ void add_ensemble(CommandLine& program) {
   command.repeated("--spread", options->spreads,
                    "count the values of a quantity in bins, and give quantiles; NAME as in series/; may be repeated",
                    "NAME=FROM:TO:BINS");
-  command.option("-o,--output", options->output,
-                 "result file (default: the scene's name with -ensemble.h5); an ensemble of this scene that is "
-                 "there is continued");
+  add_output_options(command, *options,
+                     "result file (default: the scene's name with -ensemble.h5); an ensemble of this scene that is "
+                     "there is continued");
   command.note(
       "Snapshots, masses and events of the scene are left out. Finished replicas are kept in FILE.part: the same "
       "command continues from there.");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -14,6 +15,9 @@ namespace {
 
 struct ExportArguments {
   std::string file, folder, result;
+  bool forced = false;
+
+  Force force() const { return forced ? Force::yes : Force::no; }
 };
 
 Exit export_result(const ExportArguments& options) {
@@ -23,11 +27,14 @@ Exit export_result(const ExportArguments& options) {
   const Result result =
       in_progress ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   if (!options.result.empty()) {
+    check_overwrite(options.result, result, options.force());
     write_result(result, options.result);
     fmt::print("{}\n", options.result);
   }
+  std::string name = std::filesystem::path(options.file).filename().string();
+  if (name.ends_with(".part")) name.resize(name.size() - std::string_view(".part").size());
   if (!options.folder.empty())
-    for (const std::string& file : export_csv(result, options.folder)) fmt::print("{}\n", file);
+    for (const std::string& file : export_csv(result, options.folder, name, options.forced)) fmt::print("{}\n", file);
   return Exit::done;
 }
 
@@ -39,6 +46,7 @@ void add_export(CommandLine& program) {
   command.argument("FILE", options->file, "result file, or FILE.part of a run in progress");
   command.option("--to", options->folder, "folder to write to; made where it is missing");
   command.option("--result", options->result, "result file to write: of FILE.part what is recorded so far");
+  command.flag("--force", options->forced, "replace what is there, also what was not exported from FILE");
   command.does([options] { return export_result(*options); });
 }
 

@@ -15,6 +15,8 @@
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/progress.hpp"
+#include "cradle/tools/support/time_left.hpp"
+#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
@@ -29,9 +31,18 @@ std::string file_of(const std::string& path, std::string_view ending) {
   return path.substr(0, path.size() - (path.ends_with(ending) ? ending.size() : 0));
 }
 
+// A record is a run.
+Exit info_of_threshold(JournalReader& reader) {
+  std::uint64_t runs = 0;
+  for (std::string record; reader.next(record);) ++runs;
+  fmt::print("journal of a threshold of {}: {} runs; the same command continues it\n", reader.header().name, runs);
+  return Exit::done;
+}
+
 Exit info_of_study(const InfoArguments& options) {
   JournalReader reader(options.file);
   const JournalHeader& journal = reader.header();
+  if (journal.kind == threshold_kind) return info_of_threshold(reader);
   std::vector<std::uint64_t> replicas(journal.points.size());
   while (const auto record = reader.next<EnsembleRecord>())
     if (record->point < replicas.size()) replicas[record->point] += record->replicas();
@@ -68,13 +79,16 @@ Exit info_of_run(const InfoArguments& options) {
              file_of(options.file, ".part"));
   if (!journal.statuses.empty()) {
     const RunStatus& now = journal.statuses.back();
-    const double start = scene.run.start.value, until = scene.run.until.value;
-    const double left = now.time > start ? now.seconds * (until - now.time) / (now.time - start) : 0;
+    const double until = scene.run.until.value;
+    TimeLeft pace;
+    pace.add(0, scene.run.start.value);
+    for (const RunStatus& status : journal.statuses) pace.add(status.seconds, status.time);
+    const auto left = expected_cost(scene).collapse ? std::nullopt : pace.until(until);
     fmt::print(
         "{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
         line("collisions", fmt::format("{}", now.collisions)),
         line("collisions/s", fmt::format("{:.3g} over the last minute", collisions_per_second(journal.statuses))),
-        line("computing", fmt::format("{}, {} left at this pace", duration(now.seconds), duration(left))));
+        line("computing", duration(now.seconds) + (left ? fmt::format(", {} left", duration(*left)) : "")));
     for (const auto& [name, value] : {std::pair("smallest gap", now.gap_min), std::pair("closure gap", now.closure_gap),
                                       std::pair("closure speed", now.closure_speed)})
       if (!std::isnan(value)) fmt::print("{}", line(name, fmt::format("{:.6g}", value)));

@@ -10,14 +10,15 @@ namespace cradle::tools {
 
 namespace {
 
-struct MergeArguments {
+struct MergeArguments : OutputOptions {
   std::vector<std::string> files;
-  std::string output;
 };
 
 Exit merge(const MergeArguments& options) {
   const FileClaim claim(options.output);
-  const Result result = merged(options.files)->result();
+  const auto all = merged(options.files);
+  if (!options.forced) all->check_replaces(options.output);
+  const Result result = all->result();
   write_result(result, options.output);
   fmt::print("{} replicas: {}\nwrote {}\n", attribute<std::uint64_t>(result.attributes, "replicas", options.output),
              attribute<std::string>(result.attributes, "outcome", options.output), options.output);
@@ -31,7 +32,7 @@ void add_merge(CommandLine& program) {
                                 "cradle merge first.h5 second.h5 -o all.h5");
   const auto options = std::make_shared<MergeArguments>();
   command.arguments("FILE", options->files, "result files of `cradle ensemble` or `cradle sweep`");
-  command.option("-o,--output", options->output, "result file", Needed::yes);
+  add_output_options(command, *options, "result file", Needed::yes);
   command.does([options] { return merge(*options); });
 }
 

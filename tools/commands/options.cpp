@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/support/spelling.hpp"
 
 namespace cradle::tools {
@@ -41,6 +42,24 @@ Error misread(const CLI::App& program, const std::string& wrong, const std::stri
   return Error({}, wrong, found, fmt::format("see `{} --help`", words_of(program)));
 }
 
+// An option that the command does not have: a similar one, or the key of a scene that it means.
+Error unknown_option(const CLI::App& program, const std::string& given) {
+  const std::string option = given.substr(0, given.find('='));
+  const CLI::App& command = *program.get_subcommands().front();
+  std::vector<std::string> names;
+  for (const CLI::Option* known : command.get_options())
+    for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
+  const auto advise = [&](const std::string& meant) {
+    return Error({}, "no such option", given,
+                 fmt::format("did you mean {}? See `{} --help`", meant, words_of(program)));
+  };
+  if (std::ranges::find(names, "--set") != names.end())
+    for (const Field& field : scene_fields())
+      if (field.key.ends_with("." + option.substr(2))) return advise(fmt::format("--set {}=VALUE", field.key));
+  const auto nearest = nearest_word(option, names);
+  return nearest.empty() ? misread(program, "no such option", given) : advise(std::string(nearest));
+}
+
 }  // namespace
 
 bool CommandText::takes(const std::string& argument) const {
@@ -71,7 +90,9 @@ void Command::option(const std::string& names, std::optional<std::string>& value
 }
 
 void Command::option(const std::string& names, unsigned& value, const std::string& help) {
-  command_.add_option(names, value, help)->type_name(whole_number);
+  command_.add_option(names, value, help)
+      ->type_name(whole_number)
+      ->check(within({0, std::numeric_limits<unsigned>::max()}));
 }
 
 void Command::option(const std::string& names, std::uint64_t& value, WholeNumbers range, const std::string& help,
@@ -158,8 +179,10 @@ Action CommandLine::read(int argc, const char* const* argv) {
     program_->parse(argc, argv);
     return chosen_;
   } catch (const CLI::ExtrasError&) {
-    throw misread(*program_, "more than this command takes",
-                  fmt::format("{}", fmt::join(program_->remaining(true), " ")));
+    const std::vector<std::string> more = program_->remaining(true);
+    if (more.front().starts_with("--") && !program_->get_subcommands().empty())
+      throw unknown_option(*program_, more.front());
+    throw misread(*program_, "more than this command takes", fmt::format("{}", fmt::join(more, " ")));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) throw misread(*program_, error.what(), "");
     std::ostringstream text;  // --help, --version

@@ -11,6 +11,7 @@ void add_plot(CommandLine& program) {
   const auto arguments = std::make_shared<PageArguments>();
   command.argument("FILE", arguments->file, "result file, or FILE.part of a run in progress");
   command.option("-o,--output", arguments->output, "picture (default: FILE with .png)");
+  command.flag("--force", arguments->forced, "replace what is there, also what was not made from FILE");
   command.does([arguments] { return run_python("plot", *arguments, ".png", "the picture"); });
 }
 

@@ -97,7 +97,7 @@ std::string output_beside(std::filesystem::path file, const char* extension) {
 
 Exit run_python(const std::string& command, const PageArguments& arguments, const char* extension,
                 std::string_view what) {
-  const auto& [file, wanted] = arguments;
+  const auto& [file, wanted, forced] = arguments;
   if (stored_in(file) == Stored::other) read_result(file, Reading::ends);  // before Python reads a damaged file
   const std::string output = wanted.empty() ? output_beside(file, extension) : wanted;
   file_behind(output);  // throws for a folder or a device
@@ -106,7 +106,9 @@ Exit run_python(const std::string& command, const PageArguments& arguments, cons
   std::error_code unknown;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
   if (!unknown) ::setenv("CRADLE_PROGRAM", self.c_str(), 1);  // the package calls this program
-  const int status = execute({find_python(), "-B", folder.path() + "/cradle", command, file, "-o", output}, false);
+  std::vector<std::string> words{find_python(), "-B", folder.path() + "/cradle", command, file, "-o", output};
+  if (forced) words.push_back("--force");
+  const int status = execute(words, false);
   if (status != 0 && status != static_cast<int>(Exit::bad_input) && status != static_cast<int>(Exit::io))
     throw Error({file, 0, ""}, fmt::format("{} could not be made", what), fmt::format("status {}", status),
                 "see the message above", Exit::io);

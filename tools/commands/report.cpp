@@ -12,6 +12,7 @@ void add_report(CommandLine& program) {
   command.argument("FILE", arguments->file, "result file, or FILE.part of a run in progress");
   command.option("-o,--output", arguments->output, "the page (default: FILE with .html)");
   command.note("One HTML file with everything in it: it needs no network, and can be sent.");
+  command.flag("--force", arguments->forced, "replace what is there, also what was not made from FILE");
   command.does([arguments] { return run_python("report", *arguments, ".html", "the report"); });
 }
 

@@ -6,6 +6,7 @@
 #include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/store/ensemble_store.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
+#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -24,6 +25,8 @@ Exit resume(const ResumeArguments& options) {
     throw Error({"--until", 0, ""}, "not a number", *options.until, "give a time");
   const std::string path = RunFiles::journal_of(file);
   if (const auto journal = journal_header(path); journal && !journal->of_run()) {
+    if (journal->kind == threshold_kind)
+      throw Error({path, 0, ""}, "a search for a threshold", journal->name, "repeat its command, which continues it");
     if (options.until)
       throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
     return run_study_command(options, [&] { return StudyPlan{study_in(*journal, path), journal->wanted, file}; });
@@ -36,7 +39,10 @@ Exit resume(const ResumeArguments& options) {
     if (!options.quiet) fmt::print("{}\n", files.over());
     return files.over_status();
   }
-  if (!options.quiet) fmt::print("{}: continuing from {}\n", file, files.resumed_from());
+  if (!options.quiet) {
+    notify(files.not_extended());
+    fmt::print("{}: continuing from {}\n", file, files.resumed_from());
+  }
   return run_command(files, file, options, interrupt);
 }
 

@@ -16,9 +16,7 @@ namespace cradle::tools {
 
 namespace {
 
-struct RunArguments : CommonOptions {
-  std::string output;
-};
+struct RunArguments : CommonOptions, OutputOptions {};
 
 std::string summary(const RunOutcome& run, std::uint64_t collisions_before, double seconds) {
   const int digits = std::clamp(static_cast<int>(run.energy_digits), 1, 10);
@@ -61,12 +59,13 @@ namespace {
 
 Exit run(const RunArguments& options) {
   const Scene scene = options.read();
-  const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
+  const std::string output = options.output_or(scene.name + ".h5");
   check_built(scene);
   Interrupt interrupt;
   note_signals(interrupt);
   const FileClaim claim(output);
-  RunFiles files(output, scene);
+  check_overwrite(output, "run", &scene, options.force());
+  RunFiles files(output, scene, options.force());
   return run_command(files, output, options, interrupt);
 }
 
@@ -76,7 +75,7 @@ void add_run(CommandLine& program) {
   Command command = program.add("run", "run a scene", "cradle run fig2 --set run.until=2000 -o fig2.h5");
   const auto options = std::make_shared<RunArguments>();
   add_common_options(command, *options);
-  command.option("-o,--output", options->output, "result file (default: the scene's name with .h5, in this folder)");
+  add_output_options(command, *options, "result file (default: the scene's name with .h5, in this folder)");
   command.does([options] { return run(*options); });
 }
 

@@ -18,10 +18,12 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   const Exit failed = crew->together([&] { plan = make_plan(); });
   if (failed != Exit::done) return failed;
   if (crew->rank() == 0) notify(same_replicas_warning(plan.study, plan.replicas.count));
+  if (crew->rank() == 0 && !options.quiet) notify(plan.note);
   const std::string& output = plan.output;
   EnsembleOptions how;
   how.replicas = plan.replicas;
   how.threads = options.threads;
+  how.force = plan.force;
   how.progress = options.progress ? ProgressLine::Show::always
                  : options.quiet  ? ProgressLine::Show::never
                                   : ProgressLine::Show::on_terminal;

@@ -17,6 +17,8 @@ struct StudyPlan {
   Study study;
   ReplicaRange replicas;  // of every point
   std::string output;
+  Force force = Force::no;
+  std::string note = {};  // for the user
 };
 
 /// Runs the replicas of the plan that its output does not have yet. Under MPI every rank makes the plan; an error in it

@@ -9,15 +9,14 @@ namespace cradle::tools {
 
 namespace {
 
-struct SweepArguments : CommonOptions {
+struct SweepArguments : CommonOptions, OutputOptions {
   Sweep sweep;
   std::uint64_t first = 0;
-  std::string output;
 };
 
 // The points of the command line or, without any, those of the scene.
 StudyPlan plan(const SweepArguments& options) {
-  const Scene scene = options.read();
+  const Scene scene = read_scene(options.scene, options.all_overrides());
   Sweep sweep = scene.sweep;
   if (!options.sweep.vary.empty() || !options.sweep.points.empty()) {
     sweep.vary = options.sweep.vary;
@@ -27,7 +26,9 @@ StudyPlan plan(const SweepArguments& options) {
   if (options.sweep.replicas > 0) sweep.replicas = options.sweep.replicas;
   return {sweep_of(options.scene, options.all_overrides(), sweep),
           {options.first, sweep.replicas},
-          options.output.empty() ? scene.name + "-sweep.h5" : options.output};
+          options.output_or(scene.name + "-sweep.h5"),
+          options.force(),
+          options.left_out()};
 }
 
 }  // namespace
@@ -45,9 +46,9 @@ void add_sweep(CommandLine& program) {
   command.option("--replicas", options->sweep.replicas, {1, most_replicas},
                  "replicas of every point (default: the scene's, or 1)");
   command.option("--first", options->first, {0, most_replicas}, "number of the first replica (default 0)");
-  command.option("-o,--output", options->output,
-                 "result file (default: the scene's name with -sweep.h5); one of this sweep that is there is "
-                 "continued");
+  add_output_options(command, *options,
+                     "result file (default: the scene's name with -sweep.h5); one of this sweep that is there is "
+                     "continued");
   command.note("Without --vary and --point the sweep is the one that the scene names in its table [sweep].");
   command.does([options] { return run_study_command(*options, [&] { return plan(*options); }); });
 }

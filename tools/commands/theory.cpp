@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -20,6 +21,11 @@ Exit theory(const TheoryArguments& options) {
     fmt::print("{}", predictions_csv(table));
     return Exit::done;
   }
+  if (table.empty()) {
+    fmt::print("no predictions: the paper's are for rows and rings of equal masses, at constant restitution, without "
+               "walls and gravity\n");
+    return Exit::done;
+  }
   fmt::print("{:<28}{:<18}{:<12}{:>12}  {}\n", "quantity", "equation", "form", "t", "value");
   // Prints curves at a few times only; --csv writes all points.
   std::size_t shown = 0;
@@ -30,8 +36,8 @@ Exit theory(const TheoryArguments& options) {
   }
   fmt::print(
       "\nforms: discrete: the exact recursion; continuous: the paper's formula, corrected where it is misprinted.\n");
-  if (const auto text = misprints(scene); !text.empty())
-    fmt::print("Misprints: {} As printed: form `printed`, curves in --csv.\n", text);
+  if (std::any_of(table.begin(), table.end(), [](const Prediction& p) { return p.form == "printed"; }))
+    fmt::print("Misprints: {} As printed: form `printed`, curves in --csv.\n", misprints(scene));
   return Exit::done;
 }
 

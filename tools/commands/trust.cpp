@@ -1,6 +1,7 @@
 #include "cradle/tools/proof/trust.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -13,16 +14,21 @@ namespace cradle::tools {
 
 namespace {
 
-struct TrustArguments : CommonOptions {
+struct TrustArguments : CommonOptions, OutputOptions {
   std::vector<unsigned> digits;
   bool both = false;
-  std::string output;
+
+  std::string command() const {
+    return fmt::format("trust{}{}", digits.empty() ? "" : fmt::format(" --digits {}", fmt::join(digits, ",")),
+                       both ? " --both" : "");
+  }
 };
 
 Exit run_trust(const TrustArguments& options) {
   const Scene scene = options.read();
-  const std::string output = options.output.empty() ? scene.name + "-trust.h5" : options.output;
+  const std::string output = options.output_or(scene.name + "-trust.h5");
   const FileClaim claim(output);
+  check_overwrite(output, options.command(), &scene, options.force());
   Interrupt interrupt;
   note_signals(interrupt);
   const auto runs = trust(scene, {options.digits, options.both,
@@ -30,7 +36,9 @@ Exit run_trust(const TrustArguments& options) {
                                   : options.quiet  ? Progress::Show::never
                                                    : Progress::Show::on_terminal,
                                   &interrupt});
-  write_or_keep(trust_result(scene, runs), output);
+  Result result = trust_result(scene, runs);
+  result.attributes.emplace_back("command", options.command());
+  write_or_keep(result, output);
   fmt::print("{}", trust_table(runs));
   if (!options.quiet) fmt::print("wrote {}\n", output);
   return Exit::done;
@@ -47,7 +55,7 @@ void add_trust(CommandLine& program) {
                "digits to compare, 10 to 1000, the reference last; 16 is double, 31 double-double, others mpfr "
                "(default: rising until two runs agree)");
   command.flag("--both", options->both, "in absolute coordinates too");
-  command.option("-o,--output", options->output, "result file (default: the scene's name with -trust.h5)");
+  add_output_options(command, *options, "result file (default: the scene's name with -trust.h5)");
   command.does([options] { return run_trust(*options); });
 }
 

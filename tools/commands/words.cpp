@@ -13,8 +13,8 @@ namespace cradle::tools {
 
 namespace {
 
-struct WordsArguments {
-  std::string particles, word, masses, walls, output;
+struct WordsArguments : OutputOptions {
+  std::string particles, word, masses, walls;
   std::optional<std::string> at;
   std::uint64_t search = 0, digits = 30;
   bool quiet = false;
@@ -49,12 +49,14 @@ Exit run_words(const WordsArguments& options) {
   const std::string output = !options.output.empty() ? options.output
                              : options.word.empty()  ? "words-" + options.particles + ".h5"
                                                      : options.word + ".h5";
+  const auto check = [&] { check_overwrite(output, command_of(options), nullptr, options.force()); };
   std::vector<WordReport> reports;
   std::size_t tried = 1;
   if (!options.word.empty()) {
     try {
       const words::Word word = words::read_word(options.word, particles.gaps());
       const FileClaim claim(output);
+      check();
       reports.push_back(report_word(particles, word, restitution(options.at)));
     } catch (const words::BadWord& bad) {
       throw Error({"", 0, "WORD"}, bad.what(), bad.found, bad.advice);
@@ -62,6 +64,7 @@ Exit run_words(const WordsArguments& options) {
     fmt::print("{}", word_text(particles, reports.back()));
   } else {
     const FileClaim claim(output);
+    check();
     tried = 0;
     fmt::print("{}\n{:<14} {:<18} {:<18}  {:<9} {:<23}  upper end\n", particles.text(), "word", "r from", "to",
                "existence", "stable (seen)");
@@ -92,7 +95,7 @@ void add_words(CommandLine& program) {
   command.option("--search", options->search, {2, 16}, "all words up to so many letters instead of one");
   command.option("--digits", options->digits, {10, 250}, "digits to which ends are proved (default: 30)");
   command.flag("--quiet", options->quiet, "no message about the file");
-  command.option("-o,--output", options->output, "result file (default: WORD.h5, or words-N.h5)");
+  add_output_options(command, *options, "result file (default: WORD.h5, or words-N.h5)");
   command.does([options] { return run_words(*options); });
 }
 

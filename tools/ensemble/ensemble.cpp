@@ -158,7 +158,7 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
   const Exit failed = crew.together([&] {
     check_digits(study);
     store.emplace(study, file);
-    if (crew.rank() == 0) account = store->load();
+    if (crew.rank() == 0) account = store->load(options.force);
   });
   if (failed != Exit::done) {
     EnsembleOutcome none;

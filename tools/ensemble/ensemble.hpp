@@ -18,6 +18,7 @@ struct EnsembleOptions {
   ReplicaRange replicas;  // of every point: initial.replica of the runs
   unsigned threads = 0;   // of each rank; 0: one per processor
   ProgressLine::Show progress = ProgressLine::Show::on_terminal;
+  Force force = Force::no;                               // begin anew, and replace what is there
   std::uint64_t journal_bytes = std::uint64_t{1} << 26;  // a larger journal is rewritten as statistics
   /// Runs the scene of one replica. If it throws, that replica has failed.
   std::function<RunOutcome(const Scene&, const RunOptions&)> runner = run_scene;

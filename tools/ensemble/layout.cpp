@@ -50,6 +50,7 @@ Scene replica_scene(const Scene& scene, std::uint64_t index) {
   if (!scene.output.every_replica) replica.output.snapshots.clear();
   replica.output.masses.clear();
   replica.output.events = false;
+  replica.output.word.reset();
   return replica;
 }
 
@@ -86,7 +87,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
     for (const Column& column : table.columns)
       if (column.rows() > 0)
         bins.push_back(column);
-      else if (!column.name.ends_with("_error"))  // of one run; the replicas have one of their own
+      else if (!column.name.ends_with("_sem"))  // of one run; the replicas have one of their own
         add(column, group, bins.front().rows());
   };
   const auto add_at = [&](const std::optional<Group>& table, const char* folder, const std::vector<double>& at) {
@@ -94,8 +95,8 @@ ReplicaLayout replica_layout(const Scene& scene) {
       add_binned(table.value(), fmt::format("{}/{:04}", folder, k), {{"time", at[k]}});
   };
   add_at(tables.profile, "profiles", times.profiles);
-  add_at(tables.structure_at, "structure_at", times.structure);
-  add_at(tables.pair_distribution_at, "pair_distribution_at", times.pair_distribution);
+  add_at(tables.structure, "structure", times.structure);
+  add_at(tables.pair_distribution, "pair_distribution", times.pair_distribution);
   if (tables.zone)
     add_binned(*tables.zone, "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
   const Output& output = scene.output;
@@ -106,8 +107,8 @@ ReplicaLayout replica_layout(const Scene& scene) {
   for (const Group& table : tables.histograms)
     add_binned(table, table.name, {{"from", output.counting.from.value}, {"until", output.counting.until.value}});
   add_mean(tables.correlations, output.correlations);
-  add_mean(tables.structure, output.structure);
-  add_mean(tables.pair_distribution, output.pair_distribution);
+  add_mean(tables.structure_average, output.structure);
+  add_mean(tables.pair_distribution_average, output.pair_distribution);
   layout.numbers.push_back({"energy", "m l^2/t^2", "kinetic energy at the end", {}});
   if (stops_at_collapse(scene))
     layout.numbers.push_back({collapse_time, "t", "time of inelastic collapse; NaN: there was none", {}});

@@ -133,12 +133,21 @@ template <Real T> std::shared_ptr<const cradle::Particles<T>> particles_without_
 
 template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initial& initial) {
   if (!wall.position) return {};
-  return Wall<T>{number<T>(*wall.position),
-                 number<T>(wall.speed),
-                 wall.temperature ? T(1) : number<T>(wall.restitution),
-                 wall.temperature ? wall.temperature->value : 0,
-                 initial.seed,
-                 initial.replica};
+  Wall<T> made{number<T>(*wall.position),
+               number<T>(wall.speed),
+               wall.temperature ? T(1) : number<T>(wall.restitution),
+               wall.temperature ? wall.temperature->value : 0,
+               initial.seed,
+               initial.replica};
+  if (wall.shaken()) {
+    const Shape shape = wall.motion == scene::Motion::sawtooth   ? Shape::sawtooth
+                        : wall.motion == scene::Motion::parabola ? Shape::parabola
+                                                                 : Shape::sine;
+    made.motion = std::make_shared<const WallMotion<T>>(shape, number<T>(wall.amplitude), number<T>(wall.frequency),
+                                                        number<T>(wall.phase));
+  }
+  if (wall.rest_speed) made.rest_speed = number<T>(*wall.rest_speed);
+  return made;
 }
 
 }  // namespace detail

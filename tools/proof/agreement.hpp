@@ -16,11 +16,19 @@
 //   - particles of different masses bounce: then sum m_k delta_k^2 does not grow. What shifts all by delta is M delta^2
 //     there, hence |delta_k| <= delta sqrt(M/m_k), and u = sqrt(2 E_0/m_min).
 //
+// A reflecting wall multiplies a particle's errors, counted from its own line, by its restitution, at most 1: it is a
+// particle of infinite mass without errors. What walls give makes u larger: u is then the largest speed that a particle
+// has had from a wall, or sqrt(2 (E_0 + G)/m_min), G the energy given without that taken. A thermal wall is not linear:
+// it gives its own speed, but the time of the collision has errors, so that places have. Each collision with a wall
+// adds to its account, of speeds w and w' that are at most 2 u and off by Delta u, a momentum m (w + w') and energies
+// m (w + w') V, m (w^2 - w'^2)/2: with room for the rounding of these terms they are off by 4 M Delta u and 4 M u Delta
+// u.
+//
 // Energies: sqrt(2 E_0 M) Delta u + M (Delta u)^2/2 from the velocities and Delta E_0 from the sums. The time of a
-// collision with closing speed w: what its particles' places are off at that time, over w. Wet particles are not
-// linear: what they make of an error shows in the radii of balls, which grow as it does from roundings of at least the
-// type of their midpoints; so many times wider than that as the run's type is coarser, for each particle held, is
-// allowed on top.
+// collision with closing speed w: what its particles' places are off at that time, over w. Wet particles,
+// restitutions r(w) and thermal walls are not linear: what they make of an error shows in the radii of balls, which
+// grow as it does from roundings of at least the type of their midpoints; so many times wider than that as the run's
+// type is coarser, for each particle held, is allowed on top.
 #pragma once
 
 #include <fmt/format.h>
@@ -44,20 +52,26 @@ struct Disagreement {
 /// Up to which a run's numbers may be off.
 struct RunErrors {
   long double place = 0, speed = 0, energy = 0, mass = 0;
-  long double of_radius = 0;  // and so many radii of the proof
+  long double wall_energy = 0, wall_momentum = 0;  // for each collision with a wall
+  long double of_radius = 0;                       // and so many radii of the proof
 };
 
 /// Of a run in a type of this epsilon, `time` the largest that it has had to do with.
 inline RunErrors run_errors(const Sizes& of, std::uint64_t collisions, bool means, long double epsilon,
                             long double time, long double circumference) {
-  const long double mass = of.mass, twice_energy = 2 * static_cast<long double>(of.start_energy),
+  const long double mass = of.mass, twice_energy = 2 * (static_cast<long double>(of.start_energy) + of.wall_energy),
                     delta = 8 * epsilon * (static_cast<long double>(collisions + of.particles) + 64);
-  const long double fastest = means ? of.start_speed : std::sqrt(twice_energy / of.least_mass);
+  const long double fastest =
+      std::max<long double>(means ? of.start_speed : std::sqrt(twice_energy / of.least_mass), of.wall_speed);
   const long double grown = means ? 1 : std::sqrt(mass / of.least_mass), speed = delta * fastest;
   // Places were further out by as much as particles have flown.
   const long double extent = of.place + circumference + 2 * fastest * time;
-  return {grown * delta * (extent + fastest * time), grown * speed,
-          delta * twice_energy / 2 + speed * std::sqrt(twice_energy * mass) + speed * speed * mass / 2, delta * mass,
+  return {grown * delta * (extent + fastest * time),
+          grown * speed,
+          delta * twice_energy / 2 + speed * std::sqrt(twice_energy * mass) + speed * speed * mass / 2,
+          delta * mass,
+          4 * mass * grown * speed * fastest,
+          4 * mass * grown * speed,
           0};
 }
 

@@ -2,6 +2,7 @@
 // lie; or where it ends.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -23,6 +24,12 @@ struct Enclosed {
   long double radius = std::numeric_limits<long double>::infinity();
 };
 
+/// The account of a wall since the start.
+struct CertainWallSample {
+  std::uint64_t collisions = 0;
+  Enclosed given, lost;
+};
+
 /// What is certain at a time of the run.
 struct CertainSample {
   double time = 0;        // as the run has it
@@ -32,6 +39,8 @@ struct CertainSample {
   Enclosed energy;
   std::optional<Enclosed> front_left, front_right;
   double widest = 0, least_gap = 0, widest_of_gap = 0;  // powers of ten, see CertainState
+  std::array<std::optional<CertainWallSample>, 2> walls = {};
+  bool over = false;  // no particles approach each other any more
 };
 
 /// Where a proof ends (Doubt), as text.

@@ -41,6 +41,7 @@ template <Enclosing N> CertainLaw<N> certain_law(const Scene& scene) {
   }
   // To elastic particles a cut-off does nothing.
   if (!law.elastic && scene.law.cutoff > Decimal("0")) law.cutoff = number<N>(scene.law.cutoff);
+  if (!law.elastic && scene.law.cutoff_exponent) law.cutoff_exponent = number<N>(*scene.law.cutoff_exponent);
   if (!law.elastic && scene.run.collapse == tools::scene::CollapsePolicy::contact_time)
     law.contact_time = number<N>(scene.run.contact_time);
   return law;
@@ -54,6 +55,7 @@ template <class M> class CertifierIn final : public Certifier {
   CertifierIn(const Scene& scene, unsigned digits)
       : start_(number<N>(scene.run.start)), law_(certain_law<N>(scene)), particles_(initial_particles<N>(scene)),
         means_(law_.kind != Kind::merging && (law_.kind != Kind::inelastic || particles_->identical_masses())),
+        linear_(law_.linear() && !scene.walls.left.temperature && !scene.walls.right.temperature),
         checker_(particles_, law_) {
     certificate_.digits = digits;
     certificate_.digits_text = digits == 31 ? "double-double" : fmt::format("mpfr, {} digits", digits);
@@ -125,7 +127,7 @@ template <class M> class CertifierIn final : public Certifier {
     const long double since = std::abs(to_double(time)) + 2 * std::abs(to_double(start_));
     RunErrors errors = run_errors(state.sizes, proved.collisions, means_, sample.epsilon, since,
                                   to_double(particles_->circumference()));
-    if (law_.kind == Kind::wet)
+    if (!linear_)
       errors.of_radius = sample.epsilon / of_balls() * (static_cast<long double>(state.sizes.particles) + 64);
     Agreement<N> run(errors);
     run.count("collisions", sample.counts.collisions, proved.collisions);
@@ -139,6 +141,8 @@ template <class M> class CertifierIn final : public Certifier {
     run.number("energy", sample.energy, state.energy, errors.energy);
     run.place("front_left", sample.front_left, state.front_left);
     run.place("front_right", sample.front_right, state.front_right);
+    compare_wall(sample.walls[0], state.walls[0], "left", run);
+    compare_wall(sample.walls[1], state.walls[1], "right", run);
     if (asked.of_snapshots) compare_particles(sample.particles, time, run);
     if (const auto& broken = run.broken())
       certificate_.doubt = ReportedDoubt{Check::agreement,
@@ -151,6 +155,16 @@ template <class M> class CertifierIn final : public Certifier {
                                          broken->of_proof,
                                          broken->bound,
                                          broken->quantity};
+  }
+  static void compare_wall(const SampledWall& of_run, const CertainAccount<N>& proved, const char* which,
+                           Agreement<N>& run) {
+    const auto name = [&](const char* what) { return fmt::format("{} {} wall", what, which); };
+    const long double collisions = static_cast<long double>(proved.collisions);
+    run.count(name("collisions with the"), of_run.collisions, proved.collisions);
+    run.number(name("energy given by the"), of_run.given, proved.given, collisions * run.errors().wall_energy);
+    run.number(name("momentum given by the"), of_run.momentum, proved.momentum,
+               collisions * run.errors().wall_momentum);
+    run.number(name("energy lost in the"), of_run.dissipated, proved.dissipated, collisions * run.errors().wall_energy);
   }
   static long double time_error(const RunErrors& errors, long double since, const CertainState<N>& state) {
     const auto closing = static_cast<long double>(state.closing.least_size());
@@ -186,11 +200,26 @@ template <class M> class CertifierIn final : public Certifier {
   }
 
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
-    CertainSample proved_sample{
-        sample.time, asked.time.text, asked.of_series, checker_.proved().collisions, enclosed(state.energy), {},
-        {},          state.widest,    state.least_gap, state.widest_of_gap};
+    CertainSample proved_sample{sample.time,
+                                asked.time.text,
+                                asked.of_series,
+                                checker_.proved().collisions,
+                                enclosed(state.energy),
+                                {},
+                                {},
+                                state.widest,
+                                state.least_gap,
+                                state.widest_of_gap,
+                                {},
+                                state.over};
     if (state.front_left) proved_sample.front_left = enclosed(*state.front_left);
     if (state.front_right) proved_sample.front_right = enclosed(*state.front_right);
+    for (const End end : {End::left, End::right}) {
+      const auto k = static_cast<std::size_t>(end);
+      if (particles_->wall(end) == nullptr) continue;
+      const CertainAccount<N>& wall = state.walls[k];
+      proved_sample.walls[k] = {wall.collisions, enclosed(wall.given), enclosed(wall.dissipated)};
+    }
     certificate_.samples.push_back(std::move(proved_sample));
   }
 
@@ -253,7 +282,8 @@ template <class M> class CertifierIn final : public Certifier {
   N start_;
   CertainLaw<N> law_;
   std::shared_ptr<const cradle::Particles<N>> particles_;
-  bool means_;  // velocities after a collision are means of those before
+  bool means_;   // velocities after a collision are means of those before, or those that walls give
+  bool linear_;  // and places and velocities linear functions of them
   Checker<N> checker_;
   Certificate certificate_;
   std::size_t snapshots_ = 0;  // that the run has taken

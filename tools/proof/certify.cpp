@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -37,25 +38,29 @@ std::vector<unsigned> rising_digits() {
 #endif
 }
 
+std::optional<NotProvable> not_provable(const Scene& scene) {
+  constexpr const char* compare_precisions = "compare precisions with `cradle trust` instead";
+  if (scene.initial.type == InitialType::clusters)
+    return {{"initial.type", "no collisions to prove", "clusters, a model", "give a scene of particles"}};
+  if (!law_row(scene).provable)
+    return {{"law.type", "no proof of this law", value_text(*find_field("law.type", scene), scene).value(),
+             compare_precisions}};
+  if (scene.walls.shaken())
+    return {{scene.walls.left.shaken() ? "walls.left.motion" : "walls.right.motion", "shaken walls are not provable",
+             "a shaken wall", compare_precisions}};
+  if (const auto& left = scene.walls.left.rest_speed; left || scene.walls.right.rest_speed)
+    return {{left ? "walls.left.rest_speed" : "walls.right.rest_speed", "rest on a wall is not provable",
+             (left ? left : scene.walls.right.rest_speed)->text, compare_precisions}};
+  // Between a particle that falls and a wall that it falls away from the gap is not concave (core/README.md).
+  if (scene.gravity.acts())
+    return {{"gravity.acceleration", "gravity is not provable", scene.gravity.acceleration->text, compare_precisions}};
+  return {};
+}
+
 void check_certifiable(const Scene& scene) {
   check_built(scene);
-  if (scene.initial.type == InitialType::clusters)
-    throw Error({"", 0, "initial.type"}, "no collisions to prove", "clusters, a model", "give a scene of particles");
-  if (!law_row(scene).provable)
-    throw Error({"", 0, "law.type"}, "no proof of this law", value_text(*find_field("law.type", scene), scene).value(),
-                "compare precisions with `cradle trust` instead");
-  if (scene.walls.any())
-    throw Error({"", 0, scene.walls.left.position ? "walls.left.position" : "walls.right.position"},
-                "collisions with walls cannot be proved yet", "a wall",
-                "compare precisions with `cradle trust` instead");
-  if (scene.gravity.acts())
-    throw Error({"", 0, "gravity.acceleration"}, "particles under gravity cannot be proved yet",
-                scene.gravity.acceleration->text, "compare precisions with `cradle trust` instead");
-  if (scene.law.cutoff_exponent)
-    throw Error({"", 0, "law.cutoff_exponent"}, "no proof of a restitution that depends on the speed",
-                scene.law.cutoff_exponent->text,
-                "remove it (a cut-off that sets in at once can be proved), or see `cradle trust` for what rising "
-                "precision says");
+  if (const auto reason = not_provable(scene))
+    throw Error({"", 0, reason->key}, reason->what, reason->found, reason->instead);
 }
 
 namespace {
@@ -156,6 +161,7 @@ std::string Certified::not_proved() const {
 }
 
 Certified certify(const Scene& requested, const CertifyOptions& options) {
+  check_certifiable(requested);
   Scene scene = requested;
   std::vector<Attempt> attempts;
   // One of them checks what the others propose.
@@ -228,6 +234,16 @@ std::string certificate_text(const Certified& run) {
       text += fmt::format(", smallest gap 1e{:.1f}, gaps known to 1e{:.1f} of themselves", last.least_gap,
                           last.widest_of_gap);
     text += '\n';
+    for (const End end : {End::left, End::right})
+      if (const auto& wall = last.walls[static_cast<std::size_t>(end)]) {
+        const bool left = end == End::left;
+        const WallAt& of = left ? run.scene.walls.left : run.scene.walls.right;
+        text += fmt::format("  walls     {}: {} collisions", left ? "left" : "right", wall->collisions);
+        if (of.temperature || of.speed != Decimal("0")) text += fmt::format(", energy given {}", shown(wall->given));
+        text += '\n';
+      }
+    if (run.proved() && last.over)
+      text += "  after it  no particles approach each other: there are no more collisions\n";
   }
   for (const Attempt& a : run.attempts)
     text += fmt::format("  {:.1f} s in {} and {}: {}\n", a.seconds, a.precision, a.digits,
@@ -246,9 +262,8 @@ struct Bounds {
     low.push_back(x ? x->doubles.low : none), high.push_back(x ? x->doubles.high : none);
     low_text.push_back(x ? x->decimals.low : "nan"), high_text.push_back(x ? x->decimals.high : "nan");
   }
-  void put(Group& doubles, Group& exact, const std::string& name, const std::string& unit) const {
-    const std::string what =
-        name == "energy" ? "kinetic energy" : "position of the outermost particle that has collided";
+  void put(Group& doubles, Group& exact, const std::string& name, const std::string& unit,
+           const std::string& what) const {
     doubles.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", rounded down", low});
     doubles.columns.push_back({name + "_high", unit, "upper bound of the " + what + ", rounded up", high});
     exact.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", all digits known", low_text});
@@ -271,6 +286,7 @@ Result certified_result(Certified run) {
                      {"precision", precision_name(run.scene.run)},
                      {"digits", std::uint64_t{c.digits}},
                      {"collisions_in_doubles", c.in_doubles},
+                     {"over", std::uint64_t{run.proved() && !c.samples.empty() && c.samples.back().over}},
                      {"scene_checksum", fmt::format("{:016x}", crc64(effective_toml(run.scene)))}},
                     {}};
   Group of_series{"series", {}, {}}, exact{"exact/series", {}, {}};
@@ -278,12 +294,15 @@ Result certified_result(Certified run) {
   std::vector<std::string> time_text;
   std::vector<std::uint64_t> collisions;
   Bounds energy, left, right;
+  std::array<Bounds, 2> given, lost;
   for (const CertainSample& s : c.samples) {
     time.push_back(s.time), collisions.push_back(s.collisions);
     widest.push_back(s.widest), gap.push_back(s.least_gap), of_gap.push_back(s.widest_of_gap);
     if (!s.of_series) continue;
     sampled.push_back(s.time), time_text.push_back(s.time_text);
     energy.add(s.energy), left.add(s.front_left), right.add(s.front_right);
+    for (std::size_t k = 0; k < s.walls.size(); ++k)
+      if (const auto& wall = s.walls[k]) given[k].add(wall->given), lost[k].add(wall->lost);
   }
   exact.columns.push_back({"time", "t", "of the sample", time_text});
   certificate.columns = {{"time", "t", "up to which the run is proved", time},
@@ -299,9 +318,20 @@ Result certified_result(Certified run) {
     of_series = {
         own == result.groups.end() ? "series" : "certificate/series", {}, {{"time", "t", "of the sample", sampled}}};
   Group& doubles = joined ? *own : of_series;
-  energy.put(doubles, exact, "energy", "m l^2/t^2");
-  left.put(doubles, exact, "front_left", "l");
-  right.put(doubles, exact, "front_right", "l");
+  const char* const of_energy = "m l^2/t^2";
+  const std::string front = "position of the outermost particle that has collided";
+  energy.put(doubles, exact, "energy", of_energy, "kinetic energy");
+  left.put(doubles, exact, "front_left", "l", front);
+  right.put(doubles, exact, "front_right", "l", front);
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const std::string which = k == 0 ? "left" : "right";
+    const WallAt& wall = k == 0 ? run.scene.walls.left : run.scene.walls.right;
+    if (!wall.position) continue;
+    given[k].put(doubles, exact, "wall_" + which + "_energy", of_energy,
+                 "energy that the " + which + " wall has given");
+    if (wall.dissipates())
+      lost[k].put(doubles, exact, "wall_" + which + "_lost", of_energy, "energy lost in the " + which + " wall");
+  }
   result.groups.push_back(std::move(exact));
   result.groups.push_back(std::move(certificate));
   if (!joined) result.groups.push_back(std::move(of_series));

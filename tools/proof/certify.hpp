@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,11 +52,19 @@ struct Certified {
   std::string not_proved() const;
 };
 
-/// Throws Error for a scene that has no collisions to prove.
+/// What of a scene has no proof: the key, what it is, what was found there, and what to do instead.
+struct NotProvable {
+  const char *key, *what;
+  std::string found;
+  const char* instead;
+};
+/// The first reason why a scene cannot be proved; nothing if it can.
+std::optional<NotProvable> not_provable(const Scene& scene);
+/// Throws Error for a scene that cannot be proved.
 void check_certifiable(const Scene& scene);
 
-/// Throws Error for a scene that cannot be run, where it is interrupted, and where the run in no precision has the
-/// numbers that are proved of it (Exit::lost), which no scene can bring about.
+/// Throws Error for a scene that cannot be run or proved, where it is interrupted, and where the run in no precision
+/// has the numbers that are proved of it (Exit::lost), which no scene can bring about.
 Certified certify(const Scene& scene, const CertifyOptions& options);
 
 /// A report that can be quoted.

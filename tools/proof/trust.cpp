@@ -59,15 +59,7 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
   scene.run.precision = digits == 16 ? Precision::double_ : digits == 31 ? Precision::double_double : Precision::mpfr;
   scene.run.digits = scene.run.precision == Precision::mpfr ? digits : 0;
   scene.run.coordinates = coordinates;
-  scene.output.events = false;
-  scene.output.snapshots.clear();
-  scene.output.profiles.times.clear();
-  scene.output.averages = {};
-  scene.output.histograms.clear();
-  scene.output.correlations = {};
-  scene.output.structure = {};
-  scene.output.pair_distribution = {};
-  return scene;
+  return without_tables(std::move(scene));
 }
 
 unsigned digits_of(const Run& run) { return run.precision == Precision::mpfr ? static_cast<unsigned>(run.digits) : 31; }
@@ -176,6 +168,7 @@ ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const Trus
   constexpr std::uint64_t few = 1'000'000;
   const unsigned most = reference.outcome.collisions < few ? 1000 : digits_of(reference.scene.run);
   ProvedTrace proof;
+  if (not_provable(scene)) return proof;
   CertifyOptions how{rising_digits(), options.progress, options.interrupt, {}};
   std::erase_if(how.digits, [&](unsigned digits) { return digits > std::max(most, 31U); });
   how.make = [&](const Scene& of, unsigned digits) {

@@ -47,7 +47,7 @@ template <Real T> class Moment {
     StickyGas<T> sticky(particles_, start_);  // a new one: the result must not depend on earlier samples
     sticky.advance(state.time);
     const T energy = particles_->kinetic_energy();
-    return T(T(energy - run_.energy_lost()) - (energy - sticky.energy_lost()));
+    return T(T(energy - run_.energy_lost(state.time)) - (energy - sticky.energy_lost()));
   }
 
  private:

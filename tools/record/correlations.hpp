@@ -36,12 +36,12 @@ template <Real T, class Measure> class PlaceRecorder {
   template <class Put> void add(const T& time, Put put) {
     if (holds(averaged_, time)) means_.add(found_);
     if (holds(at_, time))
-      put(at_time(table_(fmt::format("{}_at/{:04}", name_, written_++), scene_), to_double(time), found_));
+      put(at_time(table_(fmt::format("{}/{:04}", name_, written_++), scene_), to_double(time), found_));
   }
   /// The average, if it has samples; `partial`: before it has all of them, too.
   std::optional<Group> average(bool partial) const {
     if (means_.samples() == 0 || !(partial || means_.complete())) return {};
-    return averaged(table_(name_, scene_), means_, wanted_);
+    return averaged(table_(name_ + "_average", scene_), means_, wanted_);
   }
 
   static auto state(auto& self) { return std::tie(self.written_, self.means_); }

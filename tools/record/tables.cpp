@@ -126,7 +126,7 @@ Group averages_table() {
        {"heat_current", "m l^2/t^3", "energy through such a point per time, in its frame"}}};
   for (const auto& [name, unit, text] : quantities) {
     table.columns.push_back({name, unit, text, {}});
-    table.columns.push_back({std::string(name) + "_error", unit, "standard error", {}});
+    table.columns.push_back({std::string(name) + "_sem", unit, "standard error", {}});
   }
   return table;
 }
@@ -147,17 +147,17 @@ Group correlations_table(const Scene& scene) {
   return {"correlations",
           {},
           {{"lag", "t", "time between the two states", std::move(lags)},
-           {"mean_square_displacement", "l^2", "of a tagged particle, not folded on rings", {}},
-           {"mean_square_displacement_error", "l^2", "standard error", {}},
-           {"velocity_autocorrelation", "l^2/t^2", "mean product of the two velocities of a tagged particle", {}},
-           {"velocity_autocorrelation_error", "l^2/t^2", "standard error", {}}}};
+           {"msd", "l^2", "mean-square displacement of a tagged particle, not folded on rings", {}},
+           {"msd_sem", "l^2", "standard error", {}},
+           {"vacf", "l^2/t^2", "velocity autocorrelation: mean product of the two velocities of a tagged particle", {}},
+           {"vacf_sem", "l^2/t^2", "standard error", {}}}};
 }
 
 Group structure_table(const std::string& name, const Scene& scene) {
   return {name,
           {},
           {{"k", "1/l", "wave number, 2 pi n/length", structure_factor(scene).wave_numbers()},
-           {"structure_factor", "1", "|sum m exp(ikx)|^2/sum m^2; 1 at independent places", {}}}};
+           {"s", "1", "structure factor, |sum m exp(ikx)|^2/sum m^2; 1 at independent places", {}}}};
 }
 
 Group pair_distribution_table(const std::string& name, const Scene& scene) {
@@ -177,6 +177,15 @@ Group events_table() {
            {"interval", "t", "time since the collision before", {}},
            {"closing_speed", "l/t", "closing speed before the collision", {}},
            {"kind", "1", "0 by the law, 1 below the cut-off or within the contact time, 2 merged", {}, 1, true}}};
+}
+
+Group sequence_table() {
+  return {"sequence",
+          {},
+          {{"letters", "1", "gaps from the left that close one after the other", {}},
+           {"repeats", "1", "how often these letters follow each other", {}},
+           {"first", "1", "number of the first of these collisions, from 0", {}},
+           {"time", "t", "time of that collision, rounded", {}}}};
 }
 
 Group initial_table() {
@@ -220,7 +229,7 @@ Group with_bins(Group histogram, const OctaveBins& bins) {
 
 Group with_error(Group table) {
   const Column& of = table.columns.back();
-  table.columns.push_back({of.name + "_error", of.unit, "standard error", {}});
+  table.columns.push_back({of.name + "_sem", of.unit, "standard error", {}});
   return table;
 }
 
@@ -386,12 +395,12 @@ RunTables run_tables(const Scene& scene) {
   if (scene.output.correlations.every) tables.correlations = correlations_table(scene);
   const auto places = [&](const PlaceTimes& wanted, const std::string& name, const auto& table,
                           std::optional<Group>& mean, std::optional<Group>& at) {
-    if (wanted.every) mean = with_error(table(name, scene));
-    if (!wanted.times.empty()) at = table(name + "_at", scene);
+    if (wanted.every) mean = with_error(table(name + "_average", scene));
+    if (!wanted.times.empty()) at = table(name, scene);
   };
-  places(scene.output.structure, "structure", structure_table, tables.structure, tables.structure_at);
-  places(scene.output.pair_distribution, "pair_distribution", pair_distribution_table, tables.pair_distribution,
-         tables.pair_distribution_at);
+  places(scene.output.structure, "structure", structure_table, tables.structure_average, tables.structure);
+  places(scene.output.pair_distribution, "pair_distribution", pair_distribution_table, tables.pair_distribution_average,
+         tables.pair_distribution);
   if (scene.output.scenario)
     for (auto& [name, value] : scenario_numbers({})) tables.summary.push_back(name);
   return tables;

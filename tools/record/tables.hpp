@@ -34,7 +34,7 @@ struct RunTables {
   std::optional<Group> averages;  // with its bins
   std::vector<Group> histograms;  // with their bins
   // With their lags, wave numbers and distances.
-  std::optional<Group> correlations, structure, structure_at, pair_distribution, pair_distribution_at;
+  std::optional<Group> correlations, structure_average, structure, pair_distribution_average, pair_distribution;
   std::vector<std::string> summary;  // names of RunOutcome::summary
 };
 /// Throws Error if the extent of the zone is unknown.
@@ -59,6 +59,8 @@ Group correlations_table(const Scene& scene);
 Group structure_table(const std::string& name, const Scene& scene);
 Group pair_distribution_table(const std::string& name, const Scene& scene);
 Group events_table();
+/// The collisions as letters (output.word).
+Group sequence_table();
 /// The initial state of the particles that events refer to.
 Group initial_table();
 /// The tables of the model of two clusters.

@@ -1,9 +1,11 @@
 #include "cradle/tools/result/csv.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/errors.hpp"
@@ -39,9 +41,34 @@ const std::string* scene_in(const std::vector<Attribute>& attributes) {
   return nullptr;
 }
 
+// The folder holds a list of what was written there, which begins with the name of the result: so that another export
+// of it leaves nothing of this one behind.
+constexpr const char* list_of_files = "files.txt";
+
+bool can_be_ours(const std::filesystem::path& name) {
+  const bool inside = name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
+  return inside && (name.extension() == ".csv" || name.filename() == "scene.toml");
+}
+
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {}
+
+  // Removes what was exported here before from the result of this name. Throws Error (Exit::bad_input) if there is
+  // something else among `names`, which are about to be written.
+  void clear(const std::string& of, const std::vector<std::string>& names, bool forced) {
+    heading_ = "exported from " + of;
+    std::ifstream list(path_ / list_of_files);
+    std::string line;
+    const bool exported = static_cast<bool>(std::getline(list, line));
+    if (!forced && exported && line != heading_) refuse(line);
+    std::error_code none;
+    if (!forced && !exported)
+      for (const std::string& name : names)
+        if (std::filesystem::exists(path_ / name, none)) refuse(name);
+    while (std::getline(list, line))
+      if (can_be_ours(line)) std::filesystem::remove(path_ / line, none);
+  }
 
   void write(const std::string& name, const std::string& text) {
     const std::filesystem::path file = path_ / name;
@@ -49,13 +76,24 @@ class Folder {
     std::filesystem::create_directories(file.parent_path(), error);
     // The same command makes the file again, so there is no need to wait for the disk.
     replace_file(file.string(), text, Sync::no);
+    names_.push_back(name);
     written_.push_back(file.string());
   }
-  std::vector<std::string> written() && { return std::move(written_); }
+  std::vector<std::string> written() && {
+    replace_file((path_ / list_of_files).string(), fmt::format("{}\n{}\n", heading_, fmt::join(names_, "\n")),
+                 Sync::no);
+    return std::move(written_);
+  }
 
  private:
+  [[noreturn]] void refuse(const std::string& found) const {
+    throw Error({path_.string(), 0, ""}, "a folder with other files", found,
+                "give another --to DIR, or --force to replace them");
+  }
+
   std::filesystem::path path_;
-  std::vector<std::string> written_;
+  std::string heading_;
+  std::vector<std::string> names_, written_;
 };
 
 }  // namespace
@@ -87,8 +125,12 @@ std::string csv(const Group& group) {
   return text;
 }
 
-std::vector<std::string> export_csv(const Result& result, const std::string& folder) {
+std::vector<std::string> export_csv(const Result& result, const std::string& folder, const std::string& of,
+                                    bool forced) {
   Folder files(folder);
+  std::vector<std::string> names{"scene.toml"};
+  for (const Group& group : result.groups) names.push_back(group.name + ".csv");
+  files.clear(of, names, forced);
   if (const auto* scene = scene_in(result.attributes)) files.write("scene.toml", comments(result.attributes) + *scene);
   for (const Group& group : result.groups) {
     files.write(group.name + ".csv", csv(group));

@@ -21,6 +21,9 @@ bool same(std::uint64_t a, std::uint64_t b) { return a == b; }
 
 bool same(const std::string& a, const std::string& b) { return a == b; }
 
+// Numbers further apart are not those of one computation: their distance in ULPs says nothing.
+constexpr std::uint64_t most_ulps = 1'000'000;
+
 // |a - b| divided by the larger of |a| and |b|; infinite if a number is infinite or NaN.
 double relative(double a, double b) {
   if (a == b) return 0;
@@ -37,7 +40,9 @@ double relative(const std::string&, const std::string&) { return std::numeric_li
 std::string size_of(const std::string&, const std::string&) { return ""; }
 std::string size_of(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return "";
-  return fmt::format(" ({} ULPs, {:.2g} relative)", ulps_between(a, b), relative(a, b));
+  const std::uint64_t ulps = ulps_between(a, b);
+  return ulps <= most_ulps ? fmt::format(" ({} ULPs, {:.2g} relative)", ulps, relative(a, b))
+                           : fmt::format(" ({:.2g} relative)", relative(a, b));
 }
 std::string size_of(std::uint64_t a, std::uint64_t b) {
   return fmt::format(" (by {})", std::max(a, b) - std::min(a, b));
@@ -101,7 +106,10 @@ class Comparison {
   Differences result() && { return std::move(found_); }
 
  private:
-  void report(const std::string& where, const std::string& what) { found_.lines.push_back(where + ": " + what); }
+  void report(const std::string& where, const std::string& what, std::optional<double> size = {}) {
+    if (size && !std::isfinite(*size)) size.reset();
+    found_.found.push_back({where, what, size});
+  }
 
   template <class Number> bool differ(const Number& a, const Number& b) {
     ++found_.numbers;
@@ -124,7 +132,7 @@ class Comparison {
     }
   }
   template <class Number> void number(const std::string& where, Number a, Number b) {
-    if (differ(a, b)) report(where, fmt::format("{} against {}{}", shown(a), shown(b), size_of(a, b)));
+    if (differ(a, b)) report(where, fmt::format("{} against {}{}", shown(a), shown(b), size_of(a, b)), relative(a, b));
   }
 
   template <class Number>
@@ -145,7 +153,7 @@ class Comparison {
                                    shown(b[*first]), size_of(a[*first], b[*first]));
     if (count > 1) line += fmt::format("; {} of {} numbers differ", count, both);
     if (count > 1 && std::isfinite(largest)) line += fmt::format(", by up to {:.2g} relative", largest);
-    report(where, line);
+    report(where, line, largest);
   }
 
   const std::string &first_, &second_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,14 @@
 
 namespace cradle::tools {
 
+struct Difference {
+  std::string place;           // "@outcome", "series/energy", "snapshots/0000@time"
+  std::string what;            // the first difference there and its size, and how many more there are
+  std::optional<double> size;  // the largest of its numbers, relative; nothing if one of them is infinite or NaN
+};
+
 struct Differences {
-  /// One line each: the place, the first difference there and its size, and how many more there are.
-  std::vector<std::string> lines;
+  std::vector<Difference> found;
   std::uint64_t numbers = 0;    // compared
   std::uint64_t tolerated = 0;  // different, but within the tolerance
 };

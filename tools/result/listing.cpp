@@ -31,7 +31,7 @@ std::string quantities(const Result& result, const std::string& group) {
 std::string first_and_last(const Column& column) {
   return std::visit(
       [&](const auto& v) {
-        return v.empty() ? std::string() : fmt::format("  {:<22}{} to {}\n", column.name, v.front(), v.back());
+        return v.empty() ? std::string() : fmt::format("  {:<21} {} to {}\n", column.name, v.front(), v.back());
       },
       column.values);
 }
@@ -63,7 +63,7 @@ std::string listing(const Result& result, const std::string& file, bool all) {
   std::string lines;
   for (const auto& [name, value] : result.attributes)
     if (name != "scene" && (all || value != decltype(value){std::uint64_t{0}}))
-      lines += fmt::format("{:<24}{}\n", name, text(value));
+      lines += fmt::format("{:<23} {}\n", name, text(value));
   lines += listing(scene, all);
   for (const auto& group : result.groups)
     if (all || !is_detail(group)) lines += listing(result, group);

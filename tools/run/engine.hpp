@@ -37,10 +37,10 @@ template <Real T> class Engine {
 
   virtual const Counts& counts() const = 0;
   virtual const Account<T>& account() const = 0;
-  virtual T energy_lost() const = 0;
+  virtual T energy_lost(const T& time) const = 0;
   virtual T kinetic_energy(const T& time) const = 0;
   virtual bool falls() const = 0;
-  virtual WallTallies<T> wall_tallies() const = 0;
+  virtual WallTallies<T> wall_tallies(const T& time) const = 0;
   virtual T last_collision_time() const = 0;
   virtual const CollapseReport<T>* collapse() const = 0;  // null if no collisions are made
 
@@ -92,10 +92,10 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
 
   const Counts& counts() const override { return run_.counts(); }
   const Account<T>& account() const override { return run_.account(); }
-  T energy_lost() const override { return run_.energy_lost(); }
+  T energy_lost(const T& time) const override { return run_.energy_lost(time); }
   T kinetic_energy(const T& time) const override { return run_.kinetic_energy(time); }
   bool falls() const override { return Run::falls(); }
-  WallTallies<T> wall_tallies() const override { return cradle::wall_tallies(run_); }
+  WallTallies<T> wall_tallies(const T& time) const override { return cradle::wall_tallies(run_, time); }
   T last_collision_time() const override { return run_.last_collision_time(); }
   const CollapseReport<T>* collapse() const override {
     if constexpr (has_chain)

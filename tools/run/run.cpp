@@ -8,6 +8,7 @@
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/support/version.hpp"
+#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
@@ -78,10 +79,27 @@ PlannedTimes planned_times(const Scene& scene) {
   return in_precision<PlannedTimes>(scene, [&]<class T>(std::type_identity<T>) { return planned_in<T>(scene); });
 }
 
+Scene without_tables(Scene scene) {
+  Output& output = scene.output;
+  output.events = false;
+  output.word.reset();
+  output.snapshots.clear();
+  output.profiles.times.clear();
+  output.masses.clear();
+  output.averages = {};
+  output.histograms.clear();
+  output.correlations = {};
+  output.structure = {};
+  output.pair_distribution = {};
+  return scene;
+}
+
 RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
   check_built(scene);
   if (scene.initial.type == InitialType::clusters) return run_clusters(scene, options);
-  return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, options); });
+  RunOptions how = options;
+  if (how.progress != Progress::Show::never) how.predictable = !expected_cost(scene).collapse;
+  return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, how); });
 }
 
 }  // namespace cradle::tools

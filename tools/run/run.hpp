@@ -27,6 +27,7 @@ struct RunOptions {
   Interrupt* interrupt = nullptr;   // says whether to stop; heeded once there is something to keep
   Workers workers = {};             // for a run that is cut into segments
   RunStore* store = nullptr;        // stores the rows safely; without one the result has them
+  bool predictable = true;          // whether the pace so far says how long the rest takes; run_scene decides
 };
 
 struct RunOutcome {
@@ -60,6 +61,9 @@ struct PlannedTimes {
   double until = 0;
 };
 PlannedTimes planned_times(const Scene& scene);
+
+/// The scene without tables that are only written: it makes the same collisions, and its series is the same.
+Scene without_tables(Scene scene);
 
 /// Runs the scene in its precision, coordinates and law. Throws Error for what this build cannot do.
 RunOutcome run_scene(const Scene& scene, const RunOptions& options);

@@ -66,7 +66,7 @@ template <Real T> class RunGuards {
     const Account<T>& account = engine_.account();
     const Configuration<T> now = engine_.configuration(time);
     const GuardCheck<T> found =
-        guarded(now, particles_, collisions, T(energy_ - engine_.energy_lost()), T(time - start_),
+        guarded(now, particles_, collisions, T(energy_ - engine_.energy_lost(time)), T(time - start_),
                 engine_.last_collision_time(), last_before_, account.order_lost + account.unresolved == 0);
     if (found.broken) throw Error(guard_message(reported(*found.broken, time)), Exit::lost);
     // A check also visits merged particles, so the next one, except for that at the end, is delayed by their number.

@@ -55,7 +55,7 @@ template <Real T> BouncingLaw<T> bouncing_law(const Scene& scene) {
   return ContactTime<T>(law, number<T>(scene.run.contact_time));
 }
 
-// Of particles under gravity. Throws Error for masses that gaps cannot hold.
+// Of particles under gravity or at shaken walls. Throws Error for masses that gaps cannot hold.
 template <Real T>
 std::unique_ptr<Engine<T>>
 falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
@@ -68,7 +68,8 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
   if (scene.run.coordinates == Coordinates::absolute) return in(std::type_identity<PositionChain<T, Gravity<T>>>{});
   // Closing speeds alone lose the digits of heavy particles' velocities, and nothing watches over them under gravity.
   if (far_apart(*particles) && sums_can_be_exact<T>)
-    throw Error({scene.name, 0, "gravity.acceleration"}, "masses too far apart for gaps under gravity",
+    throw Error({scene.name, 0, scene.gravity.acts() ? "gravity.acceleration" : "walls"},
+                "masses too far apart for gaps under gravity or between shaken walls",
                 fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
                             to_double(particles->greatest_mass())),
                 "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
@@ -84,7 +85,8 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
     return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
   };
-  if (scene.gravity.acts()) return falling_engine_of<T>(scene, particles, policy, workers, bouncing_law<T>(scene));
+  if (scene.gravity.acts() || scene.walls.shaken())
+    return falling_engine_of<T>(scene, particles, policy, workers, bouncing_law<T>(scene));
   if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
   const BouncingLaw<T> law = bouncing_law<T>(scene);
   if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
@@ -99,7 +101,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
 
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {
   const auto particles = initial_particles<T>(scene);
-  Progress progress(options.progress, scene.run.start.value, scene.run.until.value);
+  Progress progress(options.progress, scene.run.start.value, scene.run.until.value, options.predictable);
   const auto engine = engine_of<T>(scene, particles, policy_of<T>(scene, options, progress), options.workers,
                                    scene.output.observes_collisions() || options.observer != nullptr);
   return SceneRun<T>(scene, particles, *engine, options, progress)();

@@ -2,6 +2,8 @@
 // throws, the run ends.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,12 @@ struct SampledParticles {
   std::vector<std::string> x, v, m;
 };
 
+/// The account of a wall since the start; decimals have all digits of the run's precision.
+struct SampledWall {
+  std::uint64_t collisions = 0;
+  std::string given, momentum, dissipated;
+};
+
 struct RunSample {
   double time = 0;
   std::string time_text;                 // this and the decimals below have all digits of the run's precision
@@ -35,6 +43,7 @@ struct RunSample {
   Counts counts;
   std::string energy, front_left, front_right;  // fronts: empty before the first collision
   SampledParticles particles;                   // of a snapshot, else empty
+  std::array<SampledWall, 2> walls;             // of the left one and of the right one
 };
 
 class RunObserver {

@@ -23,6 +23,11 @@ template <Real T> SampledParticles sampled(const Configuration<T>& c) {
   return {c.from, c.to, c.index, texts(c.x), texts(c.v), texts(c.m)};
 }
 
+template <Real T> SampledWall sampled(const WallTally<T>& wall) {
+  return {wall.collisions, to_text(wall.given.value()), to_text(wall.momentum.value()),
+          to_text(wall.dissipated.value())};
+}
+
 /// `energy`: at the start; `at_collision`: the run ends at this time, with a collision.
 template <Real T>
 RunSample run_sample(const Scene& scene, const Schedule<T>& plan, const Engine<T>& engine, const T& energy,
@@ -40,7 +45,8 @@ RunSample run_sample(const Scene& scene, const Schedule<T>& plan, const Engine<T
                     .energy = to_text(now.energy),
                     .front_left = text(now.front_left),
                     .front_right = text(now.front_right),
-                    .particles = {}};
+                    .particles = {},
+                    .walls = {sampled(now.walls[0]), sampled(now.walls[1])}};
   if (!at_collision && holds(plan.snapshots, time)) at_time.particles = sampled(engine.configuration(time));
   return at_time;
 }

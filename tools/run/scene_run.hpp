@@ -16,6 +16,7 @@
 #include "cradle/tools/record/histograms.hpp"
 #include "cradle/tools/record/recorder.hpp"
 #include "cradle/tools/record/schedule.hpp"
+#include "cradle/tools/record/word.hpp"
 #include "cradle/tools/run/engine.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
@@ -38,6 +39,7 @@ template <Real T> class SceneRun {
     if (!plan_.averages.empty()) averages_.emplace(time_averages(scene, plan_.averages.size()));
     if (!scene.output.histograms.empty()) histograms_.emplace(scene, particles_->count());
     if (CorrelationRecorder<T>::wanted(scene.output)) correlations_.emplace(scene, *particles_, plan_);
+    if (scene.output.word) word_.emplace(scene);
   }
 
   RunOutcome operator()() {
@@ -46,6 +48,7 @@ template <Real T> class SceneRun {
       observer_ = observer_ ? [before = observer_, added](const Collision<T>& c) { before(c), added(c); } : added;
     };
     if (scene_.output.events) also([this](const Collision<T>& c) { record_collision(c); });
+    if (word_) also([this](const Collision<T>& c) { word_->add(c.left, to_double(T(c.time.value()))); });
     if (histograms_ && scene_.output.observes_collisions())
       also([this](const Collision<T>& c) { histograms_->made(engine_.counts()), (*histograms_)(c); });
     if (scene_.output.scenario)
@@ -76,7 +79,7 @@ template <Real T> class SceneRun {
   // What is saved besides the engine's state: how much of the plan is done, and what observers have collected.
   static auto state(auto& self) {
     return std::tie(self.inspected_, self.snapshots_, self.profiles_, self.masses_, self.zone_, self.scenario_,
-                    self.averages_, self.histograms_, self.correlations_, self.guards_);
+                    self.averages_, self.histograms_, self.correlations_, self.word_, self.guards_);
   }
 
   void loaded() const {
@@ -84,6 +87,7 @@ template <Real T> class SceneRun {
     require_state(averages_.has_value() == !plan_.averages.empty(), "averages");
     require_state(histograms_.has_value() == !scene_.output.histograms.empty(), "histograms");
     require_state(correlations_.has_value() == CorrelationRecorder<T>::wanted(scene_.output), "correlations");
+    require_state(word_.has_value() == scene_.output.word.has_value(), "word");
   }
 
  private:
@@ -274,7 +278,7 @@ template <Real T> class SceneRun {
 
   // What the ledger leaves of the energy minus the sums over particles.
   T ledger_error(const T& time) const {
-    T error = energy_ - engine_.energy_lost() - engine_.kinetic_energy(time);
+    T error = energy_ - engine_.energy_lost(time) - engine_.kinetic_energy(time);
     if (particles_->fall())
       error += particles_->potential_energy() - cradle::potential_energy(engine_.configuration(time), *particles_,
                                                                          T(time - number<T>(scene_.run.start)));
@@ -291,6 +295,7 @@ template <Real T> class SceneRun {
       const Configuration<T> now = engine_.configuration_at_last_collision();
       append(groups, tables(initial_rows(*particles_, now.from, now.to), options_.store != nullptr));
     }
+    if (word_) groups.push_back(word_->table());
     if (zone_) {
       const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single particles
       const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);
@@ -326,6 +331,7 @@ template <Real T> class SceneRun {
   std::optional<TimeAverages> averages_;
   std::optional<HistogramRecorder<T>> histograms_;
   std::optional<CorrelationRecorder<T>> correlations_;
+  std::optional<WordRecorder> word_;
   ScenarioWatch scenario_;
   EventRecorder<T> events_;
   Observer<T> observer_;

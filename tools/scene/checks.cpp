@@ -10,6 +10,7 @@
 
 #include "cradle/core/observe/averages.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
+#include "cradle/core/words/word.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -84,7 +85,7 @@ class Checks {
                   "give law.type = \"inelastic\"");
     const auto wall_at = [&](const char* key, const WallAt& wall, const char* position) {
       if (!wall.position) return;
-      if (*wall.position != Decimal(position) || wall.speed != Decimal("0") || wall.temperature ||
+      if (*wall.position != Decimal(position) || wall.speed != Decimal("0") || wall.temperature || wall.shaken() ||
           wall.restitution != scene_.law.restitution)
         throw Error(place(key), "not a wall of a word", wall.position->text,
                     std::string("give a wall at ") + position + ", at rest, with the restitution of the particles");
@@ -148,6 +149,7 @@ class Checks {
                   fmt::format("wall at {}, {} particle at {:g}", wall.text, particle, static_cast<double>(at)),
                   "move it outwards");
     };
+    walls_shake();
     if (initial.type == InitialType::list && !initial.x.empty()) {
       const auto among = [&](const char* key, const std::optional<Decimal>& wall, std::string_view at, bool wall_left) {
         if (!wall) return;
@@ -157,15 +159,22 @@ class Checks {
                     fmt::format("wall at {}, {} particle at {}", wall->text, wall_left ? "first" : "last", at),
                     "move it outwards");
       };
-      among("walls.left.position", left.position, initial.x[0], true);
-      among("walls.right.position", right.position, initial.x.back(), false);
+      // Shaken walls are checked where they are at the start (core/initial/walled.hpp).
+      if (!left.shaken()) among("walls.left.position", left.position, initial.x[0], true);
+      if (!right.shaken()) among("walls.right.position", right.position, initial.x.back(), false);
     }
-    if (left.position)
+    if (left.position && !left.shaken())
       if (const auto at = outermost(-1)) outside("walls.left.position", *left.position, "first", *at, -1);
-    if (right.position)
+    if (right.position && !right.shaken())
       if (const auto at = outermost(1)) outside("walls.right.position", *right.position, "last", *at, 1);
     if (!left.position || !right.position) return;
-    const bin_float gap = number(*right.position) - number(*left.position);
+    bin_float gap = number(*right.position) - number(*left.position);
+    for (const WallAt* wall : {&left, &right})
+      if (wall->shaken()) gap -= number(wall->amplitude);
+    if (!(gap > 0))
+      throw Error(place(left.shaken() ? "walls.left.amplitude" : "walls.right.amplitude"), "walls that can meet",
+                  fmt::format("as near as {:g}", static_cast<double>(gap)),
+                  "give smaller amplitudes, or positions further apart");
     const bin_float closing = number(left.speed) - number(right.speed);
     const bin_float span = number(scene_.run.until) - number(scene_.run.start);
     if (gap - closing * span > 0) return;
@@ -173,6 +182,27 @@ class Checks {
                 "the walls meet before the run ends",
                 fmt::format("at t = {:g}", static_cast<double>(number(scene_.run.start) + gap / closing)),
                 "give smaller speeds, or an earlier run.until");
+  }
+
+  void walls_shake() const {
+    for (const auto& [name, wall] :
+         {std::pair("walls.left.", &scene_.walls.left), std::pair("walls.right.", &scene_.walls.right)}) {
+      const double span = scene_.run.until.value - scene_.run.start.value;
+      if (wall->shaken() && !(wall->frequency.value * span + std::abs(wall->phase.value) < 1e15))
+        throw Error(
+            place(name + std::string("frequency")), "more periods than can be counted",
+            fmt::format("frequency {}, phase {}, for a time of {:g}", wall->frequency.text, wall->phase.text, span),
+            "give a smaller frequency or phase, or an earlier run.until");
+      if (wall->rest_speed && scene_.initial.type == InitialType::list && scene_.initial.x.size() > 1)
+        throw Error(place(name + std::string("rest_speed")), "several particles over a wall on which only one can rest",
+                    fmt::format("{} particles", scene_.initial.x.size()), "remove it, or give a single particle");
+      if (wall->rest_speed && scene_.run.coordinates == Coordinates::absolute)
+        throw Error(place(name + std::string("rest_speed")), "a particle that rests, in absolute positions",
+                    wall->rest_speed->text, "give run.coordinates = \"gaps\"");
+      if (wall->shaken() && !wall->temperature && wall->restitution == Decimal("0") && !wall->rest_speed)
+        throw Error(place(name + std::string("restitution")), "a shaken wall on which particles come to rest", "0",
+                    "give it a small restitution, 0.01 or so, or a rest_speed for a single particle");
+    }
   }
 
   void particles_can_fall() const {
@@ -193,9 +223,10 @@ class Checks {
                   "gravity, which the sticky gas does not have", "remove it");
     const bool to_left = *scene_.gravity.acceleration < Decimal("0");
     const WallAt& floor = to_left ? scene_.walls.left : scene_.walls.right;
-    if (floor.position && !floor.temperature && floor.restitution == Decimal("0"))
+    if (floor.position && !floor.temperature && floor.restitution == Decimal("0") && !floor.rest_speed)
       throw Error(place(to_left ? "walls.left.restitution" : "walls.right.restitution"),
-                  "a floor on which particles come to rest", "0", "give it a small restitution, 0.01 or so");
+                  "a floor on which particles come to rest", "0",
+                  "give it a small restitution, 0.01 or so, or a rest_speed for a single particle");
   }
 
   void gas_between_walls() const {
@@ -445,6 +476,21 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.places_are_on_a_length();
   checks.numbers_fit();
   checks.samples_can_be_kept();
+}
+
+void check_word(const Place& place, const Scene& scene) {
+  if (particles_merge(scene) || scene.initial.on_ring())
+    throw Error(place, "letters are of particles on a line that bounce",
+                scene.initial.on_ring() ? "a ring" : "particles that merge", "remove it, or give output.events");
+  const std::size_t gaps = scene.gaps(), most = 26;
+  if (gaps < 2 || gaps > most)
+    throw Error(place, "not a few particles", fmt::format("{} gaps", gaps), fmt::format("give 2 to {}", most));
+  if (*scene.output.word == any_word) return;
+  try {
+    words::read_word(*scene.output.word, gaps);
+  } catch (const words::BadWord& bad) {
+    throw Error(place, bad.what(), bad.found, bad.advice);
+  }
 }
 
 }  // namespace cradle::tools

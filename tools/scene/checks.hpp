@@ -11,4 +11,7 @@ namespace cradle::tools {
 /// that are missing.
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file);
 
+/// The same for output.word, which is at this place, once the particles of a list are read.
+void check_word(const Place& place, const Scene& scene);
+
 }  // namespace cradle::tools

@@ -69,6 +69,20 @@ constexpr When right_reflects{
     thermal, "walls.right.temperature", "a right wall without temperature",
     [](const Scene& s) { return s.walls.right.position.has_value() && !s.walls.right.temperature; }};
 
+constexpr std::string_view still = "key of a wall that is shaken";
+constexpr When left_shaken{still, "walls.left.motion", "a shaken left wall",
+                           [](const Scene& s) { return s.walls.left.position && s.walls.left.shaken(); }};
+constexpr When right_shaken{still, "walls.right.motion", "a shaken right wall",
+                            [](const Scene& s) { return s.walls.right.position && s.walls.right.shaken(); }};
+constexpr std::string_view no_hold = "key of a wall on which particles can rest";
+constexpr auto may_hold = +[](const Scene& s, const WallAt& wall) {
+  return wall.position && !wall.temperature && (wall.shaken() || s.gravity.acts());
+};
+constexpr When left_holds{no_hold, "gravity.acceleration", "a left wall without temperature, shaken or with gravity",
+                          [](const Scene& s) { return may_hold(s, s.walls.left); }};
+constexpr When right_holds{no_hold, "gravity.acceleration", "a right wall without temperature, shaken or with gravity",
+                           [](const Scene& s) { return may_hold(s, s.walls.right); }};
+
 constexpr When may_fall{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
 
 constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
@@ -256,6 +270,10 @@ const Field all_fields[] = {
     {"initial.replica", initial_of<&Initial::replica>, "", "0", "[0, 18446744073709551615]", &always,
      "number of the replica; each has its own random numbers"},
 
+    {"gravity.acceleration", member<&Scene::gravity, &GravityOf::acceleration>, "l/t^2", "", any, &may_fall,
+     "constant acceleration of all particles, positive to the right; walls do not fall. The one that particles fall "
+     "towards is a floor. Collisions with walls slower than law.cutoff are elastic then; without it, no gravity"},
+
     {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "", any, &may_have_walls,
      "position of a wall at the left end of the line, at run.start; without it, none. A wall is a particle of infinite "
      "mass"},
@@ -268,6 +286,19 @@ const Field all_fields[] = {
      "reflects them"},
     {"walls.left.restitution", walls_of<&WallPair::left, &WallAt::restitution>, "", "1", "[0, 1]", &left_reflects,
      "factor by which a collision with the left wall reduces the closing speed; 1 is elastic"},
+    {"walls.left.motion", walls_of<&WallPair::left, &WallAt::motion>, "", "\"none\"",
+     "none | sawtooth | parabola | sine", &left_wall,
+     "how the left wall is shaken about its place, beginning in the middle, towards the particles: at a constant "
+     "speed, "
+     "jumping back; in parabolic arcs; as a sine"},
+    {"walls.left.amplitude", walls_of<&WallPair::left, &WallAt::amplitude>, "l", "required", "(0, inf)", &left_shaken,
+     "how far it is shaken from its place at most"},
+    {"walls.left.frequency", walls_of<&WallPair::left, &WallAt::frequency>, "1/t", "required", "(0, inf)", &left_shaken,
+     "angular frequency: 2 pi over the period"},
+    {"walls.left.phase", walls_of<&WallPair::left, &WallAt::phase>, "", "0", any, &left_shaken, "angle at run.start"},
+    {"walls.left.rest_speed", walls_of<&WallPair::left, &WallAt::rest_speed>, "l/t", "", "(0, inf)", &left_holds,
+     "a single particle that meets the left wall more slowly stays on it for as long as the wall presses it; without "
+     "it, none stays"},
     {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &may_have_walls,
      "position of a wall at the right end of the line, at run.start; without it, none. A wall is a particle of "
      "infinite "
@@ -282,10 +313,20 @@ const Field all_fields[] = {
      "reflects them"},
     {"walls.right.restitution", walls_of<&WallPair::right, &WallAt::restitution>, "", "1", "[0, 1]", &right_reflects,
      "factor by which a collision with the right wall reduces the closing speed; 1 is elastic"},
-
-    {"gravity.acceleration", member<&Scene::gravity, &GravityOf::acceleration>, "l/t^2", "", any, &may_fall,
-     "constant acceleration of all particles, positive to the right; walls do not fall. The one that particles fall "
-     "towards is a floor. Collisions with walls slower than law.cutoff are elastic then; without it, no gravity"},
+    {"walls.right.motion", walls_of<&WallPair::right, &WallAt::motion>, "", "\"none\"",
+     "none | sawtooth | parabola | sine", &right_wall,
+     "how the right wall is shaken about its place, beginning in the middle, towards the particles: at a constant "
+     "speed, "
+     "jumping back; in parabolic arcs; as a sine"},
+    {"walls.right.amplitude", walls_of<&WallPair::right, &WallAt::amplitude>, "l", "required", "(0, inf)",
+     &right_shaken, "how far it is shaken from its place at most"},
+    {"walls.right.frequency", walls_of<&WallPair::right, &WallAt::frequency>, "1/t", "required", "(0, inf)",
+     &right_shaken, "angular frequency: 2 pi over the period"},
+    {"walls.right.phase", walls_of<&WallPair::right, &WallAt::phase>, "", "0", any, &right_shaken,
+     "angle at run.start"},
+    {"walls.right.rest_speed", walls_of<&WallPair::right, &WallAt::rest_speed>, "l/t", "", "(0, inf)", &right_holds,
+     "a single particle that meets the right wall more slowly stays on it for as long as the wall presses it; without "
+     "it, none stays"},
 
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},
@@ -398,6 +439,9 @@ const Field all_fields[] = {
      "add to the series what the dense core of a shock is like, its mass, width, velocity range and median gap, and "
      "the energy beyond that of the sticky gas that began alike"},
     {"output.events", output_of<&Output::events>, "", "false", "", &always, "write every collision"},
+    {"output.word", output_of<&Output::word>, "", "", "", &list,
+     "write the order of the collisions compactly, as letters, which are gaps from the left, and say where it leaves "
+     "this word; \"any\": of no word in particular. For up to 26 particles on a line that bounce"},
     {"output.every_replica", output_of<&Output::every_replica>, "", "false", "", &always,
      "in an ensemble, keep the snapshots and profiles of every replica beside the statistics"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",

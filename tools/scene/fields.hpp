@@ -21,8 +21,9 @@ using Storage =
     std::variant<Member<std::string>, Member<std::optional<std::string>>, Member<std::vector<std::string>>,
                  Member<Decimal>, Member<std::optional<Decimal>>, Member<std::vector<Decimal>>, Member<DecimalColumn>,
                  Member<std::uint64_t>, Member<std::optional<std::uint64_t>>, Member<bool>, Member<LawType>,
-                 Member<InitialType>, Member<scene::HotPlace>, Member<Velocities>, Member<Positions>, Member<Precision>,
-                 Member<Coordinates>, Member<scene::CollapsePolicy>, Member<Spacing>, Member<scene::Meeting>>;
+                 Member<InitialType>, Member<scene::HotPlace>, Member<scene::Motion>, Member<Velocities>,
+                 Member<Positions>, Member<Precision>, Member<Coordinates>, Member<scene::CollapsePolicy>,
+                 Member<Spacing>, Member<scene::Meeting>>;
 
 /// The scenes to which a key applies.
 struct When {

@@ -1,6 +1,7 @@
 #include "cradle/tools/scene/keys.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -12,14 +13,15 @@ namespace {
 
 std::string_view last_part(std::string_view key) { return key.substr(key.rfind('.') + 1); }
 
-// The most similar known key; empty if none is similar. The right name in the wrong table counts as similar.
+// The most similar known key, of several the shortest; empty if none is similar. The right name in the wrong table
+// counts as similar.
 std::string_view nearest_key(std::string_view key) {
   std::string_view nearest;
   std::size_t least = alike(key) + 1;
   for (const Field& field : scene_fields()) {
     std::size_t distance = edit_distance(key, field.key);
     if (last_part(key) == last_part(field.key)) distance = std::min<std::size_t>(distance, 2);
-    if (distance < least) {
+    if (distance < least || (distance == least && field.key.size() < nearest.size())) {
       least = distance;
       nearest = field.key;
     }
@@ -54,6 +56,15 @@ std::string decided_by(const When& when, const Scene& scene) {
   return fmt::format("{} = {}", field->key, value_text(*field, scene).value_or("none"));
 }
 
+// All scenes that take this key: `law.type = "wet"`.
+std::string belongs_to(std::string_view key) {
+  std::vector<std::string_view> scenes;
+  for (const Field& field : scene_fields())
+    if (field.key == key && std::ranges::find(scenes, field.when->text) == scenes.end())
+      scenes.push_back(field.when->text);
+  return fmt::format("{}", fmt::join(scenes, " or "));
+}
+
 }  // namespace
 
 void refuse_unknown_keys(const Entries& entries, const Scene& scene) {
@@ -64,9 +75,13 @@ void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::s
   for (const auto& [key, value] : entries) {
     const Field* field = find_field(key, scene);
     if (field == nullptr || (!decider.empty() && field->when->decided_by != decider)) continue;
-    if (!field->when->holds(scene))
-      throw Error(value.place, field->when->otherwise, decided_by(*field->when, scene),
-                  fmt::format("remove it, it belongs to {}", field->when->text));
+    if (field->when->holds(scene)) continue;
+    // A key of the file that the command line has made inapplicable.
+    const auto decides = entries.find(std::string(field->when->decided_by));
+    const bool by_command = decides != entries.end() && decides->second.place.source == "--set";
+    const std::string how = by_command && value.place.source != "--set" ? fmt::format(" by `--set {}=`", key) : "";
+    throw Error(value.place, field->when->otherwise, decided_by(*field->when, scene),
+                fmt::format("remove it{}, it belongs to {}", how, belongs_to(key)));
   }
 }
 

@@ -9,7 +9,11 @@
 
 namespace cradle::tools {
 
-/// Each override is `table.key=value`, see apply_override. Throws Error for anything else.
-void apply_overrides(Entries& entries, const std::vector<std::string>& overrides);
+/// Each override is `table.key=value`, see apply_override. Returns a line for the user if a new run.start or run.until
+/// leaves out times of the scene, else nothing. Throws Error for anything else.
+std::string apply_overrides(Entries& entries, const std::vector<std::string>& overrides);
+
+/// That line for the scene that read_scene reads, with a line break. Throws Error as read_scene does.
+std::string times_left_out(const std::string& path_or_name, const std::vector<std::string>& overrides);
 
 }  // namespace cradle::tools

@@ -2,6 +2,8 @@
 // the table of fields (fields.cpp), checks that involve several keys (checks.cpp), particles of a list (list_file.cpp).
 #include "cradle/tools/scene/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +15,7 @@
 #include "cradle/tools/scene/list_file.hpp"
 #include "cradle/tools/scene/overrides.hpp"
 #include "cradle/tools/scene/source.hpp"
+#include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/words/start.hpp"
 
 namespace cradle::tools {
@@ -48,10 +51,18 @@ void sort_times(std::vector<Decimal>& times) {
   times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
-std::string bundled_names() {
-  std::string names;
-  for (const BundledScene& scene : bundled_scenes()) names.append(names.empty() ? "" : ", ").append(scene.name);
-  return names;
+// What to do about a scene that is not there: the similar name of a file beside it or of a bundled scene.
+std::string similar_scene(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  std::error_code none;
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (entry.path().extension() == ".toml") names.push_back((path.parent_path() / entry.path().filename()).string());
+  std::ranges::sort(names);
+  for (const BundledScene& scene : bundled_scenes()) names.emplace_back(scene.name);
+  const auto nearest = nearest_word(path.string(), names);
+  return nearest.empty() ? "give the path of a scene file, or one of the names that `cradle scenes` lists"
+                         : fmt::format("did you mean {}?", nearest);
 }
 
 Scene scene_of(const Entries& entries, const std::string& source_name) {
@@ -73,7 +84,32 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
     start_from_word(word->second.place, scene);
   else if (scene.initial.file)
     read_list(path.parent_path() / *scene.initial.file, scene);
+  if (scene.output.word) check_word(entries.at("output.word").place, scene);
   return scene;
+}
+
+struct SceneText {
+  std::string text, source;
+};
+
+SceneText text_of(const std::string& path_or_name) {
+  std::error_code unreadable;
+  const bool exists = std::filesystem::exists(path_or_name, unreadable);
+  if (exists && !std::filesystem::is_directory(path_or_name, unreadable)) {
+    std::ifstream file(path_or_name, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (!file || file.bad())
+      throw Error({path_or_name, 0, {}}, "cannot be read", "a file that does not open", "check its permissions",
+                  Exit::io);
+    if (text.starts_with("\x89HDF"))
+      throw Error({path_or_name, 0, {}}, "a result, not a scene", "HDF5",
+                  "give the scene file, or inspect it with `cradle info " + path_or_name + "`");
+    return {std::move(text), path_or_name};
+  }
+  for (const BundledScene& scene : bundled_scenes())
+    if (scene.name == path_or_name) return {std::string(scene.text), path_or_name + ".toml"};
+  throw Error({path_or_name, 0, {}}, "no such scene", exists ? "a folder" : "neither a file nor a bundled scene",
+              similar_scene(path_or_name), Exit::io);
 }
 
 }  // namespace
@@ -84,7 +120,7 @@ bool Output::has_histogram(std::string_view name) const {
 
 bool Output::observes_collisions() const {
   const auto of_collisions = [](const std::string& name) { return name != "gap" && name != "cluster"; };
-  return events || std::ranges::any_of(histograms, of_collisions);
+  return events || word || std::ranges::any_of(histograms, of_collisions);
 }
 
 bool unequal_masses(const Scene& scene) {
@@ -111,23 +147,14 @@ Scene parse_scene(std::string_view text, const std::string& source_name, const s
 }
 
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
-  std::error_code unreadable;
-  const bool exists = std::filesystem::exists(path_or_name, unreadable);
-  if (exists && !std::filesystem::is_directory(path_or_name, unreadable)) {
-    std::ifstream file(path_or_name, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!file || file.bad())
-      throw Error({path_or_name, 0, {}}, "cannot be read", "a file that does not open", "check its permissions",
-                  Exit::io);
-    if (text.starts_with("\x89HDF"))
-      throw Error({path_or_name, 0, {}}, "a result, not a scene", "HDF5",
-                  "give the scene file, or inspect it with `cradle info " + path_or_name + "`");
-    return parse_scene(text, path_or_name, overrides);
-  }
-  for (const BundledScene& scene : bundled_scenes())
-    if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
-  throw Error({path_or_name, 0, {}}, "no such scene", exists ? "a folder" : "neither a file nor a bundled scene",
-              "give the path of a scene file or one of " + bundled_names(), Exit::io);
+  const SceneText scene = text_of(path_or_name);
+  return parse_scene(scene.text, scene.source, overrides);
+}
+
+std::string times_left_out(const std::string& path_or_name, const std::vector<std::string>& overrides) {
+  const SceneText scene = text_of(path_or_name);
+  Entries entries = read_entries(scene.text, scene.source);
+  return apply_overrides(entries, overrides);
 }
 
 }  // namespace cradle::tools

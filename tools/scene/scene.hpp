@@ -31,6 +31,7 @@ enum class Spacing { linear, log };
 namespace scene {
 
 enum class HotPlace { middle, left };
+enum class Motion { none, sawtooth, parabola, sine };
 enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Meeting { energy, pass, stick };
 
@@ -101,6 +102,10 @@ struct WallAt {
   Decimal speed;                       // positive to the right
   std::optional<Decimal> temperature;  // of a thermal wall; without one it reflects
   Decimal restitution;                 // of a reflecting wall
+  scene::Motion motion = scene::Motion::none;
+  Decimal amplitude, frequency, phase;  // of a shaken wall; the frequency is angular
+  std::optional<Decimal> rest_speed;    // of a single particle that can rest on it
+  bool shaken() const { return motion != scene::Motion::none; }
   bool dissipates() const { return position && !temperature && restitution < Decimal("1"); }
   bool operator==(const WallAt&) const = default;
 };
@@ -108,6 +113,7 @@ struct WallAt {
 struct WallPair {
   WallAt left, right;
   bool any() const { return left.position || right.position; }
+  bool shaken() const { return left.shaken() || right.shaken(); }
   bool operator==(const WallPair&) const = default;
 };
 
@@ -211,6 +217,9 @@ struct Checkpoint {
   bool operator==(const Checkpoint&) const = default;
 };
 
+/// The value of output.word that names no word.
+inline constexpr std::string_view any_word = "any";
+
 /// All lists of times are increasing and without repetition, within [run.start, run.until].
 struct Output {
   Series series;
@@ -227,7 +236,8 @@ struct Output {
   bool scenario = false;  // wet rows: whether to decide between the two scenarios of Fig. 9
   bool core = false;      // of a shock: mass, width, velocities and gaps beside the series
   bool events = false;
-  bool every_replica = false;  // ensembles: whether the snapshots and profiles of every replica are kept
+  std::optional<std::string> word;  // the collisions of a few particles as letters, compared with this word
+  bool every_replica = false;       // ensembles: whether the snapshots and profiles of every replica are kept
   Checkpoint checkpoint;
 
   bool has_histogram(std::string_view name) const;
@@ -256,6 +266,11 @@ struct Scene {
   Run run;
   Output output;
   Sweep sweep;
+
+  /// Of a list on a line: between particles, and to walls.
+  std::size_t gaps() const {
+    return initial.x.size() - 1 + walls.left.position.has_value() + walls.right.position.has_value();
+  }
 };
 
 /// Whether masses differ or are not 1: formulas for particles of mass 1 do not apply then.

@@ -55,7 +55,8 @@ void EnsembleStore::check_identity(std::uint64_t identity, const std::vector<std
   for (std::size_t k = 0; k < scenes.size() && found.empty(); ++k)
     found = scene_difference(parse_scene(scenes[k], path), study_.points[k].scene);
   if (found.empty()) found = "another version of the program, other --spread bins or other listed particles";
-  throw Error({path, 0, ""}, "holds ensembles of something else", found, "give another -o FILE, or remove this one");
+  throw Error({path, 0, ""}, "holds ensembles of something else", found,
+              "give another -o FILE, or --force to replace it");
 }
 
 void EnsembleStore::load_result() {
@@ -63,7 +64,7 @@ void EnsembleStore::load_result() {
   const auto is = [&](const auto& attribute) { return attribute.first == "identity"; };
   if (std::none_of(result.attributes.begin(), result.attributes.end(), is))
     throw Error({file_, 0, ""}, "holds no ensemble", "a single run, or another command's result",
-                "give another -o FILE, or remove this one");
+                "give another -o FILE, or --force to replace it");
   std::vector<std::string> scenes;
   for (const Study::Point& point : study_.points) {
     const bool alone = point.group.empty();
@@ -76,9 +77,35 @@ void EnsembleStore::load_result() {
   result_there_ = true;
 }
 
-std::string EnsembleStore::load() {
+void EnsembleStore::check_replaces(const std::string& file) const {
+  if (!std::filesystem::exists(file)) return;
+  EnsembleStore there(study_, file);
+  there.load_result();
+  for (std::size_t k = 0; k < states_.size(); ++k)
+    if (!states_[k]->holds_all_of(*there.states_[k]))
+      throw Error({file, 0, ""}, "holds replicas that none of the files has", "",
+                  "merge it too, give another -o FILE, or --force to replace it");
+}
+
+// Whether an interrupted study that was forced is to replace a result of something else: its journal says so.
+bool EnsembleStore::replaces_another() const {
+  const auto journal = std::filesystem::exists(part_) ? journal_header(part_) : std::nullopt;
+  if (!journal || journal->of_run() || journal->identity != identity_) return false;
+  try {
+    EnsembleStore(study_, file_).load_result();
+    return false;
+  } catch (const Error& error) {
+    return error.status == Exit::bad_input;
+  }
+}
+
+std::string EnsembleStore::load(Force force) {
   claim_.emplace(file_);
-  if (std::filesystem::exists(file_)) load_result();
+  if (force == Force::yes) {
+    drop_journals();
+    return "";
+  }
+  if (std::filesystem::exists(file_) && !replaces_another()) load_result();
   std::string account;
   std::uint64_t whole = 0;
   if (std::filesystem::exists(part_)) {

@@ -19,6 +19,7 @@
 
 #include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/overwrite.hpp"
 
 namespace cradle::tools {
 
@@ -33,9 +34,12 @@ class EnsembleStore {
   /// Claims FILE for the lifetime of this object, and reads it and all journals. Throws Error: Exit::bad_input if they
   /// belong to other scenes, Exit::io if they cannot be read or another program is writing them. Returns warnings about
   /// journals.
-  std::string load();
+  /// Forced, they are not read: the study begins anew, and replaces them when it ends.
+  std::string load(Force force = Force::no);
   /// Reads FILE alone, which must exist: to inspect or to merge it.
   void load_result();
+  /// Throws Error (Exit::bad_input) if `file` is there and holds more than replicas that are here too.
+  void check_replaces(const std::string& file) const;
 
   const Study& study() const { return study_; }
   const EnsembleStates& states() const { return states_; }
@@ -68,6 +72,7 @@ class EnsembleStore {
   EnsembleStates empty_states() const;
   std::string read_journal(const std::string& path, std::uint64_t& whole_bytes);
   void take(EnsembleStates& others, const std::string& from);
+  bool replaces_another() const;
   void check_identity(std::uint64_t identity, const std::vector<std::string>& scenes, const std::string& path) const;
   JournalHeader header() const;
   std::vector<std::string> rank_journals() const;

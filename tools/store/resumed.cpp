@@ -49,6 +49,40 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
   return parse_scene(effective_toml(scene), file);  // as a scene with that end is read
 }
 
+// Lists of times are not extended: of a run that was cut short by --set run.until they have lost the times of the scene
+// that came later. Of a bundled scene these are known; of another one, snapshots that end before the run may have been
+// cut off.
+std::string lists_not_extended(const Scene& scene, const Decimal& later) {
+  const auto bundled = bundled_scenes();
+  const auto at = std::find_if(bundled.begin(), bundled.end(),
+                               [&](const auto& b) { return b.name.substr(b.name.rfind('/') + 1) == scene.name; });
+  const std::optional<Scene> original =
+      at == bundled.end() ? std::nullopt : std::optional(parse_scene(at->text, scene.name + ".toml"));
+  const auto lost = [&](const std::vector<Decimal>& times) {
+    return std::any_of(times.begin(), times.end(),
+                       [&](const Decimal& t) { return t > scene.run.until && !(t > later); });
+  };
+  std::string keys;
+  const auto check = [&](const char* key, bool cut) {
+    keys += cut ? (keys.empty() ? "" : ", ") + std::string(key) : "";
+  };
+  const std::vector<Decimal>& snapshots = scene.output.snapshots;
+  if (original) {
+    check("output.snapshots", lost(original->output.snapshots));
+    check("output.profiles.times", lost(original->output.profiles.times));
+    check("output.masses", lost(original->output.masses));
+    check("output.structure.times", lost(original->output.structure.times));
+    check("output.pair_distribution.times", lost(original->output.pair_distribution.times));
+  } else {
+    check("output.snapshots", snapshots.empty() || snapshots.back() < scene.run.until);
+  }
+  if (keys.empty()) return "";
+  return fmt::format(
+      "lists of times are not extended beyond t = {} ({}): to have later times of the scene, run it with "
+      "--set run.until={}\n",
+      scene.run.until.text, keys, later.text);
+}
+
 // Without an observer of collisions the sticky gas is computed directly at each time, and its rounding depends on these
 // times. With other times it starts again, which costs almost nothing.
 bool begins_again(const Scene& scene) { return without_collisions(scene); }
@@ -58,7 +92,8 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   std::erase_if(groups, [](const Group& g) {
     const std::string_view name = rounded_name(g.name);
     constexpr std::array<std::string_view, 8> of_all{
-        "zone", "averages", "correlations", "structure", "pair_distribution", "scenario", "collapse", "initial"};
+        "zone",     "averages", "correlations", "structure_average", "pair_distribution_average",
+        "scenario", "collapse", "initial"};
     return std::find(of_all.begin(), of_all.end(), name) != of_all.end() || name.starts_with("histograms/");
   });
   // The file returns attributes in another order than they were written.
@@ -114,6 +149,7 @@ void RunFiles::resume(const std::optional<std::string>& until) {
     ++header_.identity;  // the checkpoint then belongs to another identity
   }
   if (later) {
+    not_extended_ = lists_not_extended(scene_, Decimal(*until));
     scene_ = extended(scene_, *until, path);
     scene_.name = header_.name;
     header_.scene = effective_toml(scene_);
@@ -168,6 +204,7 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
   if (const std::uint64_t numbers = numbers_in(result.groups); state_ && numbers > most_in_memory)
     throw Error({file_, 0, ""}, "too large to be extended", fmt::format("{} numbers", numbers),
                 "run the scene with a later run.until", Exit::io);
+  not_extended_ = lists_not_extended(scene_, Decimal(*until));
   scene_ = extended(scene_, *until, file_);
   scene_.name = header_.name;
   header_.scene = effective_toml(scene_);

@@ -18,6 +18,7 @@ namespace {
 constexpr std::uint64_t collisions_between_checks = 1 << 13;  // of the clock
 constexpr std::chrono::seconds between_statuses(2);
 constexpr double worth_keeping = 60;  // seconds of computing that a new run must not overwrite
+constexpr double soon_repeated = 10;  // seconds of computing for which no checkpoint stays
 constexpr std::uint64_t most_waiting = std::uint64_t{1}
                                        << 22;  // numbers in memory that are not in a journal that has begun
 
@@ -28,18 +29,20 @@ std::uint64_t RunFiles::drawn_number() {
   return std::uint64_t{source()} << 32 | source();
 }
 
-RunFiles::RunFiles(std::string file, const Scene& scene) : file_(std::move(file)), scene_(scene) {
+RunFiles::RunFiles(std::string file, const Scene& scene, Force force) : file_(std::move(file)), scene_(scene) {
   const std::string path = journal_of(file_);
   const auto refuse = [&](const char* what, const std::string& found) {
     throw Error({path, 0, ""}, what, found,
-                fmt::format("continue with `cradle resume {}`, or remove it, or give another -o FILE", file_));
+                fmt::format("continue with `cradle resume {}`, give another -o FILE, or --force to replace it", file_));
   };
-  if (const auto header = journal_header(path); header && !header->of_run()) {
-    refuse("replicas of an ensemble that is not finished", "");
+  const auto header = force == Force::yes ? std::nullopt : journal_header(path);
+  if (header && !header->of_run()) {
+    refuse("work of another command that is not finished", header->kind);
   } else if (header) {
     const auto statuses = read_run_journal(path, Reading::ends).statuses;
-    if (!statuses.empty() && statuses.back().seconds > worth_keeping)
-      refuse("a run that is not finished",
+    const bool same = scene_of(*header, path) == scene;
+    if (!statuses.empty() && (!same || statuses.back().seconds > worth_keeping))
+      refuse(same ? "a run that is not finished" : "a run of other settings that is not finished",
              fmt::format("t = {:.6g}, {:.0f} s of computing", statuses.back().time, statuses.back().seconds));
   }
   ::unlink(path.c_str());  // of an earlier run, which this one replaces
@@ -99,6 +102,10 @@ bool RunFiles::checkpoint_due(Clock::time_point now) const {
   return header_.every_seconds > 0 && std::chrono::duration<double>(now - saved_).count() > header_.every_seconds;
 }
 
+bool RunFiles::worth_extending(double seconds) const {
+  return seconds > (header_.every_seconds > 0 ? std::min(header_.every_seconds, soon_repeated) : soon_repeated);
+}
+
 void RunFiles::check_clock() {
   if (due_) return;
   const Clock::time_point now = Clock::now();
@@ -117,6 +124,10 @@ void RunFiles::keep(const RunStatus& status, const std::function<void(StateWrite
     append(now);
   });
   if (run_is == RunIs::in_progress && !checkpoint_due(reported_)) return;
+  if (run_is == RunIs::over && !worth_extending(now.seconds)) {
+    saved_here_ = false;
+    return;
+  }
   saved_ = reported_;
   up_to_date_ =
       written && saved([&] {

@@ -8,8 +8,9 @@
 // neither file.
 //
 // On resuming, the journal is cut to the records of the checkpoint; the rest is computed again, with the same bits.
-// Without a checkpoint the run starts anew. When FILE is written, the journal is removed and the last checkpoint stays:
-// a later `--until` continues from both, with a journal whose first record is the contents of FILE.
+// Without a checkpoint the run starts anew. When FILE is written, the journal is removed. The last checkpoint stays if
+// the run needed more than ten seconds, or than the time between two checkpoints: a later `--until` continues from
+// both, with a journal whose first record is the contents of FILE. A shorter run is extended by running it again.
 #pragma once
 
 #include <chrono>
@@ -21,6 +22,7 @@
 
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 #include "cradle/tools/store/run_store.hpp"
 
@@ -35,8 +37,8 @@ class RunFiles final : public RunStore {
   static std::string checkpoint_of(const std::string& file) { return file + ".checkpoint"; }
 
   /// A new run. The caller has claimed FILE. Throws Error (Exit::bad_input) if a long unfinished run would be lost,
-  /// else (Exit::io).
-  RunFiles(std::string file, const Scene& scene);
+  /// unless forced, else (Exit::io).
+  RunFiles(std::string file, const Scene& scene, Force force = Force::no);
   /// Continues a run, up to `until` if given. Throws Error if there is none; a finished run gives a reason in `over`.
   RunFiles(std::string file, const std::optional<std::string>& until);
 
@@ -46,6 +48,8 @@ class RunFiles final : public RunStore {
   Exit over_status() const { return over_status_; }
   /// Where the run continues from: "t = 1200, 3.4e7 collisions", or "the start".
   const std::string& resumed_from() const { return from_; }
+  /// Which lists of times a later end does not extend, a line for the user; empty: none.
+  const std::string& not_extended() const { return not_extended_; }
   std::uint64_t collisions_before() const { return collisions_before_; }
   /// Whether the files have all that was computed up to the end of the run.
   bool up_to_date() const { return up_to_date_; }
@@ -68,6 +72,7 @@ class RunFiles final : public RunStore {
   void resume_from_result(const std::optional<std::string>& until);
   void from(const CheckpointHeader& found);
   bool checkpoint_due(Clock::time_point now) const;
+  bool worth_extending(double seconds) const;
   bool saved(const std::function<void()>& what);
   void append(const RunRecord& record);
   void write_waiting();
@@ -79,7 +84,7 @@ class RunFiles final : public RunStore {
   std::uint64_t records_ = 0, check_ = 0;
   GrowingTables waiting_;  // rows not in the journal yet: it has not begun, or the disk was full
   std::unique_ptr<StateReader> state_;
-  std::string over_, from_ = "the start";
+  std::string over_, not_extended_, from_ = "the start";
   Exit over_status_ = Exit::done;
   std::uint64_t collisions_before_ = 0;  // made in earlier calls
 

@@ -69,14 +69,14 @@ std::vector<Group> GrowingTables::in_order() && {
                                                    "snapshots/",
                                                    "profiles/",
                                                    "masses/",
-                                                   "structure_at/",
-                                                   "pair_distribution_at/",
+                                                   "structure/",
+                                                   "pair_distribution/",
                                                    "zone",
                                                    "averages",
                                                    "histograms/",
                                                    "correlations",
-                                                   "structure",
-                                                   "pair_distribution",
+                                                   "structure_average",
+                                                   "pair_distribution_average",
                                                    "scenario",
                                                    "events",
                                                    "collapse"};
@@ -94,6 +94,9 @@ std::vector<Group> GrowingTables::in_order() && {
 
 RunJournal read_run_journal(const std::string& path, Reading reading) {
   JournalReader records(path);
+  if (records.header().kind == threshold_kind)
+    throw Error({path, 0, ""}, "runs of a threshold that is not found yet", records.header().name,
+                "repeat its command, which continues it", Exit::io);
   if (!records.header().of_run())
     throw Error({path, 0, ""}, "replicas that are not finished, no statistics yet", "",
                 fmt::format("`cradle resume {}` continues with them, `cradle info {}` prints how many are finished",

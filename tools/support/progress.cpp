@@ -58,22 +58,28 @@ void ProgressLine::draw(double share, const std::string& state) {
   last_ = Clock::now();
 }
 
-Progress::Progress(Show show, double start, double until)
-    : line_(show), start_(start), until_(until), last_time_(start) {}
+Progress::Progress(Show show, double start, double until, bool predictable)
+    : line_(show), start_(start), until_(until), predictable_(predictable) {
+  left_.add(0, start);
+}
+
+void Progress::continue_from(double time, std::uint64_t collisions) {
+  last_collisions_ = collisions;
+  left_ = TimeLeft();
+  left_.add(std::chrono::duration<double>(Clock::now() - started_).count(), time);
+}
 
 void Progress::report(double time, std::uint64_t collisions) {
   const auto due = line_.due();
   if (!due) return;
-  const double passed = *due;
-  const double speed = (time - last_time_) / passed;
-  speed_ = speed_ > 0 ? 0.7 * speed_ + 0.3 * speed : speed;
+  left_.add(std::chrono::duration<double>(Clock::now() - started_).count(), time);
   const double share = until_ > start_ ? std::clamp((time - start_) / (until_ - start_), 0.0, 1.0) : 1.0;
-  const std::string state =
-      fmt::format("t = {:.6g} of {:.6g}, {:.4g} collisions, {:.3g} million/s, {} left", time, until_,
-                  static_cast<double>(collisions), static_cast<double>(collisions - last_collisions_) / passed * 1e-6,
-                  speed_ > 0 ? duration((until_ - time) / speed_) : "?");
+  std::string state =
+      fmt::format("t = {:.6g} of {:.6g}, {:.4g} collisions, {:.3g} million/s", time, until_,
+                  static_cast<double>(collisions), static_cast<double>(collisions - last_collisions_) / *due * 1e-6);
+  if (const auto seconds = left_.until(until_); seconds && predictable_)
+    state += fmt::format(", {} left", duration(*seconds));
   line_.draw(share, state);
-  last_time_ = time;
   last_collisions_ = collisions;
 }
 

@@ -1,7 +1,7 @@
 // Progress on standard error: a bar on a terminal, else, if requested, a plain line every ten seconds. For a run:
-// simulated time, collisions, collisions/s, time left; for an ensemble: replicas, replicas/s, time left. For programs
-// that call this one: if CRADLE_PROGRESS_FD names a socket, each line is also written there as `SHARE<tab>TEXT`, with
-// SHARE from 0 to 1.
+// simulated time, collisions, collisions/s, time left where it can be predicted; for an ensemble: replicas, replicas/s,
+// time left. For programs that call this one: if CRADLE_PROGRESS_FD names a socket, each line is also written there as
+// `SHARE<tab>TEXT`, with SHARE from 0 to 1.
 #pragma once
 
 #include <chrono>
@@ -9,6 +9,8 @@
 #include <mutex>
 #include <optional>
 #include <string>
+
+#include "cradle/tools/support/time_left.hpp"
 
 namespace cradle::tools {
 
@@ -42,19 +44,23 @@ class Progress {
  public:
   using Show = ProgressLine::Show;
 
-  Progress(Show show, double start, double until);
+  /// `predictable`: whether the pace so far says how long the rest takes.
+  Progress(Show show, double start, double until, bool predictable);
 
   /// Sets where a resumed run begins.
-  void continue_from(double time, std::uint64_t collisions) { last_time_ = time, last_collisions_ = collisions; }
+  void continue_from(double time, std::uint64_t collisions);
   /// Cheap to call often: prints at most a few times a second on a terminal, every ten seconds elsewhere.
   void report(double time, std::uint64_t collisions);
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   ProgressLine line_;
   double start_, until_;
-  double last_time_;
+  bool predictable_;
   std::uint64_t last_collisions_ = 0;
-  double speed_ = 0;  // simulated time per second, smoothed
+  Clock::time_point started_ = Clock::now();
+  TimeLeft left_;
 };
 
 class ReplicaProgress {

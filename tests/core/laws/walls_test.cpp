@@ -261,8 +261,7 @@ TEST(Walls, RunsContinueFromASavedState) {
   const auto particles = walled<double>(rmix<double>(30), thermal(-1., 0.5), Wall<double>{31., -0.02, .9});
   const Inelastic<double> law(0.97, 1e-4);
   const auto check = [](const auto& later, const auto& whole) {
-    EXPECT_TRUE(SavedState::of(wall_tallies(later)[0]) == SavedState::of(wall_tallies(whole)[0]));
-    EXPECT_TRUE(SavedState::of(wall_tallies(later)[1]) == SavedState::of(wall_tallies(whole)[1]));
+    EXPECT_TRUE(SavedState::of(later.chain().walls()) == SavedState::of(whole.chain().walls()));
   };
   expect_same_from_anywhere([&] { return gap_run<double>(particles, law); }, 0.5, 6.1, 30, check);
   expect_same_from_anywhere([&] { return position_run<double>(particles, law); }, 0.5, 6.1, 30, check);

@@ -49,6 +49,13 @@ TEST_F(Commands, TheoryKnowsTheTurnoverOfTheFront) {
   EXPECT_TRUE(has(shell("cradle theory fig2").out, "misprinted"));
 }
 
+TEST_F(Commands, TheoryThatIsNotThereIsOneSentence) {
+  EXPECT_TRUE(begins(shell("cradle theory classics/domino", 0).out, "no predictions: "));
+  const std::string sticky = shell("cradle theory fig1", 0).out, ring = shell("cradle theory cooling", 0).out;
+  EXPECT_FALSE(has(sticky, "Misprints")) << "of a table without printed forms";
+  EXPECT_EQ(has(ring, "Misprints"), has(shell("cradle theory cooling --csv").out, ",printed,"));
+}
+
 TEST_F(Commands, ScenesAreListedAndPrinted) {
   const Printed list = shell("cradle scenes");
   for (const auto* name : {"fig2", "fig3", "fig4", "collapse3"}) {
@@ -218,7 +225,13 @@ TEST_F(Commands, BadCommandLinesSayWhatIsWrongAndWhoseHelpToRead) {
   const std::vector<std::pair<const char*, const char*>> commands{
       {"walk fig2", "no such command (found walk): see `cradle --help`"},
       {"ensamble fig2", "no such command (found ensamble): did you mean `cradle ensemble`?"},
-      {"run fig2 --sett a=1", "more than this command takes (found --sett a=1): see `cradle run --help`"},
+      {"run fig2 --sett a=1", "no such option (found --sett): did you mean --set? See `cradle run --help`"},
+      {"run fig2 --until 100",
+       "no such option (found --until): did you mean --set run.until=VALUE? See `cradle run --help`"},
+      {"resume a.h5 --unti 100", "no such option (found --unti): did you mean --until? See `cradle resume --help`"},
+      {"run fig2 --threads -1",
+       "--threads: not a whole number from 0 to 4294967295 (found -1): see `cradle run --help`"},
+      {"run fig2 b.h5", "more than this command takes (found b.h5): see `cradle run --help`"},
       {"ensemble fig2", "--replicas is required: see `cradle ensemble --help`"},
       {"ensemble fig2 --replicas 0",
        "--replicas: not a whole number from 1 to 9007199254740992 (found 0): see `cradle ensemble --help`"},

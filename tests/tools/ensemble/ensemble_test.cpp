@@ -25,7 +25,7 @@ TEST_P(StatisticsOf, ReplicasAreThoseOfTheRunsOneByOne) {
   const Result all = read("all.h5");
   std::vector<Result> runs;
   for (std::size_t k = 0; k < n; ++k) {
-    run(fmt::format("run {} --quiet --set initial.replica={} -o run.h5", scene, k));
+    run(fmt::format("run {} --quiet --force --set initial.replica={} -o run.h5", scene, k));
     runs.push_back(read("run.h5"));
   }
   EXPECT_EQ(numbers(all, "ensemble/series", "time"), numbers(runs[0], "series", "time"));
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, StatisticsOf, testing::Values("shock", "wet"),
 
 TEST_F(Ensembles, OneReplicaAloneIsTheRunOfThatReplica) {
   run("ensemble shock.toml --first 17 --replicas 1 -o alone.h5");
-  run("run shock.toml --quiet --set initial.replica=17 -o run.h5");
+  run("run shock.toml --quiet --force --set initial.replica=17 -o run.h5");
   EXPECT_EQ(numbers(read("alone.h5"), "ensemble/series/energy", "mean"), numbers(read("run.h5"), "series", "energy"));
 }
 

@@ -14,7 +14,7 @@ TEST_F(Ensembles, KeepWhatEveryReplicaRecords) {
     const auto replica = std::get<std::vector<std::uint64_t>>(column(kept, "replica").values);
     std::size_t row = 0;
     for (std::uint64_t k = 0; k < 5; ++k) {
-      run("run shock.toml --quiet -o r.h5 --set initial.replica=" + std::to_string(k));
+      run("run shock.toml --quiet --force -o r.h5 --set initial.replica=" + std::to_string(k));
       const Result alone = result("r.h5");
       const tools::Group& own = *alone.find(table);
       EXPECT_EQ(kept.columns.size(), own.columns.size() + 1);

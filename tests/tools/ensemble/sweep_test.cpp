@@ -81,7 +81,8 @@ TEST_F(SweepCommand, TableIsTheMeanOfTheRuns) {
   double sum = 0, squares = 0;
   for (const int replica : {0, 1, 2}) {
     const std::string number = std::to_string(replica);
-    shell("cradle run " + scene + "--set law.loss=0.02 --set initial.replica=" + number + " --quiet -o one.h5", 0);
+    shell("cradle run " + scene + "--set law.loss=0.02 --set initial.replica=" + number + " --quiet --force -o one.h5",
+          0);
     const Result one = read("one.h5");
     const double energy = numbers(one, "series", "energy").back();
     sum += energy;

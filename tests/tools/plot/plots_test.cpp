@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"BeyondSweep",
              "cradle sweep beyond --vary law.cutoff=1e-3,1e-2 --replicas 2 --set initial.particles=400 "
              "--set law.restitution=0.97 --set run.until=420",
-             {"rates", "sweep"}},
+             {"rates", "parameters"}},
         Kind{"SpaceTime", "cradle run fig5", {}},
         Kind{"WetShock",
              "cradle run fig6 --set initial.particles=400 --set law.loss=0.01 --set run.until=150 "
@@ -110,6 +110,11 @@ INSTANTIATE_TEST_SUITE_P(
              "cradle sweep classics/collapse_number --vary initial.particles=6,10,14 --replicas 5 "
              "--set law.restitution=0.5",
              {}},
+        Kind{"Marbles", "cradle sweep classics/marbles --replicas 2 --set run.until=20", {}},
+        Kind{"BetweenWalls", "cradle sweep classics/between_walls --replicas 1 --set run.until=5", {}},
+        Kind{
+            "Bouncing", "cradle sweep classics/bouncing --vary walls.left.amplitude=1,1.4,1.7 --set run.until=100", {}},
+        Kind{"Column", "cradle sweep classics/column --set run.until=40", {}},
         Kind{"Universality",
              "cradle sweep classics/universality --set initial.particles=200 --set run.until=50 "
              "--set output.series.points=20",
@@ -126,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
              "cradle sweep fig8 --cuts --vary initial.speed=0.5,1 --vary law.loss=0.01,0.02 --replicas 2 "
              "--set initial.particles=1000 --set run.until=500 --set output.zone.from=100 "
              "--set output.zone.samples=100 --set output.series.points=20",
-             {"sweep"}},
+             {"parameters"}},
         Kind{"MapSweep",
              "cradle sweep fig2 --vary law.restitution=0.5,0.9 --vary initial.speed=0.5,1 --set initial.particles=40 "
              "--set run.until=10 --set output.snapshots=[] --set output.series.points=5 "

@@ -52,6 +52,15 @@ Certified certified(const std::string& toml, const Plant& plant) {
   return certify(parse_scene(toml, "shock", {}), how);
 }
 
+const char* const between_walls = R"(
+law = {type = "inelastic", restitution = 0.9, cutoff = 0.1}
+initial = {type = "list", x = [1, 2, 3, 4], v = [1, -1, 0.5, 0], m = [1, 2, 1, 1]}
+walls.left = {position = 0, temperature = 1}
+walls.right = {position = 5, speed = 0.01, restitution = 0.8}
+run.until = 20
+output.series = {points = 4}
+)";
+
 std::string moved(const std::string& number, double by) {
   return to_text(from_text<double_double>(number) + double_double(by));
 }
@@ -119,6 +128,29 @@ TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
     const std::string message = cradle::tests::refusal(Exit::lost, [&plant = plant] { certified(shock, plant); });
     EXPECT_TRUE(has(message, "do not agree")) << quantity;
     EXPECT_TRUE(has(message, quantity));
+  }
+}
+
+TEST(Agreement, WhateverIsPlantedInTheAccountsOfWallsIsFoundAndNamed) {
+  EXPECT_TRUE(certified(between_walls, [](RunSample&) {}).proved());
+  const auto of_wall = [](std::size_t side, std::string SampledWall::*which, double by) {
+    return [=](RunSample& at) {
+      if (at.time > 19) at.walls[side].*which = moved(at.walls[side].*which, by);
+    };
+  };
+  const std::pair<const char*, Plant> plants[] = {
+      {"energy given by the left wall", of_wall(0, &SampledWall::given, 1e-9)},
+      {"momentum given by the left wall", of_wall(0, &SampledWall::momentum, 1e-9)},
+      {"energy given by the right wall", of_wall(1, &SampledWall::given, -1e-9)},
+      {"momentum given by the right wall", of_wall(1, &SampledWall::momentum, 1e-9)},
+      {"energy lost in the right wall", of_wall(1, &SampledWall::dissipated, 1e-9)},
+      {"energy lost in the left wall", of_wall(0, &SampledWall::dissipated, 1e-9)},
+      {"collisions with the right wall", [](RunSample& at) { at.walls[1].collisions += at.time > 19; }}};
+  for (const auto& [quantity, plant] : plants) {
+    const std::string message =
+        cradle::tests::refusal(Exit::lost, [&plant = plant] { certified(between_walls, plant); });
+    EXPECT_TRUE(has(message, "do not agree")) << quantity;
+    EXPECT_TRUE(has(message, quantity)) << message;
   }
 }
 

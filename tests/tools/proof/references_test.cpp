@@ -1,7 +1,7 @@
 // Every number of a certificate against an independent gas (reference_gas.hpp), on scenes drawn at random: lists of two
-// to nine particles (separate groups, lattices, central masses, a few that move), rows, cold gases, rings and replicas,
-// every law that can be proved, ends and samples with more digits than a double has. The numbers of an undecided
-// certificate are checked up to the time at which it is undecided.
+// to nine particles (separate groups, lattices, central masses, a few that move), rows, cold gases, rings, walls and
+// replicas, every law that can be proved, ends and samples with more digits than a double has. The numbers of an
+// undecided certificate are checked up to the time at which it is undecided.
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -53,10 +53,11 @@ struct Drawn {
 
 struct LawText {
   std::string law, run;
-  bool wet = false;
+  bool roots = false;
 };
-LawText draw_law(Random& random) {
-  const std::int64_t kind = below(random, 8);
+// Of particles that bounce, if there are walls.
+LawText draw_law(Random& random, bool walls = false) {
+  const std::int64_t kind = walls ? one_of(random, {2, 4, 5, 6, 7, 8, 9}) : below(random, 8);
   if (kind == 0) return {"law = {type = \"sticky\"}\n", ""};
   if (kind == 1)
     return {fmt::format("law = {{type = \"wet\", loss = {}}}\n", one_of(random, {"0.01", "0.1", "0.5", "2"})), "",
@@ -71,7 +72,31 @@ LawText draw_law(Random& random) {
     return {law + "}\n",
             fmt::format("run.collapse = \"merge\"\nrun.merge_speed = {}\n", one_of(random, {"0.2", "0.05", "1"}))};
   if (kind == 4) return {law + "}\n", "run.collapse = \"stop\"\n"};
-  return {law + fmt::format(", cutoff = {}}}\n", one_of(random, {"0.1", "0.01", "0.5", "1"})), ""};
+  const std::string cutoff = fmt::format(", cutoff = {}", one_of(random, {"0.1", "0.01", "0.5", "1"}));
+  if (kind < 8) return {law + cutoff + "}\n", ""};
+  return {law + cutoff + fmt::format(", cutoff_exponent = {}}}\n", one_of(random, {"1", "4", "0.5", "2.5", "\"3.0\""})),
+          "", true};
+}
+// One wall or two beside particles from `first` to `last`; of two none moves inwards.
+std::string draw_walls(Random& random, double first, double last) {
+  const std::int64_t which = below(random, 3);
+  std::string walls;
+  for (const std::int64_t side : {0, 1}) {
+    if (which == side) continue;
+    const std::int64_t cents = 2 + below(random, 300), sign = side == 0 ? -1 : 1;
+    const std::string name = side == 0 ? "walls.left." : "walls.right.";
+    const auto outermost = static_cast<std::int64_t>(std::floor((side == 0 ? first : last) * 100));
+    walls += name + "position = \"" + number_of(random, outermost + sign * cents, 2) + "\"\n";
+    if (below(random, 2) == 0)
+      walls += name + "speed = \"" +
+               number_of(random, (which < 2 ? below(random, 120) - 60 : sign * below(random, 60)), 2) + "\"\n";
+    if (which == 2 && below(random, 4) == 0) continue;
+    if (below(random, 3) == 0)
+      walls += name + fmt::format("temperature = {}\n", one_of(random, {"1", "0.3", "2.5"}));
+    else
+      walls += name + fmt::format("restitution = {}\n", one_of(random, {"1", "0.9", "0.35", "0.99999999999999999999"}));
+  }
+  return walls;
 }
 
 // Sampled at times of every kind.
@@ -110,11 +135,28 @@ constexpr const char* some_ring = "initial = {type = \"ring\", particles = 2, le
 
 Drawn draw_list(Random& random) {
   const LawText law = draw_law(random);
-  Drawn d{parse_scene(law.law + some_ring + law.run + draw_times(random), "list", {}), law.wet};
+  Drawn d{parse_scene(law.law + some_ring + law.run + draw_times(random), "list", {}), law.roots};
   d.scene.initial.type = InitialType::list;
   d.scene.initial.length = Decimal("0");  // on a line
   draw_particles(random, d.scene.initial);
   return d;
+}
+Drawn draw_walled(Random& random) {
+  Drawn bare = draw_list(random);
+  while (bare.scene.law.type != LawType::inelastic || bare.scene.run.collapse == tools::scene::CollapsePolicy::merge)
+    bare = draw_list(random);
+  const LawText law = draw_law(random, true);
+  const Initial& initial = bare.scene.initial;
+  const auto listed = [](const DecimalColumn& column) {
+    std::string all;
+    for (std::size_t k = 0; k < column.size(); ++k) all += fmt::format("{}\"{}\"", k == 0 ? "" : ", ", column[k]);
+    return "[" + all + "]";
+  };
+  const std::string list = fmt::format("initial = {{type = \"list\", x = {}, v = {}{}}}\n", listed(initial.x),
+                                       listed(initial.v), initial.m.empty() ? "" : ", m = " + listed(initial.m));
+  const std::string walls =
+      draw_walls(random, std::stod(std::string(initial.x[0])), std::stod(std::string(initial.x.back())));
+  return {parse_scene(law.law + list + walls + law.run + draw_times(random), "walls", {}), law.roots};
 }
 std::string draw_masses(Random& random) {
   return one_of(random, {"", "", ", masses = [0.5]", ", masses = [\"0.1\", \"0.10\"]", ", masses = [0.3, 2]",
@@ -128,7 +170,7 @@ Drawn draw_ring(Random& random) {
                               "\", variance = " + one_of(random, {"1", "0.25", "2.25"}) +
                               ", perturbation = " + one_of(random, {"0", "0.1", "0.3"}) + draw_masses(random) +
                               ", seed = " + std::to_string(below(random, 1000000)) + "}\n";
-  return {parse_scene(law.law + initial + law.run + draw_times(random), "ring", {}), law.wet};
+  return {parse_scene(law.law + initial + law.run + draw_times(random), "ring", {}), law.roots};
 }
 Drawn draw_cold(Random& random) {
   const LawText law = draw_law(random);
@@ -139,7 +181,7 @@ Drawn draw_cold(Random& random) {
                               "\", spacing = " + one_of(random, {"1", "0.3"}) +
                               ", perturbation = " + one_of(random, {"0", "0.3"}) + draw_masses(random) +
                               ", seed = " + std::to_string(below(random, 1000000)) + "}\n";
-  return {parse_scene(law.law + initial + law.run + draw_times(random), "cold", {}), law.wet || hot > 1};
+  return {parse_scene(law.law + initial + law.run + draw_times(random), "cold", {}), law.roots || hot > 1};
 }
 Drawn draw_rows(Random& random) {
   const LawText law = draw_law(random);
@@ -152,7 +194,7 @@ Drawn draw_rows(Random& random) {
                                               std::string(", centre = {mass = 1e-3, speed = 0}")}) +
                               ", perturbation = " + one_of(random, {"0", "0.3"}) +
                               ", seed = " + std::to_string(below(random, 1000000)) + "}\n";
-  return {parse_scene(law.law + initial + law.run + draw_times(random), "rows", {}), law.wet};
+  return {parse_scene(law.law + initial + law.run + draw_times(random), "rows", {}), law.roots};
 }
 
 // ---- the same scene as a gas
@@ -240,6 +282,19 @@ template <class T> void put_rows(const Initial& initial, Gas<T>& gas) {
            of<T>(initial.right.speed), T(1));
 }
 
+template <class T> void put_wall(End end, const Scene& scene, Gas<T>& gas) {
+  const WallAt& wall = end == End::left ? scene.walls.left : scene.walls.right;
+  if (!wall.position) return;
+  auto& put = gas.walls[static_cast<std::size_t>(end)];
+  put = {of<T>(*wall.position), of<T>(wall.speed), wall.temperature ? T(1) : of<T>(wall.restitution)};
+  if (wall.temperature)
+    put->random_speed = [end, temperature = wall.temperature->value, &initial = scene.initial](std::uint64_t collision,
+                                                                                               const T& mass) {
+      return T(thermal_speed(initial.seed, initial.replica, end, collision) *
+               std::sqrt(temperature / static_cast<double>(mass)));
+    };
+}
+
 template <class T> Gas<T> gas_of(const Scene& scene) {
   Gas<T> gas;
   const auto& law = scene.law;
@@ -250,7 +305,9 @@ template <class T> Gas<T> gas_of(const Scene& scene) {
                                                                                : GasLaw::inelastic;
   gas.restitution = of<T>(law.restitution), gas.cutoff = of<T>(law.cutoff), gas.loss = of<T>(law.loss);
   gas.contact_time = of<T>(scene.run.contact_time), gas.merge_speed = of<T>(scene.run.merge_speed);
+  if (law.cutoff_exponent) gas.cutoff_exponent = of<T>(*law.cutoff_exponent);
   const Initial& initial = scene.initial;
+  for (const End end : {End::left, End::right}) put_wall(end, scene, gas);
   if (initial.type == InitialType::ring) put_ring(initial, gas);
   if (initial.type == InitialType::cold) put_cold(initial, gas);
   if (initial.type == InitialType::rows) put_rows(initial, gas);
@@ -302,6 +359,13 @@ template <class T> struct Comparison {
       within("energy", s.energy, gas.energy());
       front(s.front_left, gas, gas.outermost(true));
       front(s.front_right, gas, gas.outermost(false));
+      for (std::size_t side = 0; side < 2; ++side) {
+        EXPECT_EQ(s.walls[side].has_value(), gas.walls[side].has_value());
+        if (!s.walls[side]) continue;
+        EXPECT_EQ(s.walls[side]->collisions, gas.walls[side]->collisions);
+        within("energy given by a wall", s.walls[side]->given, gas.walls[side]->given);
+        within("energy lost in a wall", s.walls[side]->lost, gas.walls[side]->lost);
+      }
       if (held_whole()) margins(s, gas, at_collision);
     }
     return true;
@@ -327,7 +391,14 @@ template <class T> struct Comparison {
         else
           EXPECT_EQ(values_of<Texts>(exact, std::string(side) + "_low")[k], "nan");
       }
-      if (!joined || series->columns.size() < 10) continue;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const std::string wall = side == 0 ? "wall_left" : "wall_right";
+        if (!gas.walls[side]) continue;
+        row(*bounds, exact, k, wall + "_energy", gas.walls[side]->given);
+        if ((side == 0 ? scene.walls.left : scene.walls.right).dissipates())
+          row(*bounds, exact, k, wall + "_lost", gas.walls[side]->lost);
+      }
+      if (!joined || series->columns[1].name != "energy") continue;  // bounds alone, where the run did not end
       EXPECT_EQ(values_of<Whole>(*series, "collisions")[k], gas.collisions);
       EXPECT_EQ(values_of<Whole>(*series, "merges")[k], gas.merges);
       if (scene.law.restitution != Decimal("1") || scene.law.type != LawType::inelastic) {
@@ -396,9 +467,13 @@ template <class T> struct Comparison {
   }
   // Powers of ten: the least gap, and how wide places are.
   void margins(const CertainSample& s, const Gas<T>& gas, bool at_collision) {
+    std::vector<T> gaps;
+    for (std::size_t k = 0; k < gas.pairs(); ++k) gaps.push_back(gas.gap_after(k));
+    for (const bool left : {true, false})
+      if (gas.walls[left ? 0 : 1]) gaps.push_back(gas.gap_to_wall(left));
     std::optional<double> least;
-    for (std::size_t k = 0; k < gas.pairs(); ++k) {
-      const double gap = std::log10(static_cast<double>(gas.gap_after(k)));
+    for (const T& size : gaps) {
+      const double gap = std::log10(static_cast<double>(size));
       if (at_collision && gap < -100) continue;  // of those that meet
       if (!least || gap < *least) least = gap;
     }
@@ -406,7 +481,7 @@ template <class T> struct Comparison {
       EXPECT_NEAR(s.least_gap, *least, 1e-6);
     }
     EXPECT_NE(s.energy.decimals.low, "-inf");
-    EXPECT_EQ(std::isfinite(s.least_gap), gas.pairs() > (at_collision ? 1U : 0U)) << s.least_gap;
+    EXPECT_EQ(std::isfinite(s.least_gap), gaps.size() > (at_collision ? 1U : 0U)) << s.least_gap;
   }
 };
 
@@ -461,6 +536,9 @@ TEST(Certificates, OfRingsHoldWhatRationalsGive) { EXPECT_GT(compare_all(draw_ri
 TEST(Certificates, OfColdGasesHoldWhatRationalsGive) { EXPECT_GT(compare_all(draw_cold, 1, 60).proved, 40U); }
 TEST(Certificates, OfRowsHoldWhatRationalsGive) { EXPECT_GT(compare_all(draw_rows, 20, 12).proved, 5U); }
 
+TEST(Certificates, BetweenWallsHoldWhatRationalsGive) { EXPECT_GT(compare_all(draw_walled, 1, 60).proved, 45U); }
+
+TEST(SlowCertificates, BetweenWalls) { EXPECT_GT(compare_all(draw_walled, 500000, 560).proved, 500U); }
 TEST(SlowCertificates, OfLists) { EXPECT_GT(compare_all(draw_list, 100000, 3000).proved, 2000U); }
 TEST(SlowCertificates, OfRings) { EXPECT_GT(compare_all(draw_ring, 200000, 1000).proved, 600U); }
 TEST(SlowCertificates, OfColdGases) { EXPECT_GT(compare_all(draw_cold, 300000, 500).proved, 300U); }

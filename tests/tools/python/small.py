@@ -77,10 +77,17 @@ def words():
 
 
 @functools.cache
+def threshold():
+    """Up to which restitution three particles collapse."""
+    cradle.threshold("collapse3", {"law.restitution": "0.05:0.1"}, digits=6, output="threshold.h5").close()
+    return "threshold.h5"
+
+
+@functools.cache
 def page(make):
     """The text of the report of one of these, beside it with .html."""
     with open(cradle.report(make()), encoding="utf-8") as file:
         return file.read()
 
 
-ALL = (shock, ensemble, sweep, collapse, trust, tagged, tagged_ensemble, words)
+ALL = (shock, ensemble, sweep, collapse, trust, tagged, tagged_ensemble, words, threshold)

@@ -73,6 +73,14 @@ class Runs(unittest.TestCase):
             self.assertEqual(result.series.time[-1], 80)
             self.assertGreater(result.series.collisions[-1], collisions)
 
+    def test_a_star_import_keeps_open_and_completion_shows_what_is_for_users(self):
+        names = {}
+        exec("from cradle import *", names)
+        self.assertNotIn("open", names)
+        self.assertIs(names["run"], cradle.run)
+        self.assertIn("open", dir(cradle))
+        self.assertFalse({"importlib", "annotations", "TYPE_CHECKING"} & set(dir(cradle)))
+
     def test_without_the_program(self):
         kept = os.environ["CRADLE_PROGRAM"]
         os.environ["CRADLE_PROGRAM"] = "/no/such/cradle"

@@ -111,6 +111,9 @@ class OnTheWay(unittest.TestCase):
                         self.assertEqual(result.outcome, "in progress")
                         self.assertLess(result.series.time[-1], 1e7)
                         page = cradle.report(result, "way.html")
+                        pictures = subprocess.run([program.find(), "plot", "way.h5.part"], capture_output=True,
+                                                  text=True, check=True).stdout.split()
+                        self.assertEqual(pictures[0], "way.png")
                         break
                 except cradle.Error as error:  # not there yet, or over
                     self.assertEqual(error.status, 4)

@@ -682,6 +682,10 @@ class InBrowser(unittest.TestCase):
             document.querySelector('select'))""")
         self.browser.until("cradleMicroscopeTest.world().start === 300")
         self.assertTrue(math.isfinite(self.view()["X"]))
+        offered = self.browser.run("document.querySelector('.microscope-help').textContent")
+        self.assertIn("space: play", offered)
+        for key in ("n, p:", "d:", "c:"):
+            self.assertNotIn(key, offered, "of collisions, which snapshots do not have")
 
     def test_pictures_of_a_core(self):
         if not os.environ.get("CRADLE_MICROSCOPE_PICTURES"):

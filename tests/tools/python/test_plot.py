@@ -19,8 +19,9 @@ class Pictures(unittest.TestCase):
         for make in small.ALL:
             for extension in (".png", ".svg"):
                 made = cradle.plot.save(make(), "ours" + extension)
-                printed = subprocess.run([program.find(), "plot", make(), "-o", "theirs" + extension], check=True,
-                                         capture_output=True, text=True).stdout.split()
+                words = ["plot", make(), "-o", "theirs" + extension, "--force"]
+                printed = subprocess.run([program.find(), *words], check=True, capture_output=True,
+                                         text=True).stdout.split()
                 self.assertEqual([name.replace("ours", "theirs") for name in made], printed)
                 for ours, theirs in zip(made, printed):
                     self.assertTrue(filecmp.cmp(ours, theirs, shallow=False), ours)
@@ -32,6 +33,17 @@ class Pictures(unittest.TestCase):
                     figure = getattr(cradle.plot, name)(result)
                     self.assertGreater(len(figure.axes), 0, name)
                     plt.close(figure)
+
+    def test_the_module_is_the_main_picture_and_completes_to_pictures(self):
+        figure = cradle.plot(small.shock())
+        main = cradle.plot.shock(small.shock())
+        self.assertEqual(cradle.plot.names(small.shock())[0], "shock")
+        self.assertEqual([len(ax.lines) for ax in figure.axes], [len(ax.lines) for ax in main.axes])
+        self.assertEqual(len(cradle.plot(small.shock(), "energy").axes), len(cradle.plot.energy(small.shock()).axes))
+        with self.assertRaisesRegex(cradle.Error, "no domino picture"):
+            cradle.plot(small.shock(), "domino")
+        plt.close("all")
+        self.assertEqual(set(dir(cradle.plot)), {"names", "save", *cradle.plot.PICTURES})
 
     def test_all_have_a_text_and_the_same_arguments(self):
         for name in cradle.plot.PICTURES:
@@ -63,6 +75,46 @@ class Pictures(unittest.TestCase):
             cradle.plot.energy(small.shock(), axes=axes.ravel()[:3])
         plt.close(figure)
 
+    def test_are_drawn_for_dark_pages_too(self):
+        from cradle.drawing.style import BLUE, DARK, LIGHT
+        for dark, colours in ((False, LIGHT), (True, DARK)):
+            figure = cradle.plot.drawings(small.shock())["energy"](dark=dark)
+            self.assertEqual(matplotlib.colors.to_hex(figure.get_facecolor()), colours["white"])
+            plt.close(figure)
+        self.assertEqual(matplotlib.colors.to_hex(BLUE), LIGHT[BLUE])  # after it
+
+    def test_have_the_title_and_name_the_paper(self):
+        figure = cradle.plot.shock(small.shock())
+        texts = [text.get_text() for text in figure.findobj(matplotlib.text.Text)]
+        self.assertIn("inelastic shock, Fig. 2", texts)
+        self.assertTrue(any(text.startswith("front, Eqs. (4), (5)") for text in texts))
+        self.assertTrue(any("Zaburdaev and Herminghaus" in text for text in texts))
+        plt.close(figure)
+
+    def test_no_axis_has_a_single_label(self):
+        from cradle.drawing.finish import label_ticks
+        for low, high in ((2, 5), (0.9, 1.3), (3, 40), (1.01, 1.02), (1, 1e9)):
+            figure, axes = plt.subplots()
+            axes.set(yscale="log", ylim=(low, high))
+            label_ticks(axes.yaxis)
+            figure.canvas.draw()
+            labels = [label.get_text() for label, place in zip(axes.get_yticklabels(), axes.get_yticks())
+                      if low <= place <= high and label.get_text()]
+            self.assertGreater(len(labels), 1, (low, high))
+            plt.close(figure)
+
+    def test_a_collapse_is_shown_against_the_time_that_is_left(self):
+        from cradle.drawing.particles import time_to_collapse
+        with cradle.open(small.collapse()) as result:
+            left = time_to_collapse(result)
+            # t_c = 12/7; doubles resolve the first differences, and the last one is 5/11 of the last interval: each
+            # time to the next collision is 5/16 of the one before.
+            np.testing.assert_allclose(left[:8], result.collapse["time"] - result.events["time"][:8], rtol=1e-9)
+            self.assertAlmostEqual(left[-1] / result.events["interval"][-1], 5 / 11, delta=1e-9)
+            figure = cradle.plot.particles(result)
+            self.assertEqual([ax.get_xscale() for ax in figure.axes], ["linear", "log", "log"])
+            plt.close(figure)
+
     def test_leave_the_settings_of_the_caller(self):
         before = dict(matplotlib.rcParams)
         matplotlib.rcParams["lines.linewidth"] = 7
@@ -90,7 +142,11 @@ class Pictures(unittest.TestCase):
         cradle.run("fig6", output="early.h5", set={
             "initial.particles": 400, "run.until": 100, "output.zone.from": 50, "output.series.points": 20,
             "output.snapshots": [], "output.profiles.times": []}).close()
-        self.assertIn("zone", cradle.plot.names("early.h5"))
+        figure = cradle.plot.zone("early.h5")
+        labels = [line.get_label() for ax in figure.axes for line in ax.get_lines()]
+        self.assertIn("right-movers", labels)
+        self.assertFalse(any("Eq." in label for label in labels), labels)  # no model before there is a zone
+        plt.close(figure)
         cradle.plot.save("early.h5", "early.png")
         cradle.sweep("scenarios", output="few.h5", replicas=2, set={"initial.particles": 200, "run.until": 100}).close()
         self.assertEqual(cradle.plot.names("few.h5")[0], "regimes")

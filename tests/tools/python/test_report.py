@@ -81,10 +81,56 @@ class Reports(unittest.TestCase):
                 self.assertIn(f'id="picture-{name}"', text)
             self.assertEqual(text.count("<figure"), len(cradle.plot.names(make())))
 
+    def test_begin_with_what_was_simulated_and_by_what(self):
+        for make, text in self.pages():
+            begin = text[text.index("<p class=intro>"):text.index("<nav>")]
+            self.assertIn("Cradle, a program", begin, make.__name__)
+            self.assertIn("particles", begin)
+            if make is not small.words:
+                self.assertIn("<b>Units.</b>", begin)
+        first = small.page(small.shock)
+        self.assertIn("Two rows of 100 particles run into each other, each at the speed 0.5&nbsp;l/t; two that collide "
+                      "part at 0.999 times the speed at which they met, or without loss if that was below "
+                      "10<sup>−5</sup>&nbsp;l/t.", first)
+        # What a sweep varies is not said to have one value.
+        self.assertIn("run into each other; two that collide part at a part of the speed", small.page(small.sweep))
+
+    def test_distinguish_what_is_proved_estimated_and_unknown(self):
+        def mark(text, label):
+            return re.search(rf"<th scope=row>{label}<td>.*<span class=\"tag (\w+)\">", text)[1]
+        self.assertEqual(mark(small.page(small.shock), "energy at the end"), "estimated")
+        for label in ("collisions", "right front at the end"):
+            self.assertEqual(mark(small.page(small.shock), label), "unknown")
+        for label, known in (("energy at the end", "proved"), ("collisions", "proved"), ("collapse", "estimated"),
+                             ("last interval", "unknown")):
+            self.assertEqual(mark(small.page(small.collapse), label), known, label)
+
+    def test_say_what_to_see_in_every_picture(self):
+        from cradle.page.captions import SEE
+        self.assertEqual(set(SEE), set(cradle.plot.PICTURES))
+
+    def test_tables_of_sweeps_have_no_blanks(self):
+        # The second point takes the cut-off of the scene, the third one has none.
+        with cradle.sweep("fig2", output="points.h5", points=[
+                {"law.cutoff": 0.01}, {"law.restitution": 0.5},
+                {"law.cutoff": 0, "run.collapse": "merge", "run.merge_speed": 0.1}],
+                set={"initial.particles": 20, "run.until": 5, "output.snapshots": [], "output.profiles.times": []}
+                          ) as result:
+            table = read(cradle.report(result))
+            labels = [cradle.drawing.sweep.label_of(point) for point in result.points]
+            named = cradle.drawing.style.distinct(labels, result.points)
+        table = table[table.index('class="sortable"'):]
+        cells = re.findall(r'<td data-by="[^"]*">(.*?)(?=<td|</?tr|\n)', table[:table.index("</table>")])
+        self.assertNotIn("", cells)
+        self.assertNotIn("–", cells)
+        self.assertEqual(cells.count("none"), 2)  # merging speeds of the points that do not merge
+        self.assertEqual(len(set(labels)), 2)
+        self.assertEqual(len(set(named)), 3)
+
     def test_are_the_same_twice_and_by_the_program(self):
         for make in small.ALL:
             text = small.page(make)
-            out = subprocess.run([program.find(), "report", make(), "-o", "again.html"], check=True,
+            out = subprocess.run([program.find(), "report", make(), "-o", "again.html", "--force"], check=True,
                                  capture_output=True, text=True)
             self.assertEqual((out.stdout, out.stderr), ("again.html\n", ""))
             self.assertEqual(read("again.html"), text, make.__name__)

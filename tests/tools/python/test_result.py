@@ -1,9 +1,11 @@
 """What `cradle.open` gives: names, units, shapes and values of the file, read when they are used, and exact numbers."""
+import importlib.util
 import os
 import sys
 import time
 import unittest
 from fractions import Fraction
+from unittest import mock
 
 import h5py
 import numpy as np
@@ -45,10 +47,28 @@ class Run(unittest.TestCase):
     def test_snapshots_and_profiles_are_in_order_of_time(self):
         self.assertEqual(self.result.snapshots.times.tolist(), [20, 60])
         self.assertEqual(self.result.profiles.times.tolist(), [30, 60])
-        snapshot = self.result.snapshots.at(55)
+        snapshot = self.result.snapshots.at(60)
         self.assertEqual(snapshot.time, 60)
         self.assertEqual(len(snapshot.gap), len(snapshot.x) - 1)
         self.assertEqual(snapshot.gap.unit, "l")
+
+    def test_times_are_exact_unless_the_nearest_is_wanted(self):
+        with self.assertRaisesRegex(cradle.Error, r'none at t = 55 \(the nearest is at t = 60\).*method="nearest"'):
+            self.result.snapshots.at(55)
+        with self.assertRaisesRegex(cradle.Error, "not a method"):
+            self.result.snapshots.at(60, "next")
+        self.assertEqual(self.result.snapshots.at(55, method="nearest").time, 60)
+        self.assertEqual(self.result.snapshots.at(60 * (1 + 2 ** -52)).time, 60)
+
+    def test_paths_are_those_of_the_file(self):
+        for path in ("series/energy", "snapshots/0001/gap", "events/left"):
+            np.testing.assert_array_equal(self.result[path], self.file[path][:])
+            self.assertIn(path, self.result)
+        self.assertEqual(set(self.result.keys()), set(self.file))
+        self.assertEqual(self.result["snapshots"].times.tolist(), [20, 60])
+        self.assertNotIn("series/heat", self.result)
+        with self.assertRaisesRegex(KeyError, "heat: not in .*, which has .*series"):
+            self.result["heat"]
 
     def test_events_are_every_collision(self):
         self.assertEqual(len(self.result.events.time), int(self.result.series.collisions[-1]))
@@ -57,7 +77,7 @@ class Run(unittest.TestCase):
         for keys, speed, kind, count in (({"law.cutoff": 0.3}, 0.3, 1, "collisions_below_cutoff"),
                                          ({"run.collapse": "merge", "run.merge_speed": 0.1}, 0.1, 2, "merges")):
             keys = small.SHOCK | {"law.restitution": 0.9, "output.events": True} | keys
-            with cradle.run("fig2", set=keys, output="kinds.h5") as result:
+            with cradle.run("fig2", set=keys, output="kinds.h5", force=True) as result:
                 found = result.events.kind == kind
                 np.testing.assert_array_equal(found, result.events.closing_speed < speed)
                 self.assertEqual(found.sum(), result.series[count][-1])
@@ -81,16 +101,38 @@ class Run(unittest.TestCase):
         fractions = self.result.series.energy.fractions()
         self.assertEqual([float(value) for value in fractions], self.file["series/energy"][:].tolist())
 
+    def installed(self, module, conversion):
+        """Whether it is; checks the message for those who do not have it."""
+        with mock.patch.dict(sys.modules, {module: None}), \
+                self.assertRaisesRegex(cradle.Error, f"{module} is missing.*python3-{module}"):
+            conversion()
+        return importlib.util.find_spec(module) is not None
+
     def test_xarray_where_it_is_installed(self):
-        try:
-            import xarray  # noqa: F401
-        except ImportError:
-            with self.assertRaisesRegex(cradle.Error, "xarray is missing.*python3-xarray"):
-                self.result.series.to_xarray()
+        if not self.installed("xarray", self.result.series.to_xarray):
             return
         table = self.result.snapshots[0].to_xarray()
         self.assertEqual(table["gap"].attrs["units"], "l")
         self.assertEqual(table.sizes["between_index"], table.sizes["index"] - 1)
+        with cradle.open(small.ensemble()) as ensemble:
+            self.assertEqual(ensemble.series.to_xarray()["energy.mean"].dims, ("time",))
+
+    def test_pandas_where_it_is_installed(self):
+        if not self.installed("pandas", self.result.series.to_pandas):
+            return
+        frame = self.result.series.to_pandas()
+        np.testing.assert_array_equal(frame["energy"], self.file["series/energy"][:])
+        self.assertEqual(frame["collisions"].dtype, "uint64")
+        self.assertEqual(frame.attrs["units"]["energy"], "m l^2/t^2")
+        shots = self.result.snapshots.to_pandas()
+        self.assertEqual(shots["time"].unique().tolist(), [20, 60])
+        self.assertEqual(shots["gap"].isna().sum(), 2, "one gap fewer than particles in either")
+        with cradle.open(small.ensemble()) as ensemble:
+            np.testing.assert_array_equal(ensemble.series.to_pandas()["energy.mean"], ensemble.series.energy["mean"])
+        with cradle.run("fig7", output="wet.h5", set={"initial.particles": 100, "run.until": 20, "output": {
+                "zone": None, "snapshots": [], "profiles": None}}) as wet:
+            if "heaviest" in wet.series:
+                self.assertIn("heaviest.x[1]", wet.series.to_pandas())
 
 
 class Others(unittest.TestCase):
@@ -103,21 +145,23 @@ class Others(unittest.TestCase):
             self.assertTrue(np.all((energy["min"] * (1 - 2.0 ** -51) <= energy["mean"])[known]))
             self.assertEqual(result.replicas.index.values.tolist(), [0, 1, 2, 3])
             self.assertEqual(result.profiles.times.tolist(), [2, 4])
+            np.testing.assert_array_equal(result["series/energy/mean"], energy["mean"])
+            self.assertTrue({"series", "profiles", "replicas"} <= set(result.keys()))
 
     def test_correlations_and_places_of_runs_and_ensembles(self):
         with cradle.open(small.tagged()) as run, cradle.open(small.tagged_ensemble()) as ensemble:
             self.assertEqual(run.correlations.attributes["particles"], 100)
             self.assertEqual(run.correlations.lag[4], 1)
-            self.assertEqual(run.correlations.mean_square_displacement.unit, "l^2")
-            self.assertGreater(run.correlations.velocity_autocorrelation_error[0], 0)
+            self.assertEqual(run.correlations.msd.unit, "l^2")
+            self.assertGreater(run.correlations.vacf_sem[0], 0)
             self.assertEqual(ensemble.correlations.lag.values.tolist(), run.correlations.lag.values.tolist())
-            self.assertGreater(ensemble.correlations.mean_square_displacement.sem[1], 0)
-            self.assertEqual(run.structure_at.times.tolist(), [10, 40])
-            self.assertEqual(len(run.structure_at.at(10).structure_factor), len(run.structure.k))
-            self.assertEqual(ensemble.structure_at.at(40).structure_factor.mean.shape, run.structure.k.shape)
-            self.assertEqual(len(run.pair_distribution.pair_distribution_error), 50)
-            self.assertAlmostEqual(run.pair_distribution.distance[0], 0.1)
-            self.assertEqual(len(ensemble.pair_distribution_at), 1)
+            self.assertGreater(ensemble.correlations.msd.sem[1], 0)
+            self.assertEqual(run.structure.times.tolist(), [10, 40])
+            self.assertEqual(len(run.structure.at(10).s), len(run.structure_average.k))
+            self.assertEqual(ensemble.structure.at(40).s.mean.shape, run.structure_average.k.shape)
+            self.assertEqual(len(run.pair_distribution_average.pair_distribution_sem), 50)
+            self.assertAlmostEqual(run.pair_distribution_average.distance[0], 0.1)
+            self.assertEqual(len(ensemble.pair_distribution), 1)
             self.assertEqual(set(cradle.plot.names(run)) & {"correlations", "structure_factor", "pair_distribution"},
                              {"correlations", "structure_factor", "pair_distribution"})
 
@@ -127,6 +171,7 @@ class Others(unittest.TestCase):
             self.assertEqual(len(result.sweep["law.restitution"]), 6)
             point = result.points[1]
             self.assertEqual((point.kind, point.label), ("point", "law.restitution=0.5 initial.speed=1"))
+            self.assertEqual(repr(point), "<point law.restitution=0.5 initial.speed=1: 2 replicas; series>")
             self.assertEqual(point.series.energy.mean[0], 40 / 2)  # N u0^2 / 2 with u0 = 1
 
     def test_proofs_enclose_the_energy_in_exact_numbers(self):
@@ -169,6 +214,20 @@ class Others(unittest.TestCase):
         with cradle.open(small.trust()) as result:
             self.assertEqual(result.kind, "trust")
             self.assertEqual([table.precision for table in result.trust][-1], "mpfr, 50 digits")
+
+    def test_threshold_has_the_values_that_were_tried(self):
+        with cradle.open(small.threshold()) as result:
+            self.assertEqual(result.kind, "threshold")
+            about = result.threshold.attributes
+            self.assertEqual((about["low_digits"], about["high_digits"]), ("0.071796", "0.071797"))
+            self.assertEqual((about["low_proved"], about["high_proved"]), (1, 1))
+            self.assertEqual(result.threshold.value_digits[0], "0.05")
+
+    def test_sequence_of_collisions(self):
+        with cradle.run("collapse3", set={"output.word": "ab"}, output="sequence.h5") as result:
+            self.assertEqual(result.sequence.letters[0], "ab")
+            self.assertEqual(result.sequence.attributes["periods"], result.sequence.repeats[0])
+            self.assertEqual(result.sequence.attributes["follows"], 1)
 
     def test_every_kind_has_a_short_text(self):
         for make in small.ALL:

@@ -65,7 +65,7 @@ output = { series.times = [0, 1000, 3000], averages = { every = 5, from = 1000, 
     // The momentum from a wall per time is the pressure at it, the same everywhere.
     const auto momentum = numbers(run, "series", "wall_left_momentum");
     pressure.add((momentum[2] - momentum[1]) / 2000 - numbers(run, "averages", "pressure")[2]);
-    errors.add(numbers(run, "averages", "density_error")[1]);
+    errors.add(numbers(run, "averages", "density_sem")[1]);
   });
   left.expect(exact, 0.05);
   right.expect(-exact, 0.05);
@@ -130,9 +130,9 @@ pair_distribution = { every = 10, distance = 4, bins = 4, times = [30] }
   Replicas squares;
   of_replicas(scene, 100, [&](const Result& run) {
     const auto lag = numbers(run, "correlations", "lag"),
-               found = numbers(run, "correlations", "mean_square_displacement"),
-               error = numbers(run, "correlations", "mean_square_displacement_error");
-    squares.add(numbers(run, "correlations", "velocity_autocorrelation")[0]);
+               found = numbers(run, "correlations", "msd"),
+               error = numbers(run, "correlations", "msd_sem");
+    squares.add(numbers(run, "correlations", "vacf")[0]);
     EXPECT_EQ(found[0], 0);
     for (std::size_t k = 0; k < 5; ++k) {
       const auto at = static_cast<std::size_t>(std::find(lag.begin(), lag.end(), exact[k].first) - lag.begin());
@@ -140,10 +140,10 @@ pair_distribution = { every = 10, distance = 4, bins = 4, times = [30] }
       of_one_run[k].add(error.at(at));
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      structure[k].add(numbers(run, "structure", "structure_factor")[4 * k]);
-      structure_at[k].add(numbers(run, "structure_at/0000", "structure_factor")[4 * k]);
-      pairs[k].add(numbers(run, "pair_distribution", "pair_distribution")[k]);
-      pairs_at[k].add(numbers(run, "pair_distribution_at/0000", "pair_distribution")[k]);
+      structure[k].add(numbers(run, "structure_average", "s")[4 * k]);
+      structure_at[k].add(numbers(run, "structure/0000", "s")[4 * k]);
+      pairs[k].add(numbers(run, "pair_distribution_average", "pair_distribution")[k]);
+      pairs_at[k].add(numbers(run, "pair_distribution/0000", "pair_distribution")[k]);
     }
   });
   squares.expect(1 - 1 / 1000., 0.01);
@@ -187,12 +187,12 @@ pair_distribution = { every = 1, times = [3], distance = 20, bins = 8 }
     } catch (const tools::Error&) {  // not built
       continue;
     }
-    for (const auto& [group, name] : {std::pair("correlations", "mean_square_displacement"),
-                                      {"correlations", "velocity_autocorrelation"},
-                                      {"structure", "structure_factor"},
-                                      {"structure_at/0000", "structure_factor"},
-                                      {"pair_distribution", "pair_distribution"},
-                                      {"pair_distribution_at/0000", "pair_distribution"}}) {
+    for (const auto& [group, name] : {std::pair("correlations", "msd"),
+                                      {"correlations", "vacf"},
+                                      {"structure_average", "s"},
+                                      {"structure/0000", "s"},
+                                      {"pair_distribution_average", "pair_distribution"},
+                                      {"pair_distribution/0000", "pair_distribution"}}) {
       const auto a = numbers(wanted, group, name), b = numbers(found, group, name);
       ASSERT_EQ(a.size(), b.size());
       for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * (1 + a[k])) << group << " " << k;
@@ -218,7 +218,7 @@ TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
   for (const std::string scene : {"dry", "wet"})
     for (const std::string precision : {"double", "double-double"}) {
       SCOPED_TRACE(scene + " in " + precision);
-      const std::string run = "cradle run " + scene + ".toml --quiet --set run.precision=" + precision;
+      const std::string run = "cradle run " + scene + ".toml --quiet --force --set run.precision=" + precision;
       for (const std::string threads : {"1", "2", "8"}) {
         shell(run + " --threads " + threads + " -o " + threads + ".h5", 0);
         expect_same("1.h5", threads + ".h5");
@@ -261,16 +261,16 @@ TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
   }
 #endif
   const Result found = read("1.h5");
-  for (const auto& [group, name] : {std::pair("correlations", "mean_square_displacement"),
-                                    {"correlations", "velocity_autocorrelation"},
-                                    {"structure", "structure_factor"},
-                                    {"structure_at/0001", "structure_factor"},
-                                    {"pair_distribution", "pair_distribution"},
-                                    {"pair_distribution_at/0001", "pair_distribution"}})
+  for (const auto& [group, name] : {std::pair("correlations", "msd"),
+                                    {"correlations", "vacf"},
+                                    {"structure_average", "s"},
+                                    {"structure/0001", "s"},
+                                    {"pair_distribution_average", "pair_distribution"},
+                                    {"pair_distribution/0001", "pair_distribution"}})
     for (const double error : numbers(found, fmt::format("ensemble/{}/{}", group, name), "sem"))
       EXPECT_GE(error, 0) << group;
   EXPECT_EQ(numbers(found, "ensemble/correlations", "lag")[3], 0.75);
-  EXPECT_EQ(found.find("ensemble/structure/structure_factor_error"), nullptr);
+  EXPECT_EQ(found.find("ensemble/structure_average/s_sem"), nullptr);
 }
 
 TEST(Measured, WhatIsRefused) {

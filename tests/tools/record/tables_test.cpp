@@ -63,10 +63,10 @@ TEST(RunTables, AreWhatARunWrites) {
     EXPECT_EQ(tables.histograms.size(), std::string(name) == "gas" ? 7U : 0U);
     for (const Group& table : tables.histograms) expect_columns(table, run.result.find(table.name));
     for (const auto& [table, group] : {std::pair(&tables.correlations, "correlations"),
-                                       {&tables.structure, "structure"},
-                                       {&tables.structure_at, "structure_at/0000"},
-                                       {&tables.pair_distribution, "pair_distribution"},
-                                       {&tables.pair_distribution_at, "pair_distribution_at/0000"}}) {
+                                       {&tables.structure_average, "structure_average"},
+                                       {&tables.structure, "structure/0000"},
+                                       {&tables.pair_distribution_average, "pair_distribution_average"},
+                                       {&tables.pair_distribution, "pair_distribution/0000"}}) {
       EXPECT_EQ(table->has_value(), std::string(name) == "gas");
       if (*table) expect_columns(**table, run.result.find(group));
     }

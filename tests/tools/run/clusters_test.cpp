@@ -13,7 +13,7 @@ namespace cradle::tests::clusters_test {
 class RunClusters : public ProgramTest {
  protected:
   tools::Result result_of(const std::string& command) const {
-    shell("cradle run " + command + " --quiet -o out.h5", 0);
+    shell("cradle run " + command + " --quiet --force -o out.h5", 0);
     return read("out.h5");
   }
 };
@@ -173,8 +173,8 @@ TEST_F(RunClusters, WetRuleTakesItsLossFromFastClusters) {
 }
 
 TEST_F(RunClusters, TwoRunsGiveTheSameBytesAndSamplesChangeNothing) {
-  shell("cradle run fig10 --quiet -o a.h5", 0);
-  shell("cradle run fig10 --quiet -o b.h5", 0);
+  shell("cradle run fig10 --quiet --force -o a.h5", 0);
+  shell("cradle run fig10 --quiet --force -o b.h5", 0);
   expect_same("a.h5", "b.h5");
   const auto often = read("a.h5"), once = result_of("fig10 --set output.series.points=2");
   for (const auto* name : {"time", "x", "closing_speed", "relative_energy"})
@@ -184,7 +184,7 @@ TEST_F(RunClusters, TwoRunsGiveTheSameBytesAndSamplesChangeNothing) {
 
 TEST_F(RunClusters, IsCheckedExportedAndPlottedLikeOthers) {
   EXPECT_TRUE(has(shell("cradle check fig10").out, "initial.meeting = \"pass\""));
-  shell("cradle run fig9b --quiet --set run.until=1000", 0);
+  shell("cradle run fig9b --quiet --force --set run.until=1000", 0);
   shell("cradle info fig9b.h5", 0);
   shell("cradle export fig9b.h5 --to csv", 0);
   EXPECT_EQ(contents(folder / "csv/meetings.csv").substr(0, 7), "time,x,");

@@ -42,7 +42,7 @@ class Exact : public ProgramTest {
       return {};
     }
     write("scene.toml", text);
-    shell("cradle run scene.toml --quiet -o a.h5", 0);
+    shell("cradle run scene.toml --quiet --force -o a.h5", 0);
     return {read("a.h5")};
   }
 };

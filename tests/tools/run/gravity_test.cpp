@@ -31,7 +31,7 @@ class GravityInScenes : public ProgramTest {
 TEST_F(GravityInScenes, TheAccountOfEnergyBalances) {
   for (const std::string& scene : {falling, between, falling + "run.coordinates = 'absolute'\n"}) {
     write("s.toml", scene);
-    run("run s.toml --quiet -o s.h5");
+    run("run s.toml --quiet --force -o s.h5");
     const tools::Result result = read("s.h5");
     const auto of = [&](const char* name) { return numbers(result, "series", name); };
     const auto kinetic = of("energy"), potential = of("potential_energy"), lost = of("energy_lost");
@@ -54,7 +54,7 @@ TEST_F(GravityInScenes, TheAccountOfEnergyBalances) {
 TEST_F(GravityInScenes, APositionIsQuadratic) {
   write("s.toml", law + "initial = { type = 'list', x = [1, 4], v = [0, 0.5] }\ngravity.acceleration = -0.5\n"
                         "run.until = 4\noutput = { series.times = [0, 4], snapshots = [4] }\n");
-  run("run s.toml --quiet -o s.h5");
+  run("run s.toml --quiet --force -o s.h5");
   const tools::Result result = read("s.h5");
   EXPECT_EQ(numbers(result, "snapshots/0000", "x"), (std::vector<double>{-3, 2}));
   EXPECT_EQ(numbers(result, "snapshots/0000", "v"), (std::vector<double>{-2, -1.5}));
@@ -64,9 +64,9 @@ TEST_F(GravityInScenes, APositionIsQuadratic) {
 
 TEST_F(GravityInScenes, AColumnInFreeFallHasTheGapsOfOneAtRest) {
   write("s.toml", rows);
-  run("run s.toml --quiet -o rest.h5");
-  run("run s.toml --quiet -o fall.h5 --set gravity.acceleration=-3");
-  run("run s.toml --quiet -o none.h5 --set gravity.acceleration=0");
+  run("run s.toml --quiet --force -o rest.h5");
+  run("run s.toml --quiet --force -o fall.h5 --set gravity.acceleration=-3");
+  run("run s.toml --quiet --force -o none.h5 --set gravity.acceleration=0");
   const tools::Result rest = read("rest.h5"), fall = read("fall.h5"), none = read("none.h5");
   for (const char* name : {"gap", "closing_speed"}) {
     EXPECT_EQ(numbers(fall, "snapshots/0000", name), numbers(rest, "snapshots/0000", name));
@@ -81,7 +81,7 @@ TEST_F(GravityInScenes, AColumnInFreeFallHasTheGapsOfOneAtRest) {
 
 TEST_F(GravityInScenes, TheSameOnAnyNumberOfThreads) {
   write("s.toml", between);
-  const std::string many = "run s.toml --quiet --set initial.particles=3000 --set run.until=2 ";
+  const std::string many = "run s.toml --quiet --force --set initial.particles=3000 --set run.until=2 ";
   run(many + "--threads 1 -o one.h5");
   run(many + "--threads 3 -o three.h5");
   expect_same("one.h5", "three.h5");
@@ -89,10 +89,11 @@ TEST_F(GravityInScenes, TheSameOnAnyNumberOfThreads) {
 
 TEST_F(GravityInScenes, TheSameCollisionsInEveryPrecision) {
   write("s.toml", falling);
-  run("run s.toml --quiet -o double.h5 --set run.until=6 --set output.snapshots=[6]");
+  run("run s.toml --quiet --force -o double.h5 --set run.until=6 --set output.snapshots=[6]");
   const tools::Result of_double = read("double.h5");
   for (const std::string precision : {"'long double'", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
-    const std::string wide_run = "cradle run s.toml --quiet -o wide.h5 --set run.until=6 --set output.snapshots=[6] ";
+    const std::string wide_run =
+        "cradle run s.toml --quiet --force -o wide.h5 --set run.until=6 --set output.snapshots=[6] ";
     const Printed printed = shell(wide_run + "--set run.precision=" + precision);
     if (has(printed.err, "not in this build")) continue;
     ASSERT_EQ(printed.status, 0) << printed.err;
@@ -110,7 +111,7 @@ TEST_F(GravityInScenes, Ensembles) {
   const auto mean = numbers(read("e.h5"), "ensemble/series/potential_energy", "mean");
   double sum = 0;
   for (const std::string k : {"0", "1", "2"}) {
-    run("run s.toml --quiet -o r.h5 --set initial.replica=" + k);
+    run("run s.toml --quiet --force -o r.h5 --set initial.replica=" + k);
     sum += numbers(read("r.h5"), "series", "potential_energy").back();
   }
   EXPECT_NEAR(mean.back(), sum / 3, 1e-12 * std::abs(sum));
@@ -127,12 +128,12 @@ TEST_F(GravityInScenes, BadInputSaysWhatToDo) {
                   "gravity on particles that merge"));
   EXPECT_TRUE(has(refused("law = { type = 'wet', loss = 1 }\n" + until + list), "key of another law"));
   EXPECT_TRUE(has(refused(law + until + "initial.type = 'rows'\noutput.core = true\n"), "nothing to compare"));
-  EXPECT_TRUE(has(refused(law + until + list, "certify"), "particles under gravity cannot be proved yet"));
+  EXPECT_TRUE(has(refused(law + until + list, "certify"), "gravity is not provable (found -1)"));
   const std::string far_apart = "initial = { type = 'list', x = [1, 2], v = [0, 0], m = [1, 1e5] }\n";
   EXPECT_TRUE(has(refused(law + until + far_apart), "run.coordinates = \"absolute\" or run.precision"));
   write("s.toml", law + until + far_apart);
-  run("run s.toml --quiet -o a.h5 --set run.coordinates=absolute");
-  run("run s.toml --quiet -o b.h5 --set run.precision=double-double");
+  run("run s.toml --quiet --force -o a.h5 --set run.coordinates=absolute");
+  run("run s.toml --quiet --force -o b.h5 --set run.precision=double-double");
 }
 
 }  // namespace cradle::tests::gravity_in_scenes_test

@@ -25,18 +25,18 @@ class InitialStates : public ProgramTest {
   void run(const std::string& command, int status = 0) const { shell("cradle " + command, status); }
   std::string refused(const std::string& scene, int status = 2) const {
     write("refused.toml", scene);
-    return shell("cradle run refused.toml --quiet -o refused.h5", status).err;
+    return shell("cradle run refused.toml --quiet --force -o refused.h5", status).err;
   }
 };
 
 TEST_F(InitialStates, AreTheSameInEveryPrecision) {
   for (const std::string& scene : random_scenes) {
     write("s.toml", scene);
-    run("run s.toml --quiet -o double.h5");
+    run("run s.toml --quiet --force -o double.h5");
     const auto of_double = numbers(read("double.h5"), "snapshots/0000", "x");
     ASSERT_GT(of_double.size(), 1U);
     for (const std::string precision : {"'long double'", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
-      run("run s.toml --quiet -o wide.h5 --set run.precision=" + precision);
+      run("run s.toml --quiet --force -o wide.h5 --set run.precision=" + precision);
       const auto wide = numbers(read("wide.h5"), "snapshots/0000", "x");
       ASSERT_EQ(wide.size(), of_double.size()) << precision;
       // A unit, a product, an end of the gas: of numbers up to the greatest position.
@@ -49,7 +49,7 @@ TEST_F(InitialStates, AreTheSameInEveryPrecision) {
 TEST_F(InitialStates, AreTheSameOnAnyNumberOfThreads) {
   for (const std::string& scene : random_scenes) {
     write("s.toml", scene);
-    const std::string many = "run s.toml --quiet --set initial.particles=4000 --set run.until=4 ";
+    const std::string many = "run s.toml --quiet --force --set initial.particles=4000 --set run.until=4 ";
     run(many + "--threads 1 -o one.h5");
     run(many + "--threads 3 -o three.h5");
     expect_same("one.h5", "three.h5");
@@ -72,7 +72,7 @@ TEST_F(InitialStates, CanBeProved) {
   for (const std::string& scene : random_scenes) {
     if (has(scene, "'gas'")) continue;  // walls have no proof
     write("s.toml", scene);
-    run("certify s.toml --quiet -o proved.h5");
+    run("certify s.toml --quiet --force -o proved.h5");
   }
 }
 
@@ -93,7 +93,7 @@ TEST_F(InitialStates, WallsOfAGasFollowFromNumberAndDensity) {
   }
   // Elastic walls keep the energy; positions stay between them.
   write("s.toml", gas + output);
-  run("run s.toml --quiet --set law.restitution=1 -o a.h5");
+  run("run s.toml --quiet --force --set law.restitution=1 -o a.h5");
   const auto energy = numbers(read("a.h5"), "series", "energy");
   EXPECT_NEAR(energy.back(), energy.front(), 1e-12 * energy.front());
   for (const std::string snapshot : {"snapshots/0000", "snapshots/0001"}) {
@@ -115,14 +115,14 @@ TEST_F(InitialStates, LastStateOfAnotherResultContinuesIt) {
     for (const bool wide : {false, true}) {
       const std::string precision = wide ? " --set run.precision=double-double" : "";
       write("s.toml", scene);
-      run("run s.toml --quiet -o whole.h5" + precision);
-      run("run s.toml --quiet --set run.until=4 -o first.h5" + precision);
+      run("run s.toml --quiet --force -o whole.h5" + precision);
+      run("run s.toml --quiet --force --set run.until=4 -o first.h5" + precision);
       write("t.toml",
             "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\nrun = { start = 4, until = 8 }\n" +
                 std::string("initial = { type = 'list', file = 'first.h5' }\n") +
                 "output = { snapshots = [8], series.points = 3 }\n" +
                 (walls ? "walls = { left.position = 0, right.position = 60 }\n" : ""));
-      run("run t.toml --quiet -o second.h5" + precision);
+      run("run t.toml --quiet --force -o second.h5" + precision);
       for (const std::string column : {"x", "v", "m"}) {
         const auto whole = numbers(read("whole.h5"), "snapshots/0001", column),
                    second = numbers(read("second.h5"), "snapshots/0000", column);
@@ -139,10 +139,10 @@ TEST_F(InitialStates, RefusalsSayWhatToDo) {
   const std::string list = bouncing + "initial = { type = 'list', file = 'other.h5' }\n";
   write("other.toml", "law = { type = 'inelastic', restitution = 1 }\nrun.until = 3\n"
                       "initial = { type = 'rows', particles = 100 }\noutput.series.points = 3\n");
-  run("run other.toml --quiet -o other.h5");
+  run("run other.toml --quiet --force -o other.h5");
   EXPECT_TRUE(has(refused(list), "other.h5: snapshots: a result without a state of its particles (found no snapshot): "
                                  "run its scene with output.snapshots at the time that is to be taken"));
-  run("run other.toml --quiet --set output.snapshots=[2] -o other.h5");
+  run("run other.toml --quiet --force --set output.snapshots=[2] -o other.h5");
   EXPECT_TRUE(
       has(refused(list), "other.h5: snapshots/0000: particles that no collision has reached are not in it (found "));
   write("other.h5", "\x89HDF");

@@ -31,7 +31,7 @@ class Run : public ProgramTest {
 
   void expect_published_counts(const std::string& coordinates) const {
     write_shock(8000);
-    shell("cradle run shock.toml -o shock.h5 --set run.coordinates=" + coordinates, 0);
+    shell("cradle run shock.toml -o shock.h5 --force --set run.coordinates=" + coordinates, 0);
     const auto result = read("shock.h5");
     EXPECT_EQ(numbers<std::uint64_t>(result, "series", "collisions"),
               (std::vector<std::uint64_t>{384155, 1299216, 4685816, 16156905}));
@@ -93,7 +93,7 @@ TEST_F(Run, EveryPrecisionReportsTheCollapseTimeToItsLastDigits) {
                                                                 {"mpfr --set run.digits=20", 19},
                                                                 {"mpfr --set run.digits=80", 79}};
   for (const auto& [precision, right] : digits) {
-    const Printed run = shell("cradle run collapse3 --set run.precision=" + precision, 3);
+    const Printed run = shell("cradle run collapse3 --force --set run.precision=" + precision, 3);
     EXPECT_TRUE(has(run.out, "t_c = " + exact.substr(0, right - 1))) << precision;
   }
 }
@@ -107,7 +107,7 @@ TEST_F(Run, CollapseIsFollowedBelowTheRangeOfDouble) {
 
 TEST_F(Run, PoliciesAgainstCollapseReachTheEnd) {
   for (const auto* policy : {"contact-time --set run.contact_time=1e-6", "merge --set run.merge_speed=1e-3"})
-    shell(std::string("cradle run collapse3 --set run.stop_gap= --set run.collapse=") + policy, 0);
+    shell(std::string("cradle run collapse3 --force --set run.stop_gap= --set run.collapse=") + policy, 0);
 }
 
 TEST_F(Run, TrustSaysThatDoubleInGapsIsRightToUnderflow) {
@@ -204,7 +204,7 @@ TEST_F(Run, ClosureErrorsAreWrittenWhereTheyAreMeasured) {
   const auto written = [&](const std::string& law, const std::string& more, const char* name) {
     write("s.toml", "[law]\n" + law + "\n[initial]\ntype = \"rows\"\nparticles = 2000\nperturbation = 0.05\n[run]\n" +
                         more + "until = 500\n[output]\nsnapshots = [300]\n");
-    EXPECT_EQ(shell("cradle run s.toml --quiet -o s.h5").status, 0) << law;
+    EXPECT_EQ(shell("cradle run s.toml --quiet --force -o s.h5").status, 0) << law;
     std::optional<double> found;
     const auto result = read("s.h5");
     for (const auto& [key, value] : result.find("snapshots/0000")->attributes)
@@ -226,7 +226,7 @@ TEST_F(Run, ClosureErrorsAreWrittenWhereTheyAreMeasured) {
 // The energy that a collapse leaves is that of the proof, in any type.
 TEST_F(Run, EnergyAtACollapseHasDigits) {
   const auto last = [&](const std::string& file) { return numbers(read(file), "series", "energy").back(); };
-  const std::string run = "cradle run collapse3 --quiet --set output.events=false ";
+  const std::string run = "cradle run collapse3 --quiet --force --set output.events=false ";
   shell(run + "-o a.h5", 3);
   const double energy = last("a.h5");
   EXPECT_GT(energy, 1e-257);
@@ -248,7 +248,7 @@ TEST_F(Run, EnergyAtACollapseHasDigits) {
 // Above the threshold of collapse, and of numbers that doubles do not add up to the momentum of: 0.3 - 0.1 - 0.2.
 TEST_F(Run, EnergyIsNeverNegative) {
   for (const std::string set : {"law.restitution=0.072", "initial.v=[0.3,-0.1,-0.2] --set run.until=20"}) {
-    const Printed run = shell("cradle run collapse3 --quiet --set output.events=false -o a.h5 --set " + set);
+    const Printed run = shell("cradle run collapse3 --quiet --force --set output.events=false -o a.h5 --set " + set);
     ASSERT_EQ(run.status, set.front() == 'l' ? 0 : 3) << run.err;
     const auto result = read("a.h5");
     const auto energy = numbers(result, "series", "energy");

@@ -25,7 +25,7 @@ TEST_F(RunThreads, NeverChangeAResult) {
       std::string first;
       for (const std::string threads : {"1", "2", "3", "8"}) {
         const std::string file = scene.substr(0, 4) + precision + threads + ".h5";
-        const std::string run = "cradle run " + scene + " --quiet --set run.precision=" + precision;
+        const std::string run = "cradle run " + scene + " --quiet --force --set run.precision=" + precision;
         shell(run + " --threads " + threads + " -o " + file, 0);
         if (first.empty()) first = contents(folder / file);
         EXPECT_EQ(contents(folder / file), first) << file;
@@ -43,7 +43,7 @@ TEST_F(RunThreads, NeverChangeTheEvents) {
        {std::pair(dry + "1200", "double"), {dry + "650", "mpfr"}, {walls, "double"}, {wet, "double"}, {wet, "mpfr"}}) {
     SCOPED_TRACE(scene + " in " + precision);
     const std::string run =
-        "cradle run " + scene + " --quiet --set output.events=true --set run.precision=" + precision;
+        "cradle run " + scene + " --quiet --force --set output.events=true --set run.precision=" + precision;
     std::string first;
     for (const std::string threads : {"1", "2", "3", "8"}) {
       shell(run + " --threads " + threads + " -o " + threads + ".h5", 0);

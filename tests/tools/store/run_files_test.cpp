@@ -53,7 +53,7 @@ TEST_F(Files, ARunInProgressCanBeInspected) {
             "echo ---; cradle info a.h5.checkpoint; kill -9 $pid");
   ASSERT_EQ(inspected.status, 0) << inspected.err;
   for (const char* said : {"journal of a run", "\ntime  ", " of 1e+15", "\ncollisions  ", "over the last minute",
-                           "left at this pace", "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
+                           "\ncomputing  ", "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
     EXPECT_NE(inspected.out.find(said), std::string::npos) << said << "\n" << inspected.out;
   EXPECT_EQ(inspected.out.find("not whole"), std::string::npos) << "a journal that is being written has no torn end";
 }
@@ -142,23 +142,41 @@ TEST_F(Files, OtherVersionsAreRefusedByName) {
       << earlier.err;
 }
 
-TEST_F(Files, ALongRunThatIsNotFinishedIsNotThrownAway) {
-  {
-    JournalWriter journal(path("a.h5.part"), header());
-    RunStatus status;
-    status.seconds = 3600;
-    status.time = 5;
-    journal.append(to_bytes(RunRecord(status)));
+TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
+  const Scene same = parse_scene(header().scene, "s.toml");
+  for (const double seconds : {3.0, 3600.0}) {
+    {
+      JournalWriter journal(path("a.h5.part"), header());
+      RunStatus status;
+      status.seconds = seconds;
+      status.time = 5;
+      journal.append(to_bytes(RunRecord(status)));
+    }
+    const std::string before = contents(folder / "a.h5.part");
+    const Printed other = shell(run + "-o a.h5");
+    EXPECT_EQ(other.status, 2);
+    EXPECT_TRUE(has(other.err, "a run of other settings that is not finished (found t = 5, ")) << other.err;
+    EXPECT_TRUE(has(other.err, "continue with `cradle resume a.h5`, give another -o FILE, or --force to replace it"));
+    EXPECT_TRUE(contents(folder / "a.h5.part") == before);
   }
-  const std::string before = contents(folder / "a.h5.part");
-  const Printed anew = shell(run + "-o a.h5");
-  EXPECT_EQ(anew.status, 2);
-  EXPECT_NE(anew.err.find(
-                "a run that is not finished (found t = 5, 3600 s of computing): continue with `cradle resume a.h5`"),
-            std::string::npos)
-      << anew.err;
-  EXPECT_TRUE(contents(folder / "a.h5.part") == before);
+  EXPECT_TRUE(has(refusal(Exit::bad_input, [&] { RunFiles(path("a.h5"), same); }),
+                  "a run that is not finished (found t = 5, 3600 s of computing)"));
   EXPECT_EQ(shell("cradle resume a.h5").status, 0);
+  EXPECT_EQ(shell(run + "-o a.h5 --force").status, 0);
+  EXPECT_FALSE(exists("a.h5.part"));
+}
+
+// A run of less than ten seconds, or than the time between two checkpoints, leaves no checkpoint, even if one was
+// written on its way; however quick the machine is, the second one takes longer than a nanosecond.
+TEST_F(Files, ACheckpointStaysOnlyBesideARunThatTookLong) {
+  const std::string small = "cradle run fig2 --quiet --set initial.particles=20 --set run.until=5 --set "
+                            "output.snapshots=[] --set output.profiles.times=[] -o a.h5 ";
+  shell(small + "--set output.checkpoint.every_seconds=1e-9", 0);
+  EXPECT_TRUE(exists("a.h5.checkpoint"));
+  { RunFiles again(path("a.h5"), std::optional<std::string>("6")); }  // extends it from there
+  std::filesystem::remove(folder / "a.h5.part");
+  shell(small + "--set output.checkpoint.every_seconds=3600 --force", 0);
+  EXPECT_FALSE(exists("a.h5.checkpoint"));
 }
 
 // A number of the state that has changed, as memory without error correction does it: nothing of the file is damaged,

@@ -45,7 +45,7 @@ TEST_F(Ensembles, OneRunAtATimeWritesToAName) {
     }
     EXPECT_TRUE(contents(folder / "a.h5") == "old");
   }
-  run("run shock.toml --quiet -o a.h5");
+  run("run shock.toml --quiet --force -o a.h5");
   EXPECT_NE(result("a.h5").find("series"), nullptr);
   EXPECT_EQ(contents(folder / "a.h5.new"), "another user's");
 }
@@ -61,7 +61,7 @@ TEST_F(Ensembles, FifosAreRefusedByNameAndLinksFollowed) {
     EXPECT_EQ(shell(std::string("timeout 300 cradle ") + command).status, 4) << command;
   write("a.h5", "old");
   std::filesystem::create_symlink("a.h5", folder / "link.h5");
-  run("run shock.toml --quiet -o link.h5");
+  run("run shock.toml --quiet --force -o link.h5");
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.h5"));
   EXPECT_NE(result("a.h5").find("series"), nullptr);
 }

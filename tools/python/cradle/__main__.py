@@ -1,4 +1,4 @@
-"""The program runs this: python -m cradle plot FILE -o OUT, or report FILE -o OUT.
+"""The program runs this: python -m cradle plot FILE -o OUT [--force], or report FILE -o OUT [--force].
 
 Exit status: 0 done, 2 bad arguments, 4 a file could not be read or written. No display is needed.
 """
@@ -18,10 +18,13 @@ from cradle.errors import BAD_FILE, BAD_INPUT, Error  # noqa: E402
 def main(words: list[str]) -> int:
     os.environ["MPLBACKEND"] = "Agg"
     try:
-        if len(words) != 4 or words[0] not in ("plot", "report") or words[2] != "-o":
+        if (len(words) < 4 or words[0] not in ("plot", "report") or words[2] != "-o"
+                or words[4:] not in ([], ["--force"])):
             raise Error(f"bad arguments ({' '.join(words)}): give plot or report, FILE, -o and OUT", BAD_INPUT)
-        command, file, _, output = words
-        made = cradle.plot.save(file, output) if command == "plot" else [cradle.report(file, output)]
+        command, file, _, output = words[:4]
+        force = len(words) == 5
+        made = (cradle.plot.save(file, output, force=force) if command == "plot"
+                else [cradle.report(file, output, force=force)])
         print(*made, sep="\n", flush=True)  # at the end: all are made before anybody can stop reading
     except BrokenPipeError:  # nobody reads the names of what was made: `cradle plot FILE | head -1`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

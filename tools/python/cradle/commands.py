@@ -23,9 +23,11 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
 
     scene: a scene file, the name of a bundled scene, nested dicts as result.scene has them, or the text of a scene
         (with line breaks), as result.scene_text.
-    set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`.
+    set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`; the same as
+        nested dicts, `{"law": {"restitution": 0.9}}`, which leave the other keys of a table; None unsets a key.
     Common to all commands, as keywords:
     output: the result file; by default the scene's name with .h5 in the working folder, as in the program.
+    force: True replaces what output holds, also what this call would not make again.
     seed: replaces the scene's.
     threads: how many at most; by default all processors. It never changes a result.
     progress: True, False, or a function of the finished share and a line of text; by default on terminals and in
@@ -42,7 +44,8 @@ def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 
     spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Other arguments as in run().
     Raises Error; if replicas failed (5) its `result` has the others.
     """
-    options = ["--replicas", replicas, "--first", first, *(word for text in spread for word in ("--spread", text))]
+    options = ["--replicas", str(replicas), "--first", str(first)]
+    options += [word for text in spread for word in ("--spread", text)]
     return compute("ensemble", "-ensemble.h5", scene, set, options, **common)
 
 
@@ -82,6 +85,19 @@ def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), r
     return compute("certify", "-certified.h5", scene, set, options, **common)
 
 
+def threshold(scene: Scene, vary: Settings, set: Settings = None, *, outcome: str | None = None,
+              digits: int | None = None, proof: bool = True, **common) -> Result:
+    """Finds the value of a key at which the outcome of a run changes; `result.threshold.attributes` has `low_digits`
+    and `high_digits`, between which it does, with `low_outcome`, `low_proved`, ...; its rows are the values tried.
+
+    vary: the key and its range, `{"law.restitution": "0.05:0.1"}`. outcome: what is compared. digits: of the value.
+    proof: whether the last two outcomes are to be proved. Other arguments as in run().
+    """
+    (key, values), = vary.items()
+    options = ["--vary", f"{key}={bare(values, ':')}", *option("--outcome", outcome), *option("--digits", digits)]
+    return compute("threshold", "-threshold.h5", scene, set, options + ["--no-proof"] * (not proof), **common)
+
+
 def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
            progress: bool | Show | None = None) -> Result:
     """Continues a run, an ensemble or a sweep that was stopped, or, with `until`, extends it; returns its result."""
@@ -93,14 +109,28 @@ def option(name: str, value: Any) -> list[str]:
     return [] if value is None else [name, str(value)]
 
 
-def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, seed: int | None = None,
-            threads: int | None = None, progress: bool | Show | None = None) -> Result:
+def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, force: bool = False,
+            seed: int | None = None, threads: int | None = None, progress: bool | Show | None = None) -> Result:
     with scene_file(scene) as (path, name):
         output = os.fspath(output) if output is not None else name + ending
-        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed)]
-        for key, value in (set or {}).items():
-            words += ["--set", f"{key}={bare(value)}"]
+        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]
+        words += ["--force"] * force
         return called(words, output, threads, progress)
+
+
+def assignments(set: Settings, table: str = "") -> list[str]:
+    """The arguments of --set. The keys of a nested table are set one by one; a table under a dotted key replaces it."""
+    found = []
+    for key, value in (set or {}).items():
+        if isinstance(value, Mapping) and "." not in key:
+            found += assignments(value, f"{table}{key}.")
+        else:
+            found.append(f"{table}{key}={'' if value is None else bare(value)}")
+    return found
+
+
+def settings(set: Settings) -> list[str]:
+    return [word for assignment in assignments(set) for word in ("--set", assignment)]
 
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:

@@ -16,3 +16,8 @@ class Error(Exception):
     def __init__(self, message: str, status: int = BAD_INPUT, result=None):
         super().__init__(message)
         self.message, self.status, self.result = message, status, result
+
+
+def missing(module: str) -> Error:
+    return Error(f"Python module {module} is missing: install the Debian package python3-{module}, or {module} with "
+                 "pip", BAD_FILE)

@@ -16,8 +16,8 @@ function cradleMicroscope(element, data) {
   const bar = make("div", "microscope-bar", element), stage = make("div", "microscope-stage", element);
   const canvas = make("canvas", "microscope-canvas", stage), readout = make("div", "microscope-readout", element);
   make("div", "microscope-help", element, "drag: move · click, then wheel, or + −: zoom (shift: time only, alt: " +
-       "space only; over an axis: that one) · n, p: next, previous collision · d: deepest · 0: all · c: colours · " +
-       "space: play");
+       "space only; over an axis: that one) · 0: all · space: play" + (data.kind !== "collisions" ? "" :
+         " · n, p: next, previous collision · d: deepest · c: colours"));
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", "world lines of the particles in space and time");

@@ -178,6 +178,6 @@ function microscopeStrip(pen, world, view, box, colours, store) {
   pen.strokeStyle = colours.frame;
   pen.strokeRect(box.left + 0.5, box.top + 0.5, box.width - 1, box.height - 1);
   pen.fillStyle = colours.text;
-  microscopeText(pen, "center", "top", `gap that closes in a collision, in l, against its number, 1 to ${n}`,
+  microscopeText(pen, "center", "top", `gap that closes, in l, in each of ${n} collisions`,
                  box.left + box.width / 2, box.top + box.height + 5);
 }

@@ -1,4 +1,5 @@
-"""The pictures of results, as functions: `cradle.plot.shock(result)` draws one and returns its matplotlib figure.
+"""The pictures of results, as functions: `cradle.plot.shock(result)` draws one and returns its matplotlib figure;
+`cradle.plot(result)` draws the main one.
 
 The contents of a result decide which pictures it has: `cradle.plot.names(result)` lists them, the main one first;
 `cradle.plot.save(result, "fig2.pdf")` writes all, as the program's `cradle plot` does. Two equal rows are drawn in the
@@ -14,11 +15,18 @@ and raises Error if the result does not have the data.
 from __future__ import annotations
 
 import os
+import sys
 import warnings
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 from . import program
 from .errors import BAD_FILE, BAD_INPUT, Error
+from .files import check_replaced, made_from
 from .result import Result, open
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PICTURES = {
     "shock": "Velocities of single particles, mean velocity and density at several times (paper, Figs. 2 and 6).",
@@ -51,8 +59,9 @@ PICTURES = {
     "collapse": "When replicas collapsed.",
     "scenarios": "Whether two clusters pass or stick, against the loss.",
     "regimes": "What the replicas have come to, in shares.",
-    "sweep": "What depends on the parameters that were varied.",
+    "parameters": "What depends on the parameters that were varied.",
     "words": "For which restitutions words of collapse exist, and where they are stable.",
+    "threshold": "How a threshold was closed in: its distance from the values that were tried.",
     "trust": "Digits that runs of rising precision share with the last one.",
     "certificate": "Of a proof: smallest gap, and how well places and gaps are known.",
 }
@@ -83,9 +92,11 @@ def names(result: Result | str | os.PathLike) -> list[str]:
     return list(drawings(result, theory=False))
 
 
-def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: bool = True) -> list[str]:
+def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: bool = True,
+         force: bool = True) -> list[str]:
     """Writes all pictures: the main one to output (.png, .pdf or .svg), others with their names before the extension.
 
+    force: False replaces only pictures that were made from a result of the same name.
     Returns their paths. Same result, same bytes. Raises Error.
     """
     base, extension = os.path.splitext(os.fspath(output))
@@ -93,28 +104,39 @@ def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: 
         raise Error(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg", BAD_INPUT)
     from .drawing.pictures import write_file
     opened = result if isinstance(result, Result) else open(result)
-    paths = []
-    for name, draw in drawings(opened, theory).items():
-        paths.append(f"{base}-{name}{extension}" if paths else base + extension)
-        write_file(draw(), paths[-1])
+    found, mark = drawings(opened, theory), made_from("plot", opened.path)
+    paths = [f"{base}-{name}{extension}" if number else base + extension for number, name in enumerate(found)]
+    if not force:
+        for path in paths:
+            check_replaced(path, mark)
+    for path, draw in zip(paths, found.values()):
+        write_file(draw(), path, mark)
     if not paths:
         raise Error(f"{opened.path} holds nothing to draw (no series, snapshots or profiles): "
                     "give the file of a completed run", BAD_FILE)
     return paths
 
 
-def draw(name: str, result: Result | str | os.PathLike, axes=None, theory: bool = True):
-    """The picture of that name; see the module. Returns the matplotlib figure."""
-    found = drawings(result, theory)
-    if name not in found:
-        raise Error(f"no {name} picture of this result (found {', '.join(found) or 'none'}): "
-                    "choose one of these, or the file of another run", BAD_INPUT)
-    return found[name](axes)
+class Pictures(ModuleType):
+    """This module: it can be called, and shows nothing but its functions."""
+
+    def __call__(self, result: Result | str | os.PathLike, name: str | None = None, axes=None,
+                 theory: bool = True) -> Figure:
+        """The main picture of a result, or the one of this name; see the module. Returns the matplotlib figure."""
+        found = drawings(result, theory)
+        name = name or next(iter(found), "main")
+        if name not in found:
+            raise Error(f"no {name} picture of this result (found {', '.join(found) or 'none'}): "
+                        "choose one of these, or the file of another run", BAD_INPUT)
+        return found[name](axes)
+
+    def __dir__(self) -> list[str]:
+        return __all__
 
 
 def _function(name: str, text: str):
-    def picture(result: Result | str | os.PathLike, axes=None, theory: bool = True):
-        return draw(name, result, axes, theory)
+    def picture(result: Result | str | os.PathLike, axes=None, theory: bool = True) -> Figure:
+        return Pictures.__call__(module, result, name, axes, theory)
 
     picture.__name__ = picture.__qualname__ = name
     picture.__doc__ = f"{text} result, axes and theory as in cradle.plot; returns the matplotlib figure."
@@ -122,3 +144,5 @@ def _function(name: str, text: str):
 
 
 globals().update({name: _function(name, text) for name, text in PICTURES.items()})
+module = sys.modules[__name__]
+module.__class__ = Pictures

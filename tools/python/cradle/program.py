@@ -79,7 +79,7 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
         printed, messages = (file.read().decode("utf-8", "replace") for file in (out, err))
     if status in accepted:
         return Call(printed, messages, status)
-    said = messages.strip().removeprefix("cradle: ")
+    said = ("\n" + messages.strip()).rpartition("\ncradle: ")[2]  # without what was noted before
     raise Error(said or f"{' '.join(command[:2])} ended without a message (status {status}): "
                 "run it in a terminal to see more", status if status >= 0 else 128 - status)
 

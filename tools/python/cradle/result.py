@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from builtins import open as builtins_open  # hidden by ours
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
@@ -11,14 +11,9 @@ import h5py
 
 from . import program
 from .errors import BAD_FILE, Error
+from .opening import is_sealed, open_file, stored_in
 from .scene import parse_toml
-from .seal import check_seal, damaged, hdf5_length, read_seal
 from .tables import Means, Table, Tables, reading
-
-FORMAT = 2
-CHECKED = 64 << 20  # bytes of a file whose checksum is checked without a request: a tenth of a second
-STORED = {b"CRADLEJ": "journal", b"CRADLER": "journal", b"CRADLEC": "checkpoint"}
-STORED_FORMAT = 4  # the last letter of how these files begin
 
 
 def open(path: str | os.PathLike, check: bool | None = None) -> Result:
@@ -29,62 +24,10 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     Raises Error (status 4) if the file is missing, empty, incomplete, damaged, or not a result of this program.
     """
     path = os.fspath(path)
-    try:
-        with builtins_open(path, "rb") as file:
-            head = file.read(8)
-        stored = STORED.get(head[:7]) if head[7:].isdigit() else None
-        if stored and int(head[7:]) != STORED_FORMAT:
-            raise other_format(path, int(head[7:]), STORED_FORMAT)
-        if stored == "journal":
-            return so_far(path)
-        if stored:
-            raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues "
-                        "from it", BAD_FILE)
-        if head != b"\x89HDF\r\n\x1a\n":
-            raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
-                        "give a file written by `cradle run`", BAD_FILE)
-        size = os.path.getsize(path)
-        sealed = bool(check_seal(path) if check or check is None and size <= CHECKED else read_seal(path))
-        if not sealed and (length := hdf5_length(path)) not in (None, size):
-            raise damaged(path, f"{size} bytes, HDF5 wrote {length}")
-    except OSError as error:
-        raise Error(f"{path}: not a file that can be read ({error.strerror or error}): "
-                    "give a file written by `cradle run`", BAD_FILE) from None
+    if stored_in(path) == "journal":
+        return so_far(path)
+    sealed = is_sealed(path, check)
     return Result(path, open_file(path), sealed)
-
-
-def other_format(path: str, found: int, here: int = FORMAT) -> Error:
-    return Error(f"{path}: a file of {'an earlier' if found < here else 'a later'} version of cradle (found format "
-                 f"{found}, here {here}): read it with the version that wrote it, or remove it and run its scene "
-                 "again", BAD_FILE)
-
-
-def open_file(path: str) -> h5py.File:
-    try:
-        file = opened(path)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise Error(f"{path}: not a result that can be read ({error}): it is damaged or half-written, "
-                    "run its scene again", BAD_FILE) from None
-    version = file.attrs.get("format_version")
-    if version is None or "scene" not in file.attrs:
-        file.close()
-        raise Error(f"{path}: an HDF5 file, but no result (no scene in it): give a file written by `cradle run`",
-                    BAD_FILE)
-    if int(version) != FORMAT:
-        file.close()
-        raise other_format(path, int(version))
-    return file
-
-
-def opened(path: str) -> h5py.File:
-    """Opens the file without locks, which some cluster file systems do not have; or, if the caller has it open, in
-    the same way as there."""
-    try:
-        return h5py.File(path, "r", locking=False)
-    except OSError as error:
-        if "locking flag" not in str(error):
-            raise
-        return h5py.File(path, "r")
 
 
 def so_far(path: str) -> Result:
@@ -97,7 +40,7 @@ def so_far(path: str) -> Result:
     return result
 
 
-def part(kind, text: str, *names: str) -> cached_property:
+def part(kind, text: str, *names: str) -> Any:
     """A property of a result: the first of these groups that exists, as a table of this kind."""
     def read(result: Result):
         return kind(result._group(*names), f"{result.path}: {names[0]}")
@@ -146,7 +89,7 @@ class Result:
 
     @property
     def kind(self) -> str:
-        """"run", "ensemble", "sweep", "trust", "words" or "point"."""
+        """"run", "ensemble", "sweep", "trust", "words", "threshold" or "point"."""
         if self.label:
             return "point"
         return self.attributes.get("kind") or ("trust" if len(self.trust) else "run")
@@ -196,27 +139,32 @@ class Result:
     mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "The same; of an ensemble the means.",
                                  "profiles", "ensemble/profiles")
     averages: Table = part(Table, """Averages over time in bins: `x`, `density`, `temperature`, `heat_current`, ... of
-        shape (bins,), with `_error`; of an ensemble tables.""", "averages", "ensemble/averages")
+        shape (bins,), with `_sem`; of an ensemble tables.""", "averages", "ensemble/averages")
     histograms: Table = part(Table, """What a run counted, a table each: `result.histograms.free_flight` has `low`,
         `high` and `count` of shape (bins,); of an ensemble `count` is a table.""", "histograms", "ensemble/histograms")
-    correlations: Table = part(Table, """Of tagged particles: `lag`, `mean_square_displacement`,
-        `velocity_autocorrelation` of shape (lags,), with `_error`; of an ensemble tables.""", "correlations",
+    correlations: Table = part(Table, """Of tagged particles: `lag`, `msd` (mean-square displacement), `vacf`
+        (velocity autocorrelation) of shape (lags,), with `_sem`; of an ensemble tables.""", "correlations",
                                "ensemble/correlations")
-    structure: Table = part(Table, """The average structure factor: `k`, `structure_factor` of shape (waves,), with
-        `_error`; of an ensemble a table.""", "structure", "ensemble/structure")
-    structure_at: Tables = part(Tables, "The same at times.", "structure_at", "ensemble/structure_at")
-    pair_distribution: Table = part(Table, """The average pair distribution: `distance`, `pair_distribution` of shape
-        (bins,), with `_error`; of an ensemble a table.""", "pair_distribution", "ensemble/pair_distribution")
-    pair_distribution_at: Tables = part(Tables, "The same at times.", "pair_distribution_at",
-                                        "ensemble/pair_distribution_at")
+    structure: Tables = part(Tables, """The structure factor at times: `k`, `s` of shape (waves,); of an ensemble `s`
+        is a table.""", "structure", "ensemble/structure")
+    structure_average: Table = part(Table, "The same, averaged over times, with `s_sem`.", "structure_average",
+                                    "ensemble/structure_average")
+    pair_distribution: Tables = part(Tables, """The pair distribution at times: `distance`, `pair_distribution` of
+        shape (bins,); of an ensemble the latter is a table.""", "pair_distribution", "ensemble/pair_distribution")
+    pair_distribution_average: Table = part(Table, "The same, averaged over times, with `pair_distribution_sem`.",
+                                            "pair_distribution_average", "ensemble/pair_distribution_average")
     masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
     events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
         `interval`, `closing_speed`, `kind`.""", "events")
+    sequence: Table = part(Table, """The order of the collisions (output.word), one row for each repetition: `letters`,
+        `repeats`, `first`, `time`; attributes `word`, `periods`, `kept`, `left_at`.""", "sequence")
     replicas: Table = part(Table, "One row per replica: `index`, `outcome`, `collisions`, `energy`, ...", "replicas")
     sweep: Table = part(Table, """One row per point: the keys that vary, then every number with `_error` and
         `_replicas`.""", "sweep")
     trust: Tables = part(Tables, """One table per precision of a comparison: attributes `precision`,
         `collisions_right_until`, ...""", "trust")
+    threshold: Table = part(Table, """One row per value that was tried: `value`, `value_digits`, `outcome`, `how`,
+        `collisions`; attributes `key`, `low_digits`, `high_digits`, `low_proved`, ...""", "threshold")
     certificate: Table = part(Table, """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`,
         `gap`, `widest`, ...""", "certificate")
     exact: Table = part(Table, """Decimal texts: all digits of a run in a type wider than double,
@@ -238,6 +186,33 @@ class Result:
         """`time`, `uncertainty`, `gap`, ... if the run ended at inelastic collapse; else empty."""
         return self.table("collapse").attributes
 
+    def keys(self) -> list[str]:
+        """The names of the groups in the file, those of statistics of an ensemble without `ensemble/`."""
+        inner = self._group("ensemble")
+        return [name for name in (*reading(self.path, lambda: list(self.file)), *(inner or ())) if name != "ensemble"]
+
+    def __getitem__(self, path: str) -> Any:
+        """By path, as in the file: `result["series/energy"]`, `result["snapshots/0001/gap"]`; of an ensemble
+        `result["series/energy/mean"]`. Raises KeyError if the file does not have it."""
+        name, _, rest = path.partition("/")
+        if name not in self.keys() and name != "ensemble":
+            raise KeyError(f"{name}: not in {self.path}, which has {', '.join(self.keys())}")
+        found = getattr(self, name, None)
+        if not isinstance(found, (Table, Tables)):
+            found = self.table(name) if name in self.file else self.table(f"ensemble/{name}")
+        return found[rest] if rest else found
+
+    def __contains__(self, path: object) -> bool:
+        try:
+            return isinstance(path, str) and self[path] is not None
+        except KeyError:
+            return False
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    _ipython_key_completions_ = keys
+
     def table(self, name: str) -> Table:
         """Any group by its path, `"zone"`, `"scenario"`, `"meetings"`; empty if it does not exist."""
         return Table(self._group(name), f"{self.path}: {name}")
@@ -245,7 +220,8 @@ class Result:
     def enclosure(self, name: str) -> tuple[list, list]:
         """Proved lower and upper bounds of a quantity of the series, as two lists of Fractions.
 
-        name: "energy", "front_left" or "front_right". Raises Error if the file has no proof of it.
+        name: "energy", "front_left", "front_right", "wall_left_energy", "wall_left_lost" and so on. Raises Error if the
+            file has no proof of it.
         """
         exact = self.exact.get("series", {})
         if f"{name}_low" not in exact:
@@ -253,9 +229,9 @@ class Result:
         return exact[f"{name}_low"].fractions(), exact[f"{name}_high"].fractions()
 
     def __repr__(self) -> str:
-        name = self.attributes.get("name", "")
         parts = [("series", len(self.series)), ("snapshots", len(self.snapshots)), ("profiles", len(self.profiles)),
                  ("events", len(self.events)), ("points", len(self.points)), ("trust", len(self.trust))]
         held = [what if what in ("series", "events") else f"{count} {what}" for what, count in parts if count]
-        precision = self.attributes.get("precision", "")
-        return f"<{self.label or self.kind} {name}: {self.outcome}; {precision}; {', '.join(held) or 'empty'}>"
+        about = self.attributes
+        end = f"{about.get('replicas', 0)} replicas" if self.label else f"{self.outcome}; {about.get('precision', '')}"
+        return f"<{self.kind} {self.label or about.get('name', '')}: {end}; {', '.join(held) or 'empty'}>"

@@ -36,7 +36,7 @@ def value_text(value: Any) -> str:
     if isinstance(value, str):
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key} = {value_text(inner)}" for key, inner in value.items()) + " }"
+        return "{ " + ", ".join(f"{key} = {value_text(inner)}" for key, inner in given(value)) + " }"
     if hasattr(value, "tolist"):  # numpy's
         value = value.tolist()
     if isinstance(value, (list, tuple)):
@@ -44,12 +44,17 @@ def value_text(value: Any) -> str:
     return str(value)
 
 
+def given(table: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """Without the keys that are None."""
+    return [(key, value) for key, value in table.items() if value is not None]
+
+
 def scene_text(scene: Mapping[str, Any]) -> str:
     """A scene file of nested dicts, `{"law": {"type": "wet", "loss": 1e-4}, ...}`."""
-    plain = {key: value for key, value in scene.items() if not isinstance(value, Mapping)}
+    plain = {key: value for key, value in given(scene) if not isinstance(value, Mapping)}
     lines = [f"{key} = {value_text(value)}" for key, value in plain.items()]
-    for name, table in scene.items():
+    for name, table in given(scene):
         if name not in plain:
             lines.append(f"[{name}]")
-            lines += [f"{key} = {value_text(value)}" for key, value in table.items()]
+            lines += [f"{key} = {value_text(value)}" for key, value in given(table)]
     return "\n".join(lines) + "\n"

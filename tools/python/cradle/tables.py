@@ -4,12 +4,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
-from .errors import BAD_FILE, BAD_INPUT, Error
+from .errors import BAD_FILE, BAD_INPUT, Error, missing
+from .frames import data_frame, data_set, imported
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 UNREADABLE = (OSError, KeyError, ValueError, RuntimeError, TypeError)  # of h5py, on files that are damaged or closed
 
@@ -21,10 +26,6 @@ def reading(place: str, read):
     except UNREADABLE as error:
         raise Error(f"{place}: cannot be read ({str(error).strip() or type(error).__name__}): the file has been closed "
                     "or is damaged, open it again or run its scene again", BAD_FILE) from None
-
-
-def missing(module: str) -> Error:
-    return Error(f"Python module {module} is missing: install the Debian package python3-{module}", BAD_FILE)
 
 
 def text_of(value: Any) -> Any:
@@ -101,7 +102,7 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
     def __iter__(self) -> Iterator:
         return iter(self.values)
 
-    def fractions(self) -> list[Fraction]:
+    def fractions(self) -> list:
         """Every number exactly: the decimal of a text, the stored binary number of a float64.
 
         Columns of width two give a list for each row. NaN raises ValueError, as in Python.
@@ -129,7 +130,8 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
 
 
 class Table(Mapping):
-    """A group: columns, inner tables and attributes by name, `table["energy"]` or `table.energy`.
+    """A group: columns, inner tables and attributes by name, `table["energy"]` or `table.energy`; inner ones also by
+    path, `table["energy/mean"]`.
 
     Iterates over the names of columns and tables; `table.columns` has only those of the columns.
     """
@@ -153,6 +155,9 @@ class Table(Mapping):
         return [name for name in self._names if isinstance(self[name], Column)]
 
     def __getitem__(self, name: str) -> Any:
+        name, _, rest = name.partition("/")
+        if rest:
+            return self[name][rest]
         if name not in self._names:
             if name in self.attributes:
                 return self.attributes[name]
@@ -180,23 +185,18 @@ class Table(Mapping):
     def __dir__(self):
         return [*super().__dir__(), *self._names, *self.attributes]
 
-    def to_xarray(self):
-        """An xarray.Dataset of all columns, over `time`, `x` or the row's number, with units as attributes."""
-        try:
-            import xarray
-        except ImportError:
-            raise missing("xarray") from None
-        columns = {name: self[name] for name in self.columns}
-        length = max((len(column) for column in columns.values()), default=0)
-        along = next((name for name in ("time", "x", "index") if name in columns and columns[name].ndim == 1), "row")
-        variables = {}
-        for name, column in columns.items():
-            # gaps lie between particles: one fewer
-            first = along if len(column) == length else f"between_{along}"
-            dims = (first, "side")[:column.ndim]
-            about = {key: value for key, value in (("units", column.unit), ("long_name", column.description)) if value}
-            variables[name] = (dims, column.values, about)
-        return xarray.Dataset(variables, attrs=dict(self.attributes))
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A pandas.DataFrame of all columns, those of inner tables as `energy.mean`, of columns of width two `x[0]`,
+        `x[1]`; shorter ones (gaps) end with NaN. `frame.attrs["units"]` has the units by column."""
+        return data_frame(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """An xarray.Dataset of all columns, those of inner tables as `energy.mean`, over `time`, `index`, `x` or the
+        row's number, with units as attributes."""
+        return data_set(self)
 
     def __repr__(self) -> str:
         lines = [f"{self._place}:"]
@@ -221,22 +221,47 @@ class Tables(Sequence):
     def __init__(self, group: h5py.Group | None, place: str, kind: type[Table] = Table):
         names = () if group is None else reading(place, lambda: sorted(group, key=lambda name: (len(name), name)))
         self._place = place
-        self._tables = [kind(reading(place, lambda name=name: group[name]), f"{place}/{name}") for name in names]
+        self._tables = {name: kind(reading(place, lambda name=name: group[name]), f"{place}/{name}") for name in names}
 
     @cached_property
     def times(self) -> np.ndarray:
         """Shape (len(tables),), in t."""
-        return np.array([table.attributes.get("time", np.nan) for table in self._tables], float)
+        return np.array([table.attributes.get("time", np.nan) for table in self], float)
 
-    def at(self, time: float) -> Table:
-        """The table with the nearest time. Raises Error if there are no tables."""
-        if not self._tables:
+    def at(self, time: float, method: str | None = None) -> Table:
+        """The table of this time, to the 12th digit; with method="nearest" that of the nearest time.
+
+        Raises Error, with the nearest time, if there is none.
+        """
+        if method not in (None, "nearest"):
+            raise Error(f"not a method (found {method!r}): give \"nearest\", or none for exact times", BAD_INPUT)
+        if not len(self):
             raise Error(f"{self._place} is empty: the scene does not request it "
                         "(see output.* of `cradle scenes --keys`)", BAD_INPUT)
-        return self._tables[int(np.nanargmin(np.abs(self.times - time)))]
+        nearest = int(np.nanargmin(np.abs(self.times - time)))
+        found = float(self.times[nearest])
+        if method is None and abs(found - time) > 1e-12 * max(abs(found), abs(time)):
+            raise Error(f"{self._place}: none at t = {time:g} (the nearest is at t = {found:.15g}): give one of its "
+                        "times, or method=\"nearest\"", BAD_INPUT)
+        return self[nearest]
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A pandas.DataFrame of all tables, one below the other, with the column `time` first."""
+        module = imported("pandas")
+        frames = [table.to_pandas() for table in self]
+        for frame, time in zip(frames, self.times):
+            if "time" not in frame:
+                frame.insert(0, "time", time)
+        return module.concat(frames, ignore_index=True) if frames else module.DataFrame()
 
     def __getitem__(self, index):
-        return self._tables[index]
+        """By number, slice or, `tables["0001/gap"]`, path."""
+        if isinstance(index, str):
+            name, _, rest = index.partition("/")
+            if name not in self._tables:
+                raise KeyError(f"{name}: not in {self._place}, which has {', '.join(self._tables) or 'nothing'}")
+            return self._tables[name][rest] if rest else self._tables[name]
+        return list(self._tables.values())[index]
 
     def __len__(self) -> int:
         return len(self._tables)

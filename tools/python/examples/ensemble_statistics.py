@@ -12,6 +12,7 @@ import numpy as np
 import cradle
 
 replicas = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+print(f"{replicas} replicas of 400 particles; those that replicas.h5 has already are not run again", flush=True)
 result = cradle.ensemble("fig4", replicas, output="replicas.h5", spread=["energy=0:60:60"],
                          set={"initial.particles": 400, "law.restitution": 0.98, "run.until": 400})
 

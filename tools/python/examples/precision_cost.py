@@ -25,7 +25,7 @@ for precision, coordinates in (("double", "gaps"), ("double", "absolute"), ("lon
                                ("double-double", "gaps")):
     started = time.perf_counter()
     try:
-        run = cradle.run("fig2", output="run.h5", progress=False,
+        run = cradle.run("fig2", output="run.h5", force=True, progress=False,
                          set=scene | {"run.precision": precision, "run.coordinates": coordinates})
     except cradle.Error as error:  # positions lose the order of collisions, and say so
         print(f"{precision:>15} {coordinates:>10} {'':>8} {error.message.splitlines()[0]}")

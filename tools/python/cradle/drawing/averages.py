@@ -15,7 +15,7 @@ def pictures(result, _theory, _units):
 def with_error(table, name):
     """Values and standard errors of a quantity, of a run or of an ensemble."""
     quantity = table[name]
-    return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table[name + "_error"])
+    return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table[name + "_sem"])
 
 
 def exact_current(result):
@@ -23,6 +23,8 @@ def exact_current(result):
     temperatures = [result.setting("walls", f"{side}.temperature") for side in ("left", "right")]
     moving = any(result.setting("walls", f"{side}.speed", 0.0) for side in ("left", "right"))
     moving = moving or result.setting("gravity", "acceleration", 0.0) != 0
+    walls = result.scene.get("walls", {})
+    moving = moving or any(walls.get(side, {}).get("motion", "none") != "none" for side in ("left", "right"))
     masses = result.scene.get("initial", {}).get("masses", [1])
     if None in temperatures or moving or result.setting("law", "restitution", 0.0) != 1 or set(masses) != {1}:
         return None

@@ -2,7 +2,7 @@
 sticky gas, the dense core (core/observe/dense_core.hpp), and the rate of collisions in it."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, lettered, plt, shades, stacked, subplots
+from .style import BLUE, GREY, ORANGE, distinct, lettered, plt, shades, stacked, subplots
 
 MANY = 20         # snapshots that make a picture in space and time
 PATHS = 80        # of particles in it
@@ -200,10 +200,11 @@ def draw_points(points, since, units, axes=None):
     how = [(p, colour, "-") for p, colour in zip(others, shades(len(others)))]
     warm = plt.get_cmap("autumn")(np.linspace(0, 0.8, len(replaced)))
     how += [(p, colour, "--") for p, colour in zip(replaced, warm)]
-    for point, colour, line in how:
+    labels = distinct((label_of(point) for point, *_ in how), [point for point, *_ in how])
+    for (point, colour, line), label in zip(how, labels):
         late = point.means["time"] >= since
         time = point.means["time"][late] / units.t
-        draw_excess(axes[0], point, since, units, colour, label_of(point), line)
+        draw_excess(axes[0], point, since, units, colour, label, line)
         if slowest(point):
             positive(axes[1], time, point.means["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
         positive(axes[2], time, point.means["core_width"][late] / units.x, color=colour, ls=line)

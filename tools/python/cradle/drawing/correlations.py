@@ -12,8 +12,8 @@ import numpy as np
 from .averages import with_error
 from .style import BLUE, ORANGE, stacked
 
-PANELS = (("mean_square_displacement", r"mean-square displacement ($l^2$)"),
-          ("velocity_autocorrelation", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
+PANELS = (("msd", r"mean-square displacement ($l^2$)"),
+          ("vacf", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
 
 
 def pictures(result, _theory, _units):

@@ -31,7 +31,10 @@ def draw_energy(result, theory, units, axes=None):
         for ax in (top, below):
             ax.axvline(onset / units.t, color=GREY, lw=1, zorder=0, label="onset of collapse" if ax is top else None)
     top.set_xlim(time[0], time[-1])
-    top.set_ylim(0, 1.05 * energy.max() if energy.max() > 0 else 1)
+    least, most = energy.min(), energy.max()
+    top.set_ylim(0 if least < 0.6 * most else least - 0.1 * (most - least), 1.05 * most if most > 0 else 1)
+    if top.get_ylim()[0] > 0:
+        top.set_ylim(top=most + 0.1 * (most - least or most))
     top.set_ylabel(units.label(r"kinetic energy $E$", units.energy_label()))
     top.legend(loc="best")
     draw_collisions(below, series, time)

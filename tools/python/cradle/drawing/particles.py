@@ -1,4 +1,5 @@
-"""Paths of a few particles, and how their gaps or the intervals between their collisions shrink."""
+"""Paths of a few particles, and how their gaps or the intervals between their collisions shrink; at an inelastic
+collapse against the time that is left to it, in which everything is a power."""
 import numpy as np
 
 from .style import BLUE, ORANGE, RED, lettered, shades, subplots
@@ -17,7 +18,8 @@ def pictures(result, theory, units):
 
 
 def draw_particles(result, units, axes=None):
-    """Paths, energy and collisions, and how intervals (from events) or gaps shrink."""
+    """Paths, energy and collisions (at a collapse collisions alone), and how intervals (from events) or gaps
+    shrink."""
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
     gaps = not shrinking and len(result.snapshots) > 1
     rows = 2 + (shrinking or gaps)
@@ -28,6 +30,7 @@ def draw_particles(result, units, axes=None):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
     for (particle, path), colour in zip(sorted(paths.items()), shades(len(paths))):
         axes[0].plot(*(np.array(path) / (units.t, units.x)).T, "o-", ms=3, color=colour, label=f"particle {particle}")
+    left = time_to_collapse(result) if shrinking else None
     series = result.means
     for name, line in (("front_left", ":"), ("front_right", "--")):
         if name in series:
@@ -36,7 +39,9 @@ def draw_particles(result, units, axes=None):
     axes[0].set(xlabel=units.time_label(), ylabel=units.position_label())
     if axes[0].get_lines() and len(paths) <= 8:
         axes[0].legend(loc="best", ncol=2)
-    if series:
+    if left is not None:
+        draw_before_collapse(axes[1], left, units)
+    elif series:
         time = series["time"] / units.t
         falling = "potential_energy" in series  # then energy changes between collisions too
         axes[1].plot(time, series["energy"] / units.energy, color=BLUE,
@@ -48,12 +53,15 @@ def draw_particles(result, units, axes=None):
             other.plot(time, series["collisions"], color=RED, ls="--", drawstyle="steps-post")
             other.set_ylabel("collisions (dashed)", color=RED)
     if shrinking:
-        count = np.arange(1, len(result.events["interval"]) + 1)
+        number = np.arange(1, len(result.events["interval"]) + 1)
+        count = number if left is None else left / units.t
         for name, mark, colour in (("interval", "o", BLUE), ("closing_speed", "^", ORANGE)):
             value = result.events[name]
             axes[2].semilogy(count, np.where(value > 0, value, np.nan), mark, ms=3, color=colour,
                              label=name.replace("_", " "))
         axes[2].set(xlabel="collision", ylabel="interval, closing speed")
+        if left is not None:
+            towards_collapse(axes[2], units)
         axes[2].legend(loc="best")
     elif gaps:
         for pair in range(min(len(s["gap"]) for s in result.snapshots)):
@@ -64,3 +72,27 @@ def draw_particles(result, units, axes=None):
         axes[2].legend(loc="best")
     lettered(axes)
     return figure
+
+
+def time_to_collapse(result):
+    """t_c - t of every collision of a run that ended at a collapse, else None. Doubles do not resolve such times, but
+    the sums of the intervals after each collision do; the intervals after the last one are a geometric series."""
+    interval = np.asarray(result.events["interval"], float)
+    if not np.isfinite(result.collapse.get("ratio", np.nan)) or len(interval) < 4 or not (interval[-3:] > 0).all():
+        return None
+    ratio = np.sqrt(interval[-1] / interval[-3])
+    rest = np.cumsum(np.append(interval[1:], interval[-1] * ratio / (1 - ratio))[::-1])[::-1]
+    return rest if 0 < ratio < 1 else None
+
+
+def towards_collapse(ax, units):
+    ax.set_xscale("log")
+    ax.invert_xaxis()
+    ax.set_xlabel(units.label(r"time to the collapse $t_c-t$", r"time to the collapse $(t_c-t)\,/\,(l/2u_0)$"))
+
+
+def draw_before_collapse(ax, left, units):
+    """The number of collisions: a straight line in the logarithm of the time that is left."""
+    ax.plot(left / units.t, np.arange(1, len(left) + 1), ".", ms=3, color=BLUE)
+    ax.set_ylabel("collisions")
+    towards_collapse(ax, units)

@@ -7,15 +7,16 @@ import matplotlib.pyplot as plt
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (averages, beyond, blast, clusters, cooling, correlations, domino, energy, ensemble, histograms, onset,
-               particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, walls, words,
-               zone)
+from . import (averages, beyond, blast, clusters, cooling, correlations, domino, energy, ensemble, floors, histograms,
+               onset, particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, threshold,
+               walls, words, zone)
+from .finish import finish
 from .style import Units, style
 from .theory import Theory
 
-CLASSICS = (onset, blast, domino, splash, walls)
+CLASSICS = (onset, floors, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
-ALONE = (words, proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
+ALONE = (words, threshold, proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
 TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
 MEASURED = (averages, histograms, correlations, places)  # behind the others
 
@@ -33,15 +34,17 @@ def pictures_of(result, theory, units):
 def available(result, predictions):
     """Names and functions of the pictures of an opened result, the main one first. A function draws on new or given
     axes and returns the figure. predictions: the output of `cradle theory --csv`. Raises Error."""
+    title = str(result.scene.get("title") or result.attributes.get("name", ""))
     with lacking(result.path):
-        return {name: drawing(result.path, name, draw)
+        return {name: drawing(result.path, name, draw, title)
                 for name, draw in pictures_of(result, Theory(predictions), Units.of(result))}
 
 
-def drawing(path, name, draw):
-    def drawn(axes=None):
-        with style(), lacking(path, f" for the {name} picture"):
-            return draw(axes)
+def drawing(path, name, draw, title):
+    def drawn(axes=None, dark=False, titled=True):
+        with style(dark), lacking(path, f" for the {name} picture"):
+            figure = draw(axes)
+            return figure if axes is not None else finish(figure, title if titled else "")
     return drawn
 
 
@@ -56,17 +59,19 @@ def lacking(path, purpose=""):
                     BAD_FILE) from None
 
 
-def write_file(figure, path):
+def write_file(figure, path, made_by):
     """Writes beside the final place, then renames, so that no incomplete picture is left; closes the figure."""
     try:
         with whole(path) as part:
-            write(figure, part, os.path.splitext(path)[1][1:].lower())
+            write(figure, part, os.path.splitext(path)[1][1:].lower(), made_by=made_by)
     finally:
         plt.close(figure)
 
 
-def write(figure, file, extension):
-    """Writes PNG, PDF or SVG to a file or a file-like object. The same figure gives the same bytes: no time stamps."""
-    stamps = {"png": {"Software": None}, "pdf": {"CreationDate": None, "ModDate": None}, "svg": {"Date": None}}
-    with style():
+def write(figure, file, extension, dark=False, made_by=None):
+    """Writes PNG, PDF or SVG to a file or a file-like object. The same figure gives the same bytes: no time stamps.
+    made_by: a mark in the file, by which the same command knows its own pictures."""
+    stamps = {"png": {"Software": None, "Source": made_by}, "svg": {"Date": None, "Source": made_by},
+              "pdf": {"CreationDate": None, "ModDate": None, "Subject": made_by}}
+    with style(dark):
         figure.savefig(file, format=extension, metadata=stamps[extension])

@@ -4,33 +4,33 @@ particles in equilibrium are an example."""
 import numpy as np
 
 from .averages import with_error
-from .style import ORANGE, beside, shades, stacked, subplots, thinned
+from .style import ORANGE, beside, distinct, shades, stacked, subplots, thinned
 from .sweep import label_of
 
-PICTURES = (("structure_factor", "structure", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
-            ("pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)", "pair distribution $g(r)$",
-             False))
+PICTURES = (("structure_factor", "structure", "s", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
+            ("pair_distribution", "pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)",
+             "pair distribution $g(r)$", False))
 
 
 def pictures(result, _theory, _units):
     if result.sweep:
-        return [(name, lambda axes=None, of=(name, group + "_at", *labels): draw_points(result, axes, *of))
-                for name, group, *labels in PICTURES if any(len(getattr(p, group + "_at")) for p in result.points)]
-    return [(name, lambda axes=None, of=(name, group, *labels): draw(result, axes, *of))
+        return [(name, lambda axes=None, of=(group, *labels): draw_points(result, axes, *of))
+                for name, group, *labels in PICTURES if any(len(getattr(p, group)) for p in result.points)]
+    return [(name, lambda axes=None, of=(group, *labels): draw(result, axes, *of))
             for name, group, *labels in PICTURES
-            if getattr(result, group) or len(getattr(result, group + "_at"))]
+            if len(getattr(result, group)) or getattr(result, group + "_average")]
 
 
 def mean_of(quantity):
     return quantity["mean"] if "mean" in quantity else quantity
 
 
-def draw(result, axes, name, group, along, xlabel, ylabel, log):
+def draw(result, axes, group, name, along, xlabel, ylabel, log):
     figure, ax = subplots(axes, figsize=(5.6, 3.2))
-    at = thinned(getattr(result, group + "_at"))
+    at = thinned(getattr(result, group))
     for table, colour in zip(at, shades(len(at))):
         ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=f"$t={table['time']:.5g}$")
-    if mean := getattr(result, group):
+    if mean := getattr(result, group + "_average"):
         y, error = (np.asarray(numbers, float) for numbers in with_error(mean, name))
         ax.errorbar(mean[along], y, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, lw=0.9, color="k",
                     label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")
@@ -42,14 +42,14 @@ def draw(result, axes, name, group, along, xlabel, ylabel, log):
     return figure
 
 
-def draw_points(result, axes, name, group, along, xlabel, ylabel, log):
+def draw_points(result, axes, group, name, along, xlabel, ylabel, log):
     points = [p for p in result.points if len(getattr(p, group))]
     times = thinned(getattr(points[0], group).times)
     figure, panels = stacked(axes, len(times), height=2.4, sharex=True)
     for ax, time in zip(panels, times):
-        for point, colour in zip(points, shades(len(points))):
-            table = getattr(point, group).at(time)
-            ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label_of(point))
+        for point, colour, label in zip(points, shades(len(points)), distinct(map(label_of, points), points)):
+            table = getattr(point, group).at(time, "nearest")
+            ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label)
         ax.axhline(1, color=ORANGE, lw=1, ls="--")
         ax.set(ylabel=ylabel, title=f"$t={time:.5g}$")
         if log:

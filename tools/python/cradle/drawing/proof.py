@@ -35,7 +35,8 @@ def draw_certificate(result, units, axes=None):
     """The smallest gap, the largest radius of a position, and the ratio of a gap's radius to the gap; it must stay
     below 1."""
     proof = result.certificate
-    time = proof["time"] / units.t
+    collapsing = len(result.collapse) > 0  # there time says nothing: all collisions are at its end
+    time = proof["collisions"].astype(float) if collapsing else proof["time"] / units.t
     figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))
     for name, colour, label in (("gap", BLUE, "smallest gap"), ("widest", ORANGE, "largest radius of a place"),
                                 ("widest_of_gap", GREEN, "largest radius of a gap, against the gap")):
@@ -47,9 +48,9 @@ def draw_certificate(result, units, axes=None):
     top.set_title(f"{about['verdict']}: {int(about['collisions']):,} collisions, run in {about['precision']}, "
                   f"proved with {int(about['digits'])} digits", fontsize="medium")
     top.legend(loc="best", fontsize="small")
-    below.plot(time, proof["collisions"], color=BLUE)
-    if proof["collisions"].max() > 1000:
+    below.plot(time, proof["time"] / units.t if collapsing else proof["collisions"], color=BLUE)
+    if not collapsing and proof["collisions"].max() > 1000:
         below.set_yscale("symlog")
-    below.set_ylabel("collisions proved")
-    below.set_xlabel(units.time_label())
+    names = ["collisions proved", units.time_label()]
+    below.set(xlabel=names[not collapsing], ylabel=names[collapsing])
     return figure

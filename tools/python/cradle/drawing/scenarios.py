@@ -2,11 +2,11 @@
 (paper, section VI), and when an inelastic shock collapses (against N_c/(2 u0), section III)."""
 import numpy as np
 
-from .style import GREY, shades, stacked, subplots
+from .style import BLUE, GREY, RED, SKY, shades, stacked, subplots
 
 REGIMES = {1: "apart", 2: "through each other", 3: "stuck last", 0: "one cluster only"}  # core/observe/scenario.hpp
 ENOUGH = 10  # replicas of a point of which shares are drawn
-COLOURS = {1: "#56B4E9", 2: "#0072B2", 3: "#D55E00", 0: "0.8"}
+COLOURS = {1: SKY, 2: BLUE, 3: RED, 0: "0.8"}
 
 
 def pictures(result, _theory, _units):

@@ -8,8 +8,15 @@ import numpy as np
 
 from ..errors import BAD_INPUT, Error
 
-BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "0.6"  # Okabe and Ito
-PURPLE, SKY = "#CC79A7", "#56B4E9"
+# Colours by names of our own, since they differ on dark pages: those of Okabe and Ito, and brighter ones.
+BLUE, ORANGE, GREEN = "cradle:blue", "cradle:orange", "cradle:green"
+RED, PURPLE, SKY = "cradle:red", "cradle:purple", "cradle:sky"
+GREY = "0.6"
+INK, PAPER = "#e3e7eb", "#14171a"  # of dark pages (page/page.css)
+LIGHT = {BLUE: "#0072b2", ORANGE: "#e69f00", GREEN: "#009e73", RED: "#d55e00", PURPLE: "#cc79a7", SKY: "#56b4e9",
+         "k": "#000000", "black": "#000000", "w": "#ffffff", "white": "#ffffff"}
+DARK = {BLUE: "#58b1ee", ORANGE: "#f2b33d", GREEN: "#45cfa2", RED: "#f58a52", PURPLE: "#e59ac6", SKY: "#a3dcff",
+        "k": INK, "black": INK, "w": PAPER, "white": PAPER}
 
 SETTINGS = {
     "font.family": "DejaVu Sans", "font.size": 9, "axes.labelsize": 9, "legend.fontsize": 7.5,
@@ -17,17 +24,36 @@ SETTINGS = {
     "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
     "legend.frameon": True, "legend.framealpha": 0.85, "legend.edgecolor": "none", "lines.linewidth": 1.2,
     "axes.prop_cycle": plt.cycler(color=[BLUE, ORANGE, GREEN, RED, PURPLE, SKY, "k"]), "figure.dpi": 100,
-    "savefig.dpi": 200, "svg.hashsalt": "cradle", "pdf.fonttype": 42, "axes.formatter.limits": (-4, 5),
+    "savefig.dpi": 200, "svg.hashsalt": "cradle", "pdf.fonttype": 42, "axes.formatter.limits": (-4, 7),
 }
 
 
+def name_colours(colours):
+    known = matplotlib.colors.get_named_colors_mapping()
+    for name, colour in colours.items():
+        known[name] = colour
+
+
+name_colours(LIGHT)
+shown_dark = False  # whether pictures are being drawn for a dark page
+
+
 @contextlib.contextmanager
-def style():
-    """Applies the style while pictures are drawn and written; then restores the caller's settings."""
+def style(dark=False):
+    """Applies the style while pictures are drawn and written; then restores the caller's settings. Pictures for dark
+    pages are bright lines on the colour of the page."""
+    global shown_dark
+    before = shown_dark
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(SETTINGS)
-        yield
+        shown_dark = dark
+        name_colours(DARK if dark else LIGHT)
+        try:
+            yield
+        finally:
+            shown_dark = before
+            name_colours(DARK if before else LIGHT)
 
 
 @dataclass
@@ -91,10 +117,33 @@ def lettered(axes):
     return list(axes)
 
 
+def shade_range():
+    """The part of the colour map that stands out from the page: without the palest yellow, in the dark without the
+    darkest violet."""
+    return (0.38, 1.0) if shown_dark else (0.0, 0.88)
+
+
 def shades(count):
-    """Colours from dark to light with time, readable in grey and by colour-blind eyes; the palest yellow is left
-    out."""
-    return plt.get_cmap("viridis")(np.linspace(0.0, 0.88, max(count, 2)))[:count]
+    """Colours from dark to light with time, readable in grey and by colour-blind eyes."""
+    return plt.get_cmap("viridis")(np.linspace(*shade_range(), max(count, 2)))[:count]
+
+
+def shade_map():
+    """The same as a colour map."""
+    return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(*shade_range(), 256)))
+
+
+def distinct(labels, points):
+    """Labels of points of a sweep, equal ones with the settings in which their points differ, or their numbers."""
+    labels = list(labels)
+    repeated = [labels.count(label) > 1 for label in labels]
+    words = [set(point.label.split()) for point in points]
+    for k, point in enumerate(points):
+        if repeated[k]:
+            others = [words[j] for j in range(len(points)) if j != k and labels[j] == labels[k]]
+            own = sorted(word for word in words[k] if any(word not in other for other in others))
+            labels[k] += ", " + (", ".join(own) or f"point {k}")
+    return labels
 
 
 def power(value, digits=5):

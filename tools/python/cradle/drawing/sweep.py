@@ -5,7 +5,7 @@ import numpy as np
 
 from . import beyond
 from .cooling import ring_of, sticky_law
-from .style import BLUE, GREY, ORANGE, lettered, plt, shades, stacked, subplots
+from .style import BLUE, GREY, ORANGE, distinct, lettered, plt, shade_map, shades, stacked, subplots
 from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
@@ -24,7 +24,7 @@ def pictures(result, theory, units):
         found.append(("zone", lambda axes=None: draw_widths(result, keys, axes)))
     if numbers(result) and not cooling_points(result):
         draw = draw_map if is_grid(keys) else draw_cuts
-        found.append(("sweep", lambda axes=None: draw(result, keys, axes)))
+        found.append(("parameters", lambda axes=None: draw(result, keys, axes)))
     return found
 
 
@@ -78,13 +78,15 @@ def draw_cooling(result, axes=None):
     reference = next((p for p in points if p.law == "sticky"), None)
     figure, (top, below) = stacked(axes, 2, height=2.9, sharex=True)
     others = [p for p in points if p is not reference]
-    for point, colour in list(zip(others, shades(len(others)))) + ([(reference, "k")] if reference else []):
+    shown = others + ([reference] if reference else [])
+    labels = distinct(map(label_of, shown), shown)
+    for point, colour, label in zip(shown, [*shades(len(others)), "k"], labels):
         particles, speed, spacing = ring_of(point)
         later = point.means["time"] * speed / spacing > 0.03  # nothing has met before
         time = point.means["time"][later]
         energy = point.means["energy"][later] / particles
         line = "--" if point.law == "inelastic" else "-"
-        top.loglog(time, energy, line, color=colour, label=label_of(point), zorder=3 if point is reference else 2)
+        top.loglog(time, energy, line, color=colour, label=label, zorder=3 if point is reference else 2)
         if reference is not None:
             seen = reference.means["time"] > 0
             known = np.interp(np.log(time), np.log(reference.means["time"][seen]),
@@ -132,7 +134,7 @@ def draw_widths(result, keys, axes=None):
                       label=given)
         fine = np.geomspace(values[cut].min(), values[cut].max(), 200)
         axes.plot(fine, model_width(fine, at, spacing) if key == SPEED else model_width(at, fine, spacing), line,
-                  color=colour, label=f"(13), {given}")
+                  color=colour, label=f"Eq. (13), {given}")
         axes.set_xlabel(r"$u_0$ (circles)" if key == SPEED else r"$E_\mathrm{loss}$ (squares)", color=colour)
         axes.set(xscale="log", yscale="log")
     ax.set_ylabel(r"width of the zone $2L$" if spacing != 1 else r"width of the zone $2L\,/\,l$")
@@ -154,15 +156,18 @@ def commonest(values):
 # ---- anything else
 
 def draw_cuts(result, keys, axes=None):
-    """Each number of the summary against each key, with the other keys at their most frequent values; without keys,
-    against the number of the point."""
+    """Each number of the summary against each key, with the other keys at their most frequent values (NaN: the key does
+    not apply); without keys, against the number of the point."""
     names = numbers(result)
     columns = dict(list(keys.items())[:3]) or {"point": np.arange(len(result.sweep[names[0]]))}
     size = (max(5.6, 3 * len(columns)), 1.9 * len(names) + 0.3)
     figure, axes = subplots(axes, len(names), len(columns), figsize=size, squeeze=False, sharex="col", sharey="row")
     for column, (key, x) in enumerate(columns.items()):
-        cut = np.all([values == commonest(values) for name, values in keys.items() if name != key], axis=0)
-        at = np.flatnonzero(cut & np.isfinite(x))
+        cut = np.isfinite(x)
+        for values in (values for name, values in keys.items() if name != key):
+            usual = commonest(values)
+            cut &= np.isnan(values) if np.isnan(usual) else values == usual
+        at = np.flatnonzero(cut)
         at = at[np.argsort(x[at], kind="stable")]
         for ax, name in zip(axes[:, column], names):
             error = error_of(result, name)
@@ -200,7 +205,7 @@ def draw_map(result, keys, axes=None):
         values = result.sweep[names[k]].astype(float)
         known = np.isfinite(values)
         norm = plt.matplotlib.colors.LogNorm() if wide(values) else None
-        dots = ax.scatter(x[known], y[known], c=values[known], norm=norm, marker="s", s=60, cmap="viridis")
+        dots = ax.scatter(x[known], y[known], c=values[known], norm=norm, marker="s", s=60, cmap=shade_map())
         ax.plot(x[~known], y[~known], "x", color=GREY)
         figure.colorbar(dots, ax=ax, label=names[k].replace("_", " "))
         spread(ax.set_xscale, x, 8)

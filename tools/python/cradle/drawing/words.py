@@ -1,7 +1,7 @@
 """Words of collapse: for which restitutions each word has a self-similar state, and where that is stable."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, subplots
+from .style import BLUE, GREY, ORANGE, beside, subplots
 
 MOST = 60  # words in one picture: those that exist up to the largest restitutions
 
@@ -35,6 +35,6 @@ def draw(words, axes=None):
                                  (ORANGE, 6, "stable (seen)")):
         ax.plot([], [], color=colour, lw=width, label=label)
     ax.plot([], [], "o", ms=4, color=BLUE, label="the end is proved")
-    ax.legend(loc="lower right")
+    beside(ax)
     ax.set_title(text(words.attributes["system"]), fontsize="medium")
     return figure

@@ -26,16 +26,18 @@ def draw_zone(result, units, axes=None):
     measured, error = zone["width"] / units.x, zone["width_error"] / units.x
     figure, (velocity, density, mass) = stacked(axes, 3, height=2.1, sharex=True)
     slow = 2 * np.sqrt(loss)
+    formed = bool(np.isfinite(measured))  # u+ has fallen to u_crit within the bins; before there is nothing to model
     for sign, name, colour, line in ((1, "right", BLUE, "-"), (-1, "left", ORANGE, "--")):
         index = "+" if sign > 0 else "-"
         inside = np.array([-half, half])
         u = (-(speed - slow) * inside / (2 * half) + sign * (speed + slow) / 2) / units.v
         n = 1 + EXCESS / 2 + sign * EXCESS * inside / (2 * half)
         outer = sign * np.array([min(x[0], -1.2 * half), -half])
-        velocity.plot(outer, np.full(2, sign * speed / units.v), line, color="k", lw=0.9)
-        velocity.plot(inside, u, line, color="k", lw=0.9, label=f"$u_{index}$, (9)")
-        density.plot(outer, np.ones(2), line, color="k", lw=0.9)
-        density.plot(inside, n, line, color="k", lw=0.9, label=f"$n_{index}$, (10)")
+        if formed:
+            velocity.plot(outer, np.full(2, sign * speed / units.v), line, color="k", lw=0.9)
+            velocity.plot(inside, u, line, color="k", lw=0.9, label=f"$u_{index}$, Eq. (9)")
+            density.plot(outer, np.ones(2), line, color="k", lw=0.9)
+            density.plot(inside, n, line, color="k", lw=0.9, label=f"$n_{index}$, Eq. (10)")
         moving = zone[f"density_{name}"] > 0
         velocity.plot(x[moving], zone[f"velocity_{name}"][moving] / units.v, "o" if sign > 0 else "s", ms=3.2,
                       color=colour, mfc=colour if sign > 0 else "none", label=f"{name}-movers")
@@ -43,13 +45,15 @@ def draw_zone(result, units, axes=None):
                      mfc=colour if sign > 0 else "none", label=f"{name}-movers")
     mass.plot(x, zone["mass_density"] * spacing, drawstyle="steps-mid", color=BLUE)
     mass.set_yscale("log")
-    mass.set_title("peaks: the heavy clusters; shaded: $2L$ of (13)", loc="right", fontsize=8)
-    for ax in (velocity, density, mass):
-        ax.axvspan(-half, half, color=GREY, alpha=0.18, lw=0, zorder=0)
+    mass.set_title("peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else
+                   "no zone yet: $u_+$ has not fallen to $u_\\mathrm{crit}$", loc="right", fontsize=8)
+    if formed:
+        for ax in (velocity, density, mass):
+            ax.axvspan(-half, half, color=GREY, alpha=0.18, lw=0, zorder=0)
     velocity.axhline(0, color=GREY, lw=0.6)
     top = velocity.get_ylim()[1]
-    velocity.set_ylim(1.05 * velocity.get_ylim()[0], 2.55 * top)
-    if np.isfinite(measured):  # else it has not fallen to u_crit within the bins
+    if formed:
+        velocity.set_ylim(1.05 * velocity.get_ylim()[0], 2.55 * top)
         draw_width(velocity, measured, error, longer=measured / (1 - slow / speed) if slow < speed else np.nan,
                    model=2 * half, top=top)
     velocity.set_yticks([-speed / units.v, 0, speed / units.v])

@@ -46,7 +46,9 @@ def powers(decimal: str) -> str:
     """Formats exponents as powers of ten, and uses true minus signs."""
     mantissa, _, exponent = decimal.lower().partition("e")
     mantissa = mantissa.replace("-", "−")
-    return f"{mantissa} × 10<sup>{int(exponent)}</sup>".replace("-", "−") if exponent else mantissa
+    if not exponent:
+        return mantissa
+    return (f"{mantissa} × " * (mantissa != "1") + f"10<sup>{int(exponent)}</sup>").replace("-", "−")
 
 
 def enclosed(low: str, high: str) -> tuple[str, int]:
@@ -68,9 +70,19 @@ def enclosed(low: str, high: str) -> tuple[str, int]:
     return f"{powers(shown)} ± {powers(f'{radius:.1e}')}", right
 
 
+def valued(shown: str, symbols: str) -> str:
+    """A number with its unit."""
+    return f"{shown}&nbsp;{unit(symbols).replace(' ', '&nbsp;')}" if unit(symbols) else shown
+
+
 def unit(symbols: str) -> str:
     """m l^2/t^2 as m l²/t²."""
     return "" if symbols in ("", "1") else text(symbols.replace("^2", "²").replace("^3", "³"))
+
+
+def tag(known: str) -> str:
+    """How well a number is known: proved, estimated or unknown."""
+    return f'<span class="tag {known}">{known}</span>'
 
 
 def rows(entries: Iterable[tuple[str, str, str]]) -> str:

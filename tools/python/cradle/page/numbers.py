@@ -8,7 +8,7 @@ import numpy as np
 
 from ..result import Result
 from ..tables import Table
-from .elements import code, enclosed, number, rows, text, unit
+from .elements import code, enclosed, number, rows, tag, text, valued
 
 END = {"energy": "energy at the end", "front_left": "left front at the end", "front_right": "right front at the end"}
 MOST_FAILURES = 5  # of an ensemble that are named
@@ -19,15 +19,32 @@ COLLAPSE = {"time": "collapse", "last_collision": "last collision", "gap": "smal
 def numbers(result: Result) -> str:
     """The HTML of the numbers; for ensembles and sweeps see tables.py."""
     known = proved(result)
-    entries = [*known, *(entry for entry in ends(result) if entry[0] not in {label for label, *_ in known}),
-               *collapse(result), *snapshots(result), *zone(result), *scenario(result)]
+    measured = (entry for entry in ends(result) if entry[0] not in {label for label, *_ in known})
+    entries = [*known, *threshold(result), *sequence(result), *measured, *collapse(result), *snapshots(result),
+               *zone(result), *scenario(result)]
     proof = certificate(result) if result.certificate.attributes else ""
-    note = ""
-    if not proof and result.kind == "run" and entries:
-        note = (f"<p class=note>In {text(result.attributes.get('precision', ''))}; not proved: "
-                "<code>cradle certify</code> proves collisions and encloses these numbers, <code>cradle trust</code> "
-                "finds out how many of their digits are right.</p>\n")
-    return proof + (rows(entries) if entries else "") + note
+    return proof + (rows(entries) if entries else "")
+
+
+def counted(result: Result) -> str:
+    """How well the number of collisions is known: not, unless all of them are proved."""
+    return tag("proved" if result.certificate.attributes.get("verdict") == "proved" else "unknown")
+
+
+def threshold(result: Result) -> list[tuple[str, str, str]]:
+    """The two values between which the outcome changes."""
+    found = result.threshold.attributes
+    return [(str(found["key"]), text(found[f"{end}_digits"]), text(f"{found[f'{end}_outcome']}: {found[f'{end}_how']}"))
+            for end in ("low", "high") if found]
+
+
+def sequence(result: Result) -> list[tuple[str, str, str]]:
+    """How far the collisions follow the word of the scene."""
+    found = result.sequence.attributes
+    if "word" not in found:
+        return []
+    about = "followed to the end" if found["follows"] else f"left at t = {number(found['left_at'])}"
+    return [(f"periods of {text(found['word'])}", number(found["periods"]), about)]
 
 
 def last(table: Table, name: str):
@@ -42,27 +59,29 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
     if "time" not in series or not len(series["time"]) or isinstance(series["energy"], Table):  # of an ensemble
         return []
     time, first, energy = last(series, "time"), series["energy"][0].item(), last(series, "energy")
-    entries = [("time reached", number(time), unit("t")), ("energy at the start", number(first), unit("m l^2/t^2"))]
+    entries = [("time reached", valued(number(time), "t"), ""),
+               ("energy at the start", valued(number(first), "m l^2/t^2"), "")]
     lost = last(series, "energy_lost")
     share = f" · {100 * lost / (energy + lost):.4g} % lost in collisions" if lost and energy + lost > 0 else ""
     digits = result.attributes.get("energy_digits")
-    about = "" if digits is None else f" · about {digits:.0f} digits, estimated from rounding" if digits >= 1 \
-        else " · rounding, no digits"
-    entries.append((END["energy"], number(energy, min(12, max(1, int(digits if digits is not None else 12)))),
-                    unit("m l^2/t^2") + about + share))
+    known = tag("estimated" if digits is not None and digits >= 1 else "unknown")
+    about = "" if digits is None else f" about {digits:.0f} digits, from rounding and the number of collisions" \
+        if digits >= 1 else " rounding, no digits"
+    shown = number(energy, min(12, max(1, int(digits if digits is not None else 12))))
+    entries.append((END["energy"], valued(shown, "m l^2/t^2"), f"{known}{about}{share}"))
     collisions, slow = last(series, "collisions"), last(series, "collisions_below_cutoff")
     share = f"{100 * slow / collisions:.4g} % of them below the cut-off" if collisions and slow else ""
-    entries.append(("collisions", number(collisions or 0), share))
+    entries.append(("collisions", number(collisions or 0), f"{counted(result)} {share}"))
     if merges := last(series, "merges"):
-        entries.append(("merges", number(merges), ""))
+        entries.append(("merges", number(merges), counted(result)))
     for name in ("front_left", "front_right"):
         value = last(series, name)
         if value is not None and np.isfinite(value):
-            entries.append((END[name], number(value), unit("l")))
+            entries.append((END[name], valued(number(value), "l"), tag("unknown")))
     heaviest = series.get("heaviest")
     if heaviest is not None and np.isfinite(heaviest["mass"][-1]).all():
         mass = " and ".join(number(float(value)) for value in heaviest["mass"][-1])
-        entries.append(("two heaviest clusters", mass, unit("m")))
+        entries.append(("two heaviest clusters", valued(mass, "m"), tag("unknown")))
     return entries
 
 
@@ -81,8 +100,9 @@ def collapse(result: Result) -> list[tuple[str, str, str]]:
             error = found.get({"time": "uncertainty", "ratio": "ratio_uncertainty"}.get(name, ""), np.nan)
             known = np.isfinite(error)
             digits = resolved(found[name], error) if known else 17 if name == "last_collision" else 6
-            within = f"± {number(error, 2)} " if known else ""
-            entries.append((label, number(found[name], digits), within + {"gap": "l", "ratio": ""}.get(name, "t")))
+            within = f" ± {number(error, 2)}" if known else ""
+            entries.append((label, valued(number(found[name], digits), {"gap": "l", "ratio": ""}.get(name, "t")),
+                            tag("estimated" if known else "unknown") + within))
     return entries
 
 
@@ -94,12 +114,14 @@ def snapshots(result: Result) -> list[tuple[str, str, str]]:
         return []
     gap, time = min(gaps)
     held = "" if gap else ": two particles in collision"
-    entries = [("smallest gap of the snapshots", number(gap, 6), f"l, at t = {number(time)}{held}")]
-    for name, label, symbol in (("closure_gap", "closure error of gaps", "l"),
-                                ("closure_speed", "closure error of speeds", "l/t")):
+    entries = [("smallest gap of the snapshots", valued(number(gap, 6), "l"),
+                f"{tag('unknown')} at t = {number(time)}{held}")]
+    for name, label, symbol, meaning in (
+            ("closure_gap", "closure error of gaps", "l", "by what the sum of all gaps has come to differ from "
+                                                          "the distance of the outermost particles, through rounding"),
+            ("closure_speed", "closure error of speeds", "l/t", "the same of closing speeds")):
         if name in result.snapshots[-1].attributes:
-            entries.append((label, number(result.snapshots[-1].attributes[name], 3),
-                            f"{symbol}: rounding of the whole run"))
+            entries.append((label, valued(number(result.snapshots[-1].attributes[name], 3), symbol), meaning))
     return entries
 
 
@@ -107,13 +129,15 @@ def zone(result: Result) -> list[tuple[str, str, str]]:
     about = result.table("zone").attributes
     if not np.isfinite(about.get("width", np.nan)):
         return []
-    return [("width of the interaction zone", f"{number(about['width'], 6)} ± {number(about['width_error'], 2)}",
-             f"l, from t = {number(about['from'])} to {number(about['until'])}, {about['samples']} samples")]
+    width = f"{number(about['width'], 6)} ± {number(about['width_error'], 2)}"
+    return [("width of the interaction zone", valued(width, "l"),
+             f"{tag('estimated')} from t = {number(about['from'])} to {number(about['until'])}, "
+             f"{about['samples']} samples")]
 
 
 def scenario(result: Result) -> list[tuple[str, str, str]]:
     about = result.table("scenario").attributes
-    return [(text(name.replace("_", " ")), number(value, 6), "") for name, value in about.items()]
+    return [(text(name.replace("_", " ")), number(value, 6), tag("unknown")) for name, value in about.items()]
 
 
 def certificate(result: Result) -> str:
@@ -138,7 +162,8 @@ def proved(result: Result) -> list[tuple[str, str, str]]:
             if not all(np.isfinite(float(bound)) for bound in bounds):
                 continue
             shown, right = enclosed(*bounds)
-            entries.append((label, f'<span class="digits">{shown}</span>', f"{unit(low.unit)} · {right} digits proved"))
+            entries.append((label, valued(f'<span class="digits">{shown}</span>', low.unit),
+                            f"{tag('proved')} {right} digits"))
     return entries
 
 

@@ -11,10 +11,13 @@ import re
 
 from .. import program
 from ..errors import Error
+from ..files import made_from
 from ..plot import PICTURES, drawings
 from ..result import Result
 from ..seal import read_seal
 from .elements import code, number, preformatted, rows, section, text
+from .captions import SEE
+from .intro import introduction
 from .numbers import last, numbers, warnings
 from .svg import picture
 from .tables import tables
@@ -35,13 +38,14 @@ def page(result: Result) -> str:
                 ("provenance", "Provenance", provenance(result, version)), ("cite", "Cite", cite())]
     warned = warnings(result, version.split("\n")[0].removeprefix("cradle "))
     title = text(result.attributes.get("name", "")) + " – " + text(result.scene.get("title") or result.kind)
-    links = "".join(f'<a href="#{name}">{head}</a>' for name, head, content in sections if content)
+    links = " ".join(f'<a href="#{name}">{head}</a>' for name, head, content in sections if content)
     body = [f"<header>\n<h1>{text(result.scene.get('title') or result.attributes.get('name', ''))}</h1>\n"
-            f"<p class=lead>{lead(result)}</p>\n<nav>{links}</nav>\n</header>\n<main>\n"]
+            f"<p class=lead>{lead(result)}</p>\n{introduction(result)}<nav>{links}</nav>\n</header>\n<main>\n"]
     if warned:
         body.append('<ul class="warnings">' + "".join(f"<li>{caption}" for caption in warned) + "</ul>\n")
     body += [section(*entry) for entry in sections]
     return (f"<!DOCTYPE html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n<title>{title}</title>\n"
+            f'<meta name=generator content="{made_from("report", result.path)}">\n'
             f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
             '<meta name=viewport content="width=device-width, initial-scale=1">\n<link rel=icon href="data:,">\n'
             f"<style>\n{beside('page.css')}</style>\n</head>\n<body>\n{''.join(body)}</main>\n"
@@ -80,13 +84,14 @@ def lead(result: Result) -> str:
 
 
 def pictures(result: Result) -> str:
-    found = []
+    found = ["<p class=note>Figures, equations and sections are those of the paper, Zaburdaev and Herminghaus, "
+             "Phys. Rev. E <b>75</b>, 031304 (2007).</p>\n"]
     for name, draw in drawings(result).items():
-        caption = PICTURES.get(name, name)
-        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw(), caption)}\n'
+        caption = f"{PICTURES.get(name, name)} {SEE.get(name, '')}"
+        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw, caption)}\n'
                      f"<figcaption>{text(caption)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
                      "</figure>\n")
-    return "".join(found)
+    return "".join(found) if len(found) > 1 else ""
 
 
 def microscope(result: Result) -> str:
@@ -98,7 +103,9 @@ def microscope(result: Result) -> str:
     style, script = ("\n".join(beside(os.path.join("..", name)) for name in names)
                      for names in (("microscope.css",), module.SCRIPTS))
     content = json.dumps(data, separators=(",", ":"), sort_keys=True).replace("<", "\\u003c")
-    return (f'<style>\n{style}</style>\n<div id="microscope-canvas"></div>\n'
+    return ("<p>The paths of the particles, position against time. Zoom in to see collisions that no picture resolves: "
+            "each gap is drawn from its own number, not from a difference of positions.</p>\n"
+            f'<style>\n{style}</style>\n<div id="microscope-canvas"></div>\n'
             f'<script type="application/json" id="microscope-data">{content}</script>\n<script>\n{script}\n'
             'cradleMicroscope(document.getElementById("microscope-canvas"), '
             'JSON.parse(document.getElementById("microscope-data").textContent));\n</script>\n')
@@ -109,13 +116,13 @@ def command_of(result: Result) -> list[str]:
     name = str(result.attributes.get("name", "scene"))
     output = os.path.basename(result.path.removesuffix(".part"))
     about = result.attributes
-    if result.certificate.attributes:
-        words = ["certify", f"{name}.toml"]
-    elif len(result.trust):
-        words = ["trust", f"{name}.toml"]
-        words += ["--both"] * any(table.attributes.get("coordinates") == "absolute" for table in result.trust)
-    elif result.kind == "words":
-        words = shlex.split(str(result.table("words").attributes["command"]))
+    made_by = about.get("command") or (
+        "certify" if result.certificate.attributes else "trust" if len(result.trust) else "")
+    if made_by:  # with its options
+        command, *options = shlex.split(str(made_by))
+        words = [command, f"{name}.toml", *map(shlex.quote, options)]
+    elif result.kind in ("words", "threshold"):
+        words = shlex.split(str(result.table(result.kind).attributes["command"]))
     elif result.kind == "sweep":
         words = ["sweep", f"{name}.toml"]
         planned = result.scene.get("sweep", {})

@@ -84,14 +84,25 @@ def points(result: Result) -> str:
     heads += [head(name, table[name].unit) for name in names]
     rows = []
     for row, label in enumerate(labels):
-        said = dict(word.split("=", 1) for word in label.split() if "=" in word)
-        rows.append([cell(said.get(name, "")) for name in texts])
+        said, point = dict(word.split("=", 1) for word in label.split() if "=" in word), result.points[row]
+        rows.append([cell(said.get(name) or setting(point, name)) for name in texts])
         for name in names:
             value = table[name].values[row]
+            if "." in name and not np.isfinite(value):  # not set by this point: the scene's
+                rows[-1].append(cell(setting(point, name)))
+                continue
             error = table[name + "_error"].values[row] if name + "_error" in table else np.nan
             by, shown = cell(value)
             rows[-1].append((by, measured(by, error.item()) if np.isfinite(error) else shown))
-    return sortable(f"{number(len(labels))} points; means over replicas with their standard errors", heads, rows)
+    return sortable(f"{number(len(labels))} points; means over replicas with their standard errors "
+                    "(–: no replica has a value)", heads, rows)
+
+
+def setting(point: Result, key: str):
+    """The value of a key in the scene of a point: a number where it is one, "none" where it does not apply."""
+    table, _, name = key.partition(".")
+    number_there = point.setting(table, name)
+    return number_there if isinstance(number_there, float) else str(point.scene.get(table, {}).get(name, "none"))
 
 
 def precisions(result: Result) -> str:

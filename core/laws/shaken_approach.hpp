@@ -1,0 +1,254 @@
+#pragma once
+// The gap between a shaken wall (wall_motion.hpp) and a particle with a constant acceleration: with s(t) the place of
+// the wall on its way, w the closing speed at the time 0, p the pull (approach.hpp),
+//
+//   g(t) = g - w t - p t^2/2 - (s(t) - s(0) - s'(0) t),   w(t) = w + p t + s'(t) - s'(0).
+//
+// When it closes is found without passing a collision by:
+//
+//   sawtooth   on the k-th tooth the gap is that to a wall that never jumps, + 2 k A: a quadratic equation for each
+//              tooth, one after the other
+//   parabola   a quadratic equation for each arc, one after the other
+//   sine       w cannot grow faster than p + A omega^2, nor within a time h faster than p + s'' + A omega^3 h. So the
+//              gap stays open for as long as one that closes at that rate; such waits are made one after the other.
+//              They end at the first root, from before it: at once, or by a constant factor each if it is double.
+//
+// While the wall cannot reach the particle, since it is further than A from the wall's place, time is skipped. There is
+// no collision if none comes within a period after the particle has ceased to approach that place.
+// A gap that touches 0 or falls below it by rounding alone, and opens again, does not close. On the sawtooth, a
+// particle that is at the tip at the time of the jump, but for rounding, is not hit.
+
+#include <limits>
+#include <optional>
+
+#include "cradle/core/laws/approach.hpp"
+#include "cradle/core/laws/wall_motion.hpp"
+
+namespace cradle {
+
+template <Real T> class ShakenApproach {
+ public:
+  struct State {
+    T gap, closing;
+  };
+  struct Meeting {
+    T in, speed;
+  };
+
+  // As an Approach, with the motion of the wall and the time since the start.
+  ShakenApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>& motion,
+                 const Pair<T>& since)
+      : ShakenApproach(gap, closing, pull, splitter, motion, since, motion.at(since), T(0)) {}
+  // With the phase at that time; `open`: how long the gap surely does not close.
+  ShakenApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>& motion,
+                 const Pair<T>& since, const Phase<T>& phase, const T& open)
+      : gap_(gap), closing_(closing), pull_(pull), splitter_(splitter), motion_(motion), since_(since), phase_(phase),
+        place_(motion.place(phase.rest)), speed_(motion.speed(phase.rest)), open_(open) {}
+
+  // After a time; `now` is then the time since the start.
+  State after(const T& time, const Pair<T>& now) const {
+    switch (motion_.shape()) {
+    case Shape::sawtooth: {
+      const Approach<T> along = straight(gap_, closing_, pull_);
+      const T jumps = motion_.at(now).whole - phase_.whole;
+      return {T(along.gap_after(time) + (motion_.amplitude() + motion_.amplitude()) * jumps),
+              along.closing_after(time)};
+    }
+    case Shape::parabola:
+      return on_arcs(time, now);
+    default:
+      return on_sine(time, now).state;
+    }
+  }
+
+  // The next collision; nothing if there is none.
+  std::optional<Meeting> meeting() const {
+    switch (motion_.shape()) {
+    case Shape::sawtooth:
+      return on_teeth();
+    case Shape::parabola:
+      return on_arcs();
+    default:
+      return on_sine();
+    }
+  }
+
+ private:
+  Approach<T> straight(const T& gap, const T& closing, const T& pull) const { return {gap, closing, pull, splitter_}; }
+  Pair<T> time_at(const T& wait) const { return since_ + wait; }
+  static T whole_below(const T& x) { return nearest_whole(T(x - T(1) / T(2))); }
+
+  // With the wall anywhere on its way, for long times; the distance from its place, which the particle approaches at
+  // the speed w - s'(0), does not lose digits.
+  State at_phase(const T& time, const T& y) const {
+    const Approach<T> to_place = straight(T(gap_ + (place_ - motion_.place(y))), T(closing_ - speed_), pull_);
+    return {to_place.gap_after(time), T(to_place.closing_after(time) + motion_.speed(y))};
+  }
+
+  // How long the wall will not reach a particle at this distance from its place, with a sixteenth of a period to spare;
+  // nothing if it never will.
+  std::optional<T> out_of_reach(const T& distance, const T& closing) const {
+    if (!(motion_.amplitude() < distance)) return T(0);
+    const auto wait = straight(T(distance - motion_.amplitude()), closing, pull_).meeting_in();
+    if (!wait) return {};
+    const T surely = *wait - motion_.period() / T(16);
+    return is_positive(surely) ? surely : T(0);
+  }
+  // A time without collisions after which there are none.
+  T last_chance() const {
+    const T towards = closing_ - speed_;
+    if (is_positive(pull_) || (pull_ == T(0) && is_positive(towards))) return far_away<T>();
+    const T turns_back = is_positive(towards) ? T(towards / -pull_) : T(0);
+    return turns_back + T(17) * motion_.period() / T(16);
+  }
+
+  std::optional<Meeting> on_teeth() const {
+    const T height = motion_.amplitude() + motion_.amplitude(), never = last_chance();
+    T teeth(0);
+    if (const auto free = out_of_reach(T(gap_ + place_), T(closing_ - speed_)))
+      teeth = nearest_whole(T(phase_.rest + motion_.at_turns_of(*free)));
+    else
+      return {};
+    for (;;) {
+      const T jump = (T(1) / T(2) - phase_.rest + teeth) * motion_.period();
+      const Approach<T> tooth = straight(T(gap_ + height * teeth), closing_, pull_);
+      const auto wait = tooth.meeting_in();
+      if (!wait) return {};
+      const T rounding = T(16) * T(std::numeric_limits<T>::epsilon()) * (magnitude(since_.high) + jump);
+      if (*wait < jump - rounding) return Meeting{*wait, tooth.meeting_speed().value_or(T(0))};
+      if (never < jump) return {};
+      const Approach<T> to_place = straight(T(gap_ + place_), T(closing_ - speed_), pull_);
+      const auto free = out_of_reach(to_place.gap_after(jump), to_place.closing_after(jump));
+      if (!free) return {};
+      const T later = nearest_whole(T(phase_.rest + motion_.at_turns_of(T(jump + *free))));
+      teeth += T(1);
+      if (teeth < later) teeth = later;
+    }
+  }
+
+  // An arc that begins `time` later, with so much of it left.
+  struct Arc {
+    T time, left;
+    State state;
+    bool upper;  // where the wall is further than its place
+  };
+  Arc this_arc() const {
+    const bool upper = !is_negative(phase_.rest);
+    const T turns = upper ? T(T(1) / T(2) - phase_.rest) : T(-phase_.rest);
+    return {T(0), T(turns * motion_.period()), {gap_, closing_}, upper};
+  }
+  Approach<T> on(const Arc& arc) const {
+    return straight(arc.state.gap, arc.state.closing,
+                    arc.upper ? T(pull_ - motion_.curving()) : T(pull_ + motion_.curving()));
+  }
+  Arc next(const Arc& arc) const {
+    const Approach<T> here = on(arc);
+    return {T(arc.time + arc.left),
+            T(motion_.period() / T(2)),
+            {here.gap_after(arc.left), here.closing_after(arc.left)},
+            !arc.upper};
+  }
+  State on_arcs(const T& time, const Pair<T>& now) const {
+    Arc arc = this_arc();
+    for (int k = 0; k < 3; ++k, arc = next(arc))
+      if (!(arc.time + arc.left < time)) {
+        const Approach<T> here = on(arc);
+        return {here.gap_after(T(time - arc.time)), here.closing_after(T(time - arc.time))};
+      }
+    return at_phase(time, motion_.at(now).rest);
+  }
+  std::optional<Meeting> on_arcs() const {
+    const T never = last_chance(), half = motion_.period() / T(2);
+    const auto speed_at_start = [&](bool upper) { return upper ? motion_.fastest() : T(-motion_.fastest()); };
+    Arc arc = this_arc();
+    for (bool first = true;; first = false) {
+      const Approach<T> to_place = straight(T(first ? T(arc.state.gap + place_) : arc.state.gap),
+                                            T(arc.state.closing - (first ? speed_ : speed_at_start(arc.upper))), pull_);
+      const auto free = out_of_reach(to_place.gap_after(T(0)), to_place.closing_after(T(0)));
+      if (!free) return {};
+      if (arc.left < *free) {
+        const T more = whole_below(T((*free - arc.left) / half)), until = arc.left + more * half;
+        const bool even = nearest_whole(T(more / T(2))) * T(2) == more;
+        arc = {T(arc.time + until),
+               half,
+               {to_place.gap_after(until), to_place.closing_after(until)},
+               even ? !arc.upper : arc.upper};
+        arc.state.closing += speed_at_start(arc.upper);
+        continue;
+      }
+      const Approach<T> here = on(arc);
+      const auto wait = here.meeting_in();
+      if (wait && !(arc.left < *wait)) return Meeting{T(arc.time + *wait), here.meeting_speed().value_or(T(0))};
+      arc = next(arc);
+      if (never < arc.time) return {};
+    }
+  }
+
+  struct OnSine {
+    State state;
+    T place, speed;  // of the wall
+  };
+  OnSine on_sine(const T& time, const Pair<T>& now) const {
+    const T turns = motion_.at_turns_of(time);
+    if (T(1) / T(8) < magnitude(turns)) {
+      const T y = motion_.at(now).rest;
+      return {at_phase(time, y), motion_.place(y), motion_.speed(y)};
+    }
+    const T angle = motion_.frequency() * time;
+    const UnitVector<T> rest = motion_.circle().beyond_linear(angle);
+    const T beyond = place_ * rest.cos + speed_ / motion_.frequency() * rest.sin;
+    const T gained = speed_ * rest.cos - place_ * motion_.frequency() * (angle + rest.sin);
+    const Approach<T> along = straight(gap_, closing_, pull_);
+    return {{T(along.gap_after(time) - beyond), T(along.closing_after(time) + gained)},
+            T(place_ + speed_ * time + beyond),
+            T(speed_ + gained)};
+  }
+  // How long a gap surely stays open if w grows at most at this rate; nothing: for ever.
+  static std::optional<T> open_for(const T& gap, const T& closing, const T& rate) {
+    using std::sqrt;
+    if (!is_positive(closing) && !is_positive(rate)) return {};
+    const T square = closing * closing + (rate + rate) * gap;
+    if (is_negative(square)) return {};
+    const T speed = sqrt(square);
+    return is_positive(closing) ? T((gap + gap) / (closing + speed)) : T((speed - closing) / rate);
+  }
+  std::optional<Meeting> on_sine() const {
+    using std::sqrt;
+    const T never = last_chance(), square = motion_.frequency() * motion_.frequency();
+    const T greatest = pull_ + motion_.curving(), changing = motion_.curving() * motion_.frequency();
+    for (T time = open_;;) {
+      const auto [state, place, speed] = on_sine(time, time_at(time));
+      const auto& [gap, closing] = state;
+      const T rate = pull_ - square * place;
+      if (!is_positive(gap) && is_positive(closing)) {  // closed just before, or by rounding
+        const T inside = closing * closing + (rate + rate) * gap;
+        const T when = time + (gap + gap) / (closing + (is_positive(inside) ? T(sqrt(inside)) : T(0)));
+        const T there = on_sine(when, time_at(when)).state.closing;
+        return Meeting{when, is_positive(there) ? there : closing};
+      }
+      const T open = is_positive(gap) ? gap : T(0);
+      const auto surely = open_for(open, closing, greatest);
+      if (!surely) return {};
+      const T four = T(4) * *surely, turning = magnitude(rate) / changing, within = four < turning ? turning : four;
+      const T less = rate + changing * within;
+      const T longer = less < greatest ? open_for(open, closing, less).value_or(within) : T(0);
+      T wait = *surely < longer ? (longer < within ? longer : within) : *surely;
+      const auto free = out_of_reach(T(gap + place), T(closing - speed));
+      if (!free) return {};
+      if (wait < *free) wait = *free;
+      const T next = time + wait;
+      if (!(time < next)) return Meeting{time, is_positive(closing) ? closing : T(0)};
+      if (never < next) return {};
+      time = next;
+    }
+  }
+
+  T gap_, closing_, pull_, splitter_;
+  const WallMotion<T>& motion_;
+  Pair<T> since_;
+  Phase<T> phase_;
+  T place_, speed_;  // of the wall, at the time 0
+  T open_;
+};
+
+}  // namespace cradle

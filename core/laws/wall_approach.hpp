@@ -1,0 +1,93 @@
+#pragma once
+// The gap between any wall and a particle: the wall is shaken (shaken_approach.hpp) or not (approach.hpp), and may hold
+// particles that are slower than its rest speed. Such a particle has no gap and no closing speed. It moves with the
+// wall for as long as the wall presses it, p + s'' > 0; then it is let go, at the speed of the wall: at a known phase.
+
+#include <optional>
+
+#include "cradle/core/laws/shaken_approach.hpp"
+
+namespace cradle {
+
+// What is known of the wall at a gap: its motion, null if it is not shaken; whether it holds particles, and the phase
+// at which it lets go of them, if it does.
+template <Real T> struct HoldingWall {
+  const WallMotion<T>* motion = nullptr;
+  bool holds = false;
+  std::optional<T> release;
+
+  // Whether it presses a particle of this pull at a time since the start.
+  bool presses(const T& pull, const Pair<T>& elapsed) const {
+    return is_positive(motion != nullptr ? T(pull + motion->acceleration(motion->at(elapsed).rest)) : pull);
+  }
+};
+
+template <Real T> class WallApproach {
+ public:
+  // As an Approach; `since` the start is the time at which it has this gap.
+  WallApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const HoldingWall<T>& wall,
+               const Pair<T>& since)
+      : straight_(gap, closing, pull, splitter), motion_(wall.motion),
+        rests_(wall.holds && gap == T(0) && closing == T(0) && wall.presses(pull, since)) {
+    if (motion_ == nullptr) return;
+    if (!rests_)
+      shaken_.emplace(gap, closing, pull, splitter, *motion_, since);
+    else if (wall.release)
+      let_go(*wall.release, pull, splitter, since);
+  }
+
+  // After a time, which is `now` since the start: the closing speed, its mean until then, and the gap.
+  T closing_after(const T& time, const Pair<T>& now) const {
+    if (rests(time, now)) return T(0);
+    return shaken_ ? shaken_->after(T(time - released_), now).closing : straight_.closing_after(time);
+  }
+  T gap_after(const T& time, const Pair<T>& now) const {
+    if (rests(time, now)) return T(0);
+    return shaken_ ? shaken_->after(T(time - released_), now).gap : straight_.gap_after(time);
+  }
+  T mean_closing(const T& time, const Pair<T>& now) const {
+    if (!shaken_ && !rests_) return straight_.mean_closing(time);
+    return time == T(0) ? closing_after(time, now) : T((straight_.gap_after(T(0)) - gap_after(time, now)) / time);
+  }
+  // The next collision, as in approach.hpp.
+  std::optional<T> meeting_in() const {
+    if (!shaken_) return rests_ ? std::nullopt : straight_.meeting_in();
+    const auto meeting = shaken_->meeting();
+    return meeting ? std::optional<T>(released_ + meeting->in) : std::nullopt;
+  }
+  std::optional<T> meeting_speed() const {
+    if (!shaken_) return rests_ ? std::nullopt : straight_.meeting_speed();
+    const auto meeting = shaken_->meeting();
+    return meeting ? std::optional<T>(meeting->speed) : std::nullopt;
+  }
+  // How long the particle has rested after a time.
+  T rested(const T& time, const Pair<T>& now) const { return !rests_ ? T(0) : rests(time, now) ? time : released_; }
+
+ private:
+  bool rests(const T& time, const Pair<T>& now) const {
+    if (!rests_ || !shaken_) return rests_;
+    return motion_->shape() == Shape::sawtooth ? motion_->at(now).whole < tooth_ : !(released_ < time);
+  }
+  // Rests until the phase `at`. The sine does not press it again before the phase 1/2 - at.
+  void let_go(const T& at, const T& pull, const T& splitter, const Pair<T>& since) {
+    const Phase<T> phase = motion_->at(since);
+    T turns = at - phase.rest;
+    if (is_negative(turns)) turns = phase.rest < T(1) / T(2) - at ? T(0) : T(turns + T(1));
+    released_ = turns * motion_->period();
+    const Pair<T> then = since + released_;
+    tooth_ = phase.whole + T(1);
+    const bool jumps = motion_->shape() == Shape::sawtooth;
+    const Phase<T> free{jumps ? tooth_ : phase.whole, jumps ? T(T(-1) / T(2)) : at};
+    const T open = motion_->shape() == Shape::sine ? T((T(1) / T(2) - (at + at)) * motion_->period()) : T(0);
+    shaken_.emplace(jumps ? T(motion_->amplitude() + motion_->amplitude()) : T(0), T(0), pull, splitter, *motion_, then,
+                    free, open);
+  }
+
+  Approach<T> straight_;
+  const WallMotion<T>* motion_;
+  std::optional<ShakenApproach<T>> shaken_;  // of a particle that rests: after it is let go
+  bool rests_;
+  T released_{0}, tooth_{0};
+};
+
+}  // namespace cradle

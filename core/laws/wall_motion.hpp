@@ -1,0 +1,109 @@
+#pragma once
+// How a wall is shaken about its place, which moves uniformly (wall.hpp): towards the particles by A f(y), where y is
+// the phase in turns, y = (omega t + phi)/2 pi, t the time since the start, and, for y from -1/2 to 1/2,
+//
+//   sawtooth   f = 2 y: always towards the particles at the speed A omega/pi; at y = 1/2 it jumps back by 2 A
+//   parabola   f = 16 y (1/2 - |y|): arcs of the acceleration -+ 8 A omega^2/pi^2, with the speed 4 A omega/pi between
+//   sine       f = sin(2 pi y)
+//
+// Phases are computed with twice the digits, so that they are right at any time. What the wall does within a flight is
+// in wall_approach.hpp.
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "cradle/core/laws/turns.hpp"
+
+namespace cradle {
+
+enum class Shape : std::uint8_t { sawtooth, parabola, sine };
+
+// Whole turns and the rest, in [-1/2, 1/2): the sawtooth has jumped so many times.
+template <Real T> struct Phase { T whole, rest; };
+
+template <Real T> class WallMotion {
+ public:
+  // The frequency is angular. Throws std::invalid_argument.
+  WallMotion(Shape shape, const T& amplitude, const T& frequency, const T& phase)
+      : shape_(shape), amplitude_(amplitude), frequency_(frequency), splitter_(splitter<T>()) {
+    const auto require = [](bool right, const char* what, const T& found, const char* to_do) {
+      if (!right)
+        throw std::invalid_argument(std::string(what) + " of a shaken wall is out of range (" +
+                                    std::to_string(to_double(found)) + "): give " + to_do);
+    };
+    require(is_positive(amplitude) && is_finite(amplitude), "amplitude", amplitude, "a positive one");
+    require(is_positive(frequency) && is_finite(frequency), "frequency", frequency, "a positive one");
+    require(is_finite(phase), "phase", phase, "a finite one");
+    turns_per_time_ = quotient(Pair<T>{frequency, T(0)}, circle_.full_turn());
+    turns_at_start_ = quotient(Pair<T>{phase, T(0)}, circle_.full_turn());
+    const T turns = turns_per_time_.value();
+    fastest_ = amplitude * (shape == Shape::sine ? frequency : T(T(shape == Shape::sawtooth ? 2 : 8) * turns));
+    curving_ = shape == Shape::sine       ? T(fastest_ * frequency)
+               : shape == Shape::parabola ? T(T(4) * fastest_ * turns)
+                                          : T(0);
+  }
+
+  Shape shape() const { return shape_; }
+  const T& amplitude() const { return amplitude_; }
+  const T& frequency() const { return frequency_; }
+  T period() const { return T(1) / turns_per_time_.value(); }
+  const Circle<T>& circle() const { return circle_; }
+  // The largest speed, and the largest acceleration.
+  const T& fastest() const { return fastest_; }
+  const T& curving() const { return curving_; }
+
+  // At a time since the start, as a sum.
+  Phase<T> at(const Pair<T>& elapsed) const {
+    const Pair<T> turns = times(turns_per_time_, elapsed) + turns_at_start_;
+    T whole = nearest_whole(turns.high), rest = (turns - whole).value();
+    if (rest < T(-1) / T(2)) whole -= T(1), rest = (turns - whole).value();
+    if (!(rest < T(1) / T(2))) whole += T(1), rest = (turns - whole).value();
+    return {whole, rest};
+  }
+  T at_turns_of(const T& wait) const { return turns_per_time_.value() * wait; }
+
+  // The displacement at a phase, its speed and its acceleration, towards the particles.
+  T place(const T& y) const {
+    if (shape_ == Shape::sine) return amplitude_ * circle_.at_turns(y).sin;
+    return shape_ == Shape::sawtooth ? T(amplitude_ * (y + y))
+                                     : T(T(16) * amplitude_ * y * (T(1) / T(2) - magnitude(y)));
+  }
+  T speed(const T& y) const {
+    if (shape_ == Shape::sine) return fastest_ * circle_.at_turns(y).cos;
+    return shape_ == Shape::sawtooth ? fastest_ : T(fastest_ * (T(1) - T(4) * magnitude(y)));
+  }
+  T acceleration(const T& y) const {
+    if (shape_ == Shape::sine) return -(curving_ * circle_.at_turns(y).sin);
+    return is_negative(y) ? curving_ : T(-curving_);
+  }
+  // The phase from -1/4 to 1/2 at which it ceases to press a particle of this pull, or drops from under it; nothing if
+  // it never does. Of the sine by bisection, to the last bit.
+  std::optional<T> release(const T& pull) const {
+    if (shape_ == Shape::sawtooth) return T(1) / T(2);
+    if (!(pull < curving_)) return {};
+    if (shape_ == Shape::parabola) return T(0);
+    T low = T(-1) / T(4), high = T(1) / T(4);
+    for (;;) {
+      const T middle = (low + high) / T(2);
+      if (!(low < middle && middle < high)) return high;
+      (is_positive(T(pull + acceleration(middle))) ? low : high) = middle;
+    }
+  }
+
+ private:
+  Pair<T> times(const Pair<T>& a, const Pair<T>& b) const {
+    if constexpr (RoundsToNearest<T>)
+      return exact_product(a.high, b.high, splitter_) + T(a.high * b.low + a.low * b.high);
+    else
+      return two_sum(T(a.high * b.high), T(a.high * b.low + a.low * b.high));
+  }
+
+  Shape shape_;
+  T amplitude_, frequency_, splitter_, fastest_{0}, curving_{0};
+  Circle<T> circle_;
+  Pair<T> turns_per_time_, turns_at_start_;
+};
+
+}  // namespace cradle

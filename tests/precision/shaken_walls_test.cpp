@@ -1,0 +1,251 @@
+// Shaken walls in every scalar type: pi, sine and cosine; when random gaps close, grazing ones among them, against 100
+// digits: never later than they do; a column, in all types the same collisions.
+#include <gtest/gtest.h>
+
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/precision/every_scalar.hpp"
+
+namespace shaken_walls_in_types_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+template <class P> class ShakenIn : public InPrecision<P> {};
+TYPED_TEST_SUITE(ShakenIn, EveryPrecision, PrecisionName);
+
+// sin^2 + cos^2 = 1, sin(4 y) from sin(y), and the values at quarters and twelfths of a turn: to 8 epsilon.
+TYPED_TEST(ShakenIn, SineAndCosineHaveTheirDigits) {
+  using T = typename TestFixture::Scalar;
+  const T epsilon = std::numeric_limits<T>::epsilon(), most = T(8) * epsilon;
+  const Circle<T> circle;
+  for (int k = -40; k < 40; ++k) {
+    const T y = T(k) / T(37);
+    const auto [c, s] = circle.at_turns(y);
+    EXPECT_LE(magnitude(T(s * s + c * c - T(1))), most);
+    EXPECT_LE(magnitude(T(circle.at_turns(T(y + y)).sin - T(2) * s * c)), most);
+    const T z = circle.full_turn().value() * (T(k) / T(320));  // |z| <= pi/4
+    const auto beyond = circle.beyond_linear(z);
+    EXPECT_LE(magnitude(T(circle.at_turns(T(T(k) / T(320))).sin - (z + beyond.sin))), most);
+    EXPECT_LE(magnitude(T(circle.at_turns(T(T(k) / T(320))).cos - (T(1) + beyond.cos))), most);
+  }
+  EXPECT_EQ(circle.at_turns(T(T(5) / T(4))).sin, T(1));
+  EXPECT_LE(magnitude(T(circle.at_turns(T(T(1) / T(12))).sin - T(1) / T(2))), most);
+  EXPECT_LE(magnitude(T(circle.at_turns(T(T(1) / T(8))).sin * circle.at_turns(T(T(1) / T(8))).cos - T(1) / T(2))),
+            most);
+}
+
+template <class P> class ShakenColumnIn : public InPrecision<P> {};
+TYPED_TEST_SUITE(ShakenColumnIn, EachKindOfPrecision, PrecisionName);
+
+// All types make the same collisions on each shape, and keep the account of the energy to their digits.
+TYPED_TEST(ShakenColumnIn, AColumnHasTheSameCollisions) {
+  using T = typename TestFixture::Scalar;
+  for (const Shape shape : {Shape::sawtooth, Shape::parabola, Shape::sine}) {
+    const auto column = [&]<class S>(std::type_identity<S>) {
+      Wall<S> floor{S(-1)};
+      floor.motion = std::make_shared<WallMotion<S>>(shape, S(1) / S(4), S(3), S(1) / S(2));
+      return std::make_shared<Walled<S>>(rmix<S>(8), floor, std::nullopt, S(S(-3) / S(8)));
+    };
+    const auto sequence = []<class S>(const std::shared_ptr<const Walled<S>>& particles, const S& until) {
+      Simulation<S, Inelastic<S>, GapChain<S, IndividualMasses<S>, Gravity<S>>> run(
+          Inelastic<S>(S(1)), GapChain<S, IndividualMasses<S>, Gravity<S>>(particles, S(0)));
+      Sequence found;
+      EXPECT_EQ(run.advance(until, [&](const Collision<S>& c) { found.add(c.left); }), Status::reached);
+      const auto now = sample(run, S(0), until);
+      const auto c = configuration_at(run, until);
+      const S potential = potential_energy(c, *particles, until);
+      const S off = now.energy + potential - (particles->mechanical_energy() + now.given);
+      EXPECT_LE(magnitude(off), S(256 * static_cast<std::int64_t>(run.counts().collisions)) *
+                                    S(std::numeric_limits<S>::epsilon()) * (now.energy + magnitude(potential)));
+      EXPECT_GT(run.counts().collisions, 20U);
+      return found;
+    };
+    const std::shared_ptr<const Walled<T>> wide = column(std::type_identity<T>{});
+    const std::shared_ptr<const Walled<double>> narrow = column(std::type_identity<double>{});
+    EXPECT_EQ(sequence(wide, T(6)), sequence(narrow, 6.));
+  }
+}
+
+// ---- random gaps, against formulas of their own in 100 digits
+using Reference = bin_float;
+
+template <class T> Reference exact(T x) {
+  Reference sum(0);
+  for (int part = 0; part < 8 && !(x == T(0)); ++part) {
+    const double leading = to_double(x);
+    sum += Reference(leading);
+    x -= exactly<T>(leading);
+  }
+  return sum;
+}
+template <class T> T nearest(Reference x) {
+  T sum(0);
+  for (int part = 0; part < 4; ++part) {
+    const auto leading = static_cast<double>(x);
+    sum += exactly<T>(leading);
+    x -= Reference(leading);
+  }
+  return sum;
+}
+
+// A gap by numbers of the type N, double or the reference: value and first two derivatives.
+template <class N> struct Curve {
+  Shape shape;
+  N gap, closing, pull, amplitude, frequency, phase, since;
+  N pi = boost::math::constants::pi<N>();
+
+  N turns(const N& t) const {
+    using std::floor;
+    const N y = (frequency * (since + t) + phase) / (2 * pi);
+    return y - floor(y + N(0.5));
+  }
+  N place(const N& y) const {
+    using std::abs, std::sin;
+    if (shape == Shape::sine) return amplitude * sin(2 * pi * y);
+    return shape == Shape::sawtooth ? N(2 * amplitude * y) : N(16 * amplitude * y * (N(0.5) - abs(y)));
+  }
+  N speed(const N& y) const {
+    using std::abs, std::cos;
+    if (shape == Shape::sine) return amplitude * frequency * cos(2 * pi * y);
+    const N slope = amplitude * frequency / pi;
+    return shape == Shape::sawtooth ? slope : N(4 * slope * (1 - 4 * abs(y)));
+  }
+  N acceleration(const N& y) const {
+    if (shape == Shape::sine) return -frequency * frequency * place(y);
+    if (shape == Shape::sawtooth) return N(0);
+    const N size = 8 * amplitude * frequency * frequency / (pi * pi);
+    return y < 0 ? size : N(-size);
+  }
+  N at(const N& t) const {
+    const N start = turns(N(0));
+    return gap - (closing - speed(start)) * t - pull * t * t / 2 - (place(turns(t)) - place(start));
+  }
+  N rate(const N& t) const { return -(closing - speed(turns(N(0)))) - pull * t - speed(turns(t)); }
+  N bend(const N& t) const { return -pull - acceleration(turns(t)); }
+};
+
+// The times of the local minima of a gap until `end`, in double: between two samples, and on teeth at their tips.
+std::vector<double> minima(const Curve<double>& c, double end) {
+  const double step = 2 * c.pi / c.frequency / 48;
+  std::vector<double> found;
+  if (c.shape == Shape::sawtooth) {
+    const double period = 2 * c.pi / c.frequency;
+    for (double t = (0.5 - c.turns(0)) * period; t < end; t += period) found.push_back(t);
+    return found;
+  }
+  for (double low = 0; low < end; low += step) {
+    double from = low, to = std::min(end, low + step);
+    if (!(c.rate(from) < 0 && c.rate(to) > 0)) continue;
+    for (int k = 0; k < 40; ++k) (c.rate((from + to) / 2) < 0 ? from : to) = (from + to) / 2;
+    found.push_back((from + to) / 2);
+  }
+  return found;
+}
+// The same in 100 digits, by Newton's steps; at the tip of a tooth the time of the jump.
+Reference sharpened(const Curve<Reference>& c, double minimum) {
+  Reference t(minimum);
+  if (c.shape == Shape::sawtooth) {
+    Reference y = c.turns(t);
+    if (y > 0) y -= 1;
+    return t - (y + Reference(0.5)) * 2 * c.pi / c.frequency;
+  }
+  for (int k = 0; k < 4; ++k)
+    if (const Reference bend = c.bend(t); bend > 0) t -= c.rate(t) / bend;
+  return t;
+}
+Reference at_minimum(const Curve<Reference>& c, const Reference& t) {
+  if (c.shape != Shape::sawtooth) return c.at(t);
+  return c.at(t) - (c.turns(t) < 0 ? 2 * c.amplitude : Reference(0));  // just before the jump
+}
+
+class Draws {
+ public:
+  double operator()() { return static_cast<double>(hash(count_++) >> 11) * 0x1p-53; }
+  double octaves(double low, double high) { return std::exp2(low + (high - low) * (*this)()); }
+
+ private:
+  std::int64_t count_ = 0;
+};
+
+// No minimum before the time found is below zero, and there the gap is zero: by at most 64 roundings (512 in
+// double-double, whose operations have errors of several units), in units u of the sizes that are added up and of the
+// time of the phase. A third of the gaps is moved so that it touches zero within a few roundings, or 1e-9 of its size.
+template <class T> void expect_never_late(int count) {
+  Draws draw;
+  const Reference u = exact(T(std::numeric_limits<T>::epsilon())) / 2;
+  std::uint64_t met = 0, never = 0, grazing = 0, grazed = 0;
+  for (int k = 0; k < count; ++k) {
+    Curve<double> c{static_cast<Shape>(k % 3), 0,           0, 0, draw.octaves(-6, 2), draw.octaves(-2, 4),
+                    12 * draw() - 6,           100 * draw()};
+    const double speed = c.amplitude * c.frequency;
+    c.pull = draw() < 0.25 ? 0 : 2 * (draw() - 0.4) * speed * c.frequency * (draw() < 0.1 ? 0.01 : 1);
+    c.closing = (4 * draw() - 2) * speed;
+    c.gap = draw() < 0.3 ? 0 : c.amplitude * draw.octaves(-6, 2);
+    if (c.gap == 0) c.closing = -std::abs(c.closing);
+    Curve<Reference> wide{c.shape, c.gap, c.closing, c.pull, c.amplitude, c.frequency, c.phase, c.since};
+    T gap = exactly<T>(c.gap);
+    const double period = 2 * c.pi / c.frequency;
+    const bool graze = k % 9 > 5;
+    if (graze) {
+      std::optional<Reference> deepest;
+      for (const double t : minima(c, 4 * period)) {
+        const Reference here = at_minimum(wide, sharpened(wide, t));
+        if (!deepest || here < *deepest) deepest = here;
+      }
+      if (!deepest || !(wide.gap > *deepest)) continue;
+      const double off = (draw() - 0.5) * (draw() < 0.5 ? 16 * static_cast<double>(u) : 1e-9);
+      gap = nearest<T>(Reference((wide.gap - *deepest) * (1 + Reference(off))));
+      wide.gap = exact(gap), c.gap = to_double(gap);
+      ++grazing;
+    }
+    const WallMotion<T> motion(c.shape, exactly<T>(c.amplitude), exactly<T>(c.frequency), exactly<T>(c.phase));
+    const ShakenApproach<T> approach(gap, exactly<T>(c.closing), exactly<T>(c.pull), splitter<T>(), motion,
+                                     Pair<T>{exactly<T>(c.since), T(0)});
+    const auto meeting = approach.meeting();
+    const Reference end = meeting ? exact(meeting->in) : Reference(40 * period);
+    const Reference sizes = wide.gap + c.amplitude + (abs(wide.closing) + speed) * end + abs(wide.pull) * end * end / 2;
+    const Reference at_end = abs(wide.closing) + speed + abs(wide.pull) * end;
+    const Reference tolerance = (RoundsToNearest<T> ? 64 : 512) * u * (sizes + at_end * (c.since + end));
+    if (meeting) {
+      ++met;
+      grazed += graze;
+      ASSERT_GE(meeting->speed, T(0)) << k;
+      ASSERT_LE(abs(wide.at(end)), tolerance) << k << ' ' << static_cast<double>(end);
+    } else {
+      ++never;
+    }
+    for (const double t : minima(c, static_cast<double>(end) * (1 - 1e-12))) {
+      if (c.at(t) > 1e-6 * static_cast<double>(sizes)) continue;
+      const Reference exactly_then = sharpened(wide, t);
+      if (exactly_then < end) {
+        ASSERT_GE(at_minimum(wide, exactly_then), -tolerance) << k << " skipped at " << t;
+      }
+    }
+  }
+  EXPECT_GT(met, static_cast<std::uint64_t>(count) / 3);
+  EXPECT_GT(never, static_cast<std::uint64_t>(count) / 10);
+  EXPECT_GT(grazing, static_cast<std::uint64_t>(count) / 12);
+  EXPECT_GT(grazed, grazing / 4);
+  EXPECT_LT(grazed, grazing);
+}
+
+template <class T> class ShakenGapsIn : public testing::Test {};
+#ifdef CRADLE_WITH_FLOAT128
+using OfGaps = testing::Types<double, long double, double_double, float128>;
+#else
+using OfGaps = testing::Types<double, long double, double_double>;
+#endif
+TYPED_TEST_SUITE(ShakenGapsIn, OfGaps);
+TYPED_TEST(ShakenGapsIn, NoCollisionIsSkipped) { expect_never_late<TypeParam>(2000); }
+TYPED_TEST(ShakenGapsIn, SlowNoCollisionOfManyIsSkipped) { expect_never_late<TypeParam>(100000); }
+
+}  // namespace shaken_walls_in_types_test

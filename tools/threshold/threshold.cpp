@@ -1,0 +1,229 @@
+#include "cradle/tools/threshold/threshold.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "cradle/tools/proof/certify.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/support/threads.hpp"
+#include "cradle/tools/threshold/exact_collapse.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+const std::string kind(threshold_kind);
+constexpr const char* closed_form = "closed form";
+
+Error interrupted(const Interrupt& interrupt) {
+  return Error({}, "interrupted", "", "the same command continues", status_of_signal(interrupt.signal()));
+}
+
+class Search {
+ public:
+  Search(const Question& question, const std::string& file, const ThresholdOptions& options)
+      : question_(question), options_(options), part_(file + ".part"), line_(options.progress),
+        threads_(thread_count(options.threads)) {
+    const JournalHeader header{kind, question.identity(),
+                               effective_toml(question.scene_at(question.low(), false).value()), question.key()};
+    take_result(file);
+    take_journal(header);
+  }
+
+  Threshold find() {
+    bracket_.emplace(question_.low(), question_.high(), question_.digits(), question_.whole_numbers());
+    RunAt low = at(question_.low()), high = at(question_.high());
+    if (low.outcome == high.outcome) {
+      ::unlink(part_.c_str());
+      throw Error({"", 0, "--vary"}, "the same outcome at both ends",
+                  fmt::format("{} at {} and at {}", low.outcome, low.value, high.value),
+                  "give ends between which it changes, or compare another outcome (--outcome)");
+    }
+    while (bracket_->next()) {
+      const RunAt run = at(*bracket_->next());
+      const bool as_at_low = run.outcome == low.outcome;
+      bracket_->narrow(as_at_low);
+      (as_at_low ? low : high) = run;
+    }
+    return {runs_, known_of(low), known_of(high)};
+  }
+
+ private:
+  void take_result(const std::string& file) {
+    std::error_code unreadable;
+    if (!std::filesystem::exists(file, unreadable) || took(file) || options_.force == Force::yes) return;
+    throw Error({file, 0, ""}, "not a result that this command makes again", "something else",
+                "give another -o FILE, or --force to replace it");
+  }
+  // Whether the file holds a search that this one continues.
+  bool took(const std::string& file) {
+    try {
+      const Result result = read_result(file);
+      const Group* table = result.find(kind);
+      if (table == nullptr || attribute<std::uint64_t>(result.attributes, "identity", file) != question_.identity())
+        return false;
+      const auto texts = [&](std::size_t k) { return std::get<std::vector<std::string>>(table->columns.at(k).values); };
+      const auto counts = [&](std::size_t k) {
+        return std::get<std::vector<std::uint64_t>>(table->columns.at(k).values);
+      };
+      const auto value = texts(1), outcome = texts(2), how = texts(5);
+      const auto collisions = counts(3), merges = counts(4);
+      for (std::size_t k = 0; k < value.size(); ++k)
+        known_[value[k]] = {value[k], outcome.at(k), collisions.at(k), merges.at(k), how.at(k)};
+      return true;
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+
+  void take_journal(const JournalHeader& wanted) {
+    const auto there = journal_header(part_);
+    if (!there) return journal_.emplace(part_, wanted), void();
+    if (there->kind != kind || there->identity != wanted.identity)
+      throw Error({part_, 0, ""}, "unfinished work of something else", there->kind,
+                  "let its own command finish it, or remove it, or give another -o FILE");
+    JournalReader reader(part_);
+    while (const auto run = reader.next<RunAt>()) known_[run->value] = *run;
+    journal_.emplace(part_, reader.whole_bytes());
+  }
+
+  const RunAt& at(const Decimal& value) {
+    if (options_.interrupt.signal() != 0) throw interrupted(options_.interrupt);
+    draw();
+    const auto known = known_.find(value.text);
+    if (known != known_.end()) return runs_.emplace_back(known->second);
+    const RunAt run = run_at(value);
+    journal_->append(to_bytes(run));
+    return runs_.emplace_back(known_[value.text] = run);
+  }
+
+  RunAt run_at(const Decimal& value) {
+    if (question_.what().what == Compare::collapse)
+      if (const auto exact = exact_collapse(question_.scene_at(value, false).value()))
+        return {value.text, std::string(exact->collapse ? end_row(RunEnd::collapsed).text : no_collapse),
+                exact->collisions, 0, closed_form};
+    std::string last;
+    for (const bool wide : {false, true}) {
+      if (!wide && question_.wide_from_the_start()) continue;
+      const auto scene = question_.scene_at(value, wide);
+      if (!scene) continue;
+      const RunOutcome run =
+          run_scene(without_tables(*scene), {Progress::Show::never, nullptr, &options_.interrupt, workers(threads_)});
+      if (run.end == RunEnd::interrupted) throw interrupted(options_.interrupt);
+      last = fmt::format("{} in {}", end_row(run.end).text, precision_name(scene->run));
+      if (const auto outcome = question_.outcome(run))
+        return {value.text, *outcome, run.collisions, run.merges, precision_name(scene->run)};
+    }
+    throw Error(
+        {"", 0, "--vary"}, "a run without an outcome", fmt::format("{} = {}: {}", question_.key(), value.text, last),
+        "give fewer --digits or a range that ends before, a type of more digits (run.precision, run.digits), or "
+        "compare another outcome (--outcome)",
+        Exit::lost);
+  }
+
+  void draw() {
+    if (!line_.due()) return;
+    const unsigned left = bracket_->values_left();
+    const auto done = static_cast<double>(runs_.size());
+    line_.draw(done / (done + left + 1),
+               fmt::format("run {} of about {}: between {} and {}", runs_.size() + 1, runs_.size() + left + 1,
+                           bracket_->low().text, bracket_->high().text));
+  }
+
+  ThresholdEnd known_of(const RunAt& run) {
+    const auto seen = [&](const std::string& why) { return ThresholdEnd{run, false, "seen in " + run.how + why}; };
+    if (run.how == closed_form) return {run, true, "proved in closed form"};
+    if (!options_.prove) return seen("");
+    if (question_.what().what == Compare::pair) return seen("; no proof of clusters");
+    if (run.outcome == end_row(RunEnd::collapsed).text || run.outcome == end_row(RunEnd::small_gap).text)
+      return seen("; `certify` proves no collapse");
+    const Decimal value(run.value);
+    Scene scene = question_.scene_at(value, false).value();
+    if (precision_name(scene.run) != run.how) scene = question_.scene_at(value, true).value();
+    scene = without_tables(std::move(scene));
+    try {
+      check_certifiable(scene);
+    } catch (const Error& error) {
+      return seen(fmt::format("; {}", error.what()));
+    }
+    CertifyOptions how;
+    how.progress = options_.progress;
+    how.interrupt = &options_.interrupt;
+    how.threads = options_.threads;
+    const Certified proof = certify(scene, how);
+    if (!proof.proved()) return seen("; the proof is undecided " + proof.undecided());
+    if (const auto outcome = question_.outcome(proof.outcome); outcome != run.outcome)
+      throw Error({"", 0, "--vary"}, "a run with another outcome than is proved",
+                  fmt::format("{} = {}: {} in {}, {} proved", question_.key(), run.value, run.outcome, run.how,
+                              outcome.value_or("none")),
+                  "repeat it in a type of more digits, --set run.precision=mpfr --set run.digits=50", Exit::lost);
+    return {run, true,
+            fmt::format("proved: the collisions ({}) are those of the exact system", proof.certificate.collisions)};
+  }
+
+  const Question& question_;
+  const ThresholdOptions& options_;
+  std::string part_;
+  ProgressLine line_;
+  Threads threads_;
+  std::map<std::string, RunAt> known_;
+  std::optional<JournalWriter> journal_;
+  std::optional<Bracket> bracket_;
+  std::vector<RunAt> runs_;
+};
+
+}  // namespace
+
+Threshold find_threshold(const Question& question, const std::string& file, const ThresholdOptions& options) {
+  return Search(question, file, options).find();
+}
+
+std::string threshold_text(const Question& question, const Threshold& found) {
+  std::string text = fmt::format("{}\n", question.what().text);
+  for (const ThresholdEnd* end : {&found.low, &found.high})
+    text += fmt::format("  {} = {}: {}\n    {}\n", question.key(), end->run.value, end->run.outcome, end->how);
+  return text + fmt::format("The outcome changes in between: {}. {} values tried; it may change elsewhere too.\n",
+                            found.proved() ? "proved" : "seen", found.runs.size());
+}
+
+Result threshold_result(const Question& question, const Threshold& found, const std::string& command) {
+  const auto scene = question.scene_at(Decimal(found.low.run.value), false).value();
+  Result result;
+  result.attributes = provenance(scene, precision_name(scene.run), "threshold of " + question.key());
+  result.attributes.emplace_back("kind", std::string(kind));
+  result.attributes.emplace_back("identity", question.identity());
+  std::vector<double> value;
+  std::vector<std::string> digits, outcome, how;
+  std::vector<std::uint64_t> collisions, merges;
+  for (const RunAt& run : found.runs) {
+    value.push_back(Decimal(run.value).value), digits.push_back(run.value), outcome.push_back(run.outcome);
+    collisions.push_back(run.collisions), merges.push_back(run.merges), how.push_back(run.how);
+  }
+  Group group{kind,
+              {{"key", question.key()}, {"compared", std::string(question.what().text)}, {"command", command}},
+              {{"value", "1", "of the key that varies, rounded", value},
+               {"value_digits", "1", "the same, all digits", digits},
+               {"outcome", "1", "of the run with this value", outcome},
+               {"collisions", "1", "made in the run; with a closed form, until the outcome was decided", collisions},
+               {"merges", "1", "made in the run", merges},
+               {"how", "1", "type of the run, or closed form: proved without one", how}}};
+  for (const auto& [name, end] : {std::pair("low", &found.low), std::pair("high", &found.high)}) {
+    const std::string prefix(name);
+    for (Attribute& attribute : std::vector<Attribute>{{prefix, Decimal(end->run.value).value},
+                                                       {prefix + "_digits", end->run.value},
+                                                       {prefix + "_outcome", end->run.outcome},
+                                                       {prefix + "_proved", std::uint64_t{end->proved}},
+                                                       {prefix + "_how", end->how}})
+      group.attributes.push_back(std::move(attribute));
+  }
+  result.groups.push_back(std::move(group));
+  return result;
+}
+
+}  // namespace cradle::tools

@@ -59,6 +59,11 @@ foreach(file bin/cradle share/man/man1/cradle.1 share/bash-completion/completion
   endif()
 endforeach()
 
+file(GLOB module RELATIVE ${TREE}/tools ${TREE}/tools/_live*.so)
+if(module AND NOT EXISTS ${SCRATCH}/prefix/share/cradle/python/cradle/${module})
+  message(FATAL_ERROR "the Python module ${module} is not installed beside the package: see tools/cmake/install.cmake")
+endif()
+
 configure(build)
 check_commands(build)
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)

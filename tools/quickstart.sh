@@ -12,7 +12,7 @@ options=()
 { has header gtest/gtest.h && has header rapidcheck.h; } || options+=(-DCRADLE_TESTS=OFF)
 has header benchmark/benchmark.h || options+=(-DCRADLE_BENCH=OFF)
 configure "${options[@]}"
-compile --target cradle_cli
+compile --target cradle_program
 
 cradle=$build/tools/cradle
 mkdir -p out

@@ -1,10 +1,10 @@
 # shellcheck shell=bash
 # Shared by quickstart.sh and test.sh, which source it. `set_up program|tests` makes sure that everything needed to
 # build the program (and its tests) is installed: it installs what is missing with apt, as root or through sudo. If it
-# cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no network, root or apt. MPI
-# and Highway are optional, and so is Chromium, in which tests inspect reports: they are installed if that needs no
-# password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on bare Debian
-# 12 and Debian 13.
+# cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no network, root or apt. MPI,
+# Highway and pybind11 are optional, and so is Chromium, in which tests inspect reports: they are installed if that
+# needs no password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on
+# bare Debian 12 and Debian 13.
 
 preset=release
 build=build/$preset
@@ -33,6 +33,8 @@ tests   | Google Benchmark      | header benchmark/benchmark.h | libbenchmark-de
 option  | Highway               | header hwy/highway.h         | libhwy-dev
 option  | MPI compiler          | command mpicc                | libopenmpi-dev
 option  | MPI launcher          | command mpirun               | openmpi-bin
+option  | pybind11              | header pybind11/pybind11.h   | pybind11-dev
+option  | Python headers        | python-header                | python3-dev
 look    | Chromium              | command chromium             | chromium
 look    | dpkg-shlibdeps        | command dpkg-shlibdeps       | dpkg-dev
 look    | pip                   | python pip                   | python3-pip
@@ -88,6 +90,19 @@ has_python_module() {
   return 1
 }
 
+# Of the interpreter for plotting, for the module for live simulations.
+has_python_header() {
+  local python
+  for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
+    if [[ -n $python ]] && "$python" -c "import h5py, matplotlib" >/dev/null 2>&1; then
+      "$python" -c "import os, sysconfig, sys
+sys.exit(not os.path.isfile(os.path.join(sysconfig.get_path('include'), 'Python.h')))"
+      return
+    fi
+  done
+  return 1
+}
+
 has() {
   case $1 in
     compiler) has_compiler ;;
@@ -96,6 +111,7 @@ has() {
     header) has_header "$2" ;;
     command) command -v "$2" >/dev/null ;;
     python) has_python_module "$2" ;;
+    python-header) has_python_header ;;
   esac
 }
 
@@ -154,7 +170,8 @@ install_optional() {
     apt_get update && apt_get install -y --no-install-recommends "${optional[@]}" && return
   fi
   echo "== not found, left out: ${optional[*]} (Debian's names; without Highway runs
-take longer, without MPI ensembles run in one process, without Chromium tests do not inspect reports)"
+take longer, without MPI ensembles run in one process, without pybind11-dev and python3-dev Python has no
+cradle.Simulation, without Chromium tests do not inspect reports)"
 }
 
 # set_up program|tests

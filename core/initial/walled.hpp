@@ -47,10 +47,14 @@ template <Real T> class Walled final : public Particles<T> {
 
   ParticleIndex count() const override { return particles_->count(); }
   T position(ParticleIndex particle) const override {
-    return is_wall(particle) ? T(at(particle).position + at_start(particle).x) : particles_->position(particle);
+    if (!is_wall(particle)) return particles_->position(particle);
+    const Wall<T>& wall = at(particle);
+    return wall.motion == nullptr ? wall.position : T(wall.position + at_start(particle).x);
   }
   T velocity(ParticleIndex particle) const override {
-    return is_wall(particle) ? T(at(particle).speed + at_start(particle).v) : particles_->velocity(particle);
+    if (!is_wall(particle)) return particles_->velocity(particle);
+    const Wall<T>& wall = at(particle);  // 0 is not added to a ball: that rounds
+    return wall.motion == nullptr ? wall.speed : T(wall.speed + at_start(particle).v);
   }
   T mass(ParticleIndex particle) const override { return particles_->mass(is_wall(particle) ? 0 : particle); }
   bool identical_masses() const override { return particles_->identical_masses(); }

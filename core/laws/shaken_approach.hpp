@@ -1,6 +1,6 @@
 #pragma once
 // The gap between a shaken wall (wall_motion.hpp) and a particle with a constant acceleration: with s(t) the place of
-// the wall on its way, w the closing speed at the time 0, p the pull (approach.hpp),
+// the wall on its path, w the closing speed at the time 0, p the pull (approach.hpp),
 //
 //   g(t) = g - w t - p t^2/2 - (s(t) - s(0) - s'(0) t),   w(t) = w + p t + s'(t) - s'(0).
 //
@@ -78,7 +78,7 @@ template <Real T> class ShakenApproach {
   Pair<T> time_at(const T& wait) const { return since_ + wait; }
   static T whole_below(const T& x) { return nearest_whole(T(x - T(1) / T(2))); }
 
-  // With the wall anywhere on its way, for long times; the distance from its place, which the particle approaches at
+  // With the wall anywhere on its path, for long times; the distance from its place, which the particle approaches at
   // the speed w - s'(0), does not lose digits.
   State at_phase(const T& time, const T& y) const {
     const Approach<T> to_place = straight(T(gap_ + (place_ - motion_.place(y))), T(closing_ - speed_), pull_);

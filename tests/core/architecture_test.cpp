@@ -86,7 +86,9 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
   const std::regex maths(
       R"(std::(abs|fabs|sqrt|cbrt|pow|exp|exp2|log|log2|log10|log1p|expm1|sin|cos|tan|atan|atan2|hypot|fma|floor|)"
       R"(ceil|round|min|max|isnan|isfinite|ldexp|frexp)\b)");
-  const std::vector<std::string> on_double{"core/certify/checker.hpp",  // radii
+  const std::vector<std::string> on_double{"core/certify/certain_power.hpp",  // bounds
+                                           "core/certify/certain_wall.hpp",   // random speeds
+                                           "core/certify/checker.hpp",        // radii
                                            "core/chains/configuration.hpp",
                                            "core/initial/counter_rng.hpp",
                                            "core/laws/elementary.hpp",  // exponents

@@ -25,9 +25,10 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS python3)
 if(TARGET cradle_module)  # for one version of Python
-  string(REGEX MATCH "^[0-9]+[.][0-9]+" _python "${Python_VERSION}")
-  math(EXPR _next "${Python_VERSION_MINOR} + 1")
-  set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= ${_python}), python3 (<< ${Python_VERSION_MAJOR}.${_next})")
+  get_target_property(_python cradle_module CRADLE_PYTHON_VERSION)
+  string(REGEX MATCH "^([0-9]+)[.]([0-9]+)" _python "${_python}")
+  math(EXPR _next "${CMAKE_MATCH_2} + 1")
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= ${_python}), python3 (<< ${CMAKE_MATCH_1}.${_next})")
 endif()
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-h5py, python3-matplotlib, python3-numpy")
 # For programs in C++, for numbers with all their digits, and for tables.

@@ -101,7 +101,11 @@ Exit info_of_run(const InfoArguments& options) {
 
 Exit info_of_checkpoint(const InfoArguments& options) {
   const StateReader reader(options.file);
-  fmt::print("checkpoint of a run: `cradle resume {}` continues from it\n", file_of(options.file, ".checkpoint"));
+  if (reader.header().run.of_run())
+    fmt::print("checkpoint of a run: `cradle resume {}` continues from it\n", file_of(options.file, ".checkpoint"));
+  else
+    fmt::print("checkpoint of a live simulation: cradle.Simulation.load(\"{}\") in Python continues from it\n",
+               options.file);
   fmt::print("{}{}", checkpoint_listing(reader.header(), options.file),
              listing(scene_of(reader.header().run, options.file), options.all));
   return Exit::done;

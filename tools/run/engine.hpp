@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -34,6 +35,9 @@ template <Real T> class Engine {
 
   /// `observer` may be empty.
   virtual Status advance(const T& until, const Observer<T>& observer) = 0;
+  /// Makes the next `left` collisions, or those up to `until` if these are fewer, and subtracts them from `left`. If no
+  /// collisions are made, it only advances.
+  virtual Status step(std::uint64_t& left, const T& until, const Observer<T>& observer) = 0;
 
   virtual const Counts& counts() const = 0;
   virtual const Account<T>& account() const = 0;
@@ -86,6 +90,24 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
     } else {
       if constexpr (has_chain)
         if (observer) return run_.advance(until, observer);
+      return run_.advance(until);
+    }
+  }
+
+  Status step(std::uint64_t& left, const T& until, const Observer<T>& observer) override {
+    if constexpr (has_chain) {
+      struct Made {};
+      try {
+        return run_.advance(until, [&](const Collision<T>& c) {
+          if (left == 0) throw Made();  // the collision that is due is then not made
+          if (observer) observer(c);
+          --left;
+        });
+      } catch (const Made&) {
+        return Status::reached;
+      }
+    } else {
+      left = 0;
       return run_.advance(until);
     }
   }

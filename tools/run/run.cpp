@@ -65,6 +65,10 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
   return scene;
 }
 
+void set_digits(const Scene& scene) {
+  in_precision<void>(scene, [](auto) {});
+}
+
 void check_built(const Scene& scene) {
   if (scene.initial.type == InitialType::clusters && scene.run.precision != Precision::double_)
     not_built("run.precision", precision_name(scene.run) + " with initial.type = \"clusters\"", "double");
@@ -72,7 +76,7 @@ void check_built(const Scene& scene) {
     if (particles_merge(scene)) not_built("run.coordinates", "absolute with particles that merge", "gaps");
     if (scene.initial.on_ring()) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
-  in_precision<void>(scene, [](auto) {});
+  set_digits(scene);
 }
 
 PlannedTimes planned_times(const Scene& scene) {

@@ -51,7 +51,11 @@ std::vector<Attribute> provenance(const Scene& scene, const std::string& precisi
 /// The scene stored in a result. Throws Error (Exit::io) naming the file.
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file);
 
-/// Throws Error, naming the key, for a scene that this build cannot run.
+/// Sets MPFR's number of digits, of which a process has one at a time, if the scene's numbers are of that type. Throws
+/// Error for a type that this build does not have.
+void set_digits(const Scene& scene);
+
+/// Throws Error, naming the key, for a scene that this build cannot run; sets the digits.
 void check_built(const Scene& scene);
 
 /// The times of the series and of tables at times, and the end, as results store them: rounded from the run's

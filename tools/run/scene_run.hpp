@@ -44,6 +44,21 @@ template <Real T> class SceneRun {
 
   RunOutcome operator()() {
     if (options_.interrupt != nullptr) options_.interrupt->heed();
+    observe();
+    if (options_.store != nullptr && options_.store->loaded_from() != nullptr) load(*options_.store->loaded_from());
+    const Status status = pass(plan_.stops.back(), [this](const T& time) { return advance(time); });
+    const T end = status == Status::reached ? plan_.stops.back() : engine_.last_collision_time();
+    if (options_.store != nullptr && (status == Status::reached || status == Status::interrupted))
+      keep(end, status == Status::reached ? RunIs::over : RunIs::interrupted);
+    return end_with(status);
+  }
+
+  // ---- the same in parts, for a run that is held (live_run.hpp)
+
+  /// Composes what observes collisions; `first` comes before what records them, so that nothing of a collision is
+  /// recorded if it throws.
+  void observe(const Observer<T>& first = {}) {
+    observer_ = first;
     const auto also = [this](const Observer<T>& added) {
       observer_ = observer_ ? [before = observer_, added](const Collision<T>& c) { before(c), added(c); } : added;
     };
@@ -59,21 +74,64 @@ template <Real T> class SceneRun {
       also([this](const Collision<T>& c) {
         options_.observer->collision(c.left, c.right, to_double(T(c.time.value())));
       });
-    if (options_.store != nullptr && options_.store->loaded_from() != nullptr) load(*options_.store->loaded_from());
-    Status status = Status::reached;
-    for (const T& stop : plan_.stops) {
-      if (inspected_ && !(*inspected_ < stop)) continue;
-      status = advance(stop);
-      if (status == Status::reached && !sample_at(stop)) status = Status::interrupted;
-      if (status != Status::reached) break;
-      progress_.report(to_double(stop), engine_.counts().collisions);
+  }
+  const Observer<T>& observer() const { return observer_; }
+
+  /// Records at every output time up to `until`. `advance(time)` makes the collisions up to a time.
+  template <class Advance> Status pass(const T& until, const Advance& advance) {
+    for (;;) {
+      const auto& stops = plan_.stops;
+      const auto next = inspected_ ? std::upper_bound(stops.begin(), stops.end(), *inspected_) : stops.begin();
+      const bool stop = next != stops.end() && !(until < *next);
+      if (!stop && inspected_ && !(*inspected_ < until)) return Status::reached;
+      const Status status = advance(stop ? *next : until);
+      if (status != Status::reached || !stop) return status;
+      if (!sample_at(*next)) return Status::interrupted;
+      progress_.report(to_double(*next), engine_.counts().collisions);
     }
-    const T end = status == Status::reached ? plan_.stops.back() : engine_.last_collision_time();
-    const bool can_continue = status == Status::reached || status == Status::interrupted;
-    if (options_.store != nullptr && can_continue)
-      keep(end, status == Status::reached ? RunIs::over : RunIs::interrupted);
-    if (!can_continue || (options_.store == nullptr && status == Status::interrupted)) record_end(end);
+  }
+
+  /// The outcome of a run that ends with this status.
+  RunOutcome end_with(Status status) {
+    const bool reached = status == Status::reached;
+    const T end = reached ? plan_.stops.back() : engine_.last_collision_time();
+    if (!reached && (status != Status::interrupted || options_.store == nullptr)) record_end(end);
     return finish(status, end);
+  }
+
+  T energy_at(const T& time) const { return energy_now(engine_, energy_, time); }
+
+  /// Gives the rows recorded so far to the store.
+  void put_rows() {
+    if (histograms_) histograms_->made(engine_.counts());
+    put(series_.take());
+    if (has_clouds(scene_)) put(heaviest_.take());
+    if (!scene_.output.events) return;
+    events_.made(engine_.counts());
+    put(events_.take());
+  }
+  /// Saves all else from which the run can continue.
+  void save(StateWriter& to) const {
+    cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
+    engine_.save(to);
+    cradle::save(to, *this);
+  }
+  void load(StateReader& from) {
+    try {
+      std::pair<std::string, std::string> kind;
+      cradle::load(from, kind);
+      if (kind != std::pair(shape(), precision_name(scene_.run)))
+        throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
+                    Exit::io);
+      engine_.load(from);
+      cradle::load(from, *this);
+    } catch (const std::invalid_argument& error) {
+      throw Error(std::string("the checkpoint cannot be extended: ") + error.what(), Exit::io);
+    }
+    from.end();
+    const T last = engine_.last_collision_time();
+    guards_.check_loaded(inspected_ && last < *inspected_ ? *inspected_ : last);
+    progress_.continue_from(to_double(engine_.last_collision_time()), engine_.counts().collisions);
   }
 
   // What is saved besides the engine's state: how much of the plan is done, and what observers have collected.
@@ -93,47 +151,16 @@ template <Real T> class SceneRun {
  private:
   // ---- what is stored during the run
 
-  void load(StateReader& from) {
-    try {
-      std::pair<std::string, std::string> kind;
-      cradle::load(from, kind);
-      if (kind != std::pair(shape(), precision_name(scene_.run)))
-        throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
-                    Exit::io);
-      engine_.load(from);
-      cradle::load(from, *this);
-    } catch (const std::invalid_argument& error) {
-      throw Error(std::string("the checkpoint cannot be extended: ") + error.what(), Exit::io);
-    }
-    from.end();
-    const T last = engine_.last_collision_time();
-    guards_.check_loaded(inspected_ && last < *inspected_ ? *inspected_ : last);
-    progress_.continue_from(to_double(engine_.last_collision_time()), engine_.counts().collisions);
-  }
   std::string shape() const { return engine_.shape() + state_shape<SceneRun>() + std::string(exact_part<T>); }
 
-  // Gives the recorded rows to the store and, from time to time, the state, from which alone the run can continue.
+  // Gives the recorded rows to the store and, from time to time, the state.
   void keep(const T& time, RunIs run_is = RunIs::in_progress) {
     put_rows();
     RunStatus now = guards_.status();
     now.time = to_double(time);
     now.collisions = engine_.counts().collisions;
     options_.store->keep(
-        now,
-        [this](StateWriter& to) {
-          cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
-          engine_.save(to);
-          cradle::save(to, *this);
-        },
-        run_is);
-  }
-  void put_rows() {
-    if (histograms_) histograms_->made(engine_.counts());
-    put(series_.take());
-    if (has_clouds(scene_)) put(heaviest_.take());
-    if (!scene_.output.events) return;
-    events_.made(engine_.counts());
-    put(events_.take());
+        now, [this](StateWriter& to) { save(to); }, run_is);
   }
   // Decimals are made only for a store: ensembles and proofs do not use them.
   void put(Recorded<T>&& rows) {

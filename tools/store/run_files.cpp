@@ -84,9 +84,7 @@ void RunFiles::write_waiting() {
 }
 
 void RunFiles::add(Group&& rows) {
-  const bool none =
-      std::all_of(rows.columns.begin(), rows.columns.end(), [](const Column& c) { return c.rows() == 0; });
-  if (none && !rows.columns.empty() && rows.attributes.empty()) return;
+  if (has_nothing(rows)) return;
   waiting_.add(std::move(rows));
   const std::uint64_t most = journal_ ? most_waiting : most_in_memory;
   if (!complained_ && waiting_.numbers() > most) saved([this] { write_waiting(); });

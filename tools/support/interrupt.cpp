@@ -1,11 +1,12 @@
 #include "cradle/tools/support/interrupt.hpp"
 
-#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <string_view>
+
+#include "cradle/tools/support/hang_ups.hpp"
 
 namespace cradle::tools {
 
@@ -17,18 +18,6 @@ std::atomic<long> first_at = 0;  // milliseconds; 0: none yet
 std::atomic<long> same = 0;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free && std::atomic<Interrupt*>::is_always_lock_free);
-
-// Whether the program was started under nohup. Some libraries take over signals before main() (UCX, which MPI uses,
-// takes SIGHUP), so this is read before their code runs, with a plain system call, since nothing is initialised yet.
-bool hang_ups_ignored = false;
-#ifdef __linux__
-__attribute__((no_sanitize("address"), no_sanitize("undefined"), no_sanitize("thread"))) void check_hang_ups() {
-  unsigned long action[4] = {};  // the handler first
-  if (::syscall(SYS_rt_sigaction, SIGHUP, nullptr, action, sizeof action[3]) == 0)
-    hang_ups_ignored = action[0] == reinterpret_cast<unsigned long>(SIG_IGN);
-}
-[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = check_hang_ups;
-#endif
 
 constexpr int noted[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
 

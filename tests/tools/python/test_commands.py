@@ -108,7 +108,7 @@ class Progress(unittest.TestCase):
         self.assertEqual(shares, sorted(shares))
         self.assertTrue(all(0 <= share <= 1 for share in shares))
         for _, text in seen:
-            self.assertRegex(text, r"^t = .* of 1e\+15, .* collisions, .* left$")
+            self.assertRegex(text, r"^t = .* of 1e\+15, .* collisions, .* million/s(, .* left)?$")
 
     def test_a_terminal_is_left_as_it_was(self):
         class Terminal:

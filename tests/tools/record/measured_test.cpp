@@ -129,8 +129,7 @@ pair_distribution = { every = 10, distance = 4, bins = 4, times = [30] }
   std::array<Replicas, 5> displacement, of_one_run, structure, structure_at, pairs, pairs_at;
   Replicas squares;
   of_replicas(scene, 100, [&](const Result& run) {
-    const auto lag = numbers(run, "correlations", "lag"),
-               found = numbers(run, "correlations", "msd"),
+    const auto lag = numbers(run, "correlations", "lag"), found = numbers(run, "correlations", "msd"),
                error = numbers(run, "correlations", "msd_sem");
     squares.add(numbers(run, "correlations", "vacf")[0]);
     EXPECT_EQ(found[0], 0);
@@ -208,6 +207,14 @@ const std::string measured = "averages = { every = 0.2, bins = 7, range = [0, 40
                              "structure = { every = 2, times = [1, 7], waves = 20 }\n"
                              "pair_distribution = { every = 2, times = [1, 7], distance = 3 }\n";
 
+// With an account of either wall.
+std::string between_walls(int particles) {
+  return fmt::format("law = {{ type = 'inelastic', restitution = 0.95, cutoff = 0.1 }}\n"
+                     "walls = {{ left.temperature = 2, right.restitution = 0.9 }}\nrun.until = 8\n"
+                     "initial = {{ type = 'gas', particles = {}, perturbation = 0.2 }}\n",
+                     particles);
+}
+
 TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
   const std::string ring = "initial = { type = 'ring', particles = 4000, perturbation = 0.2 }\nrun.until = 8\n";
   write("dry.toml", "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.1 }\n" + ring +
@@ -215,7 +222,8 @@ TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
                         "= 3\ncorrelations = { every = 0.25, tag_every = 3 }\n" +
                         measured);
   write("wet.toml", "law = { type = 'wet', loss = 0.01 }\n" + ring + "[output]\nseries.points = 3\n" + measured);
-  for (const std::string scene : {"dry", "wet"})
+  write("walls.toml", between_walls(4000) + "[output]\nseries.points = 3\n" + measured);
+  for (const std::string scene : {"dry", "wet", "walls"})
     for (const std::string precision : {"double", "double-double"}) {
       SCOPED_TRACE(scene + " in " + precision);
       const std::string run = "cradle run " + scene + ".toml --quiet --force --set run.precision=" + precision;
@@ -240,26 +248,33 @@ TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
                      "correlations.every = 0.25\n" +
                          std::string("structure = { every = 2, times = [1, 7], waves = 20 }\npair_distribution = { "
                                      "every = 2, times = [1, 7], distance = 3 }\n"));
-  const std::string ensemble = "ensemble ring.toml --replicas 30 --quiet";
-  shell("cradle " + ensemble + " --threads 1 -o 1.h5", 0);
-  for (const std::string threads : {"2", "8"}) {
-    shell("cradle " + ensemble + " --threads " + threads + " -o " + threads + ".h5", 0);
-    expect_same("1.h5", threads + ".h5");
-  }
-  // Replicas from two files are those of one.
-  shell("cradle " + ensemble + " --first 30 -o later.h5", 0);
-  shell("cradle merge 1.h5 later.h5 -o merged.h5", 0);
-  shell("cradle ensemble ring.toml --replicas 60 --quiet -o whole.h5", 0);
-  expect_same("merged.h5", "whole.h5");
+  write("gas.toml", between_walls(50) +
+                        "[output]\nseries.points = 3\ncorrelations.every = 0.25\nevery_replica = true\n"
+                        "snapshots = [4]\nprofiles = { times = [4], range = [0, 50] }\n" +
+                        measured);
+  for (const std::string scene : {"gas", "ring"}) {
+    SCOPED_TRACE(scene);
+    const std::string ensemble = "ensemble " + scene + ".toml --quiet --force";
+    shell("cradle " + ensemble + " --replicas 30 --threads 1 -o 1.h5", 0);
+    for (const std::string threads : {"2", "8"}) {
+      shell("cradle " + ensemble + " --replicas 30 --threads " + threads + " -o " + threads + ".h5", 0);
+      expect_same("1.h5", threads + ".h5");
+    }
+    // Replicas from two files are those of one.
+    shell("cradle " + ensemble + " --replicas 30 --first 30 -o later.h5", 0);
+    shell("cradle merge 1.h5 later.h5 --force -o merged.h5", 0);
+    shell("cradle " + ensemble + " --replicas 60 -o whole.h5", 0);
+    expect_same("merged.h5", "whole.h5");
 #ifdef CRADLE_WITH_MPI
-  if (shell("command -v mpirun").status == 0) {
-    shell("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
-          "OMPI_MCA_hwloc_base_binding_policy=none mpirun -n 2 cradle " +
-              ensemble + " --threads 1 -o ranks.h5",
-          0);
-    expect_same("1.h5", "ranks.h5");
-  }
+    if (shell("command -v mpirun").status == 0) {
+      shell("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+            "OMPI_MCA_hwloc_base_binding_policy=none mpirun -n 2 cradle " +
+                ensemble + " --replicas 30 --threads 1 -o ranks.h5",
+            0);
+      expect_same("1.h5", "ranks.h5");
+    }
 #endif
+  }
   const Result found = read("1.h5");
   for (const auto& [group, name] : {std::pair("correlations", "msd"),
                                     {"correlations", "vacf"},

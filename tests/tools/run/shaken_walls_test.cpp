@@ -31,7 +31,7 @@ TEST_F(ShakenWallsInScenes, TheAccountOfEnergyBalances) {
        {beads + falls + floor_of("sine"), beads + falls + floor_of("sawtooth"), beads + falls + floor_of("parabola"),
         beads + falls + floor_of("sine") + "run.coordinates = 'absolute'\n", beads + floor_of("sine"), resting}) {
     write("s.toml", law + scene + output);
-    run("run s.toml --quiet -o s.h5");
+    run("run s.toml --quiet --force -o s.h5");
     const tools::Result result = read("s.h5");
     const auto of = [&](const char* name) { return numbers(result, "series", name); };
     const auto kinetic = of("energy"), lost = of("energy_lost"), given = of("wall_left_energy");
@@ -48,7 +48,7 @@ TEST_F(ShakenWallsInScenes, TheAccountOfEnergyBalances) {
 TEST_F(ShakenWallsInScenes, ABallAtRestHasTheMotionOfTheFloor) {
   write("s.toml", law + ball + "gravity.acceleration = -4\n" +
                       floor_of("sine", "restitution = 0.25, rest_speed = 0.2") + output);  // A omega^2 = 2.25 < 4
-  run("run s.toml --quiet -o s.h5");
+  run("run s.toml --quiet --force -o s.h5");
   const tools::Result result = read("s.h5");
   EXPECT_NEAR(numbers(result, "snapshots/0002", "x").back(), 0.25 * std::sin(36.5), 1e-14);
   EXPECT_NEAR(numbers(result, "snapshots/0002", "v").back(), 0.75 * std::cos(36.5), 1e-14);
@@ -58,10 +58,10 @@ TEST_F(ShakenWallsInScenes, ABallAtRestHasTheMotionOfTheFloor) {
 TEST_F(ShakenWallsInScenes, TheSameBitsFromACheckpointAndOnAnyNumberOfThreads) {
   for (const std::string motion : {"sawtooth", "parabola", "sine"}) {
     write("s.toml", law + beads + falls + floor_of(motion) + output);
-    run("run s.toml --quiet -o whole.h5 --threads 1");
-    run("run s.toml --quiet -o threads.h5 --threads 3");
+    run("run s.toml --quiet --force -o whole.h5 --threads 1");
+    run("run s.toml --quiet --force -o threads.h5 --threads 3");
     expect_same("whole.h5", "threads.h5");
-    run("run s.toml --quiet -o part.h5 --set run.until=5 --set output.snapshots=[0,3]");
+    run("run s.toml --quiet --force -o part.h5 --set run.until=5 --set output.snapshots=[0,3]");
     run("resume part.h5 --until 12 --quiet");
     EXPECT_EQ(numbers(read("part.h5"), "events", "time"), numbers(read("whole.h5"), "events", "time"));
   }
@@ -69,12 +69,12 @@ TEST_F(ShakenWallsInScenes, TheSameBitsFromACheckpointAndOnAnyNumberOfThreads) {
 
 TEST_F(ShakenWallsInScenes, TheSameCollisionsInEveryPrecision) {
   write("s.toml", law + beads + falls + floor_of("sine") + output);
-  run("run s.toml --quiet -o double.h5 --set run.until=6 --set output.snapshots=[6]");
+  run("run s.toml --quiet --force -o double.h5 --set run.until=6 --set output.snapshots=[6]");
   const tools::Result of_double = read("double.h5");
   for (const std::string precision : {"'long double'", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
-    const Printed printed =
-        shell("cradle run s.toml --quiet -o wide.h5 --set run.until=6 --set output.snapshots=[6] --set run.precision=" +
-              precision);
+    const Printed printed = shell("cradle run s.toml --quiet --force -o wide.h5 --set run.until=6 --set "
+                                  "output.snapshots=[6] --set run.precision=" +
+                                  precision);
     if (has(printed.err, "not in this build")) continue;
     ASSERT_EQ(printed.status, 0) << printed.err;
     EXPECT_EQ(numbers<std::uint64_t>(read("wide.h5"), "events", "left"),
@@ -90,7 +90,7 @@ TEST_F(ShakenWallsInScenes, Ensembles) {
   const auto mean = numbers(read("e.h5"), "ensemble/series/wall_right_energy", "mean");
   double sum = 0;
   for (const std::string k : {"0", "1"}) {
-    run("run s.toml --quiet -o r.h5 --set initial.replica=" + k);
+    run("run s.toml --quiet --force -o r.h5 --set initial.replica=" + k);
     sum += numbers(read("r.h5"), "series", "wall_right_energy").back();
   }
   EXPECT_NEAR(mean.back(), sum / 2, 1e-12 * std::abs(sum));

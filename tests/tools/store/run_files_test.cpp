@@ -167,7 +167,7 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
 }
 
 // A run of less than ten seconds, or than the time between two checkpoints, leaves no checkpoint, even if one was
-// written on its way; however quick the machine is, the second one takes longer than a nanosecond.
+// written during the run; however quick the machine is, the second one takes longer than a nanosecond.
 TEST_F(Files, ACheckpointStaysOnlyBesideARunThatTookLong) {
   const std::string small = "cradle run fig2 --quiet --set initial.particles=20 --set run.until=5 --set "
                             "output.snapshots=[] --set output.profiles.times=[] -o a.h5 ";

@@ -147,7 +147,7 @@ TEST_F(ThresholdCommand, FindsACountOfCollisions) {
 TEST_F(ThresholdCommand, ProvesCountsOfCollisions) {
   for (const char* digits : {"12", "20"}) {
     shell(std::string("cradle threshold collapse3 --outcome collisions --vary law.restitution=0.08:0.2 --set "
-                      "run.until=100 -o a.h5 --digits ") +
+                      "run.until=100 -o a.h5 --force --digits ") +
               digits,
           0);
     EXPECT_EQ(proved("a.h5", "low"), 1U) << end("a.h5", "low_how");

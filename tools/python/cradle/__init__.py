@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .plot import Pictures
     from .queries import check, diff, export, new, scenes, theory
     from .result import Result, open
+    from .simulation import Collision, Simulation
     from .tables import Column, Table, Tables
 
     plot: Pictures
@@ -32,7 +33,8 @@ __version__ = "0.1.0"  # the program's
 _WHERE = {name: module for module, names in {
     "commands": ("certify", "ensemble", "resume", "run", "sweep", "threshold", "trust"),
     "page": ("report",), "plot": ("plot",), "queries": ("check", "diff", "export", "new", "scenes", "theory"),
-    "result": ("Result", "open"), "tables": ("Column", "Table", "Tables")}.items() for name in names}
+    "result": ("Result", "open"), "simulation": ("Collision", "Simulation"),
+    "tables": ("Column", "Table", "Tables")}.items() for name in names}
 __all__ = ["Error", *(name for name in _WHERE if name != "open")]  # `from cradle import *` keeps Python's open
 
 

@@ -25,8 +25,8 @@ def stored_in(path: str) -> str:
     if stored and int(head[7:]) != STORED_FORMAT:
         raise other_format(path, int(head[7:]), STORED_FORMAT)
     if stored == "checkpoint":
-        raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or `cradle resume` continues "
-                    "from it", BAD_FILE)
+        raise Error(f"{path}: a checkpoint, not a result: open the result beside it, or continue from it with `cradle "
+                    "resume` (cradle.Simulation.load if a simulation saved it)", BAD_FILE)
     if not stored and head != b"\x89HDF\r\n\x1a\n":
         raise Error(f"{path}: not a result ({'an empty file' if not head else 'no HDF5 file'}): "
                     "give a file written by `cradle run`", BAD_FILE)

@@ -56,10 +56,10 @@ def column_of(point):
     """X, V and the mean height over the later half of the samples, with its error from blocks of them."""
     particles = point.setting("initial", "particles")
     later = heights(point, particles)[len(point.means["time"]) // 2:]
-    blocks = np.array([block.mean() for block in np.array_split(later, 16)])
+    blocks = np.array([block.mean() for block in np.array_split(later, min(16, len(later)))])
     floor = floor_of(point)
     return (particles * (1 - point.setting("law", "restitution")), floor["amplitude"] * floor["frequency"] / np.pi,
-            blocks.mean(), blocks.std(ddof=1) / 4)
+            blocks.mean(), blocks.std(ddof=1) / np.sqrt(len(blocks)))
 
 
 def draw_column(points, axes=None):

@@ -48,6 +48,8 @@ SEE = {
     "regimes": "One column for each point, one colour for each outcome.",
     "parameters": "Each panel is one number of the result against what was varied; bars are standard errors over "
                   "replicas.",
+    "threshold": "The values tried come closer to the threshold from both sides; blue ones have the outcome of the "
+                 "lower end.",
     "words": "A thick bar is where the motion is stable; an open end is not proved.",
     "trust": "A curve that falls shows digits being lost; up to its vertical line a run has made the right "
              "collisions.",

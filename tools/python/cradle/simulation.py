@@ -1,0 +1,385 @@
+"""Live simulations: a run that Python holds, advances, reads between and observes."""
+from __future__ import annotations
+
+import decimal
+import glob
+import html
+import importlib.machinery
+import importlib.util
+import os
+import sys
+import warnings
+from collections.abc import Callable
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
+
+from . import program
+from .commands import Scene, Settings, assignments
+from .errors import BAD_FILE, BAD_INPUT, Error, missing
+from .result import Result, open
+from .scene import parse_toml, scene_text
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Time = Union[float, int, str, decimal.Decimal]
+MODULE = f"{__package__}._live"
+REACHED = "reached the end"
+COLUMNS = ("x", "v", "m", "gap", "closing_speed")
+EXACT = decimal.Context(prec=4096)  # for sums of times; wide types have many digits
+
+
+class Collision(NamedTuple):
+    """What functions of on_collision() get: a collision that is about to be made.
+
+    left, right: numbers of the two particles at the start. time: in t. interval: since the collision before it (or the
+    start), more precise than a difference of times. closing_speed: in l/t, positive.
+    """
+    left: int
+    right: int
+    time: float
+    interval: float
+    closing_speed: float
+
+
+class Simulation:
+    """A run of a scene that advances when asked to, with the bits of `cradle run`.
+
+        sim = cradle.Simulation("fig2", set={"initial.particles": 400, "law.restitution": 0.97})
+        sim.advance(50)             # to t = 50
+        sim.step(1000)              # the next 1000 collisions
+        sim.time, sim.collisions, sim.energy, sim.gap.min()
+        sim.advance()               # to run.until
+        result = sim.write("shock.h5")   # the file that `cradle run` writes, to the byte
+
+    scene, set, seed, threads: as in cradle.run(): a scene file, the name of a bundled scene, nested dicts, a text, or a
+        result; keys and values that replace those of the scene.
+    restitution: a function of the closing speed (a positive float, in l/t) that returns a number from 0 to 1. It
+        replaces law.restitution and law.cutoff of an inelastic scene in double and gaps; such a run has no file.
+
+    Arrays are those of a snapshot: of the n particles that have collided and the next one on each side, from left to
+    right (before the first collision those that are about to collide; on a ring all). They are read-only float64 copies
+    in units of m (mass of a particle), l (length) and t (time) of the scene; decimals() and mpmath() have all digits
+    of wider types. Between calls the state is that at `time`, after all collisions until then.
+
+    Ctrl-C stops a call at a collision, and so does an exception in a function: it arrives here, and the run can
+    continue. A call without functions lets other threads of Python run. One call at a time: others raise Error.
+    """
+
+    def __init__(self, scene: Scene, set: Settings = None, *, seed: int | None = None, threads: int | None = None,
+                 restitution: Callable[[float], float] | None = None):
+        source, is_text, name = source_of(scene)
+        settings = assignments(set) + ([] if seed is None else [f"initial.seed={seed}"])
+        self._begin(module().Run(source, is_text, name, settings, threads or 0, restitution is not None), restitution)
+
+    def _begin(self, run, restitution=None) -> None:
+        self._run, self._restitution = run, restitution
+        self._observers: list[Callable[[Collision], Any]] = []
+        self._timers: list[Timer] = []
+        self._computing = self._warned = False
+
+    # ---- advancing
+
+    def advance(self, until: Time | None = None) -> None:
+        """Makes all collisions at times <= until (in t, not before `time`), by default up to run.until.
+
+        A float means the decimal that it prints; for more digits give a text or a Decimal. The call ends earlier if
+        the run does (see `outcome`). Raises Error for a time in the past or after run.until, and if the run is over.
+        """
+        self._compute(decimal_of(self._run.until if until is None else until))
+
+    def step(self, n: int = 1) -> None:
+        """Makes the next n collisions, or all until run.until if these are fewer; the state is that after the last."""
+        if n < 0:
+            raise Error(f"step: fewer than no collisions (found {n}): give a number from 0 on", BAD_INPUT)
+        self._compute(decimal_of(self._run.until), n)
+
+    def _compute(self, wanted: decimal.Decimal, n: int | None = None) -> None:
+        if self._computing:
+            raise Error(f"{self.name}: the simulation is in a call already: let it end first", BAD_INPUT)
+        self._computing = True
+        try:
+            while True:
+                to = min((timer.due for timer in self._timers if timer.due < wanted), default=wanted)
+                if n is None:
+                    self._run.advance(str(to), self._observer(), self._restitution)
+                else:
+                    n = self._run.step(n, str(to), self._observer(), self._restitution)
+                self._warn_at_end()
+                if n == 0 or self.over and self._run.over[0] != REACHED:
+                    return
+                for timer in [timer for timer in self._timers if timer.due <= to]:
+                    timer.call(self)
+                if to == wanted:
+                    return
+        finally:
+            self._computing = False
+
+    def _observer(self) -> Callable[[Collision], Any] | None:
+        observers = tuple(self._observers)
+        if len(observers) < 2:
+            return observers[0] if observers else None
+        return lambda collision: [observe(collision) for observe in observers] and None
+
+    def _warn_at_end(self) -> None:
+        if self.over and not self._warned:
+            self._warned = True
+            if text := self._run.over[3].strip():
+                warnings.warn(text, RuntimeWarning, stacklevel=4)
+
+    # ---- functions that are called
+
+    def on_collision(self, f: Callable[[Collision], Any]) -> Callable[[Collision], Any]:
+        """Calls f(collision) before every collision from now on; returns f, so that it may decorate one.
+
+        f gets a Collision: left, right, time, interval, closing_speed. It cannot read the simulation, which is within a
+        call; functions of every() can. If f raises, the collision has not been made.
+        """
+        self._observers.append(f)
+        return f
+
+    def every(self, dt: Time, f: Callable[[Simulation], Any]) -> Callable[[Simulation], Any]:
+        """Calls f(simulation) at times spaced by dt (in t), the first one dt from now; returns f.
+
+        The times are `time` + k dt in decimals, without accumulated rounding. Checkpoints do not have such functions.
+        """
+        step = decimal_of(dt)
+        if not step > 0:
+            raise Error(f"every: no positive time (found {dt}): give the time between two calls", BAD_INPUT)
+        self._timers.append(Timer(decimal_of(self._run.time_text), step, f))
+        return f
+
+    def remove(self, f: Callable) -> None:
+        """Calls f no more. Raises Error if it is not called."""
+        known = len(self._observers) + len(self._timers)
+        self._observers = [other for other in self._observers if other is not f]
+        self._timers = [timer for timer in self._timers if timer.function is not f]
+        if known == len(self._observers) + len(self._timers):
+            raise Error("remove: not a function of this simulation: give one that on_collision() or every() got",
+                        BAD_INPUT)
+
+    # ---- the state
+
+    @property
+    def time(self) -> float:
+        """In t."""
+        return self._run.time
+
+    @property
+    def until(self) -> float:
+        """The end, run.until, in t."""
+        return float(self._run.until)
+
+    @property
+    def collisions(self) -> int:
+        """Since the start, all, those below the cut-off and merges included."""
+        return self._run.collisions
+
+    @property
+    def merges(self) -> int:
+        """Since the start."""
+        return self._run.merges
+
+    @property
+    def energy(self) -> float:
+        """Kinetic, in m l^2/t^2, of all particles of the scene, also those that the front has not reached."""
+        return self._run.energy
+
+    @property
+    def outcome(self) -> str:
+        """"in progress", then how the run ended, as in results: "reached the end", "inelastic collapse", ..."""
+        over = self._run.over
+        return "in progress" if over is None else over[0]
+
+    @property
+    def over(self) -> bool:
+        """Whether the run has ended, so that write() has a result."""
+        return self._run.over is not None
+
+    @property
+    def x(self) -> np.ndarray:
+        """Positions in l, shape (n,)."""
+        return self._column("x")
+
+    @property
+    def v(self) -> np.ndarray:
+        """Velocities in l/t, shape (n,)."""
+        return self._column("v")
+
+    @property
+    def m(self) -> np.ndarray:
+        """Masses in m, shape (n,)."""
+        return self._column("m")
+
+    @property
+    def gap(self) -> np.ndarray:
+        """Distances between neighbours in l, exact however small: shape (n - 1,), on a ring (n,)."""
+        return self._column("gap")
+
+    @property
+    def closing_speed(self) -> np.ndarray:
+        """Velocity of the left minus that of the right neighbour, in l/t: shape (n - 1,), on a ring (n,)."""
+        return self._column("closing_speed")
+
+    @property
+    def index(self) -> np.ndarray:
+        """Numbers of the particles at the start, from 0, as int64 of shape (n,); of merged ones the first."""
+        return self._run.index
+
+    def _column(self, name: str) -> np.ndarray:
+        return self._run.column(getattr(module().Column, name))
+
+    def decimals(self, name: str) -> str | list[str]:
+        """The same with all digits of the run's type, as decimal texts.
+
+        name: "time" or "energy": one text; "x", "v", "m", "gap" or "closing_speed": a list.
+        """
+        if name in ("time", "energy"):
+            return getattr(self._run, f"{name}_text")
+        if name not in COLUMNS:
+            raise Error(f"decimals: no such quantity (found {name}): give time, energy, {', '.join(COLUMNS)}",
+                        BAD_INPUT)
+        return self._run.decimals(getattr(module().Column, name))
+
+    def mpmath(self, name: str, digits: int | None = None):
+        """The same as mpmath.mpf (one, or a list) with the given digits, by default those of the longest text."""
+        try:
+            import mpmath
+        except ImportError:
+            raise missing("mpmath") from None
+        texts = self.decimals(name)
+        one = isinstance(texts, str)
+        with mpmath.workdps(digits or max((len(text) for text in ([texts] if one else texts)), default=17)):
+            return mpmath.mpf(texts) if one else [mpmath.mpf(text) for text in texts]
+
+    @property
+    def name(self) -> str:
+        """The scene's name."""
+        return self._run.name
+
+    @property
+    def precision(self) -> str:
+        """The type of the numbers, "double", "mpfr, 50 digits", ..."""
+        return self._run.precision
+
+    @property
+    def scene_text(self) -> str:
+        """The effective scene, as TOML."""
+        return self._run.scene
+
+    @property
+    def scene(self) -> dict[str, Any]:
+        """The same as nested dicts, numbers as floats."""
+        return parse_toml(self.scene_text)
+
+    # ---- files
+
+    def write(self, output: str | os.PathLike | None = None, *, force: bool = False) -> Result:
+        """Writes the result of a run that is over and opens it: the bytes of `cradle run`.
+
+        output: by default the scene's name with .h5 in the working folder. force: replaces what output holds, also what
+            the same run would not make again. Raises Error before the end.
+        """
+        output = self.name + ".h5" if output is None else os.fspath(output)
+        self._run.write(output, force)
+        result = open(output)
+        _, result.status, report, warning = self._run.over
+        result.text = report + warning
+        return result
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Saves a checkpoint, from which load() continues with the same bits. Raises Error if the run is over."""
+        self._run.save(os.fspath(path))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike, *, threads: int | None = None) -> Simulation:
+        """A simulation at the place where save() was called; the file stays. Raises Error."""
+        loaded = cls.__new__(cls)
+        loaded._begin(module().Run(os.fspath(path), threads or 0))
+        return loaded
+
+    # ---- shown
+
+    def __repr__(self) -> str:
+        return (f"<simulation {self.name}: t = {self.time:.6g} of {self.until:.6g}, {self.collisions} collisions, "
+                f"energy {self.energy:.6g}; {self.precision}; {self.outcome}>")
+
+    def _repr_html_(self) -> str:
+        rows = {"time": f"{self.time:.6g} of {self.until:.6g} t", "collisions": f"{self.collisions:,}",
+                "energy": f"{self.energy:.6g} m l<sup>2</sup>/t<sup>2</sup>", "particles": f"{len(self.index):,}",
+                "type": html.escape(self.precision), "outcome": html.escape(self.outcome)}
+        cells = "".join(f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{value}</td></tr>"
+                        for name, value in rows.items())
+        return f"<table><caption>simulation {html.escape(self.name)}</caption>{cells}</table>"
+
+
+class Timer:
+    """A function that is called at times start + k step."""
+
+    def __init__(self, start: decimal.Decimal, step: decimal.Decimal, function: Callable[[Simulation], Any]):
+        self.start, self.step, self.function, self.count = start, step, function, 1
+
+    @property
+    def due(self) -> decimal.Decimal:
+        return EXACT.add(self.start, EXACT.multiply(self.step, self.count))
+
+    def call(self, simulation: Simulation) -> None:
+        self.count += 1  # first: the function may raise, and is not called again at this time
+        self.function(simulation)
+
+
+def decimal_of(value: Time) -> decimal.Decimal:
+    try:
+        number = decimal.Decimal(str(value))
+    except decimal.InvalidOperation:
+        number = decimal.Decimal("nan")
+    if not number.is_finite():
+        raise Error(f"not a time (found {value}): give a number", BAD_INPUT)
+    return number
+
+
+def source_of(scene: Scene) -> tuple[str, bool, str]:
+    """A text or what names a scene, whether it is a text, and the name of one."""
+    if isinstance(scene, Result):
+        return scene.scene_text, True, str(scene.attributes.get("name", "scene"))
+    text = os.fspath(scene_text(scene) if hasattr(scene, "items") else scene)
+    return text, "\n" in text, "scene"
+
+
+def module() -> ModuleType:
+    """The compiled part: beside this package where it is installed, or beside the program in its build folder.
+
+    Raises Error if it is missing or cannot be used.
+    """
+    if MODULE in sys.modules:
+        return sys.modules[MODULE]
+    folders = [os.path.dirname(os.path.abspath(__file__))]
+    try:
+        folders.append(os.path.dirname(os.path.realpath(program.find())))
+    except Error:
+        pass  # reported by who calls the program
+    for folder in folders:
+        for ending in importlib.machinery.EXTENSION_SUFFIXES:
+            path = os.path.join(folder, "_live" + ending)
+            if os.path.isfile(path):
+                return loaded_from(path)
+    others = [os.path.basename(path) for folder in folders for path in glob.glob(os.path.join(folder, "_live*.so"))]
+    raise Error(f"the module for live simulations is missing (found {', '.join(others) or 'none'} in "
+                f"{' and '.join(folders)}, for {sys.executable} {sys.version.split()[0]}): install Debian's "
+                "python3-dev and pybind11-dev and build with tools/quickstart.sh, with CRADLE_PYTHON set to this "
+                "Python; cradle.run() does without", BAD_FILE)
+
+
+def loaded_from(path: str) -> ModuleType:
+    from . import __version__
+    spec = importlib.util.spec_from_file_location(MODULE, path)
+    try:
+        found = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(found)
+    except ImportError as error:
+        raise Error(f"{path}: cannot be loaded ({error}): build it on this machine, for this Python",
+                    BAD_FILE) from None
+    if found.version != __version__:
+        raise Error(f"{path}: of another version (found {found.version}, here {__version__}): build it again", BAD_FILE)
+    sys.modules[MODULE] = found
+    return found

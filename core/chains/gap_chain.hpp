@@ -215,7 +215,6 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // Slots free for particles that the fronts reach.
   std::size_t within_reach_left() const { return range_.free_left(); }
   std::size_t within_reach_right() const { return range_.free_right(slots()); }
-  bool holds_all() const { return range_.unheld_left() == 0 && range_.unheld_right() == 0; }
   bool cramped(std::size_t particles) const { return range_.cramped(slots(), static_cast<ParticleIndex>(particles)); }
   bool fronts_are_within(Slot left, Slot right) const {
     return on_ring() || (range_.has_fronts() && range_.front_left() <= left && range_.front_right() >= right);

@@ -21,14 +21,6 @@
 
 namespace cradle {
 
-// The collisions expected before the run stops or the epoch ends; the number of collisions after which there is a
-// review in any case, or the epoch ends.
-struct Ahead {
-  double collisions;
-  std::uint64_t most;
-  bool in_epoch;
-};
-
 template <Real T> struct Pacing {
   Pacing(const T& start, bool may_collapse)
       : time_before(start), may_collapse_(may_collapse), per_particle_(may_collapse ? 8 : 32) {}
@@ -76,16 +68,16 @@ template <Real T> struct Pacing {
     if (!moved && !regular) return;
     begin_reviews(collisions, now, active);
   }
-  // What is ahead up to a time, after so many collisions: by the rate that was predicted, or by that until now.
-  Ahead ahead(std::uint64_t collisions, const T& now, const T& until) const {
-    const std::uint64_t end = in_epochs ? most_collisions : next_review;
-    Ahead ahead{0, collisions < end ? end - collisions : 0, in_epochs};
-    const T unit = in_epochs ? epoch : T(until - now);
-    if (!is_positive(unit)) return ahead;
-    const double passed = to_double(T((now - time_before) / unit)), left = to_double(T((until - now) / unit));
+  // Collisions expected up to a time in this epoch: by the predicted rate, or by that until now. 0: no epochs.
+  double ahead(std::uint64_t collisions, const T& now, const T& until) const {
+    if (!in_epochs) return 0;
     const double made = static_cast<double>(collisions - collisions_before);
-    ahead.collisions = left * std::max(in_epochs ? static_cast<double>(expected) : 0, passed > 0 ? made / passed : 0);
-    return ahead;
+    const double passed = to_double(T((now - time_before) / epoch)), left = to_double(T((until - now) / epoch));
+    return left * std::max(static_cast<double>(expected), passed > 0 ? made / passed : 0);
+  }
+  // The number of collisions after which this epoch ends.
+  std::uint64_t left(std::uint64_t collisions) const {
+    return collisions < most_collisions ? most_collisions - collisions : 0;
   }
   // After so many collisions without a review, fewer than an epoch can have.
   void passed(std::uint64_t collisions, std::uint64_t active) {

@@ -196,7 +196,7 @@ class Simulation {
     typename Segments::Observer observer;
     if (observer_) observer = [this](const auto& collisions) { notify_observer<typename Segments::Part>(collisions); };
     for (T from = last_collision_;;) {
-      const Ahead ahead = pacing_.ahead(counts_.collisions, from, target_.stop);
+      const double ahead = pacing_.ahead(counts_.collisions, from, target_.stop);
       if (auto plain = segments.plain_collisions(chain_, ahead)) {
         for (; plain > 0; --plain)
           if (!step()) return status_;
@@ -205,13 +205,13 @@ class Simulation {
       }
       const T end = segments.end(chain_, from, target_.stop, ahead, static_cast<bool>(observer));
       release_queue();
-      const auto slab = segments.make(chain_, law_, end, ahead, observer);
+      const auto slab = segments.make(chain_, law_, end, pacing_.left(counts_.collisions), observer);
       if (!slab) continue;
       counts_ += slab->counts;
       if (slab->counts.collisions > 0) last_collision_ = slab->last_collision;
-      if (!(slab->end < target_.horizon)) return status_;
-      from = slab->end == target_.stop ? end_epoch() : slab->end;
-      if (pacing_.in_epochs) pacing_.passed(counts_.collisions, active());
+      if (!(end < target_.horizon)) return status_;
+      from = end == target_.stop ? end_epoch() : end;
+      pacing_.passed(counts_.collisions, active());
       status_ = policy_.poll(last_collision_time(), counts_);
       if (status_ != Status::reached) return status_;
     }

@@ -28,23 +28,13 @@ struct Own {
   std::size_t gaps;
 };
 
-// What a segment is to make: all collisions up to the local time `stop`, fewer than `most`.
-template <Real T> struct SegmentTask {
-  T stop;
-  std::uint64_t most;
-  bool in_epoch;  // else all that the chain requests is for the plain loop, and so is what steps do not make
-  bool partly;    // whether steps may end at an earlier time (SegmentReport::reached)
-};
-
 // What a segment has made of a time slab. Parts add what they hand back to their chain.
 template <Real T, class CutCollision, class Observed> struct SegmentReport {
   bool plain = false;         // a time slab for the plain loop
   bool nothing_left = false;  // what the segment owned has merged with what others own
   Counts counts;
   T last_collision{0};  // if there was one
-  T reached{0};         // local time up to which all collisions are made
   bool in_steps = false;
-  std::uint64_t steps = 0;
   StepPace pace;
   Ledger<T> lost;
   std::vector<CutCollision> left, right;  // at the cuts on either side
@@ -61,10 +51,9 @@ template <Real T> struct OwnedResult {
 // The part of a chain that a segment works on.
 template <class Chain> struct PartOf;
 
-// How it makes collisions in steps, where it can (steps/stepped.hpp): also of a whole ring, which has no cuts; also up
-// to a time earlier than the task's.
+// How it makes collisions in steps, where it can (steps/stepped.hpp).
 template <class Law, class Part> struct Stepped {
-  static constexpr bool possible = false, on_rings = false, partly = false;
+  static constexpr bool possible = false, on_rings = false;  // on_rings: also of a whole ring, which has no cuts
 };
 
 template <class Law, class Chain> class Segment {
@@ -75,29 +64,28 @@ template <class Law, class Chain> class Segment {
 
   explicit Segment(const Chain& chain) : part_(chain), queue_(16, Chain::keys_are_exact) {}
 
-  // Does its task on a copy of a part of the chain, and puts what is the segment's own into `after`, at the chain's
-  // slots. Several segments of one chain may do so at once. `steps` may be null.
-  void run(const Chain& chain, const Law& law, const Own& own, std::size_t ghosts, const SegmentTask<T>& task,
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on a copy of a part of the chain, and puts
+  // what is the segment's own into `after`, at the chain's slots. Several segments of one chain may do so at once.
+  // `steps` may be null.
+  void run(const Chain& chain, const Law& law, const Own& own, std::size_t ghosts, const T& stop, std::uint64_t most,
            const Steps* steps, typename Chain::Line::Gaps& after, Report& report) {
     if constexpr (Stepped<Law, Part>::possible)
       if (steps != nullptr && take(chain, own, ghosts, report)) {
-        const bool or_plain = part_.is_ring() || !task.in_epoch;
-        if (or_plain) report.pace.rest = 0;  // Segments is patient enough
-        report.in_steps = stepped_.run(*steps, part_, law, task, report);
+        if (part_.is_ring()) report.pace.rest = 0;  // Segments is patient enough
+        report.in_steps = stepped_.run(*steps, part_, law, stop, most, report);
         if (report.in_steps) return part_.give(chain, own, after, report);
-        report.plain = or_plain;
+        report.plain = part_.is_ring();
         if (report.plain) return;
       }
     if (!begin(chain, own, ghosts, report)) return;
     // Observers are given exact times; without one nobody pays for the log.
-    Made made = report.observe ? make_collisions<true>(law, task.stop, task.most, report)
-                               : make_collisions<false>(law, task.stop, task.most, report);
+    Made made = report.observe ? make_collisions<true>(law, stop, most, report)
+                               : make_collisions<false>(law, stop, most, report);
     if (made == Made::contested) {
       begin(chain, own, ghosts, report);
-      made = make_collisions<true>(law, task.stop, task.most, report);
+      made = make_collisions<true>(law, stop, most, report);
     }
     report.plain = made == Made::for_plain;
-    report.reached = task.stop;
     if (!report.plain && !report.nothing_left) part_.give(chain, own, after, report);
   }
 

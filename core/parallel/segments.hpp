@@ -34,7 +34,6 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/engine/pacing.hpp"
 #include "cradle/core/parallel/cluster_segment.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
 #include "cradle/core/parallel/steps/stepped.hpp"
@@ -64,10 +63,10 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     how_.ghosts = std::max<std::size_t>(how_.ghosts, 1);  // a cut has a gap on either side
   }
 
-  // What a time slab has made: all collisions up to the local time `end`.
+  // What a time slab has made.
   struct Slab {
     Counts counts;
-    T last_collision{0}, end{0};
+    T last_collision{0};
   };
 
   struct Statistics {
@@ -79,24 +78,23 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   };
   const Statistics& statistics() const { return statistics_; }
 
-  // Collisions to be made in the plain loop before the next time slab; none are if there are to be no time slabs.
-  std::uint64_t plain_collisions(const Chain& chain, const Ahead& ahead) {
+  // Collisions to be made in the plain loop before the next time slab, where about so many are to come before the run
+  // stops or the epoch ends; none are if there are to be no time slabs.
+  std::uint64_t plain_collisions(const Chain& chain, double ahead) {
     const std::size_t held = chain.last() + 1 - chain.first();
-    if (!(ahead.collisions > 0) || (!ahead.in_epoch && !between_reviews(chain, held))) return 64;
+    if (!(ahead > 0)) return 64;
     const std::size_t middle = (chain.first() + chain.last()) / 2;
     if (!chain.fronts_are_within(middle, middle) || segments(chain, held) == 0) return 256;
     // A time slab visits every gap.
-    if (!how_.anywhere && ahead.collisions < static_cast<double>(held) * (ahead.in_epoch ? 1. / 8 : 2))
-      return held / 64 + 1;
-    if (!ahead.in_epoch && ahead.most < least_before_review) return ahead.most;
+    if (!how_.anywhere && ahead < static_cast<double>(held) / 8) return held / 64 + 1;
     return std::exchange(plain_, 0);
   }
-  // Where the next time slab should end at the latest. Collisions that are observed are held in memory.
-  T end(const Chain& chain, const T& from, const T& stop, const Ahead& ahead, bool observed) const {
+  // Where the next time slab should end, with so many collisions ahead up to `stop`. Those that are observed are held
+  // in memory.
+  T end(const Chain& chain, const T& from, const T& stop, double ahead, bool observed) const {
     const auto held = static_cast<double>(chain.last() + 1 - chain.first());
     const double most = observed ? std::max(held, least_observed) : std::numeric_limits<double>::infinity();
-    const double wanted = ahead.in_epoch ? per_gap_ * held : 2 * static_cast<double>(ahead.most);
-    const double slabs = std::ceil(ahead.collisions / std::min(wanted, most));
+    const double slabs = std::ceil(ahead / std::min(per_gap_ * held, most));
     if (!(slabs > 1)) return stop;
     return from + (stop - from) / T(static_cast<std::int64_t>(std::min(slabs, 0x1p40)));
   }
@@ -106,14 +104,14 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   // What it throws leaves the chain as it was.
   using Observer = std::function<void(const std::vector<typename Part::Observed>&)>;
 
-  // Makes all collisions up to the local time `stop`, or to an earlier one, fewer than `ahead.most` of them; nothing
-  // where that is for the plain loop. `observer` may be empty.
-  std::optional<Slab> make(Chain& chain, const Law& law, const T& stop, const Ahead& ahead, const Observer& observer) {
+  // Makes all collisions up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain
+  // loop. `observer` may be empty.
+  std::optional<Slab> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most, const Observer& observer) {
     if (chain.cramped(how_.ghosts)) {
       chain.make_room();
       weights_.clear();
     }
-    cut(chain, ahead.in_epoch);
+    cut(chain);
     if (!chain.fronts_are_within(own_.front().first + own_.front().gaps - 1, own_.back().first)) return give_up(chain);
     // Anew where slots have become fewer: what is left in spare ones would name slots that there are no more.
     if (!after_ || after_->slots() > chain.slots()) after_.emplace(chain.start(), T(1));
@@ -121,14 +119,12 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     std::vector<std::size_t> todo(own_.size());
     std::iota(todo.begin(), todo.end(), std::size_t{0});
     std::uint64_t again = 0, all = 0;
-    SegmentTask<T> task{stop, ahead.most, ahead.in_epoch, false};
     for (bool first = true; !todo.empty(); first = false) {
-      task.partly = own_.size() == 1;  // no other segment waits for it
       workers_.run(todo.size(), [&](std::size_t job, std::size_t worker) {
         if (!segments_[worker]) segments_[worker] = std::make_unique<Segment<Law, Chain>>(chain);
         Report& report = reports_[todo[job]];
         report.observe = static_cast<bool>(observer);
-        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, task, how_.steps, *after_, report);
+        segments_[worker]->run(chain, law, own_[todo[job]], how_.ghosts, stop, most, how_.steps, *after_, report);
       });
       for (const std::size_t k : todo) {
         if (reports_[k].plain) return give_up(chain);
@@ -139,7 +135,6 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
       if (own_.size() < 2 && !todo.empty() && (!in_steps() || chain.on_ring())) return give_up(chain);
     }
     Slab slab;
-    slab.end = reports_.front().reached;
     std::uint64_t largest = 0;
     bool first = true;
     for (const Report& report : reports_) {
@@ -150,7 +145,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
         first = false;
       }
     }
-    if (slab.counts.collisions >= ahead.most || !Part::fit(reports_)) return give_up(chain);
+    if (slab.counts.collisions >= most || !Part::fit(reports_)) return give_up(chain);
     if (observer) observer(in_order_.of(reports_));
     Part::continue_with(chain, *after_, reports_);
     for (const Report& report : reports_) chain.lose(report.lost);
@@ -161,7 +156,6 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     statistics_.again += again;
     statistics_.largest += largest;
     adapt(chain, static_cast<double>(again) / static_cast<double>(all + 1));
-    if (slab.end < stop || !ahead.in_epoch) plain_ = plain_after(chain, ahead.in_epoch, slab.end < stop);
     return slab;
   }
 
@@ -170,8 +164,6 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   bool in_steps() const { return how_.steps != nullptr && Stepped<Law, Part>::possible; }
   static constexpr double least_per_gap = 1. / 8;
   static constexpr std::size_t least_on_ring = 100;  // gaps, for steps on a ring without cuts to pay
-  // Between reviews (pacing.hpp): gaps for steps to pay, and collisions up to the next review.
-  static constexpr std::size_t least_between_reviews = 256, least_before_review = 100;
   static constexpr double least_observed = 1 << 14;  // collisions in a time slab, if there are as many
 
   std::optional<Slab> give_up(const Chain& chain) {
@@ -183,16 +175,6 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     per_gap_ = std::max(per_gap_ / 2, least_per_gap);
     return {};
   }
-  // Collisions for the plain loop after a time slab of one segment: the next one if it has ended early, and many if
-  // steps do not pay.
-  std::uint64_t plain_after(const Chain& chain, bool in_epoch, bool early) {
-    constexpr std::uint64_t least_in_step = 14;
-    const std::size_t held = chain.last() + 1 - chain.first();
-    const Report& made = reports_.front();
-    if (made.counts.collisions < (in_epoch ? held : least_in_step * made.steps))
-      patience_ = std::min<std::size_t>(4 * patience_ + 3, 63);
-    return patience_ * held + (early ? held / 16 + 1 : 0);
-  }
   void adapt(const Chain& chain, double again) {
     patience_ /= 2;
     failed_ = failed_ || again > 0;
@@ -201,15 +183,6 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     weights_.clear();
     for (std::size_t k = 0; k < own_.size(); ++k)
       weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.collisions});
-  }
-
-  // Whether there are time slabs where no epochs are: of one segment, in steps, and of all particles, since particles
-  // that are streamed request reviews.
-  bool between_reviews(const Chain& chain, std::size_t held) const {
-    if constexpr (Stepped<Law, Part>::partly)
-      return in_steps() && chain.holds_all() && (how_.anywhere || held >= least_between_reviews);
-    else
-      return false;
   }
 
   // How many segments so many gaps make: as many for each thread. A ring has no cut or two at least; 0: it is too small
@@ -226,9 +199,9 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
   // Cuts the line into segments of about as many collisions each, by those of the time slab before; gaps count for a
   // quarter of a mean gap's collisions, so that no segment gets too long.
-  void cut(const Chain& chain, bool in_epoch) {
+  void cut(const Chain& chain) {
     const std::size_t held = chain.last() + 1 - chain.first();
-    const std::size_t count = in_epoch ? segments(chain, held) : 1;
+    const std::size_t count = segments(chain, held);
     own_.clear();
     double collisions = 0;
     for (const Weight& weight : weights_) collisions += static_cast<double>(weight.collisions);

@@ -26,8 +26,8 @@ struct Made {
   std::uint64_t below_cutoff = 0;
 
   // Whether every collision came after the last ones at its gaps and left no gap below the floor.
-  HWY_INLINE bool in_order(double floor) const {
-    return std::min(flown[0], flown[1]) > 0 && own_flown[0] > 0 && std::min(gap[0], gap[1]) >= floor;
+  HWY_INLINE bool in_order(double floor, double end) const {
+    return std::min(flown[0], flown[1]) > 0 && own_flown[0] > end * 0x1p-40 && std::min(gap[0], gap[1]) >= floor;
   }
 };
 
@@ -134,13 +134,13 @@ template <StepLaw law, bool unequal> struct Doubles {
     for (std::size_t k = 0; k < l.firsts; ++k) foresee(l, end, l.first[k]);
     if (as != StepLaw::any) enter<as, masses_too>(line, l, task, made);
   }
-  // Returns 0 if all of them were in order, else as a step does.
-  HWY_INLINE int report(const StepTask& task, double end, StepResult& result) const {
+  // Whether all of them were in order.
+  HWY_INLINE bool report(const StepTask& task, double end, StepResult& result) const {
     result.last = made.latest;
     result.lost += hn::GetLane(hn::SumOfLanes(Lanes(), made.lost));
     result.rest += hn::GetLane(hn::SumOfLanes(Lanes(), made.rest));
     result.below_cutoff += made.below_cutoff;
-    return !made.in_order(task.floor) ? wrong_order : made.own_flown[0] > end * task.shortest ? 0 : short_flight;
+    return made.in_order(task.floor, end);
   }
 };
 

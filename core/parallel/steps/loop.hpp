@@ -5,9 +5,8 @@
 
 namespace cradle {
 
-// Makes all collisions up to `end`. Returns in how many passes, or that some were made in the wrong order, or that a
-// flight was so short that it is for the event loop.
-constexpr int wrong_order = -1, short_flight = -2;
+// Makes all collisions up to `end`. Returns in how many passes, or -1: some were made in the wrong order, or one of
+// them is for the event loop.
 using Step = int (*)(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result);
 
 bool run_steps(Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,

@@ -77,14 +77,14 @@ template <StepLaw law, bool unequal> struct Pairs {
     for (std::size_t k = 0; k < l.firsts; k += 2) fly(line, l, k);
     for (std::size_t k = 0; k < l.firsts; k += 2) foresee(line, l, end, k);
   }
-  HWY_INLINE int report(const StepTask&, double end, StepResult& result) const {
+  HWY_INLINE bool report(const StepTask&, double end, StepResult& result) const {
     double last[few], low_last[few];
     store(latest, Few(), last, low_last);
     for (std::size_t k = 0; k < few; ++k)
       if (result.last < last[k] || (result.last == last[k] && result.low_last < low_last[k]))
         result.last = last[k], result.low_last = low_last[k];
     result.below_cutoff += below_cutoff;
-    return hn::AllTrue(Few(), orderly) && !soon && result.last <= end ? 0 : wrong_order;
+    return hn::AllTrue(Few(), orderly) && !soon && result.last <= end;
   }
 
  private:

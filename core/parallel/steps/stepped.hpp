@@ -24,29 +24,29 @@ template <class Law, class Masses>
 requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<double, Masses>> final
     : private StepScalars {
  public:
-  static constexpr bool possible = true, on_rings = true, partly = true;
+  static constexpr bool possible = true, on_rings = true;
   using Part = GapSegment<double, Masses>;
   using Report = typename Part::Report;
 
-  // Makes all collisions of the task on what the part has taken, or some of them.
-  bool run(const Steps& steps, Part& part, const Law& law, const SegmentTask<double>& of, Report& report) {
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
+  bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
     if (report.pace.rest > 0) return --report.pace.rest, false;
     part_ = &part, law_ = &law, report_ = &report;
-    const StepTask task = task_of(of);
+    const StepTask task = task_of(stop, most);
     if (!(task.rounder > 0)) return false;  // a plain sum
-    shortest_ = task.shortest;
     fill();
-    made_ = {}, collisions = 0;
+    made_ = {};
     ledger_ = part.line_.gaps.ledger();
     StepResult inner;
     StepPace& pace = report.pace;
     const bool done = steps.run(line_, task, *this, pace, inner);
     pace.made(done);
     if (!done) return false;
-    report.counts.collisions = collisions + inner.collisions;
-    report.counts.below_cutoff = made_.below_cutoff + inner.below_cutoff;
+    report.counts = made_.counts;
+    report.counts.collisions += inner.collisions;
+    report.counts.below_cutoff += inner.below_cutoff;
     report.last_collision = std::max(made_.last, inner.last);
-    report.reached = inner.reached, report.steps = inner.steps;
+    if (report.counts.collisions >= most) return false;
     ledger_.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
     part.line_.gaps.set_ledger(ledger_);
     part.line_.gaps.drop_lags(Part::first(), line_.gaps());
@@ -57,11 +57,11 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   static constexpr bool equal = std::same_as<Masses, IdenticalMasses<double>>;
 
   struct Made {
-    std::uint64_t below_cutoff = 0;
+    Counts counts;
     double last = -StepLine::never;
   };
 
-  StepTask task_of(const SegmentTask<double>& of) const {
+  StepTask task_of(double stop, std::uint64_t most) const {
     const auto& gaps = part_->line_.gaps;
     StepTask task;
     if (!report_->observe) {  // else `outcomes` is to log every collision
@@ -72,10 +72,10 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
         task.cutoff = law->cutoff();
         task.lost = law->lost_share();
       } else if (const auto* of_speed = law_as<SpeedDependent<double>>(*law_)) {
-        const auto &power = of_speed->power(), &rise = of_speed->rise();
         task.law = StepLaw::of_speed;
         task.cutoff = of_speed->delta();
         task.lost = 1;
+        const auto &power = of_speed->power(), &rise = of_speed->rise();
         task.of_speed = {of_speed->missing(),
                          power.exponent(),
                          power.ln2(),
@@ -92,10 +92,8 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     task.floor = gaps.floor();
     task.rounder = gaps.ledger().rounder();
     task.per_fine = gaps.ledger().per_fine();
-    if (!of.in_epoch) task.shortest = 0x1p-20;  // any request of the chain is for the plain loop
-    task.stop = of.stop;
-    task.most = of.most;
-    task.partly = of.partly;
+    task.stop = stop;
+    task.most = most;
     return task;
   }
 
@@ -123,7 +121,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   bool collide(std::size_t i) override {
     Gap<double>& cell = line_.cells[i];
     const double time = cell.due, closing = cell.closing, since = flown(i, time);
-    if (since <= time * shortest_ || is_negative(since)) return false;
+    if (since <= time * 0x1p-40 || is_negative(since)) return false;
     const Slot s = Part::first() + i;
     const Outcome<double> outcome = part_->outcome_at_edge(*law_, s, closing);
     const auto edge = part_->at_edge(s, time, closing, outcome, *report_);
@@ -139,8 +137,8 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
     if (right < line_.gaps() && !kick(right, outcome.to_right, time)) return false;
     if (!edge.own) return true;
     ledger_.add(outcome.energy_lost);
-    ++collisions;
-    made_.below_cutoff += outcome.below_cutoff;
+    ++made_.counts.collisions;
+    made_.counts.below_cutoff += outcome.below_cutoff;
     made_.last = std::max(made_.last, time);
     return true;
   }
@@ -174,14 +172,13 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
           (*law_)(line_.cells[gaps[k]].closing, part_->line_.masses.of_pair(Part::first() + gaps[k]));
       line_.after[k] = outcome.closing, line_.to_left[k] = outcome.to_left, line_.to_right[k] = outcome.to_right;
       ledger_.add(outcome.energy_lost);
-      made_.below_cutoff += outcome.below_cutoff;
+      made_.counts.below_cutoff += outcome.below_cutoff;
       log(gaps[k], outcome.below_cutoff);
     }
   }
 
   void keep() override {
-    kept_ = {collisions,
-             made_,
+    kept_ = {made_,
              ledger_,
              part_->edges(),
              report_->left.size(),
@@ -191,7 +188,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
              report_->observed.size()};
   }
   void restore() override {
-    collisions = kept_.collisions, made_ = kept_.made, ledger_ = kept_.ledger;
+    made_ = kept_.made, ledger_ = kept_.ledger;
     part_->set_edges(kept_.edges);
     report_->left.resize(kept_.left), report_->right.resize(kept_.right);
     report_->to_left.at_end.resize(kept_.at_left), report_->to_right.at_end.resize(kept_.at_right);
@@ -200,7 +197,6 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   }
 
   struct Kept {
-    std::uint64_t collisions;
     Made made;
     Ledger<double> ledger;
     typename Part::Edges edges;
@@ -212,7 +208,6 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   const Law* law_ = nullptr;
   Report* report_ = nullptr;
   Made made_;  // at edges; by other laws all that is below the cut-off
-  double shortest_ = 0;
   Ledger<double> ledger_;
   Kept kept_;
 };

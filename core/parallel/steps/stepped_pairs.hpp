@@ -28,29 +28,30 @@ concept DoubleDouble = std::is_trivially_copyable_v<T> && sizeof(T) == 2 * sizeo
 template <DoubleDouble T, class Masses>
 requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> final : private StepScalars {
  public:
-  static constexpr bool possible = true, on_rings = false, partly = false;
+  static constexpr bool possible = true, on_rings = false;
   using Part = GapSegment<T, Masses>;
   using Law = Inelastic<T>;
   using Report = typename Part::Report;
 
-  // Makes all collisions of the task on what the part has taken.
-  bool run(const Steps& steps, Part& part, const Law& law, const SegmentTask<T>& of_part, Report& report) {
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
+  bool run(const Steps& steps, Part& part, const Law& law, const T& stop, std::uint64_t most, Report& report) {
     if (report.observe) return false;  // the event loop logs what is observed
     if (report.pace.rest > 0) return --report.pace.rest, false;
     part_ = &part, law_ = &law, report_ = &report;
-    made_ = {}, collisions = 0;
+    made_ = {};
     StepResult inner;
     StepPace& pace = report.pace;
-    bool done = fill() && steps.run(line_, task_of(of_part.stop, of_part.most), *this, pace, inner);
+    bool done = fill() && steps.run(line_, task_of(stop, most), *this, pace, inner);
     if (done) line_.bound_tiles();
-    done = done && line_.least_due() > to_double(of_part.stop);  // no key is that of `stop`
+    done = done && line_.least_due() > to_double(stop);  // no key is that of `stop`
     pace.made(done);
     if (!done) return false;
-    report.counts.collisions = collisions + inner.collisions;
-    report.counts.below_cutoff = made_.below_cutoff + inner.below_cutoff;
+    report.counts = made_.counts;
+    report.counts.collisions += inner.collisions;
+    report.counts.below_cutoff += inner.below_cutoff;
     const T last = of(inner.last, inner.low_last);
     report.last_collision = made_.last < last ? last : made_.last;
-    report.reached = of_part.stop;
+    if (report.counts.collisions >= most) return false;
     for (std::size_t i = 0; i < line_.gaps(); ++i) give(i);
     part.line_.gaps.drop_lags(Part::first(), line_.gaps());
     return true;
@@ -62,7 +63,7 @@ requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> f
     double high, low;
   };
   struct Made {
-    std::uint64_t below_cutoff = 0;
+    Counts counts;
     T last{of(-StepLine::never, 0)};
   };
 
@@ -154,16 +155,15 @@ requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> f
     for (std::size_t k = from; k < to; ++k)
       if (!take(k)) return false;
     if (!own) return true;
-    ++collisions;
-    made_.below_cutoff += collision.outcome.below_cutoff;
+    ++made_.counts.collisions;
+    made_.counts.below_cutoff += collision.outcome.below_cutoff;
     if (made_.last < time) made_.last = time;
     return true;
   }
   void outcomes(const std::uint32_t*, std::size_t) override {}
 
   void keep() override {
-    kept_ = {collisions,
-             made_,
+    kept_ = {made_,
              part_->edges(),
              report_->left.size(),
              report_->right.size(),
@@ -171,7 +171,7 @@ requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> f
              report_->to_right.at_end.size()};
   }
   void restore() override {
-    collisions = kept_.collisions, made_ = kept_.made;
+    made_ = kept_.made;
     part_->set_edges(kept_.edges);
     report_->left.resize(kept_.left, {false, T(0), T(0)}), report_->right.resize(kept_.right, {false, T(0), T(0)});
     report_->to_left.at_end.resize(kept_.at_left), report_->to_right.at_end.resize(kept_.at_right);
@@ -179,7 +179,6 @@ requires(!Watched<Masses>) struct Stepped<Inelastic<T>, GapSegment<T, Masses>> f
   }
 
   struct Kept {
-    std::uint64_t collisions;
     Made made;
     typename Part::Edges edges;
     std::size_t left, right, at_left, at_right;  // lengths of logs

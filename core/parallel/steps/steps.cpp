@@ -170,23 +170,22 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
   Collisions collisions(task, result);
   int passes = 0;
   for (scan(line, l, end); l.count > 0; ++passes, std::swap(l.candidates, l.waiting), l.count = l.later) {
-    if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return wrong_order;
+    if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return -1;
     if (passes % reach == reach - 1) [[unlikely]]
       for (std::size_t k = 0; k < l.count; ++k) line.guard(l.candidates[k] / StepLine::tile);
     decide(l, end);
-    if (l.firsts + l.at_edges == 0 && l.later > 0) return wrong_order;  // at the same time
+    if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
     collisions.make(line, l, task, scalars, end);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
       const std::size_t i = l.edges[k], left = line.left_of(i), right = line.right_of(i);
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
-      if (!scalars.collide(i)) return wrong_order;
+      if (!scalars.collide(i)) return -1;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
     }
     result.collisions += l.firsts;
   }
   renew_bounds(l);
-  const int failure = collisions.report(task, end, result);
-  return failure == 0 || planted(2) ? passes : failure;
+  return collisions.report(task, end, result) || planted(2) ? passes : -1;
 }
 
 std::size_t width() { return lanes; }

@@ -21,7 +21,6 @@ class StepScalars {
   StepScalars& operator=(const StepScalars&) = delete;
   virtual ~StepScalars() = default;
 
-  std::uint64_t collisions = 0;  // that `collide` has made at gaps of the segment's own
   // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order.
   virtual bool collide(std::size_t gap) = 0;
   // StepLaw::any: what comes of collisions at so many inner gaps; enters them in counts and ledger, and logs them where
@@ -58,11 +57,9 @@ struct StepTask {
   // lighter one, StepLine::reduced the reduced mass.
   bool unequal = false;
   double floor = 0;                  // a gap below it is for the event loop
-  double shortest = 0x1p-40;         // so is a flight shorter than this part of the time
   double rounder = 0, per_fine = 0;  // the ledger's grid
   double stop = 0;                   // local time up to which collisions are made
   std::uint64_t most = 0;            // fewer collisions than that
-  bool partly = false;               // whether it is of use to make those up to an earlier time
 };
 
 // At inner gaps.
@@ -71,8 +68,6 @@ struct StepResult {
   double last = -StepLine::never;  // time of the last one
   double low_last = 0;             // of pairs
   double lost = 0, rest = 0;       // for Ledger::add_sums
-  double reached = 0;              // local time up to which all collisions are made
-  std::uint64_t steps = 0;         // with those that were undone
 };
 
 // How a segment is computed: the length of a step (0: unknown), chosen such that it takes about so many passes; the
@@ -91,8 +86,7 @@ struct StepPace {
 
 struct Steps {
   const char* target;  // the vectors for which it is compiled
-  // Makes all collisions of the task, or part of them where that is of use; or returns false, and then the line may
-  // hold anything.
+  // Makes all collisions of the task; or returns false, and then the line may hold anything.
   bool (*run)(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result);
 };
 

@@ -58,10 +58,12 @@ ParticlesPointer ring(ParticleIndex n) {
   return std::make_shared<List<double>>(std::move(x), std::move(v), std::move(m), static_cast<double>(n));
 }
 
-template <class Run, class T, class Segments> [[gnu::noinline]] void by_loop(Run& run, const T& to, Segments& loop) {
+template <class Run, class T, class Segments>
+[[gnu::noinline, gnu::no_icf]] void by_loop(Run& run, const T& to, Segments& loop) {
   run.advance(to, loop);
 }
-template <class Run, class T, class Segments> [[gnu::noinline]] void by_steps(Run& run, const T& to, Segments& steps) {
+template <class Run, class T, class Segments>
+[[gnu::noinline, gnu::no_icf]] void by_steps(Run& run, const T& to, Segments& steps) {
   run.advance(to, steps);
 }
 

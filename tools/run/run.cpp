@@ -40,7 +40,7 @@ RunEnd end_of(Status status, bool order_lost) {
 
 ScalarChoice scalar_choice(const Run& run) {
   const ScalarRow& type = scalar_row(run.precision);
-  return {std::string(type.name), type.any_digits ? static_cast<unsigned>(run.digits) : 0};
+  return {std::string(type.name), type.digits == 0 ? static_cast<unsigned>(run.digits) : 0};
 }
 
 std::string precision_name(const Run& run) {

@@ -3,7 +3,7 @@
 //
 //   law(w, masses)
 //
-//   w        closing speed u_l - u_r > 0 of the two colliding particles
+//   w        closing speed v_l - v_r > 0 of the two colliding particles
 //   masses   theirs, as TwoMasses or EqualMasses; mu = m_l m_r / (m_l + m_r) is the reduced mass
 //
 // The outcome says what the two particles do: bounce, pass through each other (Newton's cradle: the left one comes out

@@ -41,8 +41,8 @@ template <Enclosing N> class CertainWalls {
   const Sizes& sizes() const { return sizes_; }  // only what walls add to them
 
   // Without gravity, of a collision that is known to be later than the last one of the particle.
-  std::optional<Doubt<N>> strike(Motion<N>& motion, const LastMeeting<N>& meeting,
-                                 const typename Motion<N>::Places& places, const N& after) {
+  [[gnu::noinline]] std::optional<Doubt<N>> strike(Motion<N>& motion, const LastMeeting<N>& meeting,
+                                                   const typename Motion<N>::Places& places, const N& after) {
     const End end = motion.lines.is_wall(meeting.l) ? End::left : End::right;
     const bool left = end == End::left;
     const ParticleIndex struck = left ? meeting.r : meeting.l;
@@ -100,8 +100,8 @@ template <Enclosing N> class CertainWalls {
 
   // With gravity: that a particle beside a ceiling did not meet it since its last collision, until a time when it meets
   // something else, the other wall perhaps.
-  std::optional<Doubt<N>> stays_open(const Motion<N>& motion, ParticleIndex particle, const N& until,
-                                     std::optional<ParticleIndex> met = {}) const {
+  [[gnu::noinline]] std::optional<Doubt<N>> stays_open(const Motion<N>& motion, ParticleIndex particle, const N& until,
+                                                       std::optional<ParticleIndex> met = {}) const {
     const ParticleIndex ceiling = is_positive(motion.acceleration) ? -1 : motion.lines.count();
     if (!motion.lines.holds(ceiling) || met == ceiling || particle != (ceiling < 0 ? 0 : ceiling - 1)) return {};
     const auto from_wall = departures_.find(particle);
@@ -114,7 +114,7 @@ template <Enclosing N> class CertainWalls {
                     open->first,  open->second};
   }
   // Two particles have met: what is known of where they come from holds no longer, but where they exchange their lines.
-  void met(ParticleIndex l, ParticleIndex r, bool exchange) {
+  [[gnu::noinline]] void met(ParticleIndex l, ParticleIndex r, bool exchange) {
     auto of_l = departures_.extract(l), of_r = departures_.extract(r);
     if (!exchange) return;
     if (!of_l.empty()) of_l.key() = r, departures_.insert(std::move(of_l));

@@ -553,7 +553,7 @@ TEST(Certificates, OfFallingParticlesHoldWhatAHundredDigitsGive) {
   EXPECT_GT(compare_all(draw_falling, 1, 60).proved, 40U);
 }
 
-TEST(SlowCertificates, OfFallingParticles) { EXPECT_GT(compare_all(draw_falling, 600000, 300).proved, 250U); }
+TEST(SlowCertificates, OfFallingParticles) { EXPECT_GT(compare_all(draw_falling, 600000, 300).proved, 220U); }
 TEST(SlowCertificates, BetweenWalls) { EXPECT_GT(compare_all(draw_walled, 500000, 560).proved, 500U); }
 TEST(SlowCertificates, OfLists) { EXPECT_GT(compare_all(draw_list, 100000, 3000).proved, 2000U); }
 TEST(SlowCertificates, OfRings) { EXPECT_GT(compare_all(draw_ring, 200000, 1000).proved, 600U); }

@@ -44,8 +44,7 @@
 // parabolas. To a floor, which comes up, the gap is still concave: the argument holds, given that the line meets the
 // wall at T, closing, which it does at one time only (certain_fall.hpp). To a ceiling the gap is convex on each flight.
 // There it is checked flight by flight:
-//   5. a particle beside the ceiling did not meet it since its last collision, when another one of it is made, and at
-//   t.
+//   5. at each collision of a particle beside the ceiling, and at t, it has not met the ceiling since its last one.
 // So the gap is positive at the end of each such flight, and a flight that ends at the ceiling does so where a convex
 // gap that was positive is 0 for the first time: it closes there.
 //

@@ -101,7 +101,7 @@ def draw_cooling(result, axes=None):
     top.plot(time[shown], law[shown], ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
     below.axhline(1, color=GREY, lw=0.8, zorder=0)
     top.set_ylabel(r"energy per particle $E\,/\,N$")
-    below.set(xlabel=r"time $t$", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
+    below.set(xlabel="time ($t$)", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
     top.legend(loc="lower left")
     return figure
 

@@ -135,7 +135,8 @@ def draw_widths(result, keys, axes=None):
         fine = np.geomspace(values[cut].min(), values[cut].max(), 200)
         axes.plot(fine, model_width(fine, at, spacing) if key == SPEED else model_width(at, fine, spacing), line,
                   color=colour, label=f"Eq. (13), {given}")
-        axes.set_xlabel(r"$u_0$ (circles)" if key == SPEED else r"$E_\mathrm{loss}$ (squares)", color=colour)
+        axes.set_xlabel(r"$u_0$ in $l/t$ (circles)" if key == SPEED else
+                        r"$E_\mathrm{loss}$ in $m\,l^2/t^2$ (squares)", color=colour)
         axes.set(xscale="log", yscale="log")
     ax.set_ylabel(r"width of the zone $2L$" if spacing != 1 else r"width of the zone $2L\,/\,l$")
     handles = [item for axes in (ax, other) for item in zip(*axes.get_legend_handles_labels())]

@@ -178,7 +178,8 @@ def draw_cuts(result, keys, axes=None):
         spread(axes[-1, column].set_xscale, x, 8)
         axes[-1, column].set_xlabel(key)
     for ax, name in zip(axes[:, 0], names):
-        ax.set_ylabel(name.replace("_", " "))
+        unit = result.sweep[name].unit
+        ax.set_ylabel(name.replace("_", " ") + (f" (${unit}$)" if unit not in ("", "1") else ""))
     return figure
 
 

@@ -33,6 +33,8 @@ template <Enclosing N> class CertainWall {
   CertainWall(const Wall<N>& wall, End end) : wall_(wall), end_(end), share_(N(1) + wall.restitution) {}
 
   bool thermal() const { return wall_.temperature > 0; }
+  // Of the speed x away from it.
+  N away(const N& speed) const { return end_ == End::left ? speed : -speed; }
 
   // The particle's place, that of the wall at the same time, and their velocities; `in`: how long after that they meet.
   struct Meeting {
@@ -43,31 +45,41 @@ template <Enclosing N> class CertainWall {
   // Makes the collision. False where it is open which double is next to the mass, on which a random speed depends.
   bool operator()(const Meeting& at, const N& mass, CertainAccount<N>& account) const {
     const N& w = at.closing;
-    N speed = wall_.restitution * w;
+    const std::optional<N> speed = speed_after(w, mass, false, account);
+    if (!speed) return false;
     if (thermal()) {
-      const std::optional<double> random = random_speed(mass, account.collisions);
-      if (!random) return false;
-      speed = N(*random);
-      at.velocity = away(speed) + at.wall_velocity;
-      at.place = at.wall_place - away(speed) * at.in;
+      at.velocity = away(*speed) + at.wall_velocity;
+      at.place = at.wall_place - away(*speed) * at.in;
     } else {
       at.place = N::combined(at.place, at.wall_place, at.place - at.wall_place, share_, share_).left;
       at.velocity = N::combined(at.velocity, at.wall_velocity, -away(w), share_, share_).left;
     }
-    const N kick = mass * away(w + speed), half = mass / N(2);
-    account.collisions += 1;
-    account.momentum += kick;
-    account.given += kick * at.wall_velocity;
-    if (thermal())
-      account.given += half * (speed - w) * (speed + w);
-    else
-      account.dissipated += half * (N(1) - wall_.restitution) * (N(1) + wall_.restitution) * (w * w);
+    enter(w, *speed, mass, at.wall_velocity, false, account);
     return true;
   }
 
- private:
-  N away(const N& speed) const { return end_ == End::left ? speed : -speed; }
+  // The speed of the next collision's particle afterwards, relative to the wall; nothing as above. `elastic`: as if it
+  // had the restitution 1, if it reflects.
+  std::optional<N> speed_after(const N& w, const N& mass, bool elastic, const CertainAccount<N>& account) const {
+    if (!thermal()) return elastic ? w : wall_.restitution * w;
+    const std::optional<double> random = random_speed(mass, account.collisions);
+    if (!random) return {};
+    return N(*random);
+  }
+  // Enters that collision in the account.
+  void enter(const N& w, const N& speed, const N& mass, const N& wall_velocity, bool elastic,
+             CertainAccount<N>& account) const {
+    const N kick = mass * away(w + speed), half = mass / N(2);
+    account.collisions += 1;
+    account.momentum += kick;
+    account.given += kick * wall_velocity;
+    if (thermal())
+      account.given += half * (speed - w) * (speed + w);
+    else if (!elastic)
+      account.dissipated += half * (N(1) - wall_.restitution) * (N(1) + wall_.restitution) * (w * w);
+  }
 
+ private:
   std::optional<double> random_speed(const N& mass, std::uint64_t collision) const {
     constexpr double inf = std::numeric_limits<double>::infinity();
     const double near = to_double(mass), above = std::nextafter(near, inf) - near,

@@ -40,82 +40,42 @@
 // hit on its right between two collisions with the wall: its place is concave and that of the wall linear, so the gap
 // is concave and the argument holds. So it does at the right one.
 //
+// Under gravity lines are seen from the frame that falls, where particles fly straight, as above, and the walls are
+// parabolas. To a floor, which comes up, the gap is still concave: the argument holds, given that the line meets the
+// wall at T, closing, which it does at one time only (certain_fall.hpp). To a ceiling the gap is convex on each flight.
+// There it is checked flight by flight:
+//   5. a particle beside the ceiling did not meet it since its last collision, when another one of it is made, and at
+//   t.
+// So the gap is positive at the end of each such flight, and a flight that ends at the ceiling does so where a convex
+// gap that was positive is 0 for the first time: it closes there.
+//
 // With a restitution of 0, w' = 0: particles stay together until one of them is hit, and the next collision fails 2.
 // Particles that merge have no gap any more. Particles that pass change places, and their gap is one of cells in the
 // order of the line, as it is in the engine. On a ring the argument holds for the images. Particles of a row that no
 // collision has reached fly in order, by how they were placed (rows.hpp).
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
-#include "cradle/core/certify/certain_law.hpp"
-#include "cradle/core/certify/certain_wall.hpp"
-#include "cradle/core/certify/side_by_side.hpp"
-#include "cradle/core/certify/world_lines.hpp"
+#include "cradle/core/certify/in_levels.hpp"
+#include "cradle/core/certify/inspection.hpp"
 
 namespace cradle {
-
-enum class Check { neighbours, closing, later, side, gap, before, agreement };
-
-// Where a proof ends: two quantities of which the first should be less, or on one side of the second.
-template <Enclosing N> struct Doubt {
-  Check check = Check::gap;
-  bool refuted = false;  // it is certain that it is not so; else it is open
-  ParticleIndex left = -1, right = -1;
-  N first{0}, second{0};
-};
-
-// What bounds the rounding of a run's particles (agreement.hpp), in plain doubles.
-struct Sizes {
-  std::uint64_t particles = 0;
-  double mass = 0, least_mass = 0, start_energy = 0, start_speed = 0, place = 0;  // speed, place: the largest
-  // Of walls: the largest speed of one, or of a particle that comes from one, and the energy that they have given,
-  // without what they have taken.
-  double wall_speed = 0, wall_energy = 0;
-
-  void add(double of_mass, double speed) {
-    least_mass = particles++ == 0 ? of_mass : std::min(least_mass, of_mass);
-    mass += of_mass;
-    start_energy += of_mass * speed * speed / 2;
-    start_speed = std::max(start_speed, std::abs(speed));
-  }
-};
-
-// What is certain at a time.
-template <Enclosing N> struct CertainState {
-  std::optional<Doubt<N>> doubt;
-  N energy{0};
-  N time{0}, closing{0};  // at a collision: of it
-  CertainAccounts<N> walls;
-  bool over = true;                          // no neighbours approach each other: there is no collision any more
-  std::optional<N> front_left, front_right;  // places of the outermost particles that have collided, on a line
-  // In powers of ten: the largest radius of a place, the smallest gap, the largest radius of one against itself.
-  double widest = nothing, least_gap = -nothing, widest_of_gap = nothing;
-  static constexpr double nothing = -std::numeric_limits<double>::infinity();
-  Sizes sizes;  // of the particles held
-};
 
 template <Enclosing N> class Checker {
  public:
   using Share = typename N::Share;
   using Line = WorldLine<N>;
+  using Places = typename Motion<N>::Places;
 
   Checker(std::shared_ptr<const Particles<N>> particles, const CertainLaw<N>& law)
-      : laws_(law), lines_(std::move(particles), !law.bounces_only()), length_(lines_.particles().circumference()),
-        half_(N(1) / N(2)), of_collisions_(!law.linear()) {
-    for (const End end : {End::left, End::right})
-      if (const Wall<N>* wall = lines_.particles().wall(end)) walls_[number_of(end)].emplace(*wall, end);
+      : laws_(law), motion_(std::move(particles), law), walls_(motion_.lines.particles()) {
     if constexpr (SideBySide<N>)
-      if (law.bounces_only() && law.linear() && lines_.identical_masses() && !law.contact_time)
-        bounces_.emplace(laws_.bouncing, law.cutoff ? *law.cutoff : N(-1), law.elastic);
+      if (law.bounces_only() && !motion_.of_collisions && motion_.lines.identical_masses() && !law.contact_time)
+        in_levels_.emplace(laws_.bouncing, law.cutoff ? *law.cutoff : N(-1), law.elastic);
   }
 
   // The particles at the start.
@@ -124,26 +84,26 @@ template <Enclosing N> class Checker {
   // The next collision of the run. Where it is in doubt, no world line is changed.
   std::optional<Doubt<N>> collision(ParticleIndex left, ParticleIndex right) {
     if (!are_neighbours(left, right)) return Doubt<N>{Check::neighbours, true, left, right};
-    auto doubt = strike(lines_.cluster(left), lines_.cluster(right));
-    if (doubt) doubt->left = left, doubt->right = right;
+    auto doubt = strike(motion_.lines.cluster(left), motion_.lines.cluster(right));
+    if (doubt && doubt->left == doubt->right) doubt->left = left, doubt->right = right;
     return doubt;
   }
 
   // The next collisions of the run, as one after the other. Those before the one that is in doubt are proved; after it
   // nothing more can be checked.
   using Pair = std::pair<ParticleIndex, ParticleIndex>;
-  struct DoubtAt {
-    std::size_t number;  // of the collision
-    Doubt<N> doubt;
-  };
-  std::optional<DoubtAt> collisions(std::span<const Pair> pairs) {
+  std::optional<DoubtAt<N>> collisions(std::span<const Pair> pairs) {
     if constexpr (SideBySide<N>) {
-      for (std::size_t begin = 0; bounces_ && begin < pairs.size(); begin += most_at_once)
-        if (auto doubt = side_by_side(pairs.subspan(begin, std::min(most_at_once, pairs.size() - begin)))) {
+      const auto neighbours = [this](ParticleIndex l, ParticleIndex r) { return are_neighbours(l, r); };
+      const auto collide = [this](ParticleIndex l, ParticleIndex r) { return collision(l, r); };
+      constexpr std::size_t most = InLevels<N>::most;
+      for (std::size_t begin = 0; in_levels_ && begin < pairs.size(); begin += most)
+        if (auto doubt = (*in_levels_)(pairs.subspan(begin, std::min(most, pairs.size() - begin)), motion_.lines,
+                                       proved_, neighbours, collide)) {
           doubt->number += begin;
           return doubt;
         }
-      if (bounces_) return std::nullopt;
+      if (in_levels_) return std::nullopt;
     }
     for (std::size_t k = 0; k < pairs.size(); ++k)
       if (auto doubt = collision(pairs[k].first, pairs[k].second)) return {{k, std::move(*doubt)}};
@@ -151,272 +111,130 @@ template <Enclosing N> class Checker {
   }
 
   // All that is certain at a time since the start, up to which the run has made all collisions.
-  CertainState<N> state_at(const N& time) const { return state_at(time, {}); }
+  CertainState<N> state_at(const N& time) const { return Inspection<N>(motion_, walls_, time, {}).state; }
   // At the last collision, of a run that ends with it: the two that have met are in one place.
   CertainState<N> state_now() const {
-    CertainState<N> state = state_at(last_.time, last_);
+    CertainState<N> state = Inspection<N>(motion_, walls_, last_.time, last_).state;
     state.time = last_.time, state.closing = last_.closing;
     return state;
   }
   // The particle or cluster that goes by the number of one of its particles, if that is held.
   std::optional<ParticleIndex> cluster(ParticleIndex particle) const {
-    if (!lines_.holds(particle)) return {};
-    return lines_.cluster(particle);
+    if (!motion_.lines.holds(particle)) return {};
+    return motion_.lines.cluster(particle);
   }
   // f(index, mass, place, velocity) for every particle or cluster held, by index.
   template <class F> void for_each(const N& time, F f) const {
-    for (ParticleIndex b = lines_.first(); b <= lines_.last(); ++b)
-      if (lines_.is_cluster(b) && !lines_.is_wall(b)) f(b, lines_.mass(b), place_at(b, time), lines_[b].velocity);
+    for (ParticleIndex b = motion_.lines.first(); b <= motion_.lines.last(); ++b)
+      if (motion_.lines.is_cluster(b) && !motion_.lines.is_wall(b))
+        f(b, motion_.lines.mass(b), motion_.place_at(b, time), motion_.velocity_at(b, time));
   }
 
-  // Collisions proved, those of them that were below a threshold, those that merged, and those of which times and sides
-  // were decided in plain doubles.
-  struct Proved {
-    std::uint64_t collisions = 0, below_cutoff = 0, merges = 0, in_doubles = 0;
-  };
   const Proved& proved() const { return proved_; }
 
  private:
-  struct Meeting {
-    ParticleIndex l = -1, r = -1;  // clusters, as they are after it: the same after a merger
-    N time{0}, closing{0};
-  };
-
-  CertainState<N> state_at(const N& time, const Meeting& now) const {
-    CertainState<N> state;
-    state.walls = accounts_, state.sizes = of_walls_;
-    const auto meets = [&](ParticleIndex b) { return b == now.l || b == now.r; };
-    N before{0}, present{0};
-    const bool walled = walls_[0] || walls_[1];
-    if (walled) check_walls(time, now, state);
-    const ParticleIndex first = walled ? std::max<ParticleIndex>(lines_.first(), 0) : lines_.first(),
-                        last = walled ? std::min(lines_.last(), lines_.count() - 1) : lines_.last();
-    for (ParticleIndex b = first; b <= last; ++b) {
-      const N mass = lines_.particles().mass(b), speed = lines_.particles().velocity(b);
-      before += mass * squared(speed);
-      state.sizes.add(to_double(mass), to_double(speed));
-      if (!lines_.is_cluster(b)) continue;
-      const Line& line = lines_[b];
-      present += lines_.mass(b) * squared(line.velocity);
-      const N x = place_at(b, time);
-      state.widest = std::max(state.widest, power_of_ten(x.radius()));
-      state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
-      if (line.touched && !meets(b))
-        if (const Order order = compare(line.changed, time); order != Order::less && !state.doubt)
-          state.doubt = Doubt<N>{Check::before, order == Order::greater, b, b, line.changed, time};
-      const ParticleIndex next = check_pair(b, x, time, now, state);
-      if (lines_.on_ring() || !line.touched) continue;
-      // Particles that no collision has reached stay between those that one has, in the order of their numbers: the
-      // first of several separate regions begins at the front on the left, the last one ends at that on the right.
-      const bool begins = lines_.left(b) == lines_.none || !lines_[lines_.left(b)].touched;
-      if (begins && !state.front_left) state.front_left = x;
-      if (next == lines_.none || !lines_[next].touched) state.front_right = x;
-    }
-    const bool all = lines_.first() <= 0 && lines_.last() + 1 >= lines_.count();
-    const N twice = all ? present : lines_.particles().kinetic_energy() * N(2) - before + present;
-    state.energy = twice * half_;
-    return state;
-  }
   // Takes in what stands beside them, too.
   bool are_neighbours(ParticleIndex left, ParticleIndex right) {
-    if (!lines_.holds(left) || !lines_.holds(right)) return false;
-    const ParticleIndex l = lines_.cluster(left), r = lines_.cluster(right);
-    if (lines_.right(l) != r || l == r) return false;
-    lines_.reach(l, r);
+    if (!motion_.lines.holds(left) || !motion_.lines.holds(right)) return false;
+    const ParticleIndex l = motion_.lines.cluster(left), r = motion_.lines.cluster(right);
+    if (motion_.lines.right(l) != r || l == r) return false;
+    motion_.lines.reach(l, r);
     return true;
   }
 
-  // Level by level: those of one share no particle. What plain doubles leave open is for strike(), and so is the last
-  // collision, since a run may end with it.
-  std::optional<DoubtAt> side_by_side(std::span<const Pair> pairs) {
-    const std::size_t last = pairs.size() - 1;
-    const Proved before = proved_;
-    std::uint64_t together = 0;
-    std::optional<DoubtAt> first;
-    levels_.begin(last);
-    for (std::size_t k = 0; k < last && !first; ++k) {
-      const auto [left, right] = pairs[k];
-      if (lines_.inside(left, right) || are_neighbours(left, right))
-        levels_.add(lines_[left], lines_[right], left);
-      else
-        first = {k, {Check::neighbours, true, left, right}};
-    }
-    levels_.sort(lines_.first(), lines_.last());
-    how_.assign(pairs.size(), in_doubles);
-    const auto alone = [&](std::size_t k) {
-      const Proved so_far = proved_;
-      auto doubt = collision(pairs[k].first, pairs[k].second);
-      if (doubt && (!first || k < first->number)) first = {k, std::move(*doubt)};
-      how_[k] = (proved_.in_doubles > so_far.in_doubles ? in_doubles : 0) |
-                (proved_.below_cutoff > so_far.below_cutoff ? below_cutoff : 0);
-    };
-    Line* lines = &lines_[lines_.first()];
-    for (std::size_t level = 0; level < levels_.count(); ++level)
-      for (auto rest = levels_[level]; !rest.empty();) {
-        const auto some = rest.first(std::min(rest.size(), Bounces<N>::most));
-        rest = rest.subspan(some.size());
-        for (std::size_t k = 0; k < some.size(); ++k) bounces_->put(k, lines[some[k].left], lines[some[k].right]);
-        bounces_->make(some.size());
-        for (std::size_t k = 0; k < some.size(); ++k) {
-          const auto [left, right, number] = some[k];
-          if (!bounces_->certain(k) || right == 0) {  // 0: over the seam
-            alone(number);
-            continue;
-          }
-          bounces_->get(k, lines[left], lines[right]);
-          ++together;
-          if (bounces_->below_cutoff(k)) ++proved_.below_cutoff, how_[number] |= below_cutoff;
-        }
-      }
-    proved_.collisions += together, proved_.in_doubles += together;
-    if (!first) alone(last);
-    if (!first) return std::nullopt;
-    proved_ = before;
-    proved_.collisions += first->number;
-    for (std::size_t k = 0; k < first->number; ++k) {
-      proved_.in_doubles += (how_[k] & in_doubles) != 0;
-      proved_.below_cutoff += (how_[k] & below_cutoff) != 0;
-    }
-    return first;
-  }
-
-  static N squared(const N& x) { return x * x; }
-  static double power_of_ten(auto radius) { return static_cast<double>(std::log10(radius)); }
-  [[gnu::noinline]] void check_walls(const N& time, const Meeting& now, CertainState<N>& state) const {
-    for (const ParticleIndex b : {lines_.first(), lines_.last()}) {
-      if (!lines_.is_wall(b)) continue;
-      const N x = place_at(b, time);
-      state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
-      check_pair(b, x, time, now, state);
-    }
-  }
-  [[gnu::always_inline]] N place_at(ParticleIndex b, const N& time) const {
-    const Line& line = lines_[b];
-    return line.place + line.velocity * (of_collisions_ ? time - origin(line) : time);
-  }
-
-  Order compare(const N& x, const N& y) const {
-    const Order order = order_in_doubles(x, y);
-    if (order != Order::open) return order;
-    needed_balls_ = true;
-    return order_in_balls(x, y);
-  }
-
-  // The gap right of b, which is at x; returns the particle there.
-  ParticleIndex check_pair(ParticleIndex b, const N& x, const N& time, const Meeting& now,
-                           CertainState<N>& state) const {
-    const ParticleIndex next = lines_.right(b);
-    if (next == lines_.none || next == b) return next;
-    if (!(b == now.l && next == now.r)) check_gap(b, next, x, time, state);
-    if (!state.over) return next;
-    const N closing = lines_[b].velocity - lines_[next].velocity;
-    state.over = is_negative(closing) || closing == zero_;
-    return next;
-  }
-  void check_gap(ParticleIndex b, ParticleIndex next, const N& x, const N& time, CertainState<N>& state) const {
-    N gap = place_at(next, time) - x;
-    if (b == lines_.seam()) gap += length_;
-    if (const Order order = compare(N(0), gap); order != Order::less && !state.doubt)
-      state.doubt = Doubt<N>{Check::gap, order == Order::greater, b, next, N(0), gap};
-    const double size = power_of_ten(gap.size());
-    state.least_gap = std::min(state.least_gap, size);
-    state.widest_of_gap = std::max(state.widest_of_gap, power_of_ten(gap.radius()) - size);
-  }
-
-  // Places of both at one time, in the image of the one on the right.
-  struct Places {
-    N left, right, time{0};
-  };
-  // Where a law is not linear, errors of velocities act on places from one collision to the next, and would from the
-  // start if that were the time that places are of: these are of a time near the collision. Other laws know no time.
-  Places places_of(const Line& l, const Line& r, const N& closing, bool over_seam) const {
-    Places at{l.place, r.place};
-    if (over_seam) at.left -= length_;
-    if (!of_collisions_) return at;
-    const N &of_l = origin(l), &of_r = origin(r);
-    const N then = to_double(of_l) < to_double(of_r) ? of_r : of_l;
-    at.left += l.velocity * (then - of_l), at.right += r.velocity * (then - of_r);
-    const N near = N((then - (at.left - at.right) / closing).middle(), 0), on = near - then;
-    return {at.left + l.velocity * on, at.right + r.velocity * on, near};
-  }
-  // The time that a line's place is of.
-  N origin(const Line& line) const { return of_collisions_ && line.touched ? N(line.changed.middle(), 0) : zero_; }
-
   [[gnu::flatten]] std::optional<Doubt<N>> strike(ParticleIndex at_l, ParticleIndex at_r) {
-    needed_balls_ = false;
-    Line &l = lines_[at_l], &r = lines_[at_r];
+    motion_.needed_balls = false;
+    const bool at_wall = motion_.lines.is_wall(at_l) || motion_.lines.is_wall(at_r);
+    if (at_wall && walls_.pulled()) return strike_falling(at_l, at_r);
+    Line &l = motion_.lines[at_l], &r = motion_.lines[at_r];
     const N closing = l.velocity - r.velocity;
-    if (!is_positive(closing)) return Doubt<N>{Check::closing, is_negative(closing), -1, -1, zero_, closing};
-    const bool over_seam = at_l == lines_.seam();
-    Places at = places_of(l, r, closing, over_seam);
+    if (!is_positive(closing)) return Doubt<N>{Check::closing, is_negative(closing), -1, -1, motion_.zero, closing};
+    const bool over_seam = at_l == motion_.lines.seam();
+    const Places at = motion_.places_of(l, r, closing, over_seam);
     const N apart = at.left - at.right, after = -(apart / closing);
     N time = after;
-    if (of_collisions_) time += at.time;
-    for (const Line* line : {&l, &r}) {
-      if (!line->touched) continue;
-      if (const Order order = compare(line->changed, time); order != Order::less)
-        return Doubt<N>{Check::later, order == Order::greater, -1, -1, line->changed, time};
+    if (motion_.of_collisions) time += at.time;
+    for (const Line* line : {&l, &r})
+      if (line->touched)
+        if (auto doubt = not_after(line->changed, time)) return doubt;
+    if (at_wall) {
+      const LastMeeting<N> meeting{at_l, at_r, time, closing};
+      if (auto doubt = walls_.strike(motion_, meeting, at, after)) return doubt;
+      return made(meeting, false);
     }
-    if (lines_.is_wall(at_l) || lines_.is_wall(at_r)) return strike_wall(at_l, at_r, at, closing, after, time);
+    if (walls_.pulled())
+      for (const ParticleIndex b : {at_l, at_r})
+        if (auto doubt = walls_.stays_open(motion_, b, time)) return doubt;
     CertainOutcome<N>& outcome = outcome_;
     outcome.clear();
     if (const auto open = outcome_of(at_l, at_r, closing, time, outcome))
       return Doubt<N>{Check::side, false, -1, -1, open->first, open->second};
     apply(outcome, at, apart, closing, l, r);
-    if (over_seam) (outcome.event == Event::pass ? r : l).place += length_;
+    if (over_seam) (outcome.event == Event::pass ? r : l).place += motion_.length;
     l.changed = time;
-    if (of_collisions_) l.changed = N::widened(at.time, after.size());
+    if (motion_.of_collisions) l.changed = N::widened(at.time, after.size());
     r.changed = l.changed;
     l.touched = r.touched = true;
+    if (walls_.pulled()) walls_.met(at_l, at_r, outcome.exchange);
     last_.l = at_l, last_.r = outcome.event == Event::merge ? at_l : at_r, last_.time = time, last_.closing = closing;
     if (outcome.event == Event::pass) std::swap(last_.l, last_.r);
     ++proved_.collisions;
-    proved_.in_doubles += !needed_balls_;
+    proved_.in_doubles += !motion_.needed_balls;
     proved_.below_cutoff += outcome.below_cutoff;
     proved_.merges += outcome.event == Event::merge;
-    if (outcome.event == Event::merge) lines_.merge(at_l, at_r);
-    if (outcome.event == Event::pass) lines_.pass(at_l, at_r);
+    if (outcome.event == Event::merge) motion_.lines.merge(at_l, at_r);
+    if (outcome.event == Event::pass) motion_.lines.pass(at_l, at_r);
     return std::nullopt;
   }
-
-  // Of one that is known to be later than the last one of the particle.
-  [[gnu::noinline]] std::optional<Doubt<N>> strike_wall(ParticleIndex at_l, ParticleIndex at_r, const Places& places,
-                                                        const N& closing, const N& after, const N& time) {
-    const End end = lines_.is_wall(at_l) ? End::left : End::right;
-    const bool left = end == End::left;
-    const ParticleIndex struck = left ? at_r : at_l;
-    Line& line = lines_[struck];
-    const N mass = lines_.mass(struck), &wall_place = left ? places.left : places.right;
-    N place = left ? places.right : places.left;
-    CertainAccount<N>& account = accounts_[number_of(end)];
-    const double given = to_double(account.given);
-    const typename CertainWall<N>::Meeting meeting{
-        place, line.velocity, wall_place, lines_[left ? at_l : at_r].velocity, closing, after};
-    if (!(*walls_[number_of(end)])(meeting, mass, account))
-      return Doubt<N>{Check::side, false, -1, -1, mass, N(to_double(mass))};
-    line.place = place;
-    line.changed = of_collisions_ ? N::widened(places.time, after.size()) : time;
-    line.touched = true;
-    of_walls_.wall_speed = std::max(
-        {of_walls_.wall_speed, std::abs(to_double(line.velocity)), std::abs(to_double(meeting.wall_velocity))});
-    of_walls_.wall_energy += std::max(0., to_double(account.given) - given);
-    last_ = {at_l, at_r, time, closing};
+  std::optional<Doubt<N>> not_after(const N& last, const N& time) const {
+    const Order order = motion_.compare(last, time);
+    if (order == Order::less) return {};
+    return Doubt<N>{Check::later, order == Order::greater, -1, -1, last, time};
+  }
+  std::optional<Doubt<N>> made(const LastMeeting<N>& meeting, bool below_cutoff) {
+    last_ = meeting;
     ++proved_.collisions;
-    proved_.in_doubles += !needed_balls_;
-    return std::nullopt;
+    proved_.in_doubles += !motion_.needed_balls;
+    proved_.below_cutoff += below_cutoff;
+    return {};
+  }
+
+  // With a wall, under gravity, where the law's cut-off and contact time hold for it too (chains/gravity.hpp).
+  [[gnu::noinline]] std::optional<Doubt<N>> strike_falling(ParticleIndex at_l, ParticleIndex at_r) {
+    const bool left = motion_.lines.is_wall(at_l);
+    typename CertainWalls<N>::Approaching at{left ? at_l : at_r, left ? at_r : at_l};
+    if (auto doubt = walls_.approach(motion_, at)) return doubt;
+    const Line& struck = motion_.lines[at.struck];
+    // A particle that rises from a floor, or falls from a ceiling, would have been there before the start.
+    if (auto doubt = not_after(struck.touched ? struck.changed : motion_.zero, at.time)) return doubt;
+    if (auto doubt = walls_.stays_open(motion_, at.struck, at.time, at.wall)) return doubt;
+    const auto less = [this](const N& x, const std::optional<N>& y, bool& is) -> std::optional<Doubt<N>> {
+      if (!y) return {};
+      const Order order = motion_.compare(x, *y);
+      if (order == Order::open) return Doubt<N>{Check::side, false, -1, -1, x, *y};
+      is = order == Order::less;
+      return {};
+    };
+    bool slow = false, soon = false;
+    const CertainLaw<N>& law = laws_.law;
+    if (auto doubt = law.contact_time ? std::nullopt : less(at.closing, law.cutoff, slow)) return doubt;
+    if (struck.touched)
+      if (auto doubt = less(at.time - struck.changed, law.contact_time, soon)) return doubt;
+    if (auto doubt = walls_.strike(motion_, at, slow || soon)) return doubt;
+    return made({at_l, at_r, at.time, at.closing}, slow);
   }
 
   typename CertainLaws<N>::Open outcome_of(ParticleIndex at_l, ParticleIndex at_r, const N& closing, const N& time,
                                            CertainOutcome<N>& outcome) const {
-    const Line &l = lines_[at_l], &r = lines_[at_r];
+    const Line &l = motion_.lines[at_l], &r = motion_.lines[at_r];
     CertainCollision<N> collision{closing, {}, {}, &l.velocity, &r.velocity};
     if (laws_.law.contact_time) {
       if (l.touched) collision.left_rest = time - l.changed;
       if (r.touched) collision.right_rest = time - r.changed;
     }
-    const auto order = [this](const N& x, const N& y) { return compare(x, y); };
-    if (lines_.identical_masses()) return laws_(collision, zero_, zero_, true, order, outcome);
-    return laws_(collision, lines_.mass(at_l), lines_.mass(at_r), false, order, outcome);
+    const auto order = [this](const N& x, const N& y) { return motion_.compare(x, y); };
+    if (motion_.lines.identical_masses()) return laws_(collision, motion_.zero, motion_.zero, true, order, outcome);
+    return laws_(collision, motion_.lines.mass(at_l), motion_.lines.mass(at_r), false, order, outcome);
   }
 
   void apply(const CertainOutcome<N>& outcome, const Places& at, const N& apart, const N& closing, Line& l,
@@ -439,28 +257,13 @@ template <Enclosing N> class Checker {
     r.velocity = outcome.right_velocity ? *outcome.right_velocity : velocities.right;
   }
 
-  static std::size_t number_of(End end) { return static_cast<std::size_t>(end); }
-
   CertainLaws<N> laws_;
-  WorldLines<N> lines_;
-  std::array<std::optional<CertainWall<N>>, 2> walls_;
-  CertainAccounts<N> accounts_;
-  Sizes of_walls_;  // only what walls add to them
-  N length_, zero_{0};
-  N half_;
-  bool of_collisions_;  // laws that are not linear: places are of the time of a particle's last collision, not of the
-                        // start
+  Motion<N> motion_;
+  CertainWalls<N> walls_;
   Proved proved_;
-  Meeting last_;
+  LastMeeting<N> last_;
   CertainOutcome<N> outcome_;  // of the collision at hand
-  mutable bool needed_balls_ = false;
-
-  // ---- of collisions side by side
-  std::optional<Bounces<N>> bounces_;
-  Levels levels_;
-  static constexpr std::size_t most_at_once = 2048;  // so that lists stay in the nearest caches
-  static constexpr std::uint8_t in_doubles = 1, below_cutoff = 2;
-  std::vector<std::uint8_t> how_;  // each collision was decided
+  std::optional<InLevels<N>> in_levels_;
 };
 
 }  // namespace cradle

@@ -322,7 +322,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
     bool rested = true;
     if constexpr (LawWithMemory<Law, T>)
-      rested = memory_.rested({s}, s, time, law.contact_time(), local_time(start()), slots());
+      rested = memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots());
     const T& mass = line_.masses[walls_.left_of(particle(s)) ? s + 1 : s];
     if constexpr (falls) {
       const T w = closing_when_due(s);

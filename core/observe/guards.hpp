@@ -31,7 +31,16 @@
 //   |dx| <= delta (extent + U t),   extent that at the start or now, whichever is more: the particles at the ends are
 //                                   pushed outwards only,
 //
-// since errors of speeds have acted at most for the time t. Moving and thermal walls add energy: with them E is the
+// since errors of speeds have acted at most for the time t.
+//
+// If closing speeds between two walls, or around a ring, do not add up to that of its ends but to S, the particles move
+// as if one end had the speed S too, and it does work on them. By then it has moved by d = integral of S dt, which is
+// what gaps fail to add up by. The mean force on the ends is 2 K/L, K the kinetic energy and L the room: the virial G =
+// sum m x v has dG/dt = 2 K - F L. So the work is (2 K/L) d, and the integral of G dS/L, which is in the table above. S
+// is a sum of roundings that walks at random, so d and the energy grow as C^(3/2): faster than delta. Therefore
+// 2 (2 E/L) |d| is added, d as it is found. (Twice that: while E falls, d may have been larger before.)
+//
+// Moving and thermal walls add energy: with them E is the
 // energy for which the ledger of losses is made (Walled::energy_to_lose). Under gravity energies are sums of kinetic
 // and potential ones, E is the largest kinetic one (Particles::most_kinetic_energy), and an error dx of all places adds
 // |a| M dx to that of the energy.
@@ -71,6 +80,22 @@ template <Real T> T root_above(const T& x) {
   for (int step = 0; step < 2; ++step) root = (root + x / root) / T(2);
   return root;
 }
+
+namespace detail {
+
+// 2 (2 E/L) |d| as above; 0 where nothing encloses the particles.
+template <Real T>
+T work_at_ends(const Configuration<T>& c, const Particles<T>& particles, const T& twice_energy, const T& elapsed) {
+  const bool between = particles.wall(End::left) != nullptr && particles.wall(End::right) != nullptr;
+  if (!c.closure_gap || !(between || particles.on_ring())) return T(0);
+  const ParticleIndex last = particles.count();
+  const T room = between ? T(particles.position(last) - particles.position(-1) +
+                             (particles.velocity(last) - particles.velocity(-1)) * elapsed)
+                         : particles.circumference();
+  return is_positive(room) ? T(T(2) * twice_energy * magnitude(*c.closure_gap) / room) : T(0);
+}
+
+}  // namespace detail
 
 // `energy`: what the ledger leaves, potential energy included; `elapsed`: since the start; `ordered`: the account has
 // no lost order.
@@ -127,7 +152,8 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   const T extent = magnitude(c.x.front()) + magnitude(c.x.back()) + extent_before + particles.circumference();
   const T of_place = delta * (extent + top_speed * magnitude(elapsed));
   const T of_fall = fall ? T(magnitude(acceleration) * mass * of_place) : T(0);
-  const T of_energy = delta * twice_energy + of_sums * top_speed * all_as_one + of_fall;
+  const T of_energy = delta * twice_energy + of_sums * top_speed * all_as_one + of_fall +
+                      detail::work_at_ends(c, particles, twice_energy, elapsed);
   // No particle has more than the total energy.
   if (!(most_energy <= twice_energy + T(2) * of_energy)) report(Guard::energy, most_energy, twice_energy);
   const T off_energy = magnitude(T(rest + twice.value() / T(2) - energy));

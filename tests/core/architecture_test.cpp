@@ -88,7 +88,9 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
       R"(ceil|round|min|max|isnan|isfinite|ldexp|frexp)\b)");
   const std::vector<std::string> on_double{"core/certify/certain_power.hpp",  // bounds
                                            "core/certify/certain_wall.hpp",   // random speeds
-                                           "core/certify/checker.hpp",        // radii
+                                           "core/certify/certain_state.hpp",  // sizes
+                                           "core/certify/certain_walls.hpp",  // sizes
+                                           "core/certify/inspection.hpp",     // radii
                                            "core/chains/configuration.hpp",
                                            "core/initial/counter_rng.hpp",
                                            "core/laws/elementary.hpp",  // exponents

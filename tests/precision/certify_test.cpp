@@ -62,11 +62,6 @@ TEST(Certify, CollisionsOfTheExactGasAreProved) {
   EXPECT_GE(counted, 400U);
 }
 
-bool shares_a_particle(const std::pair<ParticleIndex, ParticleIndex>& a,
-                       const std::pair<ParticleIndex, ParticleIndex>& b) {
-  return a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second;
-}
-
 TEST(Certify, ARunThatIsWrongInOneCollisionIsNeverProved) {
   std::uint64_t mutants = 0, of_side = 0;
   for (std::uint64_t number = 0; number < 500; ++number) {
@@ -271,7 +266,7 @@ void compare_side_by_side(const std::shared_ptr<const Particles<B>>& particles, 
                           const Pairs& collisions, std::size_t piece, bool proves) {
   Checker<B> one(particles, law), many(particles, law);
   std::optional<Doubt<B>> doubt;
-  std::optional<Checker<B>::DoubtAt> at;
+  std::optional<DoubtAt<B>> at;
   for (std::size_t k = 0; k < collisions.size() && !doubt; k += piece) {
     const std::span<const Checker<B>::Pair> some =
         std::span(collisions).subspan(k, std::min(piece, collisions.size() - k));

@@ -79,11 +79,6 @@ TEST(CertifyWalls, CollisionsOfTheExactGasAreProved) {
   EXPECT_GE(counted, all * 9 / 10);
 }
 
-bool shares_a_particle(const std::pair<ParticleIndex, ParticleIndex>& a,
-                       const std::pair<ParticleIndex, ParticleIndex>& b) {
-  return a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second;
-}
-
 TEST(CertifyWalls, ARunThatIsWrongInOneCollisionIsNeverProved) {
   std::uint64_t mutants = 0;
   for (std::uint64_t number = 0; number < 250; ++number) {
@@ -161,32 +156,6 @@ TEST(CertifyWalls, ACollisionWithAWallBeforeTheLastOneOfItsParticleIsRefuted) {
   EXPECT_TRUE(doubt->refuted);
 }
 
-// Balls of the start that are wide: every state in them has its own motion, which stays within the balls.
-// Those of neighbours differ.
-double spread(ParticleIndex particle) { return particle % 2 == 0 ? 0x1p-28 : 0x1p-22; }
-std::shared_ptr<const Particles<B>> wide_particles(const Drawn& d) {
-  const auto narrow = particles_of<B>(d);
-  std::vector<B> x, v, m;
-  for (ParticleIndex b = 0; b < narrow->count(); ++b) {
-    x.push_back(B::widened(narrow->position(b), spread(b)));
-    v.push_back(B::widened(narrow->velocity(b), spread(b)));
-    m.push_back(narrow->mass(b));
-  }
-  const auto wall = [&](End end) {
-    return narrow->wall(end) == nullptr ? std::optional<Wall<B>>() : std::optional(*narrow->wall(end));
-  };
-  return std::make_shared<Walled<B>>(std::make_shared<List<B>>(x, v, m), wall(End::left), wall(End::right));
-}
-// At an end of each ball, or in its middle.
-template <class T> Gas<T> off_the_middle(Gas<T> gas, std::uint64_t number) {
-  std::uint64_t index = 0;
-  const auto off = [&](const auto& cell) {
-    return T(static_cast<int>(random_bits(17, number, index++) % 3) - 1) * T(spread(cell.particles.front()));
-  };
-  for (auto& cell : gas.cells) cell.origin += off(cell), cell.v += off(cell);
-  return gas;
-}
-
 TEST(CertifyWalls, EveryStateInTheBallsOfTheStartStaysInThem) {
   std::uint64_t counted = 0;
   for (std::uint64_t number = 0; number < 200; ++number) {
@@ -253,29 +222,6 @@ TEST(CertifyWalls, AMassBetweenTwoDoublesHasNoCertainRandomSpeed) {
 }
 
 // ---- restitutions of the closing speed
-
-Rational of_decimals(const bin_float& x) {
-  if (abs(x) < bin_float(1e-200)) return Rational(0);
-  return decimal<Rational>(x.str(90, std::ios_base::scientific));
-}
-// Known to 80 digits.
-bool holds_wide(const B& x, const bin_float& number) {
-  const Rational off = exact(x) - of_decimals(number);
-  return (off < 0 ? -off : off) <= exactly(x.radius()) + exactly(1e-80);
-}
-
-template <class To, class From> Gas<To> converted(const Gas<From>& gas) {
-  const auto number = [](const From& x) { return To(numerator(x)) / To(denominator(x)); };
-  Gas<To> to;
-  for (const auto& cell : gas.cells)
-    to.cells.push_back({number(cell.origin), number(cell.v), number(cell.m), cell.particles});
-  to.restitution = number(gas.restitution), to.cutoff = number(gas.cutoff);
-  for (std::size_t side = 0; side < 2; ++side)
-    if (gas.walls[side])
-      to.walls[side] = {number(gas.walls[side]->origin), number(gas.walls[side]->v),
-                        number(gas.walls[side]->restitution)};
-  return to;
-}
 
 TEST(CertifyRestitutionOfSpeed, WhatIsProvedIsWhatAHundredDigitsGive) {
   std::uint64_t counted = 0, collisions_proved = 0;

@@ -48,6 +48,7 @@ struct Drawn {
   int cutoff = 0, length = 0;
   bool sticky = false;
   std::array<std::optional<DrawnWall>, 2> walls = {};  // left, right
+  int acceleration = 0;
 };
 
 inline Drawn draw(std::uint64_t number, bool sticky) {
@@ -96,6 +97,18 @@ inline Drawn draw_with_walls(std::uint64_t number) {
   return d;
 }
 
+// The same under gravity, to the left or to the right; of half of them one or two particles.
+inline Drawn draw_falling(std::uint64_t number) {
+  Drawn d = draw_with_walls(number);
+  if (random_bits(13, number, 2) % 2 == 0) {
+    const auto few = static_cast<std::size_t>(1 + random_bits(13, number, 3) % 2);
+    d.gaps.resize(few), d.velocities.resize(few), d.masses.resize(few);
+  }
+  const auto pull = static_cast<int>(1 + random_bits(13, number, 0) % 256);
+  d.acceleration = random_bits(13, number, 1) % 2 == 0 ? pull : -pull;
+  return d;
+}
+
 // Where a wall stands, in 64ths, and its velocity.
 inline int place_of(const Drawn& d, std::size_t side) {
   if (side == 0) return -d.walls[0]->gap;
@@ -126,6 +139,7 @@ inline Gas<Rational> gas_of(const Drawn& d) {
                        std::sqrt(temperature / static_cast<double>(mass)));
       };
   }
+  gas.acceleration = Rational(d.acceleration) / 64;
   gas.law = d.sticky ? GasLaw::sticky : GasLaw::inelastic;
   return gas;
 }
@@ -139,7 +153,7 @@ template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn&
     place += d.gaps[b];
   }
   auto particles = std::make_shared<List<T>>(x, v, m, unit(d.length));
-  if (!d.walls[0] && !d.walls[1]) return particles;
+  if (!d.walls[0] && !d.walls[1] && d.acceleration == 0) return particles;
   std::array<std::optional<Wall<T>>, 2> walls;
   for (std::size_t side = 0; side < 2; ++side)
     if (d.walls[side])
@@ -149,7 +163,7 @@ template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn&
                             d.walls[side]->temperature,
                             wall_seed,
                             0};
-  return std::make_shared<Walled<T>>(particles, walls[0], walls[1]);
+  return std::make_shared<Walled<T>>(particles, walls[0], walls[1], unit(d.acceleration));
 }
 
 inline CertainLaw<B> law_of(const Drawn& d) {
@@ -159,6 +173,62 @@ inline CertainLaw<B> law_of(const Drawn& d) {
   law.elastic = std::string(d.restitution) == "1";
   if (d.cutoff > 0) law.cutoff = B(d.cutoff) / B(64);
   return law;
+}
+
+inline Rational of_decimals(const bin_float& x) {
+  if (abs(x) < bin_float(1e-200)) return Rational(0);
+  return decimal<Rational>(x.str(90, std::ios_base::scientific));
+}
+// Known to 80 digits.
+inline bool holds_wide(const B& x, const bin_float& number) {
+  const Rational off = exact(x) - of_decimals(number);
+  return (off < 0 ? -off : off) <= exactly(x.radius()) + exactly(1e-80);
+}
+
+template <class To, class From> Gas<To> converted(const Gas<From>& gas) {
+  const auto number = [](const From& x) { return To(numerator(x)) / To(denominator(x)); };
+  Gas<To> to;
+  for (const auto& cell : gas.cells)
+    to.cells.push_back({number(cell.origin), number(cell.v), number(cell.m), cell.particles});
+  to.restitution = number(gas.restitution), to.cutoff = number(gas.cutoff);
+  to.acceleration = number(gas.acceleration);
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!gas.walls[side]) continue;
+    const GasWall<From>& wall = *gas.walls[side];
+    to.walls[side] = {number(wall.origin), number(wall.v), number(wall.restitution)};
+    if (wall.random_speed)
+      to.walls[side]->random_speed = [=](std::uint64_t collision, const To& mass) {
+        return number(wall.random_speed(collision, From(of_decimals(mass))));
+      };
+  }
+  return to;
+}
+
+// Balls of the start that are wide: every state in them has its own motion, which stays within the balls.
+// Those of neighbours differ.
+inline double spread(ParticleIndex particle) { return particle % 2 == 0 ? 0x1p-28 : 0x1p-22; }
+inline std::shared_ptr<const Particles<B>> wide_particles(const Drawn& d) {
+  const auto narrow = particles_of<B>(d);
+  std::vector<B> x, v, m;
+  for (ParticleIndex b = 0; b < narrow->count(); ++b) {
+    x.push_back(B::widened(narrow->position(b), spread(b)));
+    v.push_back(B::widened(narrow->velocity(b), spread(b)));
+    m.push_back(narrow->mass(b));
+  }
+  const auto wall = [&](End end) {
+    return narrow->wall(end) == nullptr ? std::optional<Wall<B>>() : std::optional(*narrow->wall(end));
+  };
+  return std::make_shared<Walled<B>>(std::make_shared<List<B>>(x, v, m), wall(End::left), wall(End::right),
+                                     narrow->acceleration());
+}
+// At an end of each ball, or in its middle.
+template <class T> Gas<T> off_the_middle(Gas<T> gas, std::uint64_t number) {
+  std::uint64_t index = 0;
+  const auto off = [&](const auto& cell) {
+    return T(static_cast<int>(random_bits(17, number, index++) % 3) - 1) * T(spread(cell.particles.front()));
+  };
+  for (auto& cell : gas.cells) cell.origin += off(cell), cell.v += off(cell);
+  return gas;
 }
 
 constexpr int until = 4;
@@ -218,6 +288,8 @@ inline Collisions made(const Drawn& d) {
     const InelasticMerging<double> merging(Inelastic<double>(0.), std::numeric_limits<double>::max());
     return made_by(Simulation(merging, ClusterChain<double>(particles, 0.)));
   }
+  if (d.acceleration != 0)
+    return made_by(Simulation(law, GapChain<double, IndividualMasses<double>, Gravity<double>>(particles, 0.)));
   return made_by(Simulation(law, GapChain<double, IndividualMasses<double>>(particles, 0.)));
 }
 
@@ -225,6 +297,11 @@ inline std::uint64_t digest_of(const Collisions& collisions) {
   Trace trace;
   for (const auto& [left, right] : collisions) trace.collision(left, right);
   return trace.digest();
+}
+
+inline bool shares_a_particle(const std::pair<ParticleIndex, ParticleIndex>& a,
+                              const std::pair<ParticleIndex, ParticleIndex>& b) {
+  return a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second;
 }
 
 }  // namespace cradle::test::drawn

@@ -1,6 +1,7 @@
 // A gas that shares no code with the engine or the checker of proofs: it searches all pairs of neighbours for the next
 // collision. A particle's stored position is extrapolated back to time 0, which keeps rationals short. In rationals it
-// is exact; scenes with roots use 100 digits.
+// is exact; scenes with roots use 100 digits. Under gravity this is so in a frame that falls; of both times at which a
+// parabola meets a wall, each by the textbook's formula, it takes the first that is to come.
 #pragma once
 
 #include <algorithm>
@@ -37,12 +38,14 @@ template <class T> struct Gas {
   std::vector<Cell> cells;
   GasLaw law = GasLaw::inelastic;
   T restitution{1}, cutoff{0}, contact_time{0}, merge_speed{0}, loss{0}, length{0};
+  T acceleration{0};                                 // of all particles, between walls; then roots are needed
   T cutoff_exponent{0};                              // above 0: the restitution depends on the speed
   std::array<std::optional<GasWall<T>>, 2> walls{};  // left, right
 
   T time{0};
   std::uint64_t collisions = 0, below_cutoff = 0, merges = 0;
-  bool tied = false;  // three particles met at one time: the motion after that is undefined
+  std::optional<std::int64_t> latest{};  // the gap that closed last
+  bool tied = false;                     // three particles met at one time: the motion after that is undefined
 
   // Makes all collisions up to a time, or the first `most`.
   void advance(const T& until, std::uint64_t most) {
@@ -62,8 +65,16 @@ template <class T> struct Gas {
     for (std::size_t k = 0; k < pairs() && !tied; ++k)
       may_meet(static_cast<std::int64_t>(k), cells[after(k)].origin + seam(k) - cells[k].origin,
                cells[k].v - cells[after(k)].v);
-    if (walls[0] && !tied) may_meet(-1, cells.front().origin - walls[0]->origin, walls[0]->v - cells.front().v);
-    if (walls[1] && !tied) may_meet(last(), walls[1]->origin - cells.back().origin, cells.back().v - walls[1]->v);
+    if (acceleration != 0 && !tied) {
+      for (const bool left : {true, false}) {
+        const auto due = walls[left ? 0 : 1] ? falls_on(left) : std::nullopt;
+        if (due && (!first || *due < *first)) first = due, together.clear();
+        if (due && *due == *first) together.push_back(left ? -1 : last());
+      }
+    } else if (!tied) {
+      if (walls[0]) may_meet(-1, cells.front().origin - walls[0]->origin, walls[0]->v - cells.front().v);
+      if (walls[1]) may_meet(last(), walls[1]->origin - cells.back().origin, cells.back().v - walls[1]->v);
+    }
     if (!first || *first > until) return std::nullopt;
     time = *first;
     for (const std::int64_t a : together)
@@ -72,6 +83,7 @@ template <class T> struct Gas {
                (length > 0 && a != b && after(static_cast<std::size_t>(b)) == static_cast<std::size_t>(a));
     if (tied) return std::nullopt;
     const std::int64_t gap = together.front();
+    latest = gap;
     if (gap < 0 || (walls[1] && gap == last())) return strike(gap < 0);
     const auto k = static_cast<std::size_t>(gap);
     const std::pair collision{cells[k].particles.front(), cells[after(k)].particles.front()};
@@ -80,7 +92,7 @@ template <class T> struct Gas {
   }
   T energy() const {
     T twice(0);
-    for (const Cell& cell : cells) twice += cell.m * cell.v * cell.v;
+    for (const Cell& cell : cells) twice += cell.m * velocity(cell) * velocity(cell);
     return twice / 2;
   }
   const Cell* outermost(bool left) const {
@@ -98,7 +110,8 @@ template <class T> struct Gas {
       return std::find(cell.particles.begin(), cell.particles.end(), particle) != cell.particles.end();
     });
   }
-  T place(const Cell& cell) const { return cell.origin + cell.v * time; }
+  T place(const Cell& cell) const { return flown(cell) + acceleration * time * time / 2; }
+  T velocity(const Cell& cell) const { return cell.v + acceleration * time; }
   T gap_after(std::size_t k) const { return place(cells[after(k)]) - place(cells[k]) + seam(k); }
   T gap_to_wall(bool left) const {
     const GasWall<T>& wall = *walls[left ? 0 : 1];
@@ -109,24 +122,54 @@ template <class T> struct Gas {
 
  private:
   std::int64_t last() const { return static_cast<std::int64_t>(cells.size()) - 1; }
+  T flown(const Cell& cell) const { return cell.origin + cell.v * time; }
+
+  // When the outermost particle meets a wall under gravity: gap - w t - p t^2/2 = 0, the next time from now. Just
+  // after their own collision the gap is 0.
+  std::optional<T> falls_on(bool left) const {
+    if constexpr (std::is_same_v<T, Rational>) {
+      return {};
+    } else {
+      const Cell& cell = left ? cells.front() : cells.back();
+      const T p = left ? T(-acceleration) : acceleration,
+              w = left ? T(walls[0]->v - velocity(cell)) : T(velocity(cell) - walls[1]->v);
+      if (latest && *latest == (left ? -1 : last()) && *cell.touched == time) {
+        const T back = -2 * w / p;
+        return back > 0 ? std::optional(T(time + back)) : std::nullopt;
+      }
+      const T square = w * w + 2 * p * gap_to_wall(left);
+      if (!(square > 0)) return {};
+      std::optional<T> soonest;
+      for (const T& root : {T((-w - sqrt(square)) / p), T((-w + sqrt(square)) / p)})
+        if (root > 0 && (!soonest || root < *soonest)) soonest = root;
+      if (!soonest) return {};
+      return T(time + *soonest);
+    }
+  }
   std::size_t after(std::size_t k) const { return k + 1 < cells.size() ? k + 1 : 0; }
   T seam(std::size_t k) const { return k + 1 < cells.size() ? T(0) : length; }
 
   std::pair<std::int64_t, std::int64_t> strike(bool left) {
     Cell& cell = left ? cells.front() : cells.back();
     GasWall<T>& wall = *walls[left ? 0 : 1];
-    const T x = place(cell), before = cell.v, relative = before - wall.v;
-    cell.v = wall.random_speed ? T(left ? T(wall.v + wall.random_speed(wall.collisions, cell.m))
-                                        : T(wall.v - wall.random_speed(wall.collisions, cell.m)))
-                               : T(wall.v - wall.restitution * relative);
+    const T x = flown(cell), before = velocity(cell), relative = before - wall.v, size = left ? T(-relative) : relative;
+    const bool below = acceleration != 0 && law != GasLaw::contact_time && size < cutoff,
+               soon = acceleration != 0 && law == GasLaw::contact_time && cell.touched &&
+                      time - *cell.touched < contact_time;
+    const T of_wall = below || soon ? T(1) : wall.restitution;
+    const T after = wall.random_speed ? T(left ? T(wall.v + wall.random_speed(wall.collisions, cell.m))
+                                               : T(wall.v - wall.random_speed(wall.collisions, cell.m)))
+                                      : T(wall.v - of_wall * relative);
+    cell.v += after - before;
     cell.origin = x - cell.v * time;
     cell.touched = time;
     // The energy of the particle changes by what is given, less what is lost.
-    const T gain = cell.m * (cell.v * cell.v - before * before) / 2, inner = cell.m * relative * relative / 2;
-    const T lost = wall.random_speed ? T(0) : T(inner * (1 - wall.restitution * wall.restitution));
+    const T gain = cell.m * (after * after - before * before) / 2, inner = cell.m * relative * relative / 2;
+    const T lost = wall.random_speed ? T(0) : T(inner * (1 - of_wall * of_wall));
     wall.lost += lost;
     wall.given += gain + lost;
-    wall.momentum += cell.m * (cell.v - before);
+    wall.momentum += cell.m * (after - before);
+    below_cutoff += below;
     ++wall.collisions, ++collisions;
     const std::int64_t particle = cell.particles.front();
     return left ? std::pair{std::int64_t{-1}, particle} : std::pair{particle, last() + 1};
@@ -139,7 +182,7 @@ template <class T> struct Gas {
     const bool memory = law == GasLaw::contact_time && (rested(l) || rested(r));
     ++collisions;
     l.touched = r.touched = time;
-    const T x_l = place(l), x_r = place(r);
+    const T x_l = flown(l), x_r = flown(r);
     if (law == GasLaw::sticky || (law == GasLaw::merging && w < merge_speed) ||
         (law == GasLaw::wet && !(w * w > 2 * loss / reduced)))
       return merge(k, x_l);

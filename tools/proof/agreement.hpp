@@ -24,11 +24,14 @@
 // m (w + w') V, m (w^2 - w'^2)/2: with room for the rounding of these terms they are off by 4 M Delta u and 4 M u Delta
 // u.
 //
+// Under gravity E_0 + G is increased by what particles gain at most by falling, Sizes::fall_energy; free fall adds the
+// same to all velocities and places. How fast a falling particle meets a wall is not linear, as below.
+//
 // Energies: sqrt(2 E_0 M) Delta u + M (Delta u)^2/2 from the velocities and Delta E_0 from the sums. The time of a
 // collision with closing speed w: what its particles' places are off at that time, over w. Wet particles,
-// restitutions r(w) and thermal walls are not linear: what they make of an error shows in the radii of balls, which
-// grow as it does from roundings of at least the type of their midpoints; so many times wider than that as the run's
-// type is coarser, for each particle held, is allowed on top.
+// restitutions r(w), thermal walls and walls under gravity are not linear: what they make of an error shows in the
+// radii of balls, which grow as it does from roundings of at least the type of their midpoints; so many times wider
+// than that as the run's type is coarser, for each particle held, is allowed on top.
 #pragma once
 
 #include <fmt/format.h>
@@ -59,7 +62,8 @@ struct RunErrors {
 /// Of a run in a type of this epsilon, `time` the largest that it has had to do with.
 inline RunErrors run_errors(const Sizes& of, std::uint64_t collisions, bool means, long double epsilon,
                             long double time, long double circumference) {
-  const long double mass = of.mass, twice_energy = 2 * (static_cast<long double>(of.start_energy) + of.wall_energy),
+  const long double mass = of.mass,
+                    twice_energy = 2 * (static_cast<long double>(of.start_energy) + of.wall_energy + of.fall_energy),
                     delta = 8 * epsilon * (static_cast<long double>(collisions + of.particles) + 64);
   const long double fastest =
       std::max<long double>(means ? of.start_speed : std::sqrt(twice_energy / of.least_mass), of.wall_speed);

@@ -27,6 +27,10 @@ const char* question(Check check) {
     return "the gap between them is positive: the second exceeds the first";
   case Check::before:
     return "its last collision was before: the second time exceeds the first";
+  case Check::reaches:
+    return "it falls on the wall: the square of its speed there, the second, exceeds the first";
+  case Check::turns:
+    return "the gap stays open between two collisions under gravity: the second exceeds the first";
   case Check::agreement:
     return "the run has the number that is proved: first against second";
   }

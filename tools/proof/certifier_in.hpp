@@ -39,10 +39,11 @@ template <Enclosing N> CertainLaw<N> certain_law(const Scene& scene) {
     law.merge_speed = number<N>(scene.run.merge_speed);
     return law;
   }
-  // To elastic particles a cut-off does nothing.
-  if (!law.elastic && scene.law.cutoff > Decimal("0")) law.cutoff = number<N>(scene.law.cutoff);
+  // To elastic particles a cut-off does nothing; under gravity it holds for walls too.
+  const bool acts = !law.elastic || scene.gravity.acts();
+  if (acts && scene.law.cutoff > Decimal("0")) law.cutoff = number<N>(scene.law.cutoff);
   if (!law.elastic && scene.law.cutoff_exponent) law.cutoff_exponent = number<N>(*scene.law.cutoff_exponent);
-  if (!law.elastic && scene.run.collapse == tools::scene::CollapsePolicy::contact_time)
+  if (acts && scene.run.collapse == tools::scene::CollapsePolicy::contact_time)
     law.contact_time = number<N>(scene.run.contact_time);
   return law;
 }
@@ -54,8 +55,10 @@ template <class M> class CertifierIn final : public Certifier {
  public:
   CertifierIn(const Scene& scene, unsigned digits)
       : start_(number<N>(scene.run.start)), law_(certain_law<N>(scene)), particles_(initial_particles<N>(scene)),
-        means_(law_.kind != Kind::merging && (law_.kind != Kind::inelastic || particles_->identical_masses())),
-        linear_(law_.linear() && !scene.walls.left.temperature && !scene.walls.right.temperature),
+        means_(!particles_->fall() && law_.kind != Kind::merging &&
+               (law_.kind != Kind::inelastic || particles_->identical_masses())),
+        linear_(law_.linear() && !(particles_->fall() && particles_->walled()) && !scene.walls.left.temperature &&
+                !scene.walls.right.temperature),
         checker_(particles_, law_) {
     certificate_.digits = digits;
     certificate_.digits_text = digits == 31 ? "double-double" : fmt::format("mpfr, {} digits", digits);
@@ -132,8 +135,9 @@ template <class M> class CertifierIn final : public Certifier {
     Agreement<N> run(errors);
     run.count("collisions", sample.counts.collisions, proved.collisions);
     run.count("merges", sample.counts.merges, proved.merges);
-    // To elastic particles a cut-off does nothing, and none of them is counted here.
-    if (!law_.elastic) run.count("collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
+    // To elastic particles a cut-off does nothing, and without gravity none of them is counted here.
+    if (!law_.elastic || particles_->fall())
+      run.count("collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
     if (sample.at_collision)
       run.number("time of the last collision", sample.time_text, start_ + state.time, time_error(errors, since, state));
     else
@@ -266,7 +270,7 @@ template <class M> class CertifierIn final : public Certifier {
   void await_check() {
     if (checking_.valid()) report(checking_.get());
   }
-  void report(const std::optional<typename Checker<N>::DoubtAt>& doubt) {
+  void report(const std::optional<DoubtAt<N>>& doubt) {
     if (!doubt) return;
     certificate_.doubt = reported(doubt->doubt, checked_.times[doubt->number]);
     throw ProofEnds();
@@ -288,8 +292,8 @@ template <class M> class CertifierIn final : public Certifier {
   Certificate certificate_;
   std::size_t snapshots_ = 0;  // that the run has taken
   bool beside_ = false;
-  Proposed proposed_, checked_;                                        // next and last
-  std::future<std::optional<typename Checker<N>::DoubtAt>> checking_;  // last: waits for the thread at the end
+  Proposed proposed_, checked_;                      // next and last
+  std::future<std::optional<DoubtAt<N>>> checking_;  // last: waits for the thread at the end
 };
 
 template <class M> std::unique_ptr<Certifier> certifier_in(const Scene& scene, unsigned digits) {

@@ -48,9 +48,6 @@ std::optional<NotProvable> not_provable(const Scene& scene) {
   if (const auto& left = scene.walls.left.rest_speed; left || scene.walls.right.rest_speed)
     return {{left ? "walls.left.rest_speed" : "walls.right.rest_speed", "rest on a wall is not provable",
              (left ? left : scene.walls.right.rest_speed)->text, compare_precisions}};
-  // Between a particle that falls and a wall that it falls away from the gap is not concave (core/README.md).
-  if (scene.gravity.acts())
-    return {{"gravity.acceleration", "gravity is not provable", scene.gravity.acceleration->text, compare_precisions}};
   return {};
 }
 

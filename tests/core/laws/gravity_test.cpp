@@ -111,6 +111,20 @@ TEST(Gravity, ACutOffEndsTheCollapseOnTheFloor) {
   EXPECT_EQ(brief.energy_lost(), 2 - std::ldexp(1, -9));
 }
 
+// On a floor too any collision of the particle counts: here that with another one, 0.19 before, so nothing is lost
+// there.
+TEST(Gravity, AContactTimeCountsAllCollisionsOfAParticle) {
+  const auto particles = under(-1, list<double>({1, 1.5}, {0, -2}), Wall<double>{0.625, 0., 0.5});
+  const auto lost = [&](auto run) {
+    EXPECT_EQ(run.advance(0.4375), Status::reached);
+    EXPECT_EQ(run.counts().collisions, 2U);
+    return run.energy_lost();
+  };
+  const ContactTime<double> law(Inelastic<double>(0.5), 0.25);
+  EXPECT_NEAR(lost(falling(particles, law)), 0.25 * 4 * 0.75, 1e-15);
+  EXPECT_NEAR(lost(placed(particles, law)), 0.25 * 4 * 0.75, 1e-15);
+}
+
 // Without walls gravity changes no gap.
 TEST(Gravity, AColumnInFreeFallIsTheSame) {
   const Inelastic<double> law(0.9, 1e-2);

@@ -145,6 +145,21 @@ TEST(ShakenWalls, TheMotionIsPeriodic) {
   }
 }
 
+// A turn takes 1 + 3.9e-17 where the frequency is the double next to 2 pi, which is the smaller one; one more unit of
+// it makes that 1 - 1e-16. So half a turn before and after the k-th one the phase is on either side of the tip, by less
+// than a double next to k shows.
+TEST(ShakenWalls, AtATipTheTurnIsThatOfAllDigits) {
+  const double below = 2 * std::numbers::pi, above = std::nextafter(below, 7);
+  for (const int k : {1000, 10001, 654321}) {
+    const auto before = WallMotion<double>(Shape::sawtooth, 0.25, below, 0).at({k + 0.5, 0});
+    EXPECT_EQ(before.whole, k);
+    EXPECT_TRUE(0.25 < before.rest && before.rest < 0.5) << before.rest - 0.5;
+    const auto after = WallMotion<double>(Shape::sawtooth, 0.25, above, 0).at({k + 0.5, 0});
+    EXPECT_EQ(after.whole, k + 1);
+    EXPECT_TRUE(-0.5 <= after.rest && after.rest < -0.25) << after.rest + 0.5;
+  }
+}
+
 TEST(ShakenWalls, TheSameAtAnyCadenceAndFromASavedState) {
   for (const Shape shape : shapes) {
     const auto particles =

@@ -112,7 +112,12 @@ TEST_F(ShakenWallsInScenes, BadInputSaysWhatToDo) {
                                   "walls.right = { position = 9, motion = 'sine', amplitude = 6, frequency = 1 }\n"),
                   "walls that can meet"));
   EXPECT_TRUE(has(refused(scene + floor_of("sine", "restitution = 0")), "on which particles come to rest"));
-  EXPECT_TRUE(has(refused(scene + floor_of("sine", "rest_speed = 0.1")), "several particles"));
+  EXPECT_TRUE(has(refused(scene + floor_of("sine", "rest_speed = 0.1") +
+                          "walls.right = { position = 9, motion = 'sine', amplitude = 1, frequency = 1 }\n"),
+                  "between two shaken walls"));
+  EXPECT_TRUE(has(refused(scene + falls + floor_of("sine", "rest_speed = 0.1") +
+                          "walls.right = { position = 9, rest_speed = 1 }\n"),
+                  "two walls on which several particles can rest"));
   EXPECT_TRUE(has(refused(law + ball + until + "walls.left = { position = 0, rest_speed = 0.1 }\n"),
                   "key of a wall on which particles can rest"));
   EXPECT_TRUE(has(refused(law + ball + until + "run.coordinates = 'absolute'\n" + floor_of("sine", "rest_speed = 0.1")),

@@ -114,8 +114,9 @@ template <Enclosing N> class CertainLaws {
   using Share = typename N::Share;
   std::optional<CertainFall<N>> fall_;
 
+  // What bounces of constant restitution do not need is compiled apart from them: the checker inlines all of theirs.
   template <class Compare>
-  void merged(const N& l_mass, const N& r_mass, Compare compare, CertainOutcome<N>& outcome) const {
+  [[gnu::noinline]] void merged(const N& l_mass, const N& r_mass, Compare compare, CertainOutcome<N>& outcome) const {
     const N all = l_mass + r_mass;
     outcome.event = Event::merge;
     outcome.right_heavier = compare(l_mass, r_mass) == Order::less;
@@ -123,8 +124,8 @@ template <Enclosing N> class CertainLaws {
     outcome.right.emplace(l_mass / all);
   }
 
-  void of_speed(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass, bool identical,
-                CertainOutcome<N>& outcome) const {
+  [[gnu::noinline]] void of_speed(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass,
+                                  bool identical, CertainOutcome<N>& outcome) const {
     const N &w = collision.closing, &eps = law.restitution, missing = N(1) - eps;
     const auto falls = [&](const N& speed) { return (*fall_)(speed / *law.cutoff); };
     const auto [fall, weighted] = falls(w);
@@ -141,8 +142,8 @@ template <Enclosing N> class CertainLaws {
   // J(w) = mu (w - w') falls with w, at the rate mu (w/w' - 1). So v_l' = v_l - J(w)/m_l is J at the middle of w, and
   // what the radius of w makes of it at the greatest rate: enclosing J itself would forget that v_l is in w.
   template <class Compare>
-  Open wet(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass, Compare compare,
-           CertainOutcome<N>& outcome) const {
+  [[gnu::noinline]] Open wet(const CertainCollision<N>& collision, const N& l_mass, const N& r_mass, Compare compare,
+                             CertainOutcome<N>& outcome) const {
     const N& w = collision.closing;
     const N twice_loss = law.loss + law.loss, mu = l_mass * r_mass / (l_mass + r_mass), critical = twice_loss / mu;
     const N square = w * w;

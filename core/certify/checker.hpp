@@ -380,8 +380,8 @@ template <Enclosing N> class Checker {
   }
 
   // Of one that is known to be later than the last one of the particle.
-  std::optional<Doubt<N>> strike_wall(ParticleIndex at_l, ParticleIndex at_r, const Places& places, const N& closing,
-                                      const N& after, const N& time) {
+  [[gnu::noinline]] std::optional<Doubt<N>> strike_wall(ParticleIndex at_l, ParticleIndex at_r, const Places& places,
+                                                        const N& closing, const N& after, const N& time) {
     const End end = lines_.is_wall(at_l) ? End::left : End::right;
     const bool left = end == End::left;
     const ParticleIndex struck = left ? at_r : at_l;

@@ -64,6 +64,13 @@ class Pictures(unittest.TestCase):
         with cradle.open(small.shock()) as result:
             self.assertIsNone(exact(result, [1.0]))
 
+    def test_a_ring_that_loses_no_energy_is_not_beside_the_sticky_gas(self):
+        self.assertIn("energy", cradle.plot.names(small.tagged()))
+        self.assertNotIn("cooling", cradle.plot.names(small.tagged()))
+        figure = cradle.plot.ensemble(small.tagged_ensemble())
+        self.assertEqual([text for ax in figure.axes for text in ax.get_legend_handles_labels()[1]], ["mean"] * 2)
+        plt.close(figure)
+
     def test_draw_into_given_axes(self):
         figure, axes = plt.subplots(2, 2)
         given = cradle.plot.energy(small.shock(), axes=axes[:, 1])

@@ -10,8 +10,13 @@ ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
 STRETCH = 80  # particles of the last snapshot that are shown of the velocities
 
 
+def cools(result):
+    """Whether it is a ring whose particles lose energy."""
+    return result.word("initial", "type") == "ring" and result.setting("law", "restitution", 0.0) != 1
+
+
 def pictures(result, theory, _units):
-    if result.word("initial", "type") == "ring" and len(result.means.get("time", ())) > 1:
+    if cools(result) and len(result.means.get("time", ())) > 1:
         field = [("field", lambda axes=None: draw_field(result, axes))] if result.snapshots else []
         return [("cooling", lambda axes=None: draw_cooling(result, theory, axes))] + field
     return []

@@ -1,12 +1,13 @@
 """Fig. 4: energy and number of collisions against time."""
 import numpy as np
 
+from .cooling import cools
 from .style import BLUE, GREEN, GREY, ORANGE, lettered, subplots
 
 
 def pictures(result, theory, units):
     if (len(result.means.get("time", ())) > 1 and "energy" in result.means
-            and result.word("initial", "type") != "ring"):  # which has the cooling picture
+            and not cools(result)):  # which has a picture of its own
         return [("energy", lambda axes=None: draw_energy(result, theory, units, axes))]
     return []
 

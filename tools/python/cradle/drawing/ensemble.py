@@ -2,7 +2,7 @@
 extremes (light band); profiles; and the times of inelastic collapse if replicas stopped there."""
 import numpy as np
 
-from .cooling import ring_of, sticky_law
+from .cooling import cools, ring_of, sticky_law
 from .shock import draw_slope
 from .style import BLUE, GREY, ORANGE, beside, shades, stacked, thinned
 
@@ -46,8 +46,9 @@ def draw_series(result, theory, units, axes=None):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2, label="mean")
         ax.set_ylabel(units.energy_label() if name == "energy" else
                       label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else ""))
+    on_ring = result.word("initial", "type") == "ring"
     predicted = {"energy": ("energy_sticky", "sticky gas"), "front_right": ("front_position", "")}
-    for ax, (name, _) in zip(axes, shown):
+    for ax, (name, _) in zip(axes, [] if on_ring else shown):
         quantity, label = predicted.get(name, ("", ""))
         t, value = theory.curve(quantity)
         inside = t / units.t <= time[-1]
@@ -55,7 +56,7 @@ def draw_series(result, theory, units, axes=None):
             ax.plot(t[inside] / units.t, value[inside] / scale[name], "k--", lw=1,
                     label=label or theory.equation(quantity))
             ax.legend(loc="best")
-    if result.word("initial", "type") == "ring":
+    if cools(result):
         show_cooling(axes, result, time)
     return figure
 

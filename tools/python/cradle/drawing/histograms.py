@@ -4,10 +4,11 @@ import numpy as np
 
 from .style import BLUE, ORANGE, stacked
 
-LABELS = {"free_flight": "time between two collisions of a particle $t$",
-          "pair_flight": "time between two collisions of a pair $t$",
-          "closing_speed": "closing speed $w$", "dissipative_closing_speed": "closing speed by the law $w$",
-          "collisions_per_particle": "collisions of a particle", "gap": "gap $g$", "cluster": "particles of a cluster"}
+LABELS = {"free_flight": "time between two collisions of a particle ($t$)",
+          "pair_flight": "time between two collisions of a pair ($t$)",
+          "closing_speed": "closing speed ($l/t$)",
+          "dissipative_closing_speed": "closing speed of dissipative collisions ($l/t$)",
+          "collisions_per_particle": "collisions of a particle", "gap": "gap ($l$)", "cluster": "particles of a cluster"}
 
 
 def pictures(result, _theory, _units):

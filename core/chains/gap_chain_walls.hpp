@@ -101,8 +101,8 @@ Walls<T> GapChain<T, Masses, Field>::walls_at(const T& time) const requires(fall
     const Carried more = carried(s, time);
     all.carry(more.end, more.energy, more.momentum);
   };
-  for (const Slot s : {first(), last()})
-    if (field_.at_wall(particle(s))) carry(s);
+  if (field_.at_wall(particle(first()))) carry(first());
+  if (first() < last() && field_.at_wall(particle(last()))) carry(last());
   for (ParticleIndex h = 1; h < field_.resting(); ++h) carry(slot_in_pile(h));
   return all;
 }

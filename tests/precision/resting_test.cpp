@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "cradle/core/initial/walled.hpp"
-#include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 

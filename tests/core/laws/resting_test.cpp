@@ -168,7 +168,7 @@ TEST(Resting, APileIsLetGoAtTheExactTime) {
   ASSERT_LT(run.last_collision_time(), t / 2);
   const auto c = run.configuration(t + after);
   const double x = amplitude * std::sin(phi) + amplitude * omega * std::cos(phi) * after - after * after / 2;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(c.x[i], x, 1e-13);
     EXPECT_NEAR(c.v[i], amplitude * omega * std::cos(phi) - after, 1e-13);
   }

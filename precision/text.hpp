@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <locale>
 #include <sstream>
@@ -82,6 +83,23 @@ template <class T> struct StandardText {
 
 template <> struct Text<double> : detail::StandardText<double> {};
 template <> struct Text<long double> : detail::StandardText<long double> {};
+
+// For types whose bits are not at hand: as the text that gives the same number.
+template <class T> struct SavedAsText {
+  static void save(auto& to, const T& x) {
+    const std::string text = Text<T>::to(x);
+    const auto size = static_cast<std::uint8_t>(text.size());
+    to.put(&size, 1);
+    to.put(text.data(), text.size());
+  }
+  static void load(auto& from, T& x) {
+    std::uint8_t size = 0;
+    from.get(&size, 1);
+    std::string text(size, '\0');
+    from.get(text.data(), text.size());
+    x = Text<T>::from(text);
+  }
+};
 
 template <class T> T from_text(std::string_view literal) { return Text<T>::from(literal); }
 template <class T> std::string to_text(const T& value) {

@@ -20,7 +20,7 @@ template <Real T> struct Configuration {
   std::vector<ParticleIndex> index;  // n particles from left to right, by their number at the start
   std::vector<T> x, v, m;            // n
   std::vector<T> gap;  // n - 1, between neighbours; n on a ring, the last one from the last particle to the first
-  std::vector<T> closing_speed;  // as many, u_left - u_right
+  std::vector<T> closing_speed;  // as many, v_left - v_right
 
   // The sum of all gaps (closing speeds) subtracted from the distance (velocity difference) of the two outermost
   // particles, whose flight is known independently; on a ring, from the circumference (from 0): the accumulated

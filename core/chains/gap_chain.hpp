@@ -1,5 +1,5 @@
 #pragma once
-// The chain in gaps and closing speeds: for neighbours l, r the gap g >= 0 and the closing speed w = u_l - u_r. A
+// The chain in gaps and closing speeds: for neighbours l, r the gap g >= 0 and the closing speed w = v_l - v_r. A
 // collision transfers an impulse J from left to right and changes three gaps:
 //
 //   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.

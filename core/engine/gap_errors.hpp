@@ -2,9 +2,9 @@
 // Bounds on what rounding has done to the gaps and closing speeds of a few particles, from the history of their
 // collisions (README.md, "Collapse").
 //
-// As lines in time, G(t) = g - w t, gaps obey linear maps: a collision at s turns G_s into -e G_s and adds c G_s to the
+// As lines in time, G(t) = g - w t, gaps obey linear maps: a collision at i turns G_i into -r G_i and adds c G_i to the
 // line of each neighbour, whenever it comes. Errors obey exactly the same maps, and their bounds obey the maps with the
-// magnitudes e, 1 and c. The rounding of each operation of a collision is added where it happens.
+// magnitudes r, 1 and c. The rounding of each operation of a collision is added where it happens.
 
 #include <limits>
 #include <tuple>
@@ -39,11 +39,11 @@ template <Real T> LawError<T> law_error(const Outcome<T>& at_unit_speed, bool id
   const T rebound = T(-at_unit_speed.closing), &left = at_unit_speed.to_left, &right = at_unit_speed.to_right;
   const Roundoff<T> of;
   const T& unit = of.unit;
-  // e w: the decimal and a product. For e >= 1/2, w - 2 h with h = ((1 + e)/2) w: half of the decimal, a sum, a
+  // r w: the decimal and a product. For r >= 1/2, w - 2 f with f = ((1 + r)/2) w: half of the decimal, a sum, a
   // product.
   const bool soft = rebound + rebound < T(1);
   const T own = soft ? T(T(2) * unit * rebound) : T(unit * (T(5) * (left + right) / T(2) + rebound));
-  // Half of the velocity exchanged: h, or the result of e w and a sum.
+  // Half of the velocity exchanged: f, or the result of r w and a sum.
   const T of_half = T(5) * unit / T(2);
   if (identical_masses) return {own, T(of_half * left), T(of_half * right)};
   // The lighter particle's mass over the sum: two decimals, a sum, a quotient; then times the velocity exchanged. The

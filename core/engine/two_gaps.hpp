@@ -1,13 +1,13 @@
 #pragma once
 // Whether two neighbouring gaps collapse, and when, in closed form, with error bounds (README.md, "Collapse").
 //
-// A collision turns the closing speed w of its gap into -e w and adds c w to that of the other one. Let u be the speed
-// at which the gap of the last collision opens, g the other gap and w its closing speed, and let
+// The last collision was at gap 1, at time t. One there that closes at w turns its closing speed into -r_1 w and adds
+// c_1 w to that of gap 2; r_2, c_2 likewise. Let u be the speed at which gap 1 opens, g gap 2, w its closing speed, and
 //
-//   A = c c',  S = A - e - e',  L = (S + sqrt(S^2 - 4 e e'))/2,  k = c/(L + e)     (dashes: of the other gap)
+//   S = c_1 c_2 - r_1 - r_2,  L = (S + sqrt(S^2 - 4 r_1 r_2))/2,  k = c_1/(L + r_1),  z = w - k u.
 //
-// The two collapse if and only if S >= 2 sqrt(e e') and w > k u. Then t_c = t + g/(w - k u), and the intervals between
-// collisions at the same gap shrink by a factor that tends to e e'/L^2.
+// The two collapse if and only if S >= 2 sqrt(r_1 r_2) and z > 0. Then t_c = t + g/z, and the intervals between
+// collisions at the same gap shrink by a factor that tends to r_1 r_2/L^2.
 
 #include <cmath>
 #include <optional>
@@ -17,12 +17,12 @@
 
 namespace cradle {
 
-// Two gaps just after a collision at one of them, "here".
+// Two gaps just after a collision at one of them, gap 1, "here".
 template <Real T> struct TwoGaps {
-  T opening;                      // u, here
-  T gap, closing;                 // g and w of the other gap, there
-  T rebound_here, rebound_there;  // e, e'
-  T handed_there, handed_here;    // c: added there by a collision here, c': added here by one there
+  T opening;                      // u: r_1 times the closing speed of the last collision
+  T gap, closing;                 // g and w of gap 2, "there"
+  T rebound_here, rebound_there;  // r_1, r_2
+  T handed_there, handed_here;    // c_1: added there by a collision here, c_2: added here by one there
   T of_rebound, of_handed;        // relative errors of these
 };
 
@@ -59,7 +59,7 @@ std::optional<CollapseAhead<T>> collapse_ahead(const TwoGaps<T>& two, const GapE
   const T speed = two.closing - share * two.opening;
   const T of_speed = of_there.speed + share * of_here.speed + two.opening * (of_share + unit * share) + unit * speed;
   if (!(speed > of_speed + of_speed)) return {};
-  // The line of g plus k times the line here, which is 0 now, is 0 at t_c.
+  // The line of gap 2 plus k times that of gap 1, which is 0 now, is 0 at t_c.
   const T time = two.gap / speed, of_gaps = of_there.gap + share * of_here.gap, ratio = e * f / (larger * larger);
   const T of_time = (of_gaps + time * of_speed) / (speed - of_speed) + quotient * time;
   if (!is_finite(of_time)) return {};

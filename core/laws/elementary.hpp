@@ -88,6 +88,10 @@ template <Real T> class ExponentialRise {
     return rise;
   }
 
+  // For who computes it as vectors.
+  const std::vector<T>& reciprocals() const { return reciprocals_; }
+  const T& all() const { return all_; }
+
  private:
   std::vector<T> reciprocals_;  // 1/1, 1/2, ...
   T all_{0}, one_{1}, two_{2}, half_{T(1) / T(2)}, eighth_{T(1) / T(8)};
@@ -128,6 +132,12 @@ template <Real T> class Power {
     const T near = is_negative(rest) ? T(T(1) - rise_(T(-rest))) : T(T(1) / (T(1) - rise_(rest)));
     return detail::times_power_of_two(near, exponent);
   }
+
+  // For who computes it as vectors: s, and as a whole number or 0; reciprocals of odd numbers; ln 2.
+  const T& exponent() const { return exponent_; }
+  int whole() const { return whole_; }
+  const std::vector<T>& odd() const { return odd_; }
+  const T& ln2() const { return ln2_; }
 
  private:
   static constexpr int most_products = 64;

@@ -3,7 +3,7 @@
 //
 //   law(w, masses)
 //
-//   w        closing speed u_l - u_r > 0 of the two colliding particles
+//   w        closing speed v_l - v_r > 0 of the two colliding particles
 //   masses   theirs, as TwoMasses or EqualMasses; mu = m_l m_r / (m_l + m_r) is the reduced mass
 //
 // The outcome says what the two particles do: bounce, pass through each other (Newton's cradle: the left one comes out
@@ -178,6 +178,12 @@ template <Real T> class SpeedDependent {
   }
   bool scale_free() const { return false; }
   bool below_cutoff(const T& w) const { return w < cutoff_; }
+
+  // The law's numbers as they are used in computing: 1 - eps, delta, the functions of (w/delta)^sigma.
+  const T& missing() const { return missing_; }
+  const T& delta() const { return cutoff_; }
+  const Power<T>& power() const { return power_; }
+  const ExponentialRise<T>& rise() const { return rise_; }
 
  private:
   T missing_, cutoff_;

@@ -2,6 +2,7 @@
 // One of several laws, chosen when a run begins. Engines that are rarely used, or whose law takes a small part of the
 // time, are compiled once for all these laws. The first law costs a branch that the processor predicts.
 
+#include <concepts>
 #include <cstddef>
 #include <variant>
 
@@ -48,6 +49,16 @@ template <class L>
 concept LawChoice = requires(const L& law) {
   law.visit([](const auto&) {});
 };
+
+// The law as one of a certain type; null if it is another one.
+template <class Law, class L> const Law* law_as(const L& law) {
+  if constexpr (std::same_as<Law, L>)
+    return &law;
+  else if constexpr (LawChoice<L>)
+    return law.template as<Law>();
+  else
+    return nullptr;
+}
 
 template <LawChoice L> bool has_threshold(const L& law) {
   return law.visit([](const auto& own) { return has_threshold(own); });

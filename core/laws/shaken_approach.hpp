@@ -9,7 +9,7 @@
 //   sawtooth   on the k-th tooth the gap is that to a wall that never jumps, + 2 k A: a quadratic equation for each
 //              tooth, one after the other
 //   parabola   a quadratic equation for each arc, one after the other
-//   sine       w cannot grow faster than p + A omega^2, nor within a time h faster than p + s'' + A omega^3 h. So the
+//   sine       w cannot grow faster than p + A omega^2, nor within a time d faster than p + s'' + A omega^3 d. So the
 //              gap stays open for as long as one that closes at that rate; such waits are made one after the other.
 //              They end at the first root, from before it: at once, or by a constant factor each if it is double.
 //

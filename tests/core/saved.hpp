@@ -1,7 +1,10 @@
 #pragma once
-// Runs that continue from a saved state.
+// Runs and observers that continue from a saved state.
 
 #include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <stdexcept>
 
 #include "cradle/core/engine/state.hpp"
 
@@ -24,6 +27,27 @@ void expect_same_from_anywhere(const Make& make, double first, double step, doub
     later.advance(end);
     EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
     check(later, whole);
+  }
+}
+
+// The same of an observer, as it is before the first of so many samples; `add(observer, k)` adds number k. The state of
+// the complete one must be refused by all of `others`, which have other sizes.
+template <class Observer, class Add>
+void expect_continues(Observer whole, std::size_t samples, std::size_t cut, const Add& add,
+                      std::initializer_list<Observer> others) {
+  Observer later = whole;
+  for (std::size_t k = 0; k < samples; ++k) {
+    if (k == cut) {
+      SavedState state = SavedState::of(whole);
+      load(state, later);
+    }
+    add(whole, k);
+    if (k >= cut) add(later, k);
+  }
+  EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
+  for (Observer other : others) {
+    SavedState state = SavedState::of(whole);
+    EXPECT_THROW(load(state, other), std::invalid_argument);
   }
 }
 

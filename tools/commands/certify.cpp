@@ -35,11 +35,7 @@ Exit run_certify(const CertifyArguments& options) {
   check_overwrite(output, options.command(), &scene, options.force());
   Interrupt interrupt;
   note_signals(interrupt);
-  CertifyOptions how{{},
-                     options.progress ? Progress::Show::always
-                     : options.quiet  ? Progress::Show::never
-                                      : Progress::Show::on_terminal,
-                     &interrupt};
+  CertifyOptions how{{}, options.show(), &interrupt};
   how.digits = options.digits.empty() ? rising_digits() : options.digits;
   how.threads = options.threads;
   if (options.replicas > 0) {

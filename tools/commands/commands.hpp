@@ -9,6 +9,7 @@
 #include "cradle/tools/commands/options.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/store/overwrite.hpp"
+#include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
 
@@ -16,6 +17,10 @@ namespace cradle::tools {
 struct RunningOptions {
   unsigned threads = 0;
   bool quiet = false, progress = false;
+
+  Progress::Show show() const {
+    return progress ? Progress::Show::always : quiet ? Progress::Show::never : Progress::Show::on_terminal;
+  }
 };
 void add_running_options(Command& command, RunningOptions& options);
 

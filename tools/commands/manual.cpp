@@ -45,10 +45,8 @@ Exit manual(const CommandLine& program) {
       ".SH NAME\ncradle \\- one\\-dimensional granular gases, event by event\n"
       ".SH SYNOPSIS\n.B cradle\n.I COMMAND\n[OPTIONS]\n"
       ".SH DESCRIPTION\nSimulates point particles on a line or a ring that collide by one of three laws: inelastic, "
-      "wet, "
-      "sticky. SCENE is a scene file or, where no such file exists, the name of a bundled scene. Results are HDF5 "
-      "files. "
-      "Tables go to standard output, messages and progress to standard error.\n"
+      "wet, sticky. SCENE is a scene file or, where no such file exists, the name of a bundled scene. Results are HDF5 "
+      "files. Tables go to standard output, messages and progress to standard error.\n"
       ".SH COMMANDS\n",
       version);
   for (const CommandText& command : program.texts()) fmt::print("{}", command_text(command));

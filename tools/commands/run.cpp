@@ -30,11 +30,8 @@ std::string summary(const RunOutcome& run, std::uint64_t collisions_before, doub
 
 Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt) {
   const auto started = std::chrono::steady_clock::now();
-  const auto show = options.progress ? Progress::Show::always
-                    : options.quiet  ? Progress::Show::never
-                                     : Progress::Show::on_terminal;
   const Threads threads(options.threads);
-  RunOutcome end = run_scene(files.scene(), {show, nullptr, &interrupt, workers(threads), &files});
+  RunOutcome end = run_scene(files.scene(), {options.show(), nullptr, &interrupt, workers(threads), &files});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const std::string text = summary(end, files.collisions_before(), seconds);
   if (end.end == RunEnd::interrupted) {

@@ -24,9 +24,7 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   how.replicas = plan.replicas;
   how.threads = options.threads;
   how.force = plan.force;
-  how.progress = options.progress ? ProgressLine::Show::always
-                 : options.quiet  ? ProgressLine::Show::never
-                                  : ProgressLine::Show::on_terminal;
+  how.progress = options.show();
   const auto started = std::chrono::steady_clock::now();
   const EnsembleOutcome end = run_study(plan.study, how, output, *crew);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

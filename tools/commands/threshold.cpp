@@ -27,12 +27,8 @@ Exit run_threshold(const ThresholdArguments& options) {
   const FileClaim claim(output);
   Interrupt interrupt;
   note_signals(interrupt);
-  const Threshold found = find_threshold(question, output,
-                                         {interrupt,
-                                          options.progress ? Progress::Show::always
-                                          : options.quiet  ? Progress::Show::never
-                                                           : Progress::Show::on_terminal,
-                                          options.threads, !options.no_proof, options.force()});
+  const Threshold found = find_threshold(
+      question, output, {interrupt, options.show(), options.threads, !options.no_proof, options.force()});
   write_or_keep(threshold_result(question, found, question.command(options.scene)), output);
   ::unlink((output + ".part").c_str());
   fmt::print("{}", threshold_text(question, found));

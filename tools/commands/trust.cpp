@@ -31,11 +31,7 @@ Exit run_trust(const TrustArguments& options) {
   check_overwrite(output, options.command(), &scene, options.force());
   Interrupt interrupt;
   note_signals(interrupt);
-  const auto runs = trust(scene, {options.digits, options.both,
-                                  options.progress ? Progress::Show::always
-                                  : options.quiet  ? Progress::Show::never
-                                                   : Progress::Show::on_terminal,
-                                  &interrupt});
+  const auto runs = trust(scene, {options.digits, options.both, options.show(), &interrupt});
   Result result = trust_result(scene, runs);
   result.attributes.emplace_back("command", options.command());
   write_or_keep(result, output);

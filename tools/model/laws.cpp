@@ -1,7 +1,5 @@
 #include "cradle/tools/model/laws.hpp"
 
-#include <array>
-
 #include "cradle/tools/theory/cost.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
@@ -9,10 +7,11 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::array<LawRow, 3> laws{{
+constexpr LawRow laws[] = {
     {.type = LawType::inelastic,
      .merges = false,
      .needs_events = true,
+     .policies = true,
      .provable = true,
      .predict = predict_inelastic,
      .cost_of_rows = bouncing_rows,
@@ -20,6 +19,7 @@ constexpr std::array<LawRow, 3> laws{{
     {.type = LawType::wet,
      .merges = true,
      .needs_events = true,
+     .policies = false,
      .provable = true,
      .predict = predict_wet,
      .cost_of_rows = wet_rows,
@@ -32,22 +32,23 @@ constexpr std::array<LawRow, 3> laws{{
     {.type = LawType::sticky,
      .merges = true,
      .needs_events = false,
+     .policies = false,
      .provable = true,
      .predict = predict_sticky,
      .cost_of_rows = sticky_rows,
      .misprints = ""},
-}};
+};
 
 constexpr bool laws_in_order() {
-  for (std::size_t k = 0; k < laws.size(); ++k)
-    if (laws[k].type != static_cast<LawType>(k)) return false;
+  for (const LawRow& row : laws)
+    if (&laws[static_cast<std::size_t>(row.type)] != &row) return false;
   return true;
 }
 static_assert(laws_in_order());
 
 }  // namespace
 
-const LawRow& law_row(const Scene& scene) { return laws.at(static_cast<std::size_t>(scene.law.type)); }
+const LawRow& law_row(const Scene& scene) { return laws[static_cast<std::size_t>(scene.law.type)]; }
 
 bool particles_merge(const Scene& scene) {
   return law_row(scene).merges || scene.run.collapse == scene::CollapsePolicy::merge;

@@ -15,6 +15,7 @@ struct LawRow {
   LawType type;
   bool merges;                                  // particles stick or pass through each other; otherwise they bounce
   bool needs_events;                            // false: the state at any time follows without collisions
+  bool policies;                                // run.collapse can be merge or contact-time
   bool provable;                                // `certify` has its map in balls (tools/proof)
   void (*predict)(const Scene&, Predictions&);  // the paper's formulas; null if there are none
   void (*cost_of_rows)(const Scene&, Cost&);    // expected collisions of two equal rows; null if not known

@@ -2,7 +2,6 @@
 // in the two lists there (scalars.hpp, CMakeLists.txt), and its row here.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -19,18 +18,19 @@ struct ScalarRow {
 
   Precision type;
   std::string_view name;  // as in scenes and precision/
+  unsigned digits;        // decimal ones that every number has; 0: as many as the scene says
   // Time per collision in gaps and in positions, relative to gaps in double (Fig. 2 to t = 4000, bench_precision), and
   // bytes per number.
   Linear gaps, absolute, bytes;
   // The range of positive numbers; empty: practically without limit.
   std::string_view largest, least;
-  bool any_digits = false;
 };
 
-inline constexpr std::array<ScalarRow, 6> scalar_rows{{
-    {Precision::double_, "double", {1}, {1.2}, {8}, "1.7976931348623157e308", "2.2250738585072014e-308"},
+inline constexpr ScalarRow scalar_rows[] = {
+    {Precision::double_, "double", 15, {1}, {1.2}, {8}, "1.7976931348623157e308", "2.2250738585072014e-308"},
     {Precision::long_double,
      "long double",
+     18,
      {5.3},
      {4},
      {16},
@@ -38,16 +38,24 @@ inline constexpr std::array<ScalarRow, 6> scalar_rows{{
      "3.3621031431120935063e-4932"},
     {Precision::double_double,
      "double-double",
+     31,
      {2.6},
      {6.6},
      {16},
      "1.7976931348623157e308",
      "2.2250738585072014e-308"},
-    {Precision::float128, "float128", {10}, {30}, {16}, "1.18973149535723176502e4932", "3.3621031431120935063e-4932"},
+    {Precision::float128,
+     "float128",
+     33,
+     {10},
+     {30},
+     {16},
+     "1.18973149535723176502e4932",
+     "3.3621031431120935063e-4932"},
     // The exponent has 32 bits.
-    {Precision::cpp_bin_float, "cpp_bin_float", {41}, {104}, {64}, "1e323228496", "1e-323228496"},
-    {Precision::mpfr, "mpfr", {6.3, 0.112}, {22, 0.4}, {48, 1 / 2.4}, "", "", true},
-}};
+    {Precision::cpp_bin_float, "cpp_bin_float", 100, {41}, {104}, {64}, "1e323228496", "1e-323228496"},
+    {Precision::mpfr, "mpfr", 0, {6.3, 0.112}, {22, 0.4}, {48, 1 / 2.4}, "", ""},
+};
 
 constexpr const ScalarRow& scalar_row(Precision type) { return scalar_rows[static_cast<std::size_t>(type)]; }
 

@@ -231,14 +231,10 @@ std::string trust_table(const std::vector<Trusted>& runs) {
                         run.coordinates, upto, run.collisions, run.counts_time, last(run.energy_digits),
                         last(run.front_digits), digits(run.collapse_digits), run.seconds, proved);
   }
-  text +=
-      "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as the "
-      "reference.\n"
-      "energy (against that at the start), front: digits shared with the reference at the last sample, of those that "
-      "the type has; t_c: of the collapse time.\nproved: until when these collisions are proved to be those of the "
-      "exact "
-      "system (cradle "
-      "certify).\n";
+  text += "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as "
+          "the reference.\nenergy (against that at the start), front: digits shared with the reference at the last "
+          "sample, of those that the type has; t_c: of the collapse time.\nproved: until when these collisions are "
+          "proved to be those of the exact system (cradle certify).\n";
   return text;
 }
 

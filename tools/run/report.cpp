@@ -112,10 +112,8 @@ std::string account_warning(const ReportedAccount& account, const Run& run) {
   if (account.uncertain)
     text += fmt::format(
         "collisions are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided "
-        "which "
-        "one "
-        "was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a system that "
-        "starts a rounding away. Use more digits (run.precision), and `cradle trust` to see how many\n",
+        "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
+        "system that starts a rounding away. Use more digits (run.precision), and `cradle trust` to see how many\n",
         account.first_uncertain.time, account.first_uncertain.gap, place(account.first_uncertain.particle),
         std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run));
   if (account.uncertain_end)

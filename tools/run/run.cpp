@@ -40,7 +40,7 @@ RunEnd end_of(Status status, bool order_lost) {
 
 ScalarChoice scalar_choice(const Run& run) {
   const ScalarRow& type = scalar_row(run.precision);
-  return {std::string(type.name), type.any_digits ? static_cast<unsigned>(run.digits) : 0};
+  return {std::string(type.name), type.digits == 0 ? static_cast<unsigned>(run.digits) : 0};
 }
 
 std::string precision_name(const Run& run) {
@@ -49,12 +49,9 @@ std::string precision_name(const Run& run) {
 }
 
 std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome) {
-  return {{"format_version", std::uint64_t{2}},
-          {"cradle_version", std::string(version)},
-          {"scene", effective_toml(scene)},
-          {"name", scene.name},
-          {"precision", precision},
-          {"outcome", std::string(outcome)}};
+  return {{"format_version", format_version}, {"cradle_version", std::string(version)},
+          {"scene", effective_toml(scene)},   {"name", scene.name},
+          {"precision", precision},           {"outcome", std::string(outcome)}};
 }
 
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "cradle/core/observe/averages.hpp"
@@ -18,6 +19,9 @@
 
 namespace cradle::tools {
 namespace {
+
+// Exact where the decimal has at most 100 digits, and beyond double's range.
+bin_float number(const Decimal& decimal) { return from_text<bin_float>(decimal.text); }
 
 class Checks {
  public:
@@ -98,8 +102,7 @@ class Checks {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::clusters) return;
     if (scene_.law.type != LawType::wet)
-      throw Error(place("initial.type"), "clusters need the wet law",
-                  "law.type = " + value_text(*find_field("law.type", scene_), scene_).value(),
+      throw Error(place("initial.type"), "clusters need the wet law", said("law.type"),
                   "give law.type = \"wet\" or another initial state");
     for (const auto& [key, numbers] :
          {std::pair("initial.x", initial.x.size()), std::pair("initial.v", initial.v.size()),
@@ -132,8 +135,7 @@ class Checks {
     const std::string first = left.position ? "walls.left.position" : "walls.right.position";
     const Initial& initial = scene_.initial;
     if (initial.on_ring() || initial.type == InitialType::clusters)
-      throw Error(place(first), "a wall without a line of particles",
-                  "initial.type = " + value_text(*find_field("initial.type", scene_), scene_).value(),
+      throw Error(place(first), "a wall without a line of particles", said("initial.type"),
                   "remove [walls], or give particles on a line");
     if (scene_.run.collapse == scene::CollapsePolicy::merge)
       throw Error(place(first), "a wall for particles that merge", "run.collapse = \"merge\"",
@@ -141,33 +143,26 @@ class Checks {
     if (scene_.output.core)
       throw Error(place("output.core"), "nothing to compare the core with", "walls, which the sticky gas does not have",
                   "remove it");
-    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
-    const auto outside = [&](const char* key, const Decimal& wall, const char* particle, const bin_float& at,
-                             int sign) {
-      if (bin_float(sign) * (number(wall) - at) > 0) return;
+    const auto refuse = [&](const char* key, const Decimal& wall, const std::string& particle) {
       throw Error(place(key), "a wall among the particles, which would have met before the start",
-                  fmt::format("wall at {}, {} particle at {:g}", wall.text, particle, static_cast<double>(at)),
-                  "move it outwards");
+                  fmt::format("wall at {}, {}", wall.text, particle), "move it outwards");
     };
     walls_shake();
     particles_can_rest();
-    if (initial.type == InitialType::list && !initial.x.empty()) {
-      const auto among = [&](const char* key, const std::optional<Decimal>& wall, std::string_view at, bool wall_left) {
-        if (!wall) return;
-        const auto order = compare_decimals(wall->text, at);
-        if (wall_left ? std::is_lt(order) : std::is_gt(order)) return;
-        throw Error(place(key), "a wall among the particles, which would have met before the start",
-                    fmt::format("wall at {}, {} particle at {}", wall->text, wall_left ? "first" : "last", at),
-                    "move it outwards");
-      };
-      // Shaken walls are checked where they are at the start (core/initial/walled.hpp).
-      if (!left.shaken()) among("walls.left.position", left.position, initial.x[0], true);
-      if (!right.shaken()) among("walls.right.position", right.position, initial.x.back(), false);
+    // Shaken walls are checked where they are at the start (core/initial/walled.hpp).
+    const bool listed = initial.type == InitialType::list && !initial.x.empty();
+    for (const auto& [key, wall, side, which] : {std::tuple("walls.left.position", &left, -1, "first"),
+                                                 std::tuple("walls.right.position", &right, 1, "last")}) {
+      if (!wall->position || wall->shaken()) continue;
+      if (listed) {
+        const auto at = side < 0 ? initial.x[0] : initial.x.back();
+        if (const auto order = compare_decimals(wall->position->text, at);
+            side < 0 ? std::is_gteq(order) : std::is_lteq(order))
+          refuse(key, *wall->position, fmt::format("{} particle at {}", which, at));
+      } else if (const auto at = outermost(side); at && !(bin_float(side) * (number(*wall->position) - *at) > 0)) {
+        refuse(key, *wall->position, fmt::format("{} particle at {:g}", which, static_cast<double>(*at)));
+      }
     }
-    if (left.position && !left.shaken())
-      if (const auto at = outermost(-1)) outside("walls.left.position", *left.position, "first", *at, -1);
-    if (right.position && !right.shaken())
-      if (const auto at = outermost(1)) outside("walls.right.position", *right.position, "last", *at, 1);
     if (!left.position || !right.position) return;
     bin_float gap = number(*right.position) - number(*left.position);
     for (const WallAt* wall : {&left, &right})
@@ -245,8 +240,7 @@ class Checks {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::gas) return;
     if (scene_.law.type != LawType::inelastic)
-      throw Error(place("initial.type"), "a gas between walls needs a law that bounces",
-                  "law.type = " + value_text(*find_field("law.type", scene_), scene_).value(),
+      throw Error(place("initial.type"), "a gas between walls needs a law that bounces", said("law.type"),
                   "give law.type = \"inelastic\" or another initial state");
     const Decimal &left = *scene_.walls.left.position, &right = *scene_.walls.right.position;
     if (right <= left)
@@ -262,48 +256,45 @@ class Checks {
   }
 
   void random_masses() const {
-    const auto& range = scene_.initial.random_masses;
     if (!entries_.contains("initial.random_masses")) return;
     if (entries_.contains("initial.masses"))
       throw Error(place("initial.random_masses"), "two ways to give masses", "initial.masses too",
                   "remove one of them");
-    if (range.size() != 2 || range[0] >= range[1])
-      throw Error(place("initial.random_masses"), "not a range of masses",
-                  range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
-                                    : describe(entries_.find("initial.random_masses")->second),
-                  "give two masses, the smaller one first");
+    rising("initial.random_masses", scene_.initial.random_masses, "not a range of masses",
+           "give two masses, the smaller one first");
   }
 
   void masses_repeat() const {
     const Initial& initial = scene_.initial;
-    if (!entries_.contains("initial.masses")) return masses_fit();
+    masses_fit();
+    if (!entries_.contains("initial.masses")) return;
     const std::size_t period = initial.masses.size();
     if (period == 0) throw Error(place("initial.masses"), "no masses", "an empty list", "give at least one mass");
     if (initial.type == InitialType::ring && initial.particles % period != 0)
       throw Error(place("initial.masses"), "the pattern does not divide the ring",
                   fmt::format("{} masses, {} particles", period, initial.particles),
                   fmt::format("give initial.particles as a multiple of {}", period));
-    masses_fit();
   }
 
   void masses_fit() const {
-    const char* key = scene_.initial.random_masses.empty() ? "initial.masses" : "initial.random_masses";
     if (!unequal_masses(scene_)) return;
-    if (scene_.output.scenario)
-      throw Error(place("output.scenario"), "for particles of mass 1", key + std::string(" of others"),
-                  "remove one of the two");
-    if (scene_.output.zone.from)
-      throw Error(place("output.zone.from"), "for particles of mass 1", key + std::string(" of others"),
-                  "remove one of the two");
+    const std::string given = scene_.initial.random_masses.empty() ? "initial.masses" : "initial.random_masses";
+    if (scene_.output.scenario || scene_.output.zone.from)
+      throw Error(place(scene_.output.scenario ? "output.scenario" : "output.zone.from"), "for particles of mass 1",
+                  given + " of others", "remove one of the two");
   }
 
-  void restitution_of_speed() const {
+  void policy_of_law() const {
+    const auto policy = scene_.run.collapse;
+    const bool merge_or_time = policy == scene::CollapsePolicy::contact_time || policy == scene::CollapsePolicy::merge;
+    if (merge_or_time && !law_row(scene_).policies)
+      throw Error(place("run.collapse"), "collapse policy of another law", said("law.type"),
+                  "remove it, it belongs to law.type = \"inelastic\"");
     if (!scene_.law.cutoff_exponent) return;
     if (!(scene_.law.cutoff > Decimal("0")))
       throw Error(place("law.cutoff_exponent"), "no cut-off that sets in", "law.cutoff = 0",
                   "give law.cutoff too, or remove this key");
-    if (scene_.run.collapse == scene::CollapsePolicy::contact_time ||
-        scene_.run.collapse == scene::CollapsePolicy::merge)
+    if (merge_or_time)
       throw Error(place("run.collapse"), "not built with a restitution that depends on the speed",
                   value_text(*find_field("run.collapse", scene_), scene_).value(),
                   "give run.collapse = \"cutoff\" or \"stop\", or remove law.cutoff_exponent");
@@ -326,7 +317,6 @@ class Checks {
     if (averages.range.empty())
       throw Error(place("output.averages.range"), "missing", "particles that are neither on a ring nor between walls",
                   "give two positions, the lower one first");
-    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
     const bin_float span = number(averages.until) - number(averages.from);
     if (const auto least = number(*averages.every) * bin_float(static_cast<std::int64_t>(TimeAverages::batches - 1));
         span < least)
@@ -359,7 +349,6 @@ class Checks {
     if (!pairs.any()) return;
     const std::string_view key = pairs.every ? "output.pair_distribution.every" : "output.pair_distribution.times";
     if (!ends) throw Error(place(key), "pairs without a density to compare them with", neither, "remove it");
-    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
     const bin_float length = number(ends->second) - number(ends->first);
     const bin_float most = scene_.initial.on_ring() ? bin_float(length / bin_float(2)) : length;
     if (number(pairs.distance) > most)
@@ -387,7 +376,6 @@ class Checks {
   void samples_can_be_kept() const {
     constexpr double most = 1e7;  // as for points in the table of keys
     const Series& series = scene_.output.series;
-    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };  // may exceed double's range
     const bin_float start = number(scene_.run.start), span = number(scene_.run.until) - start;
     const auto check = [&](const char* key, const Decimal& given, const bin_float& step) {
       const auto samples = static_cast<double>(bin_float(span / step));
@@ -415,21 +403,30 @@ class Checks {
  private:
   void range_of_bins(const char* key, const std::vector<Decimal>& range) const {
     if (!entries_.contains(key)) return;
-    if (range.size() != 2 || range[0] >= range[1])
-      throw Error(place(key), "not a range",
-                  range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
-                                    : describe(entries_.find(key)->second),
-                  std::string_view(key) == "output.counting.range" ? "give two numbers, the lower one first"
-                                                                   : "give two positions, the lower one first");
+    rising(key, range, "not a range",
+           std::string_view(key) == "output.counting.range" ? "give two numbers, the lower one first"
+                                                            : "give two positions, the lower one first");
     if (!(range[0].value < range[1].value) || !std::isfinite(range[1].value - range[0].value))
       throw Error(place(key), "not a range of doubles, in which bins are",
                   fmt::format("from {} to {}", range[0].text, range[1].text), "give ends that doubles distinguish");
+  }
+
+  void rising(const char* key, const std::vector<Decimal>& range, const char* what, const char* advice) const {
+    if (range.size() != 2 || range[0] >= range[1])
+      throw Error(place(key), what,
+                  range.size() == 2 ? fmt::format("from {} to {}", range[0].text, range[1].text)
+                                    : describe(entries_.find(key)->second),
+                  advice);
   }
 
   // Random speeds of thermal walls and averages are doubles in every working precision.
   static bool is_double_anyway(std::string_view key) {
     return key.ends_with(".temperature") || key == "output.zone.reach" || key == "output.counting.range" ||
            key == "output.structure.length" || key == "output.pair_distribution.distance";
+  }
+
+  std::string said(const std::string& key) const {
+    return key + " = " + value_text(*find_field(key, scene_), scene_).value();
   }
 
   Place place(std::string_view key) const {
@@ -445,7 +442,6 @@ class Checks {
   // The outermost possible position of a particle on one side at the start. Nothing if it is known only after particles
   // are set up.
   std::optional<bin_float> outermost(int side) const {
-    const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::rows || initial.positions != Positions::lattice) return {};
     const scene::Row& row = side < 0 ? initial.left : initial.right;
@@ -479,7 +475,7 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
   checks.particles_can_fall();
   checks.random_masses();
   checks.masses_repeat();
-  checks.restitution_of_speed();
+  checks.policy_of_law();
   checks.series_has_times();
   checks.ranges_of_bins();
   checks.averages_have_bins_and_samples();

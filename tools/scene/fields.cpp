@@ -180,8 +180,7 @@ const Field all_fields[] = {
      "closing speed below which collisions are elastic; 0: none, the plain law"},
     {"law.cutoff_exponent", law_of<&scene::Law::cutoff_exponent>, "", "", "(0, inf)", &inelastic,
      "how the cut-off sets in: the restitution at a closing speed w is r + (1 - r) exp(-(w/cutoff)^this); without it, "
-     "at "
-     "once"},
+     "at once"},
     {"law.loss", law_of<&scene::Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
      "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge"},
 
@@ -289,8 +288,7 @@ const Field all_fields[] = {
     {"walls.left.motion", walls_of<&WallPair::left, &WallAt::motion>, "", "\"none\"",
      "none | sawtooth | parabola | sine", &left_wall,
      "how the left wall is shaken about its place, beginning in the middle, towards the particles: at a constant "
-     "speed, "
-     "jumping back; in parabolic arcs; as a sine"},
+     "speed, jumping back; in parabolic arcs; as a sine"},
     {"walls.left.amplitude", walls_of<&WallPair::left, &WallAt::amplitude>, "l", "required", "(0, inf)", &left_shaken,
      "how far it is shaken from its place at most"},
     {"walls.left.frequency", walls_of<&WallPair::left, &WallAt::frequency>, "1/t", "required", "(0, inf)", &left_shaken,
@@ -301,8 +299,7 @@ const Field all_fields[] = {
      "presses it; without it, none stays"},
     {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &may_have_walls,
      "position of a wall at the right end of the line, at run.start; without it, none. A wall is a particle of "
-     "infinite "
-     "mass"},
+     "infinite mass"},
     {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "initial.particles/initial.density on",
      any, &gas, "where the gas ends: the right one of its two walls", end_of_gas},
     {"walls.right.speed", walls_of<&WallPair::right, &WallAt::speed>, "l/t", "0", any, &right_wall,
@@ -316,8 +313,7 @@ const Field all_fields[] = {
     {"walls.right.motion", walls_of<&WallPair::right, &WallAt::motion>, "", "\"none\"",
      "none | sawtooth | parabola | sine", &right_wall,
      "how the right wall is shaken about its place, beginning in the middle, towards the particles: at a constant "
-     "speed, "
-     "jumping back; in parabolic arcs; as a sine"},
+     "speed, jumping back; in parabolic arcs; as a sine"},
     {"walls.right.amplitude", walls_of<&WallPair::right, &WallAt::amplitude>, "l", "required", "(0, inf)",
      &right_shaken, "how far it is shaken from its place at most"},
     {"walls.right.frequency", walls_of<&WallPair::right, &WallAt::frequency>, "1/t", "required", "(0, inf)",

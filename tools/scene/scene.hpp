@@ -133,6 +133,12 @@ struct Run {
   Decimal contact_time;             // contact-time
   Decimal merge_speed;              // merge
   std::optional<Decimal> stop_gap;  // stop
+
+  /// That numbers of the working precision have.
+  unsigned decimal_digits() const {
+    const unsigned own = scalar_row(precision).digits;
+    return own > 0 ? own : static_cast<unsigned>(digits);
+  }
   bool operator==(const Run&) const = default;
 };
 

@@ -28,25 +28,6 @@ const Field& field_of(const std::string& key, const Scene& scene) {
               nearest.empty() ? "`cradle scenes --keys` lists them" : fmt::format("did you mean {}?", nearest));
 }
 
-// Decimal digits that numbers of the scene's type have.
-unsigned digits_of(const Run& run) {
-  switch (run.precision) {
-  case Precision::double_:
-    return 15;
-  case Precision::long_double:
-    return 18;
-  case Precision::double_double:
-    return 31;
-  case Precision::float128:
-    return 33;
-  case Precision::cpp_bin_float:
-    return 100;
-  case Precision::mpfr:
-    break;
-  }
-  return static_cast<unsigned>(run.digits);
-}
-
 }  // namespace
 
 Question::Question(std::string scene, std::vector<std::string> overrides, const std::string& vary,
@@ -64,7 +45,7 @@ Question::Question(std::string scene, std::vector<std::string> overrides, const 
   assigned.push_back(assignment(low_));
   at_low_ = read_scene(scene_, assigned);
   choose_outcome(compare);
-  const bool more = digits_ > digits_of(at_low_.run), fixed = at_low_.initial.type == InitialType::clusters;
+  const bool more = digits_ > at_low_.run.decimal_digits(), fixed = at_low_.initial.type == InitialType::clusters;
   if (fixed && more)
     throw Error({"", 0, "--digits"}, "more digits than this model has", fmt::format("{}", digits_), "give 15 at most");
   wide_ = !whole_ && more;

@@ -68,20 +68,6 @@ WordStart start_with(const WordParticles& particles, const words::Word& word, co
 #endif
 }
 
-unsigned digits_of(const Run& run) {
-  switch (run.precision) {
-  case Precision::double_:
-  case Precision::long_double:
-    return 30;
-  case Precision::mpfr:
-    return static_cast<unsigned>(std::min<std::uint64_t>(run.digits, 1000)) + 10;
-  case Precision::cpp_bin_float:
-    return 110;
-  default:
-    return 50;
-  }
-}
-
 }  // namespace
 
 void start_from_word(const Place& place, Scene& scene) {
@@ -89,7 +75,7 @@ void start_from_word(const Place& place, Scene& scene) {
   WordParticles particles;
   particles.left_wall = scene.walls.left.position.has_value();
   particles.right_wall = scene.walls.right.position.has_value();
-  particles.digits = digits_of(scene.run);
+  particles.digits = std::max(scene.run.decimal_digits(), 20U) + 10;
   for (std::size_t i = 0; i < scene.initial.m.size(); ++i) particles.masses.emplace_back(scene.initial.m[i]);
   // Every gap closes in a word, so its last letter says how many there are.
   const char last = text.empty() ? 'a' : *std::max_element(text.begin(), text.end());

@@ -15,6 +15,8 @@
 
 namespace cradle::tools {
 
+inline constexpr std::size_t word_points = 1999;  // of the grid on which restitutions are inspected
+
 /// 3 to 6 particles, masses "1,2.5,1" (empty: equal), walls "", "left", "right" or "both". Throws Error.
 WordParticles word_particles(const std::string& count, const std::string& masses, const std::string& walls,
                              unsigned digits);

@@ -1,6 +1,8 @@
 // Collisions in double: a part of steps.cpp, which includes it once for each kind of vectors. The operations are those
 // of the event loop one for one, so that their bits are the same.
 
+#include "cradle/core/parallel/steps/restitution.inl"
+
 namespace cradle {
 namespace HWY_NAMESPACE {
 
@@ -43,7 +45,9 @@ HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, st
     after = line.after[k], gain = Both{line.to_left[k], line.to_right[k]};
   } else {
     double handed = 0;  // to each side, as far as masses are equal
-    if constexpr (law == StepLaw::hard) {
+    if constexpr (law == StepLaw::of_speed) {
+      after = line.after[k], handed = line.to_left[k];
+    } else if constexpr (law == StepLaw::hard) {
       handed = (w < task.cutoff ? 1 : task.half_sum) * w;
       after = w - (handed + handed);
     } else {
@@ -85,7 +89,8 @@ HWY_INLINE void foresee(Local& l, double end, std::size_t i) {
 }
 
 // Enters the collisions of a pass in the ledger (ledger.hpp), by their closing speeds in `struck`.
-template <bool unequal> HWY_INLINE void enter(const Local& l, const StepTask& task, Made& made) {
+template <StepLaw law, bool unequal>
+HWY_INLINE void enter(const StepLine& line, const Local& l, const StepTask& task, Made& made) {
   const Lanes d;
   hn::StoreU(hn::Zero(d), d, l.struck + l.firsts);
   if (unequal) hn::StoreU(hn::Zero(d), d, l.struck_mass + l.firsts);
@@ -95,7 +100,8 @@ template <bool unequal> HWY_INLINE void enter(const Local& l, const StepTask& ta
     const auto w = hn::LoadU(d, l.struck + k);
     const auto elastic = hn::Lt(w, cutoff);
     made.below_cutoff += hn::CountTrue(d, hn::And(elastic, hn::Gt(w, hn::Zero(d))));
-    auto factor = hn::IfThenZeroElse(elastic, share);
+    auto factor =
+        law == StepLaw::of_speed ? hn::LoadU(d, line.to_right.data() + k) : hn::IfThenZeroElse(elastic, share);
     if (unequal) factor = hn::Mul(factor, hn::LoadU(d, l.struck_mass + k));
     const auto loss = hn::Mul(factor, hn::Mul(w, w));
     const auto coarse = hn::Sub(hn::Add(loss, rounder), rounder);
@@ -114,10 +120,19 @@ template <StepLaw law, bool unequal> struct Doubles {
   // Makes those that are first in a pass. In two loops: the shorter a turn, the more of them are in the processor at
   // once, and each operation waits for the one before (1.2 times as fast as one loop).
   HWY_INLINE void make(StepLine& line, Local& l, const StepTask& task, StepScalars& scalars, double end) {
-    if (law == StepLaw::any) scalars.outcomes(l.first, l.firsts);
-    for (std::size_t k = 0; k < l.firsts; ++k) collide<law, unequal>(line, l, task, l.first[k], k, made);
+    if (law == StepLaw::of_speed && l.firsts > 0) {
+      for (std::size_t k = 0; k < l.firsts; ++k) l.struck[k] = l.cells[l.first[k]].closing;
+      if (!OfSpeed(task)(l.struck, l.firsts, line.after.data(), line.to_left.data(), line.to_right.data()))
+        return make_by<StepLaw::any, false>(line, l, task, scalars, end);
+    }
+    make_by<law, unequal>(line, l, task, scalars, end);
+  }
+  template <StepLaw as, bool masses_too>
+  HWY_INLINE void make_by(StepLine& line, Local& l, const StepTask& task, StepScalars& scalars, double end) {
+    if (as == StepLaw::any) scalars.outcomes(l.first, l.firsts);
+    for (std::size_t k = 0; k < l.firsts; ++k) collide<as, masses_too>(line, l, task, l.first[k], k, made);
     for (std::size_t k = 0; k < l.firsts; ++k) foresee(l, end, l.first[k]);
-    if (law != StepLaw::any) enter<unequal>(l, task, made);
+    if (as != StepLaw::any) enter<as, masses_too>(line, l, task, made);
   }
   // Whether all of them were in order.
   HWY_INLINE bool report(const StepTask& task, double end, StepResult& result) const {

@@ -13,6 +13,7 @@
 #include "cradle/core/engine/ledger.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/laws/law.hpp"
+#include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
 
@@ -63,16 +64,31 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   StepTask task_of(double stop, std::uint64_t most) const {
     const auto& gaps = part_->line_.gaps;
     StepTask task;
-    if constexpr (std::same_as<Law, Inelastic<double>>)
-      if (!report_->observe) {  // else `outcomes` is to log every collision
-        task.law = law_->soft() ? StepLaw::soft : StepLaw::hard;
-        task.restitution = law_->restitution();
-        task.half_sum = law_->half_sum();
-        task.cutoff = law_->cutoff();
-        task.lost = law_->lost_share();
-        if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
-        task.unequal = !equal;
+    if (!report_->observe) {  // else `outcomes` is to log every collision
+      if (const auto* law = law_as<Inelastic<double>>(*law_)) {
+        task.law = law->soft() ? StepLaw::soft : StepLaw::hard;
+        task.restitution = law->restitution();
+        task.half_sum = law->half_sum();
+        task.cutoff = law->cutoff();
+        task.lost = law->lost_share();
+      } else if (const auto* of_speed = law_as<SpeedDependent<double>>(*law_)) {
+        task.law = StepLaw::of_speed;
+        task.cutoff = of_speed->delta();
+        task.lost = 1;
+        const auto &power = of_speed->power(), &rise = of_speed->rise();
+        task.of_speed = {of_speed->missing(),
+                         power.exponent(),
+                         power.ln2(),
+                         rise.all(),
+                         power.whole(),
+                         power.odd().data(),
+                         rise.reciprocals().data(),
+                         power.odd().size(),
+                         rise.reciprocals().size()};
       }
+      if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
+      task.unequal = !equal;
+    }
     task.floor = gaps.floor();
     task.rounder = gaps.ledger().rounder();
     task.per_fine = gaps.ledger().per_fine();

@@ -205,6 +205,9 @@ bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& p
 #endif
   if (task.pairs) return false;
   if (task.law == StepLaw::any) return run_steps(step<Doubles<StepLaw::any, false>>, line, task, scalars, pace, result);
+  if (task.law == StepLaw::of_speed)
+    return task.unequal ? run_steps(step<Doubles<StepLaw::of_speed, true>>, line, task, scalars, pace, result)
+                        : run_steps(step<Doubles<StepLaw::of_speed, false>>, line, task, scalars, pace, result);
   return run_by<Doubles>(task, line, scalars, pace, result);
 }
 

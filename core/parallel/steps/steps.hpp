@@ -24,20 +24,29 @@ class StepScalars {
   // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order.
   virtual bool collide(std::size_t gap) = 0;
   // StepLaw::any: what comes of collisions at so many inner gaps; enters them in counts and ledger, and logs them where
-  // they are observed.
+  // they are observed. (StepLaw::of_speed: where numbers are out of the range of vectors.)
   virtual void outcomes(const std::uint32_t* gaps, std::size_t count) = 0;
   // An undo copy of what all of this has entered anywhere.
   virtual void keep() = 0;
   virtual void restore() = 0;
 };
 
-// Of Inelastic (law.hpp), for a restitution from 1/2 on and below it; or by StepScalars::outcomes.
-enum class StepLaw : std::uint8_t { hard, soft, any };
+// Of Inelastic (law.hpp), for a restitution from 1/2 on and below it; of SpeedDependent; or by StepScalars::outcomes.
+enum class StepLaw : std::uint8_t { hard, soft, of_speed, any };
+
+// The numbers of SpeedDependent and of its functions (elementary.hpp); the cut-off is StepTask's.
+struct StepRestitution {
+  double missing = 0, exponent = 0, ln2 = 0, all = 0;
+  int whole = 0;
+  const double *odd = nullptr, *reciprocals = nullptr;
+  std::size_t odds = 0, count = 0;
+};
 
 struct StepTask {
   StepLaw law = StepLaw::any;
   double restitution = 1, half_sum = 1, cutoff = 0;
   double lost = 0;  // of w^2; with unequal masses of reduced mass times w^2
+  StepRestitution of_speed;
   // Whether numbers are sums of two doubles (pairs.inl); then these are the lesser ones of those above.
   bool pairs = false;
   struct Low {

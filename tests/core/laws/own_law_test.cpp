@@ -13,11 +13,11 @@ namespace own_law_test {
 using namespace cradle;
 using namespace cradle::test;
 
-template <Real T> class SpeedDependent {
+template <Real T> class Softening {
  public:
   static constexpr bool bounces_only = true;
 
-  explicit SpeedDependent(const T& half_way) : half_way_(half_way) {}  // w0 > 0, a speed
+  explicit Softening(const T& half_way) : half_way_(half_way) {}  // w0 > 0, a speed
 
   template <class Masses> Outcome<T> operator()(const T& w, const Masses& masses) const {
     const T lack = w / (T(2) * (w + half_way_));  // 1 - eps
@@ -30,12 +30,12 @@ template <Real T> class SpeedDependent {
  private:
   T half_way_;
 };
-static_assert(Law<SpeedDependent<double>, double>);
+static_assert(Law<Softening<double>, double>);
 
 // Two particles that meet at w = w0 = 1, so eps = 3/4: all numbers are exact.
 TEST(OwnLaw, OutcomesAreThoseByHand) {
   const double unit = 1, half = 0.5, heavy = 3;
-  const SpeedDependent<double> law(1);
+  const Softening<double> law(1);
   const Outcome<double> equal = law(1.0, EqualMasses<double>{unit, half});
   EXPECT_EQ(equal.closing, -0.75);
   EXPECT_EQ(equal.to_left, 0.875);
@@ -49,7 +49,7 @@ TEST(OwnLaw, OutcomesAreThoseByHand) {
 
 TEST(OwnLaw, GapsAndPositionsAgreeAndTheLedgerIsTheDirectSum) {
   const auto particles = rshock<double>(400);
-  const SpeedDependent<double> law(10);
+  const Softening<double> law(10);
   Simulation gaps(law, GapChain<double>(particles, 0.0));
   Simulation positions(law, PositionChain<double>(particles, 0.0));
   Trace of_gaps, of_positions;

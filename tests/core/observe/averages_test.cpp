@@ -10,6 +10,7 @@
 
 #include "cradle/core/engine/state.hpp"
 #include "cradle/core/initial/list.hpp"
+#include "cradle/tests/core/saved.hpp"
 
 namespace averages_test {
 
@@ -105,20 +106,10 @@ TEST(TimeAverages, ShowBatchesThatAreTooShort) {
 }
 
 TEST(TimeAverages, ContinueFromASavedState) {
-  TimeAverages whole({0, 1}, 2, batches), later({0, 1}, 2, batches);
-  for (std::size_t k = 0; k < batches; ++k) {
-    if (k == 13) {
-      SavedState state = SavedState::of(whole);
-      load(state, later);
-    }
-    const Found found{{0.1 + 0.02 * static_cast<double>(k), 0.9}, {1. + static_cast<double>(k), -2}, {1, 3}};
-    add(whole, found);
-    if (k >= 13) add(later, found);
-  }
-  EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
-  SavedState state = SavedState::of(whole);
-  TimeAverages other({0, 1}, 3, batches);
-  EXPECT_THROW(load(state, other), std::invalid_argument);
+  const auto add_sample = [](TimeAverages& averages, std::size_t k) {
+    add(averages, {{0.1 + 0.02 * static_cast<double>(k), 0.9}, {1. + static_cast<double>(k), -2}, {1, 3}});
+  };
+  test::expect_continues(TimeAverages({0, 1}, 2, batches), batches, 13, add_sample, {TimeAverages({0, 1}, 3, batches)});
 }
 
 TEST(TimeAverages, WithoutExtentAreRefused) {

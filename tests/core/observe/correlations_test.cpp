@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
 namespace correlations_test {
@@ -114,22 +115,11 @@ TEST(Correlator, HasNoNumbersForLagsWithoutPairs) {
 }
 
 TEST(Correlator, ContinuesFromASavedState) {
-  Correlator whole(9, 100), later(9, 100);
-  for (std::size_t k = 0; k < 150; ++k) {
-    if (k == 77) {
-      SavedState state = SavedState::of(whole);
-      load(state, later);
-    }
+  const auto add = [](Correlator& correlator, std::size_t k) {
     const Walk now = sample_of(9, k);
-    whole.add(now.x, now.v);
-    if (k >= 77) later.add(now.x, now.v);
-  }
-  EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
-  for (auto [particles, longest] : {std::pair<std::size_t, std::uint64_t>{8, 100}, {9, 10}, {9, 1000}}) {
-    SavedState state = SavedState::of(whole);
-    Correlator other(particles, longest);
-    EXPECT_THROW(load(state, other), std::invalid_argument);
-  }
+    correlator.add(now.x, now.v);
+  };
+  expect_continues(Correlator(9, 100), 150, 77, add, {Correlator(8, 100), Correlator(9, 10), Correlator(9, 1000)});
   EXPECT_THROW(Correlator(0, 10), std::invalid_argument);
 }
 

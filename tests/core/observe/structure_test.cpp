@@ -10,6 +10,7 @@
 
 #include "cradle/core/observe/batch_means.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/saved.hpp"
 
 namespace structure_test {
 
@@ -200,19 +201,8 @@ TEST(SampledMeans, ShowBatchesThatAreTooShort) {
 }
 
 TEST(SampledMeans, ContinueFromASavedState) {
-  SampledMeans whole(1, 50), later(1, 50);
-  for (std::size_t k = 0; k < 50; ++k) {
-    if (k == 13) {
-      SavedState state = SavedState::of(whole);
-      load(state, later);
-    }
-    whole.add({0.1 * static_cast<double>(k)});
-    if (k >= 13) later.add({0.1 * static_cast<double>(k)});
-  }
-  EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
-  SavedState state = SavedState::of(whole);
-  SampledMeans other(2, 50);
-  EXPECT_THROW(load(state, other), std::invalid_argument);
+  const auto add = [](SampledMeans& means, std::size_t k) { means.add({0.1 * static_cast<double>(k)}); };
+  expect_continues(SampledMeans(1, 50), 50, 13, add, {SampledMeans(2, 50)});
 }
 
 }  // namespace structure_test

@@ -96,7 +96,7 @@ class Files(unittest.TestCase):
             self.refused("lacking.h5", "lacks data", lambda _: cradle.plot.shock(result))
 
 
-class OnTheWay(unittest.TestCase):
+class InProgress(unittest.TestCase):
     def test_of_a_run_what_is_recorded_so_far(self):
         keys = small.ENDLESS | {"initial.particles": 200_000, "run.until": "1e7", "output.series.every": 1}
         words = [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]

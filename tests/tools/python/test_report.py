@@ -11,8 +11,6 @@ import small
 from cradle import program
 from cradle.page.elements import enclosed, measured, number
 
-VOID = {"meta", "link", "br", "img", "hr", "path", "use"}
-
 
 class Page(html.parser.HTMLParser):
     """Ids, and all that names something outside."""

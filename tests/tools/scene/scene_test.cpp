@@ -248,6 +248,8 @@ TEST(Scene, MistakesAreReportedWithLineAndKey) {
       {good + "collapse = 'merge'\nmerge_speed = 1e-8\ncontact_time = 1", 11, "run.contact_time",
        policy + "\"merge\"): remove it, it belongs to run.collapse = \"contact-time\""},
       {good + "merge_speed = 1", 9, "run.merge_speed", "key of another collapse policy (f..."},
+      {"law.type = 'sticky'\ninitial.type = 'rows'\n[run]\nuntil = 1\ncollapse = 'merge'\nmerge_speed = 1", 5,
+       "run.collapse", "collapse policy of another law (found law.type = \"sticky\"): remove it, it belongs to ..."},
       {good + "collapse = 'cutoff'\nstop_gap = 1", 10, "run.stop_gap", "..."},
       {good + "collapse = 'contact-time'", 0, "run.contact_time", "missing: give a number above 0"},
       {good + "[output]\nseries = { points = 10, every = 1 }", 10, "output.series.points",

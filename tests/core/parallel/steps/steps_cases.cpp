@@ -15,9 +15,11 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/initial/walled.hpp"
+#include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
@@ -29,6 +31,7 @@ using namespace cradle::test;
 using Equal = GapChain<double>;
 using Unequal = GapChain<double, IndividualMasses<double>>;
 using Law = Inelastic<double>;
+using Several = OneOf<Law, SpeedDependent<double>>;
 
 std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 
@@ -159,6 +162,30 @@ TEST_F(Steps, RingsWithoutCutsThatAreDenseAtTheSeam) {
     in_steps += expect_same<Equal>(scene, Law(1), {5, 20}, ways).in_steps;
   }
   EXPECT_GT(in_steps, 10'000U);
+}
+// Restitutions below and above 1/2, any exponents, and speeds for which powers leave the range of vectors; also as one
+// of several laws, as programs have it.
+TEST_F(Steps, LawsThatAreVectors) {
+  std::vector<SegmentsAs> ways;
+  for (const cradle::Steps* steps : targets()) {
+    ways.push_back({{.anywhere = true, .steps = steps}, 1});
+    ways.push_back({{.gaps = 150, .anywhere = true, .steps = steps}, 2});
+  }
+  std::uint64_t in_steps = 0;
+  const auto check = [&](const auto& law) {
+    in_steps += expect_same<Unequal>(gas<double>(600, 600., true), law, {10, 30}, ways).in_steps;
+    in_steps += expect_same<Unequal>(gas<double>(600, 600., true), Several(law), {30}, ways).in_steps;
+    in_steps += expect_same<Equal>(gas<double>(600), law, {60}, ways).in_steps;
+    in_steps += expect_same<Equal>(gas<double>(600), Several(law), {60}, ways).in_steps;
+  };
+  for (const Law& law : {Law(1), Law(0.999, 1e-5), Law(0.3, 0.5)}) check(law);
+  EXPECT_GT(std::exchange(in_steps, 0), 100'000U);
+  for (const double exponent : {0.2, 1., 1.5, 3., 40., 250.5, 1e-4})
+    for (const double restitution : {0.1, 0.3, 0.99}) {
+      SCOPED_TRACE("exponent " + std::to_string(exponent) + ", restitution " + std::to_string(restitution));
+      check(SpeedDependent<double>(restitution, 0.7, exponent));
+    }
+  EXPECT_GT(in_steps, 500'000U);
 }
 // Collisions are simultaneous all over the line: for the event loop.
 TEST_F(Steps, LatticesFullOfTies) {

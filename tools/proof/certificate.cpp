@@ -1,0 +1,209 @@
+// What a proof says: as text, and as groups of a result.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "cradle/tools/proof/certify.hpp"
+#include "cradle/tools/support/checksum.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+const char* question(Check check) {
+  switch (check) {
+  case Check::neighbours:
+    return "those that meet are neighbours";
+  case Check::closing:
+    return "they approach each other: the second (closing speed) exceeds the first";
+  case Check::later:
+    return "they meet after the last collision of either: the second time exceeds the first";
+  case Check::side:
+    return "on which side of a threshold of the law they meet: first against second";
+  case Check::gap:
+    return "the gap between them is positive: the second exceeds the first";
+  case Check::before:
+    return "its last collision was before: the second time exceeds the first";
+  case Check::agreement:
+    return "the run has the number that is proved: first against second";
+  }
+  return "";
+}
+
+std::string near(const std::string& number) { return number.size() > 24 ? number.substr(0, 24) + "..." : number; }
+
+// The digits that both ends share, and how much is known; both ends where they do not share many.
+std::string shown(const Enclosed& x) {
+  const auto &low = x.decimals.low, &high = x.decimals.high;
+  const auto end = std::min(low.find('e'), low.size());
+  constexpr std::size_t least = 16, most = 60;
+  const auto shared =
+      static_cast<std::size_t>(std::mismatch(low.begin(), low.end(), high.begin(), high.end()).first - low.begin());
+  if (shared < least || low.substr(end) != high.substr(std::min(high.find('e'), high.size())))
+    return fmt::format("{} to {}", low, high);
+  return fmt::format("{}...{} (known to {:.2g})", low.substr(0, std::min({shared, most, end})), low.substr(end),
+                     x.radius);
+}
+
+}  // namespace
+
+std::string doubt_text(const ReportedDoubt& d) {
+  std::string where = fmt::format("at t = {:.17g}, after {} collisions", d.time, d.collisions);
+  if (d.check == Check::agreement)
+    return fmt::format("{}: the run's {} is not what is proved of it ({}; {}; its rounding explains {:.2g})", where,
+                       d.quantity, near(d.first), near(d.second), d.width);
+  if (d.left >= 0)
+    where += d.left == d.right ? fmt::format(", particle {}", d.left)
+                               : fmt::format(", particles {} and {}", d.left, d.right);
+  std::string text = fmt::format("{}: {} whether {}", where, d.refuted ? "it is not so" : "open", question(d.check));
+  if (d.check != Check::neighbours)
+    text += fmt::format(" ({}; {}; known to {:.2g})", near(d.first), near(d.second), d.width);
+  return text;
+}
+
+std::string Certified::undecided() const {
+  if (certificate.doubt) return doubt_text(*certificate.doubt);
+  if (outcome.end != RunEnd::exhausted) return "";
+  return fmt::format("from t = {} on, after {} collisions: the run ended there, before t = {} ({})",
+                     certificate.samples.back().time_text, certificate.collisions, scene.run.until.text,
+                     end_row(outcome.end).text);
+}
+
+std::string Certified::not_proved() const {
+  if (certificate.doubt || outcome.end != RunEnd::collapsed) return "";
+  return "that this is an inelastic collapse, and when it is complete; that is an estimate of the run, which ended at "
+         "the last collision that is proved";
+}
+
+std::string certificate_text(const Certified& run) {
+  const Certificate& c = run.certificate;
+  const double share = c.collisions == 0 ? 1 : static_cast<double>(c.in_doubles) / static_cast<double>(c.collisions);
+  std::string text;
+  if (run.proved())
+    text = fmt::format("proved: {} collisions up to t = {} are those of the exact system, all of them and no other\n",
+                       c.collisions, c.samples.back().time_text);
+  else
+    text = fmt::format("undecided {}\nproved up to there: {} collisions\n", run.undecided(), c.collisions);
+  if (const std::string beyond = run.not_proved(); !beyond.empty()) text += fmt::format("not proved: {}\n", beyond);
+  text += fmt::format("  scene     {}, checksum {:016x}\n", run.scene.name, crc64(effective_toml(run.scene)));
+  text += fmt::format("  run in    {}, proved in balls around {}; {:.4g} % of collisions decided in plain doubles\n",
+                      precision_name(run.scene.run), c.digits_text, 100 * share);
+  if (!c.samples.empty()) {
+    const CertainSample& last = c.samples.back();
+    text += fmt::format("  energy    {} at t = {}\n", shown(last.energy), last.time_text);
+    if (last.front_left) text += fmt::format("  fronts    {}\n", shown(*last.front_left));
+    if (last.front_right) text += fmt::format("            {}\n", shown(*last.front_right));
+    text += fmt::format("  margins   places known to 1e{:.1f}", last.widest);
+    if (std::isfinite(last.least_gap))
+      text += fmt::format(", smallest gap 1e{:.1f}, gaps known to 1e{:.1f} of themselves", last.least_gap,
+                          last.widest_of_gap);
+    text += '\n';
+    for (const End end : {End::left, End::right})
+      if (const auto& wall = last.walls[static_cast<std::size_t>(end)]) {
+        const bool left = end == End::left;
+        const WallAt& of = left ? run.scene.walls.left : run.scene.walls.right;
+        text += fmt::format("  walls     {}: {} collisions", left ? "left" : "right", wall->collisions);
+        if (of.temperature || of.speed != Decimal("0")) text += fmt::format(", energy given {}", shown(wall->given));
+        text += '\n';
+      }
+    if (run.proved() && last.over)
+      text += "  after it  no particles approach each other: there are no more collisions\n";
+  }
+  for (const Attempt& a : run.attempts)
+    text += fmt::format("  {:.1f} s in {} and {}: {}\n", a.seconds, a.precision, a.digits,
+                        a.doubt.empty() ? "proved" : a.doubt);
+  return text;
+}
+
+namespace {
+
+struct Bounds {
+  std::vector<double> low, high;
+  std::vector<std::string> low_text, high_text;
+
+  void add(const std::optional<Enclosed>& x) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    low.push_back(x ? x->doubles.low : none), high.push_back(x ? x->doubles.high : none);
+    low_text.push_back(x ? x->decimals.low : "nan"), high_text.push_back(x ? x->decimals.high : "nan");
+  }
+  void put(Group& doubles, Group& exact, const std::string& name, const std::string& unit,
+           const std::string& what) const {
+    doubles.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", rounded down", low});
+    doubles.columns.push_back({name + "_high", unit, "upper bound of the " + what + ", rounded up", high});
+    exact.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", all digits known", low_text});
+    exact.columns.push_back({name + "_high", unit, "upper bound of the " + what + ", all digits known", high_text});
+  }
+};
+
+}  // namespace
+
+Result certified_result(Certified run) {
+  const Certificate& c = run.certificate;
+  Result result = std::move(run.outcome.result);
+  if (c.doubt) result = {provenance(run.scene, precision_name(run.scene.run), end_row(RunEnd::undecided).text), {}};
+  Group certificate{"certificate",
+                    {{"verdict", run.proved() ? "proved" : "undecided"},
+                     {"collisions", c.collisions},
+                     {"undecided", run.undecided()},
+                     {"proved_until", c.samples.empty() ? "" : c.samples.back().time_text},
+                     {"not_proved", run.not_proved()},
+                     {"precision", precision_name(run.scene.run)},
+                     {"digits", std::uint64_t{c.digits}},
+                     {"collisions_in_doubles", c.in_doubles},
+                     {"over", std::uint64_t{run.proved() && !c.samples.empty() && c.samples.back().over}},
+                     {"scene_checksum", fmt::format("{:016x}", crc64(effective_toml(run.scene)))}},
+                    {}};
+  Group of_series{"series", {}, {}}, exact{"exact/series", {}, {}};
+  std::vector<double> time, sampled, widest, gap, of_gap;
+  std::vector<std::string> time_text;
+  std::vector<std::uint64_t> collisions;
+  Bounds energy, left, right;
+  std::array<Bounds, 2> given, lost;
+  for (const CertainSample& s : c.samples) {
+    time.push_back(s.time), collisions.push_back(s.collisions);
+    widest.push_back(s.widest), gap.push_back(s.least_gap), of_gap.push_back(s.widest_of_gap);
+    if (!s.of_series) continue;
+    sampled.push_back(s.time), time_text.push_back(s.time_text);
+    energy.add(s.energy), left.add(s.front_left), right.add(s.front_right);
+    for (std::size_t k = 0; k < s.walls.size(); ++k)
+      if (const auto& wall = s.walls[k]) given[k].add(wall->given), lost[k].add(wall->lost);
+  }
+  exact.columns.push_back({"time", "t", "of the sample", time_text});
+  certificate.columns = {{"time", "t", "up to which the run is proved", time},
+                         {"collisions", "1", "proved until then", collisions},
+                         {"widest", "1", "largest radius of a place in l, as a power of ten", widest},
+                         {"gap", "1", "smallest gap in l, as a power of ten", gap},
+                         {"widest_of_gap", "1", "largest radius of a gap against the gap, as a power of ten", of_gap}};
+  const auto own = std::find_if(result.groups.begin(), result.groups.end(),
+                                [](const Group& group) { return group.name == "series"; });
+  // Samples that a collision falls upon are not proved: the bounds then have rows of their own.
+  const bool joined = own != result.groups.end() && own->columns.front().rows() == sampled.size();
+  if (!joined)
+    of_series = {
+        own == result.groups.end() ? "series" : "certificate/series", {}, {{"time", "t", "of the sample", sampled}}};
+  Group& doubles = joined ? *own : of_series;
+  const char* const of_energy = "m l^2/t^2";
+  const std::string front = "position of the outermost particle that has collided";
+  energy.put(doubles, exact, "energy", of_energy, "kinetic energy");
+  left.put(doubles, exact, "front_left", "l", front);
+  right.put(doubles, exact, "front_right", "l", front);
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const std::string which = k == 0 ? "left" : "right";
+    const WallAt& wall = k == 0 ? run.scene.walls.left : run.scene.walls.right;
+    if (!wall.position) continue;
+    given[k].put(doubles, exact, "wall_" + which + "_energy", of_energy,
+                 "energy that the " + which + " wall has given");
+    if (wall.dissipates())
+      lost[k].put(doubles, exact, "wall_" + which + "_lost", of_energy, "energy lost in the " + which + " wall");
+  }
+  result.groups.push_back(std::move(exact));
+  result.groups.push_back(std::move(certificate));
+  if (!joined) result.groups.push_back(std::move(of_series));
+  for (Group& snapshot : run.certificate.snapshots) result.groups.push_back(std::move(snapshot));
+  return result;
+}
+
+}  // namespace cradle::tools

@@ -224,7 +224,7 @@ class Checks {
                   acceleration, "remove [gravity], or give another initial state");
     if (scene_.run.collapse == scene::CollapsePolicy::merge)
       throw Error(place("gravity.acceleration"), "gravity on particles that merge", "run.collapse = \"merge\"",
-                  "choose another collapse policy; of walls.left.rest_speed, particles rest on a floor");
+                  "choose another collapse policy; below the rest_speed of a floor particles stay on it");
     if (scene_.output.core)
       throw Error(place("output.core"), "nothing to compare the core with",
                   "gravity, which the sticky gas does not have", "remove it");

@@ -13,8 +13,6 @@
 // the energy m (v'^2 - v^2)/2 - m a (x' - x), in no collision. They are entered in the accounts when its gap next
 // changes, and added to them when they are read before.
 
-#include <cstdlib>
-
 #include "cradle/core/chains/gap_chain.hpp"
 
 namespace cradle {
@@ -55,7 +53,7 @@ CollisionResult<T> GapChain<T, Masses, Field>::collide_falling(const Law& law, S
     Notice more = Notice::none;
     if (let_go)
       for (const ParticleIndex h : {resting, ParticleIndex{0}})
-        if (std::abs(h - height) > 1 && field_.pulls(particle(slot_in_pile(h))))
+        if ((h + 1 < height || h > height + 1) && field_.pulls(particle(slot_in_pile(h))))
           more |= line_.renew(field_, slot_in_pile(h), time) | Notice::origin_must_move;  // which predicts them
     return more;
   };

@@ -10,7 +10,7 @@ namespace cradle::tools {
 
 inline constexpr const char* version = "0.1.0";
 
-/// Of results: names of groups, columns and attributes. Format 1 said body and contact.
+/// Of results: names of groups, columns and attributes. Format 1 had other names.
 inline constexpr std::uint64_t format_version = 2;
 /// The error for a file whose format is not the one read here.
 Error of_version(const std::string& path, std::uint64_t found, std::uint64_t here = format_version);

@@ -8,7 +8,8 @@ LABELS = {"free_flight": "time between two collisions of a particle ($t$)",
           "pair_flight": "time between two collisions of a pair ($t$)",
           "closing_speed": "closing speed ($l/t$)",
           "dissipative_closing_speed": "closing speed of dissipative collisions ($l/t$)",
-          "collisions_per_particle": "collisions of a particle", "gap": "gap ($l$)", "cluster": "particles of a cluster"}
+          "collisions_per_particle": "collisions of a particle",
+          "gap": "gap ($l$)", "cluster": "particles of a cluster"}
 
 
 def pictures(result, _theory, _units):

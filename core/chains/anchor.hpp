@@ -54,12 +54,10 @@ template <Real T> class Anchor {
 
   // Changes to a particle that has not collided.
   void take(ParticleIndex particle) { particle_ = particle; }
-  // Changes to the last particle of a line, which gains velocity in a collision now: Gain is T or Pair<T>.
-  template <class Gain>
-  void follow(ParticleIndex particle, const Particles<T>& particles, const Clock<T>& clock, const T& time,
-              const Gain& gain) {
-    particle_ = particle;
-    from_ = flight(particles, clock, time);
+  // The particle, the last one of a line, has had this flight until now, and gains velocity in a collision: Gain is T
+  // or Pair<T>.
+  template <class Gain> void follow(const Flight<T>& until_now, const T& time, const Gain& gain) {
+    from_ = until_now;
     from_.v = from_.v + gain;
     since_ = {time, T(0)};
     collided_ = true;

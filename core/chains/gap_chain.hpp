@@ -106,14 +106,14 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // ---- events (inlined by force, see gap_line.hpp)
   template <class Law>
   [[gnu::always_inline]] CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
-    if constexpr (falls) {  // beside the gap to a wall too
-      if (!range_.inside(s - 1, s + 1)) [[unlikely]]
+    if constexpr (falls) {  // beside the gap to a wall, or in or above a pile, too
+      if (!inner_.has(s)) [[unlikely]]
         return collide_at_end(law, s, time);
     } else {
       if (!range_.inside(s, s)) [[unlikely]]
         return collide_at_end(law, s, time);
     }
-    return line_.strike(s - 1, s, s + 1, time, outcome(law, s, time), Notice::none);
+    return line_.strike(s - 1, s, s + 1, time, outcome(law, s, time, closing(s)), Notice::none);
   }
 
   // Moves the origin of time to the given local time and returns its new local time. Gaps do not change.
@@ -173,16 +173,21 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   T front_left(const T& time) const;
   T front_right(const T& time) const;
   const Walls<T>& walls() const { return walls_; }
-  // The accounts of the walls until a local time, with what they have given to a particle that rests on one since.
+  // The accounts of the walls until a local time, with what they have given to particles that rest on one since.
   // (gap_chain_walls.hpp)
   Walls<T> walls_at(const T& time) const requires(falls);
   // Of all particles of the scene; reads all held gaps. (gap_chain_configuration.hpp)
   T kinetic_energy(const T& time) const;
 
   static auto state(auto& self) {
-    return std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_);
+    const auto all = std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_);
+    if constexpr (falls)
+      return std::tuple_cat(all, std::tie(self.field_));
+    else
+      return all;
   }
-  void loaded() const {
+  void loaded() {
+    find_inner();
     const ParticleIndex count = particles_->count();
     const GapRange all = particles_->gaps();
     require_state(range_.fits(slots(), count) && range_.on_ring() == particles_->on_ring(), "slots");
@@ -202,6 +207,12 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
                     "gaps");
     }
     for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
+    if constexpr (falls) {
+      const auto pile = static_cast<std::size_t>(field_.resting()), held = last() + 1 - first();
+      require_state(pile < held || (pile == held && !field_.pulls(particle(slot_in_pile(field_.resting())))), "pile");
+      for (ParticleIndex h = 0; h < field_.resting(); ++h)
+        require_state(line_.gaps[slot_in_pile(h)].gap == T(0) && closing(slot_in_pile(h)) == T(0), "pile");
+    }
     require_state(line_.has_mass(last() + 1, *particles_), "masses");
     for (const Anchor<T>* anchor : {&left_, &right_})
       require_state(on_ring() || (anchor->particle() >= all.first && anchor->particle() <= all.last + 1), "anchors");
@@ -239,6 +250,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
     foresee_walls();
+    find_inner();
     left_.take(particle(first()));
     right_.take(particle(last()) + 1);
     if (!on_ring()) return;
@@ -250,17 +262,24 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   Configuration<T> ring_configuration(const T& time) const;
   Flight<T> flight(const Anchor<T>& anchor, const T& time) const {
     if constexpr (falls)
-      if (particles_->holding() != nullptr && particles_->wall_at(anchor.particle()) == nullptr) return from_wall(time);
+      if ((field_.resting() == count() || (count() == 1 && particles_->holding() != nullptr)) &&
+          particles_->wall_at(anchor.particle()) == nullptr)
+        return from_wall(time);
     return anchor.flight(*particles_, clock(), time);
   }
-  // Of a single particle, from the wall that may hold it. (gap_chain_walls.hpp)
+  // Of a particle that rests on a wall, alone or on a pile of all others, or of a single one that may rest there.
+  // (gap_chain_walls.hpp)
   Flight<T> from_wall(const T& time) const;
 
   // Predicts the next collisions with walls under gravity, where all others have just been.
   void foresee_walls() {
-    if constexpr (falls)
+    if constexpr (falls) {
       for (const Slot s : {first(), last()})
-        if (field_.pulls(particle(s))) line_.foresee(field_, s);
+        if (field_.at_wall(particle(s))) line_.foresee(field_, s);
+      if (field_.resting() > 0)
+        if (const Slot above = slot_in_pile(field_.resting()); field_.above_pile(particle(above)))
+          line_.foresee(field_, above);
+    }
   }
   // Whether a loaded gap has numbers that a gap can have.
   bool fits(Slot s) const {
@@ -277,6 +296,25 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
       return true;
   }
 
+  // Under gravity, the slots in which a collision concerns no end, wall or pile, nor a gap beside one.
+  struct Inner {
+    Slot after = 0, before = 0;
+    bool has(Slot s) const { return (s > after) & (s < before); }
+  };
+  void find_inner() {
+    if constexpr (falls) {
+      const auto pile = static_cast<Slot>(field_.resting());
+      const bool left = field_.pile_end() == End::left;
+      const Slot front = range_.front_right(), margin = left ? 1 : 1 + pile;
+      inner_ = {range_.front_left() + (left ? 1 + pile : 1), front > margin ? front - margin : 0};
+    }
+  }
+  // So many particles from the wall.
+  Slot slot_in_pile(ParticleIndex height) const {
+    const auto h = static_cast<Slot>(height);
+    return field_.pile_end() == End::left ? first() + h : last() - h;
+  }
+
   Slot slot(ParticleIndex particle) const {
     return static_cast<Slot>(particle - line_.particle_of_slot_0);
   }  // of the gap right of it
@@ -289,7 +327,8 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // The last particle of a line, or the wall there, has had a collision in which it gained velocity.
   template <class Gain> void follow_end(End end, ParticleIndex particle, const T& time, const Gain& gain) {
     Anchor<T>& anchor = end == End::left ? left_ : right_;
-    walls_.has(end) ? anchor.take(particle) : anchor.follow(particle, *particles_, clock(), time, gain);
+    anchor.take(particle);
+    if (!walls_.has(end)) anchor.follow(flight(anchor, time), time, gain);
   }
 
   // Changes to enough slots for the zone to grow by half on either side, with the gaps at `kept`.
@@ -300,20 +339,22 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     memory_.lay_out(slots, first(), kept);
     line_.masses.resize(slots);
     for (Slot s = first(); s <= last() + 1; ++s) line_.load_mass(s, *particles_);
+    find_inner();
   }
 
-  template <LawChoice Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
-    return law.visit([&](const auto& own) { return outcome(own, s, time); });
+  template <LawChoice Law>
+  [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time, const T& w) {
+    return law.visit([&](const auto& own) { return outcome(own, s, time, w); });
   }
-  template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time) {
+  template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time, const T& w) {
     if constexpr (Line::watched && requires { law.cutoff(); })
       line_.certainty.threshold(line_.gaps, s, particle(s), time, law.cutoff());
     if constexpr (LawWithMemory<Law, T>)
       if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots()))
-        return law.elastic(closing(s), line_.masses.of_pair(s));
-    const Outcome<T> outcome = law(closing(s), line_.masses.of_pair(s));
+        return law.elastic(w, line_.masses.of_pair(s));
+    const Outcome<T> outcome = law(w, line_.masses.of_pair(s));
     if constexpr (Line::watched && !requires { law.cutoff(); })
-      line_.certainty.slope(law, closing(s), line_.masses.of_pair(s), outcome);
+      line_.certainty.slope(law, w, line_.masses.of_pair(s), outcome);
     return outcome;
   }
   template <LawChoice Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
@@ -323,42 +364,45 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     bool rested = true;
     if constexpr (LawWithMemory<Law, T>)
       rested = memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots());
-    const T& mass = line_.masses[walls_.left_of(particle(s)) ? s + 1 : s];
     if constexpr (falls) {
-      const T w = closing_when_due(s);
+      const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
+      const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
       const Pair<T> elapsed = clock().since_start(time);
       const bool stays = field_.holds(particle(s), w, elapsed), below = !stays && below_cutoff(law, w);
-      const T restitution = stays ? T(0) : below || !rested ? T(1) : walls_.wall(particle(s)).restitution;
-      Outcome<T> outcome = walls_.strike(particle(s), w, mass, restitution, field_.shaken_at(particle(s), elapsed));
+      const T restitution = stays ? T(0) : below || !rested ? T(1) : walls_.wall(wall).restitution;
+      Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));
       outcome.below_cutoff = below;
       return outcome;
     } else {
-      return walls_.strike(particle(s), closing(s), mass);
+      return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
     }
   }
   // A collision at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
     if constexpr (falls) {
-      for (const Slot beside : {s - 1, s, s + 1})
-        if (const Carried more = carried(beside, time); !(more.momentum == T(0))) {
-          walls_.carry(more.end, more.energy, more.momentum);
-          line_.gaps.lose(beside, T(-more.energy));
-        }
-    }
-    const Outcome<T> of_law = walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time);
-    const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
-    if constexpr (falls)
-      return line_.strike(field_, left(s), s, right(s), time, of_law, notice);
-    else
+      return collide_falling(law, s, time);
+    } else {
+      const Outcome<T> of_law =
+          walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time, closing(s));
+      const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
       return line_.strike(left(s), s, right(s), time, of_law, notice);
+    }
+  }
+  // The same under gravity or between shaken walls, also beside the gap to one and at a pile. (gap_chain_walls.hpp)
+  template <class Law> CollisionResult<T> collide_falling(const Law& law, Slot s, const T& time);
+  // Whether the next particle at the wall or the pile there comes to rest on it.
+  bool stays(Slot s, const T& time) const {
+    return field_.holds(particle(s), closing_when_due(s), clock().since_start(time));
   }
 
-  // What a wall has given, until a local time, to a particle at this gap that rests on it. (gap_chain_walls.hpp)
+  // What a wall has given, until a local time, to a particle that rests on it, at this gap or with this gap below it in
+  // a pile. (gap_chain_walls.hpp)
   struct Carried {
     End end;
     T energy{0}, momentum{0};
   };
   Carried carried(Slot s, const T& time) const;
+  void enter_carried(Slot s, const T& time);
 
   // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the
   // last one.
@@ -372,6 +416,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   Anchor<T> left_, right_;
   Walls<T> walls_;
   [[no_unique_address]] Field field_;
+  [[no_unique_address]] std::conditional_t<falls, Inner, NothingMore> inner_;
 };
 
 }  // namespace cradle

@@ -104,9 +104,21 @@ template <Real T, class MassesOf> class GapLine {
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
-  // ---- under gravity, or to shaken walls: the gaps to walls
+  // ---- under gravity, or to shaken walls: the gaps to walls, and that above a pile
   template <class Field> WallApproach<T> approach(const Field& field, Slot s) const {
+    if (field.above_pile(particle(s))) {
+      const std::optional<T> free = pile_let_go(field, s);
+      return field.approach_pile(gaps[s].gap, closing(s), gaps.since_start(s),
+                                 free ? std::optional<T>(gaps.flown(s, *free)) : std::nullopt);
+    }
     return field.approach(particle(s), gaps[s].gap, closing(s), gaps.since_start(s));
+  }
+  // The local time at which the wall lets go of a pile, which has the gap s above it or in it; nothing: never.
+  template <class Field> std::optional<T> pile_let_go(const Field& field, Slot s) const {
+    const auto height = static_cast<Slot>(field.height(particle(s)));
+    const Slot at_wall = field.pile_end() == End::left ? s - height : s + height;
+    const std::optional<T> wait = approach(field, at_wall).let_go_in();
+    return wait ? std::optional<T>(gaps.after(at_wall, *wait)) : std::nullopt;
   }
   template <class Field> T gap_at(const Field& field, Slot s, const T& time) const {
     return approach(field, s).gap_after(gaps.flown(s, time), gaps.clock().since_start(time));
@@ -129,27 +141,35 @@ template <Real T, class MassesOf> class GapLine {
     if constexpr (Gaps::keys_are_exact) gaps[s].due = time;
     return time;
   }
-  // The effect of a collision at a wall or beside the gap to one, off the hot path.
-  template <class Field>
-  CollisionResult<T> strike(const Field& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
-                            Notice notice) requires(!watched) {
+  // The effect of a collision at a wall or beside the gap to one, off the hot path. So many particles rest in the pile
+  // after it; one that comes to rest on others does not move them. `renew` is called while the pile is as it was.
+  template <class Field, class Renew>
+  CollisionResult<T> strike(Field& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
+                            Notice notice, ParticleIndex resting, const Renew& renew) requires(!watched) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
+    const bool at_wall = field.at_wall(particle(s)), lands = resting > field.resting() && field.resting() > 0;
+    if (!lands || field.pile_end() == End::right) notice |= kick(field, p, outcome.to_left, since, time);
+    if (!lands || field.pile_end() == End::left) notice |= kick(field, n, outcome.to_right, since, time);
+    notice |= renew();
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;
     gaps.forget(s);
-    const bool at_wall = field.pulls(particle(s));
+    field.rest(resting);
     if (at_wall && is_negative(since)) {  // late: it has fallen since then
       const WallApproach<T> open = field.approach(particle(s), T(0), outcome.closing, gaps.clock().since_start(time));
       gaps[s].gap = open.gap_after(T(-since), gaps.since_start(s));
       gaps[s].closing = open.closing_after(T(-since), gaps.since_start(s));
     }
-    notice |= kick(field, p, outcome.to_left, since, time);
-    notice |= kick(field, n, outcome.to_right, since, time);
     const auto predict = [&](Slot beside) {
       return field.pulls(particle(beside)) ? foresee(field, beside) : gaps.predict(beside, closing(beside));
     };
     return {outcome, predict(p), at_wall ? foresee(field, s) : EventQueue::never, predict(n), notice, p, n};
+  }
+
+  // Brings a gap that is pulled to a time at which nothing happens to it.
+  template <class Field> Notice renew(const Field& field, Slot s, const T& time) requires(!watched) {
+    return kick(field, s, T(0), T(0), time);
   }
 
   // There is no gap beyond the last particle: its slot holds a gap that always opens, whatever the collisions give it.

@@ -1,7 +1,9 @@
 #pragma once
 // Gravity and shaken walls as a chain sees them: a pull on the gaps to walls, or a motion of these walls, and nothing
-// else (laws/wall_approach.hpp). Whether there is either is a type, chosen once: without it a chain
-// has none of this.
+// else (laws/wall_approach.hpp). Whether there is either is a type, chosen once: without it a chain has none of this.
+//
+// Several particles that rest on a wall are a pile: the gaps in it are 0 and closed, the gap above it is as one to the
+// wall. Which gap that is follows from how many there are, in particles from the wall (gap_chain_walls.hpp).
 
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall_approach.hpp"
@@ -14,27 +16,71 @@ template <Real T> class Gravity {
 
   explicit Gravity(const Particles<T>& particles)
       : acceleration_(particles.acceleration()), splitter_(splitter<T>()), left_(end(particles, End::left)),
-        right_(end(particles, End::right)) {}
+        right_(end(particles, End::right)), piles_(particles.count() > 1 && particles.holding() != nullptr),
+        pile_end_(piles_ && particles.holding() == particles.wall(End::right) ? End::right : End::left),
+        gaps_(particles.gaps()), count_(particles.count()) {
+    const bool left = pile_end_ == End::left;
+    if (particles.wall(left ? End::right : End::left) != nullptr) other_wall_ = left ? gaps_.last : gaps_.first;
+  }
 
   const T& acceleration() const { return acceleration_; }
-  // Whether this is a gap to a wall that does not close uniformly.
-  bool pulls(ParticleIndex gap) const { return gap == left_.gap || gap == right_.gap; }
+  // Whether this is a gap to a wall, or above a pile, that does not close uniformly.
+  bool pulls(ParticleIndex gap) const { return at_wall(gap) || gap == above_pile_; }
+  bool at_wall(ParticleIndex gap) const { return gap == left_.gap || gap == right_.gap; }
+
+  // Whether several particles can rest, at which end, and how many do; a gap there, counted from the wall.
+  bool piles() const { return piles_; }
+  End pile_end() const { return pile_end_; }
+  ParticleIndex resting() const { return resting_; }
+  ParticleIndex wall_of_pile() const { return pile_end_ == End::left ? gaps_.first : gaps_.last; }
+  ParticleIndex height(ParticleIndex gap) const {
+    return pile_end_ == End::left ? gap - gaps_.first : gaps_.last - gap;
+  }
+  void rest(ParticleIndex particles) {
+    resting_ = particles;
+    const ParticleIndex gap = pile_end_ == End::left ? gaps_.first + particles : gaps_.last - particles;
+    above_pile_ = particles > 0 && gaps_.first <= gap && gap <= gaps_.last ? gap : none;
+  }
+  bool above_pile(ParticleIndex gap) const { return gap == above_pile_; }
+  // Of the gap above the pile, which is held for so long; see WallApproach.
+  WallApproach<T> approach_pile(const T& size, const T& closing, const Pair<T>& since,
+                                const std::optional<T>& held) const {
+    const bool left = pile_end_ == End::left;
+    const WallMotion<T>*motion = (left ? left_ : right_).wall.motion, *other = (left ? right_ : left_).wall.motion;
+    if (above_pile_ != other_wall_) return {size, closing, pull(pile_end_), splitter_, motion, since, held, T(0)};
+    // Between the pile and the other wall; only one of the two is shaken.
+    return {size, closing, T(0), splitter_, motion != nullptr ? motion : other, since, held, T(-pull(pile_end_))};
+  }
   // Of a gap that it pulls, at a time since the start.
   WallApproach<T> approach(ParticleIndex gap, const T& size, const T& closing, const Pair<T>& since) const {
-    const bool left = gap == left_.gap;
-    return {size, closing, left ? T(-acceleration_) : acceleration_, splitter_, (left ? left_ : right_).wall, since};
+    const End end = gap == left_.gap ? End::left : End::right;
+    const HoldingWall<T>& wall = (end == End::left ? left_ : right_).wall;
+    if (!piles_ || resting_ > 0) return {size, closing, pull(end), splitter_, wall, since};
+    return {size, closing, pull(end), splitter_, {wall.motion, false, std::nullopt},
+            since};  // it comes to rest in a collision only
   }
-  // Whether a particle that meets the wall at this speed stays on it.
+  // Whether a particle that meets the wall, or the pile on it, at this speed stays there.
   bool holds(ParticleIndex gap, const T& speed, const Pair<T>& elapsed) const {
-    const AtEnd& end = gap == left_.gap ? left_ : right_;
-    return end.gap == gap && end.wall.holds && speed < end.rest_speed &&
-           end.wall.presses(gap == left_.gap ? T(-acceleration_) : acceleration_, elapsed);
+    const bool on_pile = gap == above_pile_ && gap != other_wall_;
+    const End end = on_pile ? pile_end_ : gap == left_.gap ? End::left : End::right;
+    const AtEnd& at = end == End::left ? left_ : right_;
+    return (on_pile || at.gap == gap) && at.wall.holds && speed < at.rest_speed && at.wall.presses(pull(end), elapsed);
+  }
+  // Whether the wall at the end of the pile holds what has come to rest there.
+  bool wall_presses(const Pair<T>& elapsed) const {
+    return (pile_end_ == End::left ? left_ : right_).wall.presses(pull(pile_end_), elapsed);
   }
   // The speed towards the particles at which the wall at a gap is shaken.
   T shaken_at(ParticleIndex gap, const Pair<T>& elapsed) const {
-    if (!pulls(gap)) return T(0);
+    if (!at_wall(gap)) return T(0);
     const WallMotion<T>* motion = (gap == left_.gap ? left_ : right_).wall.motion;
     return motion != nullptr ? motion->speed(motion->at(elapsed).rest) : T(0);
+  }
+
+  static auto state(auto& self) { return std::tie(self.resting_); }
+  void loaded() {
+    require_state(resting_ >= 0 && resting_ <= (piles_ ? count_ : 0), "pile");
+    rest(resting_);
   }
 
  private:
@@ -54,8 +100,14 @@ template <Real T> class Gravity {
             wall->rest_speed};
   }
 
+  T pull(End end) const { return end == End::left ? T(-acceleration_) : acceleration_; }
+
   T acceleration_, splitter_;
   AtEnd left_, right_;
+  bool piles_;
+  End pile_end_;
+  GapRange gaps_;
+  ParticleIndex count_, other_wall_ = none, resting_ = 0, above_pile_ = none;
 };
 
 template <Real T> class NoGravity {

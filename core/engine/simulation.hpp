@@ -39,7 +39,8 @@ class Simulation {
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
         last_collision_(chain_.local_time(chain_.start())), pacing_(last_collision_, Chain::may_collapse),
-        standstill_(last_collision_, has_threshold(law_)), target_{chain_.start(), last_collision_, last_collision_} {
+        standstill_(last_collision_, has_threshold(law_) || can_rest()), target_{chain_.start(), last_collision_,
+                                                                                 last_collision_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
     const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());
@@ -169,6 +170,13 @@ class Simulation {
     Simulation& run;
   };
 
+  // Whether particles slower than a given speed come to rest on a wall.
+  bool can_rest() const {
+    if constexpr (FallingChain<Chain> && requires { chain_.particles(); })
+      return chain_.particles().holding() != nullptr;
+    else
+      return false;
+  }
   bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_); }
 
   void fill_queue() {

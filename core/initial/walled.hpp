@@ -16,7 +16,7 @@ namespace cradle {
 template <Real T> class Walled final : public Particles<T> {
  public:
   // Throws std::invalid_argument for particles on a ring, walls that are not outside the particles, a floor that keeps
-  // what falls on it, and numbers out of range.
+  // what falls on it without a rest speed, two walls on which several can rest, and numbers out of range.
   Walled(std::shared_ptr<const Particles<T>> particles, std::optional<Wall<T>> left, std::optional<Wall<T>> right,
          const T& acceleration = T(0))
       : particles_(std::move(particles)), left_(std::move(left)), right_(std::move(right)),
@@ -31,10 +31,11 @@ template <Real T> class Walled final : public Particles<T> {
     if (left_) require_wall(*left_, "left"), require_outside(gap(-1), "left", position(-1), 0);
     if (right_)
       require_wall(*right_, "right"), require_outside(gap(count() - 1), "right", position(count()), count() - 1);
-    if (const Wall<T>* wall = this->holding(); wall != nullptr && count() > 1)
-      throw std::invalid_argument("several particles over a wall on which only one can rest (" +
-                                  std::to_string(count()) + " particles, rest speed " + in_message(wall->rest_speed) +
-                                  "): leave the rest speed out");
+    if (count() > 1 && left_ && right_ && (left_->holds() || right_->holds())) {
+      require_one_pile(!(left_->holds() && right_->holds()), "a rest speed, which a wall at one end may have");
+      require_one_pile(left_->motion == nullptr || right_->motion == nullptr,
+                       "a motion, between which particles would rest");
+    }
     for (const auto* wall : {&left_, &right_})
       if (*wall && (&**wall == this->floor() || (*wall)->motion != nullptr) && !((*wall)->temperature > 0) &&
           !is_positive((*wall)->restitution) && !is_positive((*wall)->rest_speed))
@@ -117,6 +118,12 @@ template <Real T> class Walled final : public Particles<T> {
       throw std::invalid_argument("temperature of the " + which + " wall is negative or not finite (" +
                                   std::to_string(wall.temperature) +
                                   "): give a positive one, or 0 for a reflecting wall");
+  }
+  void require_one_pile(bool one, const std::string& what) const {
+    if (one) return;
+    throw std::invalid_argument("two walls with " + what + " (" + std::to_string(count()) + " particles, rest speeds " +
+                                in_message(left_->rest_speed) + " and " + in_message(right_->rest_speed) +
+                                "): leave it out at one of them");
   }
   void require_outside(const T& gap, const std::string& which, const T& wall, ParticleIndex particle) const {
     if (is_positive(gap)) return;

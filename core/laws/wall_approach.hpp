@@ -2,6 +2,8 @@
 // The gap between any wall and a particle: the wall is shaken (shaken_approach.hpp) or not (approach.hpp), and may hold
 // particles that are slower than its rest speed. Such a particle has no gap and no closing speed. It moves with the
 // wall for as long as the wall presses it, p + s'' > 0; then it is let go, at the speed of the wall: at a known phase.
+//
+// To a particle above those that the wall holds they are the wall, until they are let go; from then on both fall.
 
 #include <optional>
 
@@ -36,34 +38,63 @@ template <Real T> class WallApproach {
       let_go(*wall.release, pull, splitter, since);
   }
 
+  // The gap above particles that a wall holds: until they are let go, so long after `since` (nothing: never), that to a
+  // wall with this motion (null: unshaken) and pull; then it has the pull `later`.
+  WallApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>* motion,
+               const Pair<T>& since, const std::optional<T>& held, const T& later)
+      : straight_(gap, closing, pull, splitter), motion_(motion), rests_(false) {
+    if (motion != nullptr && !(held && motion->shape() == Shape::sawtooth))  // it does not jump while it holds them
+      shaken_.emplace(gap, closing, pull, splitter, *motion, since);
+    if (!held) return;
+    const T until = is_negative(*held) ? T(0) : *held;
+    const Pair<T> then = since + until;
+    freed_.emplace(Freed{until, {gap_after(until, then), closing_after(until, then), later, splitter}});
+  }
+
   // After a time, which is `now` since the start: the closing speed, its mean until then, and the gap.
   T closing_after(const T& time, const Pair<T>& now) const {
+    if (freed_ && freed_->at < time) return freed_->approach.closing_after(T(time - freed_->at));
     if (rests(time, now)) return T(0);
     return shaken_ ? shaken_->after(T(time - released_), now).closing : straight_.closing_after(time);
   }
   T gap_after(const T& time, const Pair<T>& now) const {
+    if (freed_ && freed_->at < time) return freed_->approach.gap_after(T(time - freed_->at));
     if (rests(time, now)) return T(0);
     return shaken_ ? shaken_->after(T(time - released_), now).gap : straight_.gap_after(time);
   }
   T mean_closing(const T& time, const Pair<T>& now) const {
-    if (!shaken_ && !rests_) return straight_.mean_closing(time);
+    if (!shaken_ && !rests_ && !freed_) return straight_.mean_closing(time);
     return time == T(0) ? closing_after(time, now) : T((straight_.gap_after(T(0)) - gap_after(time, now)) / time);
   }
   // The next collision, as in approach.hpp.
   std::optional<T> meeting_in() const {
-    if (!shaken_) return rests_ ? std::nullopt : straight_.meeting_in();
-    const auto meeting = shaken_->meeting();
-    return meeting ? std::optional<T>(released_ + meeting->in) : std::nullopt;
+    std::optional<T> in = held_meeting_in();
+    if (!freed_before(in)) return in;
+    in = freed_->approach.meeting_in();
+    return in ? std::optional<T>(freed_->at + *in) : std::nullopt;
   }
   std::optional<T> meeting_speed() const {
+    if (freed_ && freed_before(held_meeting_in())) return freed_->approach.meeting_speed();
     if (!shaken_) return rests_ ? std::nullopt : straight_.meeting_speed();
     const auto meeting = shaken_->meeting();
     return meeting ? std::optional<T>(meeting->speed) : std::nullopt;
   }
   // How long the particle has rested after a time.
   T rested(const T& time, const Pair<T>& now) const { return !rests_ ? T(0) : rests(time, now) ? time : released_; }
+  // After what time it is let go, 0 if it does not rest; nothing: never.
+  std::optional<T> let_go_in() const {
+    if (rests_ && !shaken_) return {};
+    return rests_ ? released_ : T(0);
+  }
 
  private:
+  std::optional<T> held_meeting_in() const {
+    if (!shaken_) return rests_ ? std::nullopt : straight_.meeting_in();
+    const auto meeting = shaken_->meeting();
+    return meeting ? std::optional<T>(released_ + meeting->in) : std::nullopt;
+  }
+  bool freed_before(const std::optional<T>& meeting) const { return freed_ && (!meeting || freed_->at < *meeting); }
+
   bool rests(const T& time, const Pair<T>& now) const {
     if (!rests_ || !shaken_) return rests_;
     return motion_->shape() == Shape::sawtooth ? motion_->at(now).whole < tooth_ : !(released_ < time);
@@ -88,6 +119,11 @@ template <Real T> class WallApproach {
   std::optional<ShakenApproach<T>> shaken_;  // of a particle that rests: after it is let go
   bool rests_;
   T released_{0}, tooth_{0};
+  struct Freed {
+    T at;
+    Approach<T> approach;
+  };
+  std::optional<Freed> freed_;  // of a gap above particles that are let go: then
 };
 
 }  // namespace cradle

@@ -28,12 +28,9 @@ Exit check(const CommonOptions& options) {
   const Cost cost = expected_cost(scene);
   fmt::print("\nparticles in the active zone at the end: {:.3g} at most\n", cost.particles);
   if (cost.collisions) {
-    fmt::print("collisions: about {:.2g}{}\n", *cost.collisions,
-               cost.collapse ? fmt::format(" until inelastic collapse at about t = {:.3g}, without limit after it",
-                                           *cost.collapse)
-                             : "");
-    fmt::print("time: about {:.2g} s at {:.2g} collisions/s\n", *cost.collisions / cost.collisions_per_second,
-               cost.collisions_per_second);
+    fmt::print("{}", collisions_line(scene, cost));
+    fmt::print("time{}: about {:.2g} s at {:.2g} collisions/s\n", cost.collapse ? " until then" : "",
+               *cost.collisions / cost.collisions_per_second, cost.collisions_per_second);
   } else {
     fmt::print("collisions and time: not known beforehand for this initial state\n");
   }

@@ -11,6 +11,7 @@
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/threads.hpp"
+#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
@@ -63,6 +64,7 @@ Exit run(const RunArguments& options) {
   const FileClaim claim(output);
   check_overwrite(output, "run", &scene, options.force());
   RunFiles files(output, scene, options.force());
+  if (!options.quiet) notify(past_collapse_warning(scene));
   return run_command(files, output, options, interrupt);
 }
 

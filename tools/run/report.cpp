@@ -107,7 +107,7 @@ std::string account_warning(const ReportedAccount& account, const Run& run) {
     text += fmt::format(
         "three particles met within rounding ({} collisions): the tie rule decided their order; perturb the "
         "initial state where that matters (of law.restitution = 0, which leaves particles together, take "
-        "a small one)\n",
+        "a small one; where particles rest on one another it is always so)\n",
         account.simultaneous);
   if (account.uncertain)
     text += fmt::format(

@@ -148,6 +148,7 @@ class Checks {
                   fmt::format("wall at {}, {}", wall.text, particle), "move it outwards");
     };
     walls_shake();
+    particles_can_rest();
     // Shaken walls are checked where they are at the start (core/initial/walled.hpp).
     const bool listed = initial.type == InitialType::list && !initial.x.empty();
     for (const auto& [key, wall, side, which] : {std::tuple("walls.left.position", &left, -1, "first"),
@@ -188,16 +189,27 @@ class Checks {
             place(name + std::string("frequency")), "more periods than can be counted",
             fmt::format("frequency {}, phase {}, for a time of {:g}", wall->frequency.text, wall->phase.text, span),
             "give a smaller frequency or phase, or an earlier run.until");
-      if (wall->rest_speed && scene_.initial.type == InitialType::list && scene_.initial.x.size() > 1)
-        throw Error(place(name + std::string("rest_speed")), "several particles over a wall on which only one can rest",
-                    fmt::format("{} particles", scene_.initial.x.size()), "remove it, or give a single particle");
       if (wall->rest_speed && scene_.run.coordinates == Coordinates::absolute)
         throw Error(place(name + std::string("rest_speed")), "a particle that rests, in absolute positions",
                     wall->rest_speed->text, "give run.coordinates = \"gaps\"");
       if (wall->shaken() && !wall->temperature && wall->restitution == Decimal("0") && !wall->rest_speed)
         throw Error(place(name + std::string("restitution")), "a shaken wall on which particles come to rest", "0",
-                    "give it a small restitution, 0.01 or so, or a rest_speed for a single particle");
+                    "give it a rest_speed, or a small restitution, 0.01 or so");
     }
+  }
+
+  // Several particles rest at one end only, and not between two shaken walls.
+  void particles_can_rest() const {
+    const auto& [left, right] = scene_.walls;
+    if (!left.position || !right.position || !(left.rest_speed || right.rest_speed)) return;
+    if (scene_.initial.type == InitialType::list && scene_.initial.x.size() < 2) return;
+    if (left.rest_speed && right.rest_speed)
+      throw Error(place("walls.right.rest_speed"), "two walls on which several particles can rest",
+                  right.rest_speed->text, "leave it out at one of them");
+    if (left.shaken() && right.shaken())
+      throw Error(place(left.rest_speed ? "walls.left.rest_speed" : "walls.right.rest_speed"),
+                  "several particles that rest between two shaken walls", "both walls have a motion",
+                  "leave out one motion, or the rest_speed");
   }
 
   void particles_can_fall() const {
@@ -212,7 +224,7 @@ class Checks {
                   acceleration, "remove [gravity], or give another initial state");
     if (scene_.run.collapse == scene::CollapsePolicy::merge)
       throw Error(place("gravity.acceleration"), "gravity on particles that merge", "run.collapse = \"merge\"",
-                  "remove [gravity], or choose another collapse policy");
+                  "choose another collapse policy; below the rest_speed of a floor particles stay on it");
     if (scene_.output.core)
       throw Error(place("output.core"), "nothing to compare the core with",
                   "gravity, which the sticky gas does not have", "remove it");
@@ -221,7 +233,7 @@ class Checks {
     if (floor.position && !floor.temperature && floor.restitution == Decimal("0") && !floor.rest_speed)
       throw Error(place(to_left ? "walls.left.restitution" : "walls.right.restitution"),
                   "a floor on which particles come to rest", "0",
-                  "give it a small restitution, 0.01 or so, or a rest_speed for a single particle");
+                  "give it a rest_speed, or a small restitution, 0.01 or so");
   }
 
   void gas_between_walls() const {

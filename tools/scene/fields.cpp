@@ -295,8 +295,8 @@ const Field all_fields[] = {
      "angular frequency: 2 pi over the period"},
     {"walls.left.phase", walls_of<&WallPair::left, &WallAt::phase>, "", "0", any, &left_shaken, "angle at run.start"},
     {"walls.left.rest_speed", walls_of<&WallPair::left, &WallAt::rest_speed>, "l/t", "", "(0, inf)", &left_holds,
-     "a single particle that meets the left wall more slowly stays on it for as long as the wall presses it; without "
-     "it, none stays"},
+     "a particle that meets the left wall, or others that rest on it, more slowly stays there for as long as the wall "
+     "presses it; without it, none stays"},
     {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &may_have_walls,
      "position of a wall at the right end of the line, at run.start; without it, none. A wall is a particle of "
      "infinite mass"},
@@ -321,8 +321,8 @@ const Field all_fields[] = {
     {"walls.right.phase", walls_of<&WallPair::right, &WallAt::phase>, "", "0", any, &right_shaken,
      "angle at run.start"},
     {"walls.right.rest_speed", walls_of<&WallPair::right, &WallAt::rest_speed>, "l/t", "", "(0, inf)", &right_holds,
-     "a single particle that meets the right wall more slowly stays on it for as long as the wall presses it; without "
-     "it, none stays"},
+     "a particle that meets the right wall, or others that rest on it, more slowly stays there for as long as the wall "
+     "presses it; without it, none stays"},
 
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},

@@ -104,7 +104,7 @@ struct WallAt {
   Decimal restitution;                 // of a reflecting wall
   scene::Motion motion = scene::Motion::none;
   Decimal amplitude, frequency, phase;  // of a shaken wall; the frequency is angular
-  std::optional<Decimal> rest_speed;    // of a single particle that can rest on it
+  std::optional<Decimal> rest_speed;    // below it particles rest on it
   bool shaken() const { return motion != scene::Motion::none; }
   bool dissipates() const { return position && !temperature && restitution < Decimal("1"); }
   bool operator==(const WallAt&) const = default;

@@ -44,7 +44,12 @@ void StateWriter::finish() {
 // ---- reading
 
 Error StateReader::damaged(const std::string& what) const {
-  return {{path_, 0, ""}, "not a checkpoint, or damaged", what, "remove it: the run then starts anew", Exit::io};
+  const bool own = path_.ends_with(".checkpoint");  // else a file that somebody gave, perhaps a result
+  return {{path_, 0, ""},
+          "not a checkpoint, or damaged",
+          what,
+          own ? "remove it: the run then starts anew" : "give a checkpoint",
+          Exit::io};
 }
 
 StateReader::StateReader(const std::string& path)

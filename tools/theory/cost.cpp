@@ -1,5 +1,7 @@
 #include "cradle/tools/theory/cost.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -141,6 +143,20 @@ Cost expected_cost(const Scene& scene) {
   if (const Correlations& wanted = scene.output.correlations; wanted.every)
     cost.memory += Correlator::bytes(cost.particles / static_cast<double>(wanted.tag_every), longest_lag(scene));
   return cost;
+}
+
+std::string collisions_line(const Scene& scene, const Cost& cost) {
+  const auto* after = stops_at_collapse(scene) ? "where the run stops"
+                      : particles_merge(scene) ? "after which particles merge"
+                                               : "without limit after it";
+  const std::string until =
+      cost.collapse ? fmt::format(" until inelastic collapse at about t = {:.3g}, {}", *cost.collapse, after) : "";
+  return fmt::format("collisions: about {:.2g}{}\n", *cost.collisions, until);
+}
+
+std::string past_collapse_warning(const Scene& scene) {
+  const Cost cost = expected_cost(scene);
+  return cost.collapse && !stops_at_collapse(scene) && !particles_merge(scene) ? collisions_line(scene, cost) : "";
 }
 
 Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads) {

@@ -12,12 +12,18 @@ namespace cradle::tools {
 struct Cost {
   double particles = 0;              // in the active zone at the end, at most
   std::optional<double> collisions;  // none: not known for this initial state
-  std::optional<double> collapse;    // time after which the number of collisions has no limit, if before the end
+  std::optional<double> collapse;    // of inelastic collapse, if before the end
   double collisions_per_second = 0;
   double memory = 0;  // bytes
 };
 
 Cost expected_cost(const Scene& scene);
+
+/// The expected collisions as a line, where they are known: how many, until which collapse, and what follows it.
+std::string collisions_line(const Scene& scene, const Cost& cost);
+
+/// That line if the run goes past a collapse, after which its collisions have no limit; else empty.
+std::string past_collapse_warning(const Scene& scene);
 
 // Expected collisions of two equal rows, by law (tools/model/laws.hpp).
 void bouncing_rows(const Scene& scene, Cost& cost);

@@ -110,9 +110,10 @@ std::string scene_of(const WordParticles& particles, const std::vector<WordRepor
     if (report.ranges.empty()) continue;
     const WordRange& range = report.ranges.front();
     std::string scene =
-        fmt::format("title = \"self-similar collapse {}\"\n[law]\ntype = \"inelastic\"\nrestitution = {}\n"
+        fmt::format("title = \"{} {}\"\n[law]\ntype = \"inelastic\"\nrestitution = {}\n"
                     "[initial]\ntype = \"list\"\nx = {}\nv = {}\n",
-                    report.word, range.at, list_of(range.start.x), list_of(range.start.v));
+                    reports.size() == 1 ? "self-similar collapse" : "words of collapse, the first:", report.word,
+                    range.at, list_of(range.start.x), list_of(range.start.v));
     if (!particles.masses.empty()) {
       std::vector<std::string> masses;
       for (const Decimal& mass : particles.masses) masses.push_back(mass.text);

@@ -88,6 +88,19 @@ TEST_F(Commands, CheckPrintsEffectiveValuesAndCost) {
   EXPECT_FALSE(exists("fig2.h5"));
 }
 
+// A run past its collapse may take for ever: `run` prints the line of `check` before it starts, and ends as without it.
+TEST_F(Commands, RunWarnsOfCollapseAsCheckDoes) {
+  const std::string past = "fig2 --set law.restitution=0.9 --set run.until=70", line = "collisions: about";
+  const std::string checked = shell("cradle check " + past + " | grep '^" + line + "'", 0).out;
+  EXPECT_TRUE(has(checked, " until inelastic collapse at about t = 61.8, without limit after it\n")) << checked;
+  EXPECT_TRUE(has(shell("cradle run " + past, 0).err, checked));
+  EXPECT_EQ(shell("cradle run " + past + " --quiet", 0).err, "");
+  EXPECT_FALSE(has(shell("cradle run " + past + " --set run.until=50 --force", 0).err, line));
+  EXPECT_TRUE(has(shell("cradle check " + past + " --set run.collapse=stop").out, "where the run stops\n"));
+  const Printed merge = shell("cradle check " + past + " --set run.collapse=merge --set run.merge_speed=1e-8");
+  EXPECT_TRUE(has(merge.out, "after which particles merge\n")) << merge.out;
+}
+
 TEST_F(Commands, CheckShowsLongListsByTheirEnds) {
   std::string csv = "x,v\n";
   for (int k = 0; k < 1000; ++k) csv += std::to_string(k) + ",1\n";

@@ -28,6 +28,9 @@ class Queries(unittest.TestCase):
         self.assertGreater(checked.collisions, 1000)
         self.assertAlmostEqual(checked.seconds, checked.collisions / 2e7, delta=0.1 * checked.seconds)
         self.assertGreater(checked.megabytes, 0)
+        collapsed = cradle.check("fig2", set={"law.restitution": 0.99})
+        self.assertIn("until inelastic collapse", repr(collapsed))
+        self.assertAlmostEqual(collapsed.seconds, collapsed.collisions / 2e7, delta=0.1 * collapsed.seconds)
         printed = subprocess.run([program.find(), "check", "fig2"], capture_output=True, text=True, check=True).stdout
         self.assertEqual(repr(cradle.check("fig2")) + "\n", printed)
         with self.assertRaisesRegex(cradle.Error, "law.restitution: out of range"):

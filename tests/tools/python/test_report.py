@@ -4,6 +4,7 @@ import html.parser
 import os
 import re
 import subprocess
+import types
 import unittest
 
 import cradle
@@ -124,6 +125,12 @@ class Reports(unittest.TestCase):
         self.assertEqual(cells.count("none"), 2)  # merging speeds of the points that do not merge
         self.assertEqual(len(set(labels)), 2)
         self.assertEqual(len(set(named)), 3)
+
+    def test_equal_labels_of_points_get_what_differs(self):
+        points = [types.SimpleNamespace(label=label) for label in ("r=1", "r=1 d=2", "r=1 d=3", "s=4")]
+        distinct = cradle.drawing.style.distinct
+        self.assertEqual(distinct(list("aaab"), points), ["a", "a, d=2", "a, d=3", "b"])
+        self.assertEqual(distinct(list("aa"), points[:1] * 2), ["a, point 0", "a, point 1"])
 
     def test_are_the_same_twice_and_by_the_program(self):
         for make in small.ALL:

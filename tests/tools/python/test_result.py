@@ -104,7 +104,7 @@ class Run(unittest.TestCase):
     def installed(self, module, conversion):
         """Whether it is; checks the message for those who do not have it."""
         with mock.patch.dict(sys.modules, {module: None}), \
-                self.assertRaisesRegex(cradle.Error, f"{module} is missing.*python3-{module}"):
+                self.assertRaisesRegex(cradle.Error, f"{module} is missing .in {sys.executable}.*python3-{module}"):
             conversion()
         return importlib.util.find_spec(module) is not None
 

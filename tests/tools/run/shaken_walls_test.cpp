@@ -27,9 +27,10 @@ class ShakenWallsInScenes : public ProgramTest {
 
 TEST_F(ShakenWallsInScenes, TheAccountOfEnergyBalances) {
   const std::string resting = ball + falls + floor_of("sine", "restitution = 0.25, rest_speed = 0.2");
+  const std::string pile = beads + falls + floor_of("sine", "restitution = 0.9, rest_speed = 0.1");
   for (const std::string& scene :
        {beads + falls + floor_of("sine"), beads + falls + floor_of("sawtooth"), beads + falls + floor_of("parabola"),
-        beads + falls + floor_of("sine") + "run.coordinates = 'absolute'\n", beads + floor_of("sine"), resting}) {
+        beads + falls + floor_of("sine") + "run.coordinates = 'absolute'\n", beads + floor_of("sine"), resting, pile}) {
     write("s.toml", law + scene + output);
     run("run s.toml --quiet --force -o s.h5");
     const tools::Result result = read("s.h5");
@@ -56,8 +57,10 @@ TEST_F(ShakenWallsInScenes, ABallAtRestHasTheMotionOfTheFloor) {
 }
 
 TEST_F(ShakenWallsInScenes, TheSameBitsFromACheckpointAndOnAnyNumberOfThreads) {
-  for (const std::string motion : {"sawtooth", "parabola", "sine"}) {
-    write("s.toml", law + beads + falls + floor_of(motion) + output);
+  const std::string rest = "restitution = 0.9, rest_speed = 0.1";
+  for (const std::string& floor :
+       {floor_of("sawtooth"), floor_of("parabola"), floor_of("sine"), floor_of("sine", rest)}) {
+    write("s.toml", law + beads + falls + floor + output);
     run("run s.toml --quiet --force -o whole.h5 --threads 1");
     run("run s.toml --quiet --force -o threads.h5 --threads 3");
     expect_same("whole.h5", "threads.h5");
@@ -112,7 +115,12 @@ TEST_F(ShakenWallsInScenes, BadInputSaysWhatToDo) {
                                   "walls.right = { position = 9, motion = 'sine', amplitude = 6, frequency = 1 }\n"),
                   "walls that can meet"));
   EXPECT_TRUE(has(refused(scene + floor_of("sine", "restitution = 0")), "on which particles come to rest"));
-  EXPECT_TRUE(has(refused(scene + floor_of("sine", "rest_speed = 0.1")), "several particles"));
+  EXPECT_TRUE(has(refused(scene + floor_of("sine", "rest_speed = 0.1") +
+                          "walls.right = { position = 9, motion = 'sine', amplitude = 1, frequency = 1 }\n"),
+                  "between two shaken walls"));
+  EXPECT_TRUE(has(refused(scene + falls + floor_of("sine", "rest_speed = 0.1") +
+                          "walls.right = { position = 9, rest_speed = 1 }\n"),
+                  "two walls on which several particles can rest"));
   EXPECT_TRUE(has(refused(law + ball + until + "walls.left = { position = 0, rest_speed = 0.1 }\n"),
                   "key of a wall on which particles can rest"));
   EXPECT_TRUE(has(refused(law + ball + until + "run.coordinates = 'absolute'\n" + floor_of("sine", "rest_speed = 0.1")),

@@ -79,6 +79,7 @@ TEST_F(WordsCommand, RefusesWhatIsNoWord) {
 TEST_F(WordsCommand, SearchesAllWords) {
   const Printed printed = shell("cradle words 4 --search 5 --digits 10 -o four.h5", 0);
   EXPECT_TRUE(has(printed.out, "3 of 3 words up to 5 letters exist for some restitution")) << printed.out;
+  EXPECT_TRUE(has(shell("cradle info four.h5").out, "title = \"words of collapse, the first: "));
   const auto high = numbers(read("four.h5"), "words", "high");
   ASSERT_EQ(high.size(), 3U);
   EXPECT_NEAR(high[0], 3 - 2 * std::sqrt(2.), 1e-10) << "abc, which is acb";

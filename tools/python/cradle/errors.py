@@ -1,6 +1,8 @@
 """The exception for all errors, and the meanings of the program's exit statuses."""
 from __future__ import annotations
 
+import sys
+
 DONE, DIFFERS, BAD_INPUT, COLLAPSE, BAD_FILE, LOST = 0, 1, 2, 3, 4, 5
 
 
@@ -19,5 +21,5 @@ class Error(Exception):
 
 
 def missing(module: str) -> Error:
-    return Error(f"Python module {module} is missing: install the Debian package python3-{module}, or {module} with "
-                 "pip", BAD_FILE)
+    return Error(f"Python module {module} is missing (in {sys.executable}): install the Debian package "
+                 f"python3-{module} for /usr/bin/python3, or {module} with pip", BAD_FILE)

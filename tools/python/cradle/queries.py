@@ -63,7 +63,7 @@ class Check(dict[str, Any]):
         super().__init__((key, value_of(value)) for key, _, value in
                          (line.partition(" = ") for line in values.splitlines()))
         self.collisions, self.seconds, self.megabytes = (
-            float(found[1]) if (found := re.search(rf"^{name}: about ([\d.e+-]+)", cost, re.MULTILINE)) else None
+            float(found[1]) if (found := re.search(rf"^{name}[^:]*: about ([\d.e+-]+)", cost, re.MULTILINE)) else None
             for name in ("collisions", "time", "memory"))
 
     def __repr__(self) -> str:

@@ -4,8 +4,8 @@ import numpy as np
 
 from .style import BLUE, ORANGE, stacked
 
-PANELS = (("density", "density $n$"), ("velocity", "mean velocity $u$"), ("temperature", "temperature $T$"),
-          ("heat_current", "heat current $J$"))
+PANELS = (("density", "density $n$ ($1/l$)"), ("velocity", "mean velocity\n$u$ ($l/t$)"),
+          ("temperature", "temperature\n$T$ ($m\\,l^2/t^2$)"), ("heat_current", "heat current\n$J$ ($m\\,l^2/t^3$)"))
 
 
 def pictures(result, _theory, _units):
@@ -46,5 +46,5 @@ def draw(result, axes):
         axes[-1].legend(loc="best")
     axes[0].set_title(f"averages over $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors",
                       loc="right", fontsize=8)
-    axes[-1].set_xlabel(r"position $x$")
+    axes[-1].set_xlabel("position $x$ ($l$)")
     return figure

@@ -74,5 +74,5 @@ def draw_front(ax, result, energy, rho):
         ax.fill_between(time[seen], (value - error)[seen], (value + error)[seen], color=BLUE, alpha=0.25, lw=0)
     ax.axhline(AMPLITUDE, color="k", ls="--", label="$A=1071/152$")
     ax.axhspan(0.98 * AMPLITUDE, 1.02 * AMPLITUDE, color=GREY, alpha=0.3, lw=0, label=r"$\pm 2\,\%$")
-    ax.set(xlabel="time $t$", ylabel=r"$R^3\rho_0\,/\,(Et^2)$", ylim=(0, 2.5 * AMPLITUDE))
+    ax.set(xlabel="time ($t$)", ylabel=r"$R^3\rho_0\,/\,(Et^2)$", ylim=(0, 2.5 * AMPLITUDE))
     ax.legend(loc="upper right")

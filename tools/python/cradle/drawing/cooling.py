@@ -69,7 +69,7 @@ def draw_cooling(result, theory, axes=None):
                      label=r"sticky gas, $1.328\,\tau^{-2/3}$")
         axes[2].set_ylabel(r"clusters per particle")
         axes[2].legend(loc="lower left")
-    axes[-1].set_xlabel(rf"time $t$   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
+    axes[-1].set_xlabel(rf"time ($t$)   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
     return figure
 
 
@@ -86,7 +86,7 @@ def draw_field(result, axes=None):
         ax.scatter(x[shown], snapshot["v"][shown], s=np.clip(size, 0.7, 60), color=BLUE, alpha=0.7, lw=0,
                    rasterized=True)
         ax.axhline(0, color=GREY, lw=0.6, zorder=0)
-        ax.set_ylabel(r"velocity $v$")
+        ax.set_ylabel("velocity $v$ ($l/t$)")
         ax.set_title(f"$t={power(snapshot['time'])}$", loc="right", fontsize=8)
-    axes[-1].set_xlabel(r"position $x$, a stretch of the ring")
+    axes[-1].set_xlabel("position $x$ ($l$), a stretch of the ring")
     return figure

@@ -36,7 +36,7 @@ def draw_energy(result, theory, units, axes=None):
     top.set_ylim(0 if least < 0.6 * most else least - 0.1 * (most - least), 1.05 * most if most > 0 else 1)
     if top.get_ylim()[0] > 0:
         top.set_ylim(top=most + 0.1 * (most - least or most))
-    top.set_ylabel(units.label(r"kinetic energy $E$", units.energy_label()))
+    top.set_ylabel(units.label(r"kinetic energy $E$ ($m\,l^2/t^2$)", units.energy_label()))
     top.legend(loc="best")
     draw_collisions(below, series, time)
     below.set_xlabel(units.time_label())

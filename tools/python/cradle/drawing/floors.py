@@ -74,7 +74,7 @@ def draw_column(points, axes=None):
         left.plot(fine, np.pi * speed ** 2 / (g * fine ** 2), "--", lw=0.9, color=colour)
         right.errorbar(x, height * g * x ** 2 / (np.pi * v ** 2), yerr=error * g * x ** 2 / (np.pi * v ** 2), fmt="o",
                        ms=3.5, capsize=2, color=colour)
-    left.set(xscale="log", yscale="log", xlabel="$X=N(1-r)$", ylabel="height of the centre of mass")
+    left.set(xscale="log", yscale="log", xlabel="$X=N(1-r)$", ylabel="height of the centre of mass ($l$)")
     left.legend(loc="lower left")
     right.axhline(1, color="k", ls="--", lw=1)
     right.set(xscale="log", xlabel="$X=N(1-r)$", ylabel=r"height / ($\pi V^2/gX^2$)", ylim=(0, None))

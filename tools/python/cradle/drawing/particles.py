@@ -88,7 +88,7 @@ def time_to_collapse(result):
 def towards_collapse(ax, units):
     ax.set_xscale("log")
     ax.invert_xaxis()
-    ax.set_xlabel(units.label(r"time to the collapse $t_c-t$", r"time to the collapse $(t_c-t)\,/\,(l/2u_0)$"))
+    ax.set_xlabel(units.label("time to the collapse $t_c-t$ ($t$)", r"time to the collapse $(t_c-t)\,/\,(l/2u_0)$"))
 
 
 def draw_before_collapse(ax, left, units):

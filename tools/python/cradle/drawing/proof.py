@@ -27,7 +27,7 @@ def draw_trust(result, axes=None):
         ax.set_ylabel(f"digits of the {name}")
         ax.set_ylim(bottom=0)
     panels[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
-    panels[1].set_xlabel("time $t$   (vertical lines: until when the sequence of collisions is right)")
+    panels[1].set_xlabel("time ($t$)   (vertical lines: until when the sequence of collisions is right)")
     return figure
 
 

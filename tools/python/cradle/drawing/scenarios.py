@@ -75,7 +75,7 @@ def draw_scenarios(result, axes=None):
     axes[2].set_ylim(bottom=0)
     axes[3].axhline(1 / 3, color=GREY, lw=0.8, zorder=0)
     axes[3].set_ylabel("exponent of\nseparation")
-    axes[3].set(xscale="log", xlabel=r"$E_\mathrm{loss}$")
+    axes[3].set(xscale="log", xlabel=r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
     axes[0].legend(loc="best")
     axes[0].set_title("95 % confidence", loc="right", fontsize=7)
     return figure
@@ -97,7 +97,7 @@ def draw_regimes(result, axes=None):
         losses = [f"{point.setting('law', 'loss'):.2g}" for point in points]
         ax.set_xticks(places, losses, fontsize=7, rotation=90 if len(points) > 13 else 0)
     axes = np.atleast_1d(axes)
-    axes[-1].set_xlabel(r"$E_\mathrm{loss}$")
+    axes[-1].set_xlabel(r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
     return figure
 

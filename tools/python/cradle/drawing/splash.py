@@ -37,8 +37,8 @@ def draw(points, axes=None):
     figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), sharex="col", width_ratios=(1.6, 1))
     fronts = [(p.means["time"], p.means["front_right"]) for p in points]
     inside = [energies(p) for p in points]
-    for row, (curves, known, label, colour) in enumerate(((fronts, FRONT, "front $R$", BLUE),
-                                                          (inside, ENERGY, "energy at $x>0$", ORANGE))):
+    for row, (curves, known, label, colour) in enumerate(((fronts, FRONT, "front $R$ ($l$)", BLUE),
+                                                          (inside, ENERGY, r"energy at $x>0$ ($m\,l^2/t^2$)", ORANGE))):
         left, right = axes[row]
         for time, value in curves:
             seen = (time > 0) & np.isfinite(value) & (value > 0)
@@ -57,6 +57,6 @@ def draw(points, axes=None):
             right.axhspan(mean - 2 * error, mean + 2 * error, color=colour, alpha=0.2, lw=0)
         right.set_title(f"{mean:.5f} ± {error:.5f}" if np.isfinite(error) else f"{mean:.5f}", fontsize=8)
         right.set_ylabel("exponent, last decade")
-    axes[1, 0].set_xlabel("time $t$")
+    axes[1, 0].set_xlabel("time ($t$)")
     axes[1, 1].set_xlabel("ensemble")
     return figure

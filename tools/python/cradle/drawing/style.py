@@ -83,13 +83,14 @@ class Units:
     def named(plain, scaled):
         return lambda self: self.label(plain, scaled)
 
-    time_label = named(r"time $t$", r"time $t\,/\,(l/2u_0)$")
-    position_label = named(r"position $x$", r"position $x\,/\,l$")
-    velocity_label = named(r"velocity $v$", r"velocity $v\,/\,2u_0$")
-    mean_velocity_label = named(r"mean velocity $\langle v\rangle$", r"mean velocity $\langle v\rangle\,/\,2u_0$")
-    density_label = named("density", r"density $\rho\,/\,\rho_0$")
+    time_label = named("time ($t$)", r"time $t\,/\,(l/2u_0)$")
+    position_label = named("position $x$ ($l$)", r"position $x\,/\,l$")
+    velocity_label = named("velocity $v$ ($l/t$)", r"velocity $v\,/\,2u_0$")
+    mean_velocity_label = named(r"mean velocity $\langle v\rangle$ ($l/t$)",
+                                r"mean velocity $\langle v\rangle\,/\,2u_0$")
+    density_label = named("density ($1/l$)", r"density $\rho\,/\,\rho_0$")
     rate_label = named("collisions per unit of time", r"collisions per $l/2u_0$")
-    energy_label = named(r"energy $E$", r"energy $E\,/\,m(2u_0)^2$")
+    energy_label = named("energy $E$ ($m\\,l^2/t^2$)", r"energy $E\,/\,m(2u_0)^2$")
 
 
 def subplots(axes, rows=1, columns=1, squeeze=True, **options):
@@ -134,16 +135,15 @@ def shade_map():
 
 
 def distinct(labels, points):
-    """Labels of points of a sweep, equal ones with the settings in which their points differ, or their numbers."""
+    """Labels of points of a sweep; equal ones with the settings that not all of them have, or with their numbers."""
     labels = list(labels)
-    repeated = [labels.count(label) > 1 for label in labels]
     words = [set(point.label.split()) for point in points]
-    for k, point in enumerate(points):
-        if repeated[k]:
-            others = [words[j] for j in range(len(points)) if j != k and labels[j] == labels[k]]
-            own = sorted(word for word in words[k] if any(word not in other for other in others))
-            labels[k] += ", " + (", ".join(own) or f"point {k}")
-    return labels
+
+    def longer(k):
+        others = [words[j] for j in range(len(points)) if j != k and labels[j] == labels[k]]
+        own = sorted(word for word in words[k] if any(word not in other for other in others))
+        return ", ".join([labels[k], *own] + [f"point {k}"] * (words[k] in others))
+    return [longer(k) for k in range(len(points))]
 
 
 def power(value, digits=5):

@@ -101,7 +101,7 @@ def draw_cooling(result, axes=None):
     top.plot(time[shown], law[shown], ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
     below.axhline(1, color=GREY, lw=0.8, zorder=0)
     top.set_ylabel(r"energy per particle $E\,/\,N$")
-    below.set(xlabel=r"time $t$", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
+    below.set(xlabel="time ($t$)", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
     top.legend(loc="lower left")
     return figure
 
@@ -135,7 +135,8 @@ def draw_widths(result, keys, axes=None):
         fine = np.geomspace(values[cut].min(), values[cut].max(), 200)
         axes.plot(fine, model_width(fine, at, spacing) if key == SPEED else model_width(at, fine, spacing), line,
                   color=colour, label=f"Eq. (13), {given}")
-        axes.set_xlabel(r"$u_0$ (circles)" if key == SPEED else r"$E_\mathrm{loss}$ (squares)", color=colour)
+        axes.set_xlabel(r"$u_0$ in $l/t$ (circles)" if key == SPEED else
+                        r"$E_\mathrm{loss}$ in $m\,l^2/t^2$ (squares)", color=colour)
         axes.set(xscale="log", yscale="log")
     ax.set_ylabel(r"width of the zone $2L$" if spacing != 1 else r"width of the zone $2L\,/\,l$")
     handles = [item for axes in (ax, other) for item in zip(*axes.get_legend_handles_labels())]
@@ -177,7 +178,8 @@ def draw_cuts(result, keys, axes=None):
         spread(axes[-1, column].set_xscale, x, 8)
         axes[-1, column].set_xlabel(key)
     for ax, name in zip(axes[:, 0], names):
-        ax.set_ylabel(name.replace("_", " "))
+        unit = result.sweep[name].unit
+        ax.set_ylabel(name.replace("_", " ") + (f" (${unit}$)" if unit not in ("", "1") else ""))
     return figure
 
 

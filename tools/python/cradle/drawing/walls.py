@@ -29,7 +29,7 @@ def draw(result, axes):
     axes[0].fill_between(times, places[:, 0], places[:, 2], color=BLUE, alpha=0.3, lw=0, label="80 % of the particles")
     axes[0].plot(times, places[:, 1], color=BLUE, lw=1.2, label="median")
     axes[0].plot(times, fastest, "o", color=ORANGE, ms=3, label="the particle with most energy")
-    axes[0].set_ylabel(r"position $x$")
+    axes[0].set_ylabel("position $x$ ($l$)")
     low, high = axes[0].get_ylim()
     axes[0].set_ylim(low - 0.2 * (high - low), high)  # room for the legend
     axes[0].legend(loc="lower left", ncol=3, fontsize=7)
@@ -42,7 +42,7 @@ def draw(result, axes):
     axes[2].semilogy(series["time"][positive], series["energy"][positive], color=BLUE, lw=0.8, label="energy")
     given = sum(np.asarray(series[name]) for name in given_by(series))
     axes[2].semilogy(series["time"][given > 0], given[given > 0], color=ORANGE, lw=1.2, label="given by the walls")
-    axes[2].set_ylabel("energy")
-    axes[2].set_xlabel(r"time $t$")
+    axes[2].set_ylabel(r"energy ($m\,l^2/t^2$)")
+    axes[2].set_xlabel("time ($t$)")
     axes[2].legend(loc="lower right", fontsize=7)
     return figure

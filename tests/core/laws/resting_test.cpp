@@ -1,0 +1,231 @@
+// Piles: particles that come to rest on one another on a floor. When they do, against sums of geometric series;
+// accounts of energy and momentum, on floors at either end and between two walls; a pile that is let go; saved and
+// streamed states; laws with a cut-off or a contact time; what is refused.
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/guards.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/saved.hpp"
+
+namespace resting_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+using Chain = GapChain<double, IndividualMasses<double>, Gravity<double>>;
+template <class Law> using RunOf = Simulation<double, Law, Chain>;
+using Motion = std::shared_ptr<const WallMotion<double>>;
+
+Motion shaken(Shape shape, double amplitude, double phase = 0) {
+  return std::make_shared<WallMotion<double>>(shape, amplitude, 3., phase);
+}
+Wall<double> wall(double position, double restitution, double rest_speed, Motion motion = nullptr, double speed = 0) {
+  return {.position = position,
+          .speed = speed,
+          .restitution = restitution,
+          .motion = std::move(motion),
+          .rest_speed = rest_speed};
+}
+Scene<double> between(double acceleration, const Scene<double>& particles, std::optional<Wall<double>> left,
+                      std::optional<Wall<double>> right = {}) {
+  return std::make_shared<Walled<double>>(particles, std::move(left), std::move(right), acceleration);
+}
+template <class Law> RunOf<Law> run_of(const Scene<double>& particles, const Law& law, bool hold_all = false) {
+  return {law, Chain(particles, 0., hold_all)};
+}
+struct Met {
+  ParticleIndex left;
+  double time;
+};
+
+// A ball from the height 1/2, at restitution 1/2, meets the floor at the speeds 2^-k and rests at the first one below
+// 1/64, at t = 3 - 2^-6. A ball from the height 8 meets it at t = 4 and w = 4. The lower ball leaves the collision at 3
+// downwards, the floor at 3/2, and the next collision, at the same time, at 3/8 downwards; the upper ball flies at
+// (7/32) w. So it comes back as often as 4 (7/32)^n > 1/64, at times of a geometric series.
+TEST(Resting, TwoBallsAgainstGeometricSeries) {
+  const auto particles = between(-1, list<double>({0.5, 8}, {0, 0}), wall(0, 0.5, 1. / 64));
+  auto run = run_of(particles, Inelastic<double>(0.5));
+  std::vector<Met> lower, upper;
+  EXPECT_EQ(run.advance(100.,
+                        [&](const Collision<double>& c) {
+                          (c.left < 0 ? lower : upper).push_back({c.left, c.time.value()});
+                        }),
+            Status::reached);
+  ASSERT_GT(lower.size(), 8U);
+  EXPECT_NEAR(lower[7].time, 3 - 1. / 64, 1e-15);
+  EXPECT_NEAR(lower[8].time, 4, 1e-15);
+  double time = 4, w = 4;
+  std::size_t k = 0;
+  for (; w > 1. / 64; time += 2 * w * 7 / 32, w *= 7. / 32) {
+    ASSERT_LT(k + 1, upper.size());
+    EXPECT_NEAR(upper[k].time, time, 1e-14);
+    EXPECT_NEAR(upper[k + 1].time, time, 1e-14);
+    k += 2;
+  }
+  ASSERT_EQ(upper.size(), k + 1);  // the last one stays
+  EXPECT_NEAR(upper[k].time, time, 1e-14);
+  const auto c = run.configuration(100.);
+  for (const double zero : {c.x[0], c.x[1], c.v[0], c.v[1], c.gap[0], c.closing_speed[0]}) EXPECT_NEAR(zero, 0, 1e-14);
+  EXPECT_NEAR(run.energy_lost(), 8.5, 1e-14);
+  EXPECT_NEAR(sample(run, 0., 100.).walls[0].momentum.value(), 200, 1e-11);  // both weights for that time
+}
+
+// A particle that meets the pile below its rest speed leaves it as it is: the wall has the impulse and what is lost.
+TEST(Resting, ThePileIsTheWall) {
+  const auto particles = between(-1, list<double>({0.5, 8}, {0, 0}, {1, 3}), wall(0, 0.5, 5));
+  auto run = run_of(particles, Inelastic<double>(0.5));
+  EXPECT_EQ(run.advance(4.), Status::reached);
+  EXPECT_EQ(run.counts().collisions, 2U);
+  const auto tally = sample(run, 0., 4.).walls[0];
+  EXPECT_EQ(tally.collisions, 2U);
+  EXPECT_EQ(tally.dissipated.value(), 0.5 + 24);
+  EXPECT_EQ(tally.momentum.value(), 1 + 3 + 12);  // at t = 1, the weight until t = 4, and then
+  EXPECT_EQ(run.account().simultaneous, 0U);
+}
+
+// At all times: no gap is negative, energy and momentum are those of the start, with what walls gave and collisions
+// lost, the guards hold, and sums over the gaps lead from the wall to the last particle. Five particles on floors of
+// each kind at either end, the pile coming to rest, being let go and coming to rest again; with a second wall that is
+// at rest, so low that what is thrown up meets it.
+TEST(Resting, AccountsBalance) {
+  const std::vector<double> x{0.3, 0.9, 1.2, 1.7, 2.3}, v{0.5, 0, -0.25, 0, 0.25}, m{1, 1.5, 0.75, 2, 1};
+  const Motion motions[] = {nullptr, shaken(Shape::sine, 0.08), shaken(Shape::sine, 0.3, 0.2),
+                            shaken(Shape::parabola, 0.25, 1), shaken(Shape::sawtooth, 0.05)};
+  for (std::size_t k = 0; k < 5; ++k)
+    for (const bool mirrored : {false, true})
+      for (const bool closed : {false, true})
+        for (const double speed : {0., 0.0625}) {
+          SCOPED_TRACE(std::to_string(k) + (mirrored ? " right" : " left") + (closed ? " closed " : " ") +
+                       std::to_string(speed));
+          const double sign = mirrored ? -1 : 1;
+          std::vector<double> at, moving, heavy;
+          for (std::size_t i = 0; i < x.size(); ++i) {
+            const std::size_t j = mirrored ? x.size() - 1 - i : i;
+            at.push_back(sign * x[j]), moving.push_back(sign * v[j]), heavy.push_back(m[j]);
+          }
+          const Wall<double> floor = wall(0, 0.25, 0.1, motions[k], sign * speed);
+          std::optional<Wall<double>> ceiling;
+          if (closed) ceiling = wall(sign * 2.5, 0.75, 0, nullptr, sign * speed);
+          const auto particles = between(-sign, list<double>(at, moving, heavy), mirrored ? ceiling : floor,
+                                         mirrored ? std::optional(floor) : ceiling);
+          auto run = run_of(particles, Inelastic<double>(0.75));
+          int resting = 0, flying = 0;
+          for (double t = 0.01; t < 25; t += 0.0501) {
+            ASSERT_EQ(run.advance(t), Status::reached);
+            const auto c = run.configuration(t);
+            ASSERT_TRUE(!guarded(c, *particles, run.counts().collisions,
+                                 particles->mechanical_energy() - run.energy_lost(t), t, run.last_collision_time(), 0.,
+                                 true)
+                             .broken)
+                << t;
+            const auto now = sample(run, 0., t);
+            const double potential = potential_energy(c, *particles, t);
+            const double sum = now.energy + std::abs(potential) + now.energy_lost + std::abs(now.given);
+            const double unit = 0x1p-52 * static_cast<double>(run.counts().collisions + 64);
+            EXPECT_NEAR(now.energy + potential, particles->mechanical_energy() - now.energy_lost + now.given,
+                        8 * unit * sum)
+                << t;
+            double momentum = -particles->momentum() + sign * particles->total_mass() * t, size = std::abs(momentum);
+            if (c.x.size() < x.size()) continue;  // not all are held yet
+            for (std::size_t i = 0; i < x.size(); ++i) momentum += c.m[i] * c.v[i];
+            EXPECT_NEAR(now.walls[0].momentum.value() + now.walls[1].momentum.value(), momentum, 8 * unit * (size + 10))
+                << t;
+            ASSERT_TRUE(c.closure_gap);
+            EXPECT_NEAR(*c.closure_gap, 0, 8 * unit * (1 + t));
+            int touching = 0;
+            for (const double gap : c.gap) {
+              EXPECT_GE(gap, -8 * unit);
+              touching += gap == 0;
+            }
+            ++(touching > 1 ? resting : flying);
+          }
+          EXPECT_GT(resting, 10);
+          EXPECT_GT(flying, 10);
+          EXPECT_EQ(run.account().order_lost, 0U);
+        }
+}
+
+// Three particles are let go where A omega^2 sin(omega t) = g, at the speed of the floor, and fly as one: their gaps
+// stay 0. A fourth one above, which falls with them from then on, meets them when its last closing speed has used up
+// the gap.
+TEST(Resting, APileIsLetGoAtTheExactTime) {
+  const double amplitude = 0.25, omega = 3, quarter = std::numbers::pi / 2;
+  const double phi = std::asin(1 / (amplitude * omega * omega)), t = (phi + quarter) / omega, after = 0.03;
+  const auto floor = wall(0, 0.25, 0.5, shaken(Shape::sine, amplitude, -quarter));  // at its lowest place
+  const auto particles = between(-1, list<double>({-0.249, -0.248, -0.247, 1}, {0, 0, 0, 1}), floor);
+  auto run = run_of(particles, Inelastic<double>(1));
+  ASSERT_EQ(run.advance(t + after), Status::reached);
+  ASSERT_LT(run.last_collision_time(), t / 2);
+  const auto c = run.configuration(t + after);
+  const double x = amplitude * std::sin(phi) + amplitude * omega * std::cos(phi) * after - after * after / 2;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(c.x[i], x, 1e-13);
+    EXPECT_NEAR(c.v[i], amplitude * omega * std::cos(phi) - after, 1e-13);
+  }
+  EXPECT_EQ(c.gap[0], 0);
+  EXPECT_EQ(c.gap[1], 0);
+  const double fourth = particles->position(3) + particles->velocity(3) * t - t * t / 2,
+               closing = amplitude * omega * std::cos(phi) - (particles->velocity(3) - t);
+  EXPECT_NEAR(c.gap[2], fourth - amplitude * std::sin(phi) - closing * after, 1e-13);
+  EXPECT_NEAR(c.closing_speed[2], closing, 1e-13);
+}
+
+TEST(Resting, SavedAndStreamedPilesHaveTheSameBits) {
+  for (const Motion& motion : {Motion(), shaken(Shape::sine, 0.25, 0.2), shaken(Shape::sawtooth, 0.05)}) {
+    const auto particles =
+        between(-1, list<double>({0.3, 0.9, 1.2, 1.7}, {0.5, 0, -0.25, 0}), wall(0, 0.25, 0.1, motion));
+    expect_same_from_anywhere([&] { return run_of(particles, Inelastic<double>(0.75)); }, 0.5, 0.37, 8,
+                              [](const auto& later, const auto& whole) {
+                                EXPECT_TRUE(identical(later.configuration(8.), whole.configuration(8.)));
+                              });
+    // Rows, which are streamed, and held as a whole; asked often and once.
+    const auto rows = between(-0.5, lattice_rows(30), wall(-16, 0.25, 0.25, motion));
+    auto streamed = run_of(rows, Inelastic<double>(0.75, 0.01)),
+         held = run_of(rows, Inelastic<double>(0.75, 0.01), true);
+    for (double t = 0.1; t < 40; t += 0.7) ASSERT_EQ(streamed.advance(t), Status::reached);
+    ASSERT_EQ(streamed.advance(40.), Status::reached);
+    ASSERT_EQ(held.advance(40.), Status::reached);
+    EXPECT_TRUE(identical(streamed.configuration(40.), held.configuration(40.)));
+  }
+}
+
+// Where many inelastic particles are thrown together, collapses among them end by the law: the whole column comes to
+// rest, with a cut-off or a contact time, on a floor that takes what falls on it (restitution 0) and on another.
+TEST(Resting, AColumnComesToRest) {
+  const auto at_rest = [](auto law, double of_floor) {
+    const auto particles = between(-1, rmix<double>(20), wall(-1, of_floor, 0.05));
+    auto run = run_of(particles, law);
+    EXPECT_EQ(run.advance(200.), Status::reached);
+    const auto c = run.configuration(200.);
+    for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(c.x[i], -1, 1e-12);
+    for (const double gap : c.gap) EXPECT_EQ(gap, 0);
+    EXPECT_LT(run.last_collision_time(), 150);
+    EXPECT_EQ(run.account().order_lost, 0U);
+  };
+  for (const double of_floor : {0., 0.5}) {
+    at_rest(Inelastic<double>(0.8, 0.02), of_floor);
+    at_rest(ContactTime<double>(Inelastic<double>(0.8), 0.01), of_floor);
+  }
+}
+
+TEST(Resting, WhereTheyCannotRestIsSaid) {
+  const auto two = list<double>({1, 2}, {0, 0});
+  const auto sine = shaken(Shape::sine, 0.25);
+  EXPECT_NO_THROW(between(-1, two, wall(0, 0.5, 0.1, sine), wall(3, 1, 0)));
+  EXPECT_NO_THROW(between(-1, two, wall(0, 0.5, 0.1), wall(3, 1, 0, sine)));
+  EXPECT_THROW(between(-1, two, wall(0, 0.5, 0.1), wall(3, 1, 0.1)), std::invalid_argument);
+  EXPECT_THROW(between(-1, two, wall(0, 0.5, 0.1, sine), wall(3, 1, 0, sine)), std::invalid_argument);
+  EXPECT_NO_THROW(between(-1, list<double>({1}, {0}), wall(0, 0.5, 0.1, sine), wall(3, 1, 0.1, sine)));
+}
+
+}  // namespace resting_test

@@ -61,11 +61,11 @@ std::unique_ptr<Engine<T>>
 falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                   const Policy<T>& policy, const Workers& workers, const BouncingLaw<T>& law) {
   const T start = number<T>(scene.run.start);
-  const auto in = [&]<class Chain>(std::type_identity<Chain>) {
-    return std::make_unique<EngineOf<T, Simulation<T, BouncingLaw<T>, Chain>>>(workers, law, Chain(particles, start),
-                                                                               policy);
+  const auto in = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& own) {
+    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, own, Chain(particles, start), policy);
   };
-  if (scene.run.coordinates == Coordinates::absolute) return in(std::type_identity<PositionChain<T, Gravity<T>>>{});
+  if (scene.run.coordinates == Coordinates::absolute)
+    return in(std::type_identity<PositionChain<T, Gravity<T>>>{}, law);
   // Closing speeds alone lose the digits of heavy particles' velocities, and nothing watches over them under gravity.
   if (far_apart(*particles) && sums_can_be_exact<T>)
     throw Error({scene.name, 0, scene.gravity.acts() ? "gravity.acceleration" : "walls"},
@@ -73,7 +73,10 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
                 fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
                             to_double(particles->greatest_mass())),
                 "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
-  return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{});
+  // As without gravity (engine_of): the most used law, identical masses; the bits are the same.
+  if (const auto* inelastic = law.template as<Inelastic<T>>(); inelastic != nullptr && particles->identical_masses())
+    return in(std::type_identity<GapChain<T, IdenticalMasses<T>, Gravity<T>>>{}, *inelastic);
+  return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{}, law);
 }
 
 template <Real T>

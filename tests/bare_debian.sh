@@ -14,7 +14,7 @@ for folder in proc dev; do
 done
 trap 'umount -Rl "$root/proc" "$root/dev"' EXIT
 chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive HOME=/root bash -euxc '
-  cd /root
+  cd "$(mktemp -d)"
   apt-get -qq update
   apt-get -qq install -y /tmp/cradle.deb
   cradle run fig2 --quiet

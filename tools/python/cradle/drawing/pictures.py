@@ -8,8 +8,8 @@ import matplotlib.pyplot as plt
 from ..errors import BAD_FILE, Error
 from ..files import whole
 from . import (averages, beyond, blast, clusters, cooling, correlations, domino, energy, ensemble, floors, histograms,
-               onset, particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep, threshold,
-               walls, words, zone)
+               onset, particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep,
+               threshold, walls, words, zone)
 from .finish import finish
 from .style import Units, style
 from .theory import Theory

@@ -6,86 +6,165 @@
 namespace cradle {
 namespace HWY_NAMESPACE {
 
-// Two numbers that are computed at once, by any processor: those of the gaps left and right of a collision, or two of
-// one gap.
-typedef double Both __attribute__((vector_size(16), may_alias));
-HWY_INLINE Both both(double x) { return Both{x, x}; }
-HWY_INLINE Both lower(Both a, Both b) { return Both{a[0], b[0]}; }
-HWY_INLINE Both upper(Both a, Both b) { return Both{a[1], b[1]}; }
-HWY_INLINE Both least(Both a, Both b) { return a < b ? a : b; }
-// The numbers of a gap as they lie in memory: gap and local time, then time of collision and closing speed.
-HWY_INLINE Both* pairs(Gap<double>& cell) { return reinterpret_cast<Both*>(&cell.gap); }
-static_assert(sizeof(Gap<double>) == 2 * sizeof(Both) && alignof(Gap<double>) % alignof(Both) == 0);
+// Numbers of four collisions, one in each lane, on any processor; and as they lie in memory, four of an array or those
+// of a gap. Functions of them are inlined, so that it does not matter how such arguments are passed.
+#pragma GCC diagnostic ignored "-Wpsabi"
+typedef double Four __attribute__((vector_size(32)));
+typedef double FourThere __attribute__((vector_size(32), may_alias, aligned(8)));
+HWY_INLINE Four fetch(const double* from) { return *reinterpret_cast<const FourThere*>(from); }
+HWY_INLINE void put(const Four& x, double* to) { *reinterpret_cast<FourThere*>(to) = x; }
+HWY_INLINE Four all(double x) { return Four{x, x, x, x}; }
+HWY_INLINE Four least(const Four& a, const Four& b) { return a < b ? a : b; }
+HWY_INLINE double least(const Four& a) { return std::min(std::min(a[0], a[1]), std::min(a[2], a[3])); }
+// Which of them are at most `last`.
+HWY_INLINE unsigned bits_up_to(const Four& x, double last) {
+  const hn::CappedTag<double, 4> d;
+  alignas(32) double lanes_of[4];
+  put(x, lanes_of);
+  unsigned bits = 0;
+  for (std::size_t k = 0; k < 4; k += hn::MaxLanes(d))
+    bits |= bits_of(d, hn::Le(hn::Load(d, lanes_of + k), hn::Set(d, last))) << k;
+  return bits;
+}
+
+// Where the gaps of four collisions are.
+struct Places4 {
+  std::size_t i[4];
+  Gap<double>* cell[4];
+  HWY_INLINE Places4(const Local& l, const std::uint32_t* four) {
+    for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.cells + i[k];
+  }
+  HWY_INLINE Four of(const double* array) const { return Four{array[i[0]], array[i[1]], array[i[2]], array[i[3]]}; }
+};
+
+// Four gaps: those of the collisions (side 0), or the ones left (-1) or right of them. A gap lies in memory as gap,
+// local time, time of collision and closing speed; here it is a column.
+struct Cells {
+  Four gap, time, due, closing;
+
+  static HWY_INLINE Cells at(const Places4& places, std::ptrdiff_t side) {
+    const Four a = fetch(&places.cell[0][side].gap), b = fetch(&places.cell[1][side].gap),
+               c = fetch(&places.cell[2][side].gap), d = fetch(&places.cell[3][side].gap);
+    const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+               more_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7), more_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(more_ab, more_cd, 0, 1, 4, 5),
+            __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(more_ab, more_cd, 2, 3, 6, 7)};
+  }
+  HWY_INLINE void put_at(const Places4& places, std::ptrdiff_t side, double* due_there) const {
+    const Four a = __builtin_shufflevector(gap, time, 0, 4, 2, 6), b = __builtin_shufflevector(gap, time, 1, 5, 3, 7),
+               c = __builtin_shufflevector(due, closing, 0, 4, 2, 6),
+               d = __builtin_shufflevector(due, closing, 1, 5, 3, 7);
+    put(__builtin_shufflevector(a, c, 0, 1, 4, 5), &places.cell[0][side].gap);
+    put(__builtin_shufflevector(b, d, 0, 1, 4, 5), &places.cell[1][side].gap);
+    put(__builtin_shufflevector(a, c, 2, 3, 6, 7), &places.cell[2][side].gap);
+    put(__builtin_shufflevector(b, d, 2, 3, 6, 7), &places.cell[3][side].gap);
+    for (int k = 0; k < 4; ++k) due_there[places.i[k] + side] = due[planted(3) ? 0 : k];
+  }
+};
+static_assert(sizeof(Gap<double>) == sizeof(Four));
 
 // What is known of all collisions of a step.
 struct Made {
-  Both flown = both(StepLine::never), own_flown = flown;  // least times since the collision before: beside, and own
-  Both gap = flown;                                       // least gaps beside
-  double latest;
+  Four flown = all(StepLine::never), own_flown = flown;  // least times since the collision before: beside, and own
+  Four gap = flown;                                      // least gaps beside
+  Four latest;
   hn::Vec<Lanes> lost = hn::Zero(Lanes()), rest = hn::Zero(Lanes());  // for the ledger
   std::uint64_t below_cutoff = 0;
 
   // Whether every collision came after the last ones at its gaps and left no gap below the floor.
   HWY_INLINE bool in_order(double floor, double end) const {
-    return std::min(flown[0], flown[1]) > 0 && own_flown[0] > end * 0x1p-40 && std::min(gap[0], gap[1]) >= floor;
+    return least(flown) > 0 && least(own_flown) > end * 0x1p-40 && least(gap) >= floor;
   }
 };
 
-// Makes the collision at the gap i, number k of its pass: beside it g -= w since, w += gain.
-template <StepLaw law, bool unequal>
-HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t i, std::size_t k,
-                        Made& made) {
-  Both *const left = pairs(l.cells[i - 1]), *const own = pairs(l.cells[i]), *const right = pairs(l.cells[i + 1]);
-  const double time = l.due[i], w = own[1][1];
-  const Both x = both(time), g = lower(left[0], right[0]), then = upper(left[0], right[0]),
-             u = Both{left[1][1], right[1][1]};
-  double after = 0;
-  Both gain{};
-  if constexpr (law == StepLaw::any) {
-    after = line.after[k], gain = Both{line.to_left[k], line.to_right[k]};
-  } else {
-    double handed = 0;  // to each side, as far as masses are equal
-    if constexpr (law == StepLaw::of_speed) {
-      after = line.after[k], handed = line.to_left[k];
-    } else if constexpr (law == StepLaw::hard) {
-      handed = (w < task.cutoff ? 1 : task.half_sum) * w;
-      after = w - (handed + handed);
-    } else {
-      after = -((w < task.cutoff ? 1 : task.restitution) * w);
-      handed = (w - after) * 0.5;
-    }
-    gain = both(handed);
-    if constexpr (unequal) {
-      const double share = l.fraction[i], all = handed + handed, small = all * std::abs(share), large = all - small;
-      gain = Both{share, -share} < 0 ? both(large) : both(small);
-      l.struck_mass[k] = l.reduced[i];
-    }
-    l.struck[k] = w;
-  }
-  Both since = x - then;
-  if (std::min(then[0], then[1]) < 0) [[unlikely]]
-    since -= then < 0 ? Both{l.lag[i - 1], l.lag[i + 1]} : both(0);
-  const Both g_now = g - u * since, u_now = u + gain;
+// The gaps beside the collisions: g -= w since, w += gain, due anew.
+HWY_INLINE Cells kick(const Cells& before, const Four& since, const Four& x, const Four& gain, Made& made) {
+  Cells now;
+  now.gap = before.gap - before.closing * since;
+  now.time = x;
+  now.closing = before.closing + gain;
+  now.due = now.closing > 0 ? x + now.gap / now.closing : all(StepLine::never);
   made.flown = least(since, made.flown);
-  made.own_flown = least(x - upper(own[0], own[0]), made.own_flown);
-  made.gap = least(g_now, made.gap);
-  made.latest = time > made.latest ? time : made.latest;
-  left[0] = lower(g_now, x), right[0] = upper(g_now, x);
-  l.cells[i - 1].closing = u_now[0], l.cells[i + 1].closing = u_now[1];
-  own[0] = Both{0, time}, own[1] = Both{StepLine::never, after};
-  l.due[i] = StepLine::never;
+  made.gap = least(now.gap, made.gap);
+  return now;
 }
 
-// When the gaps beside the collision at the gap i are due now.
-HWY_INLINE void foresee(Local& l, double end, std::size_t i) {
-  Gap<double>&left = l.cells[i - 1], &right = l.cells[i + 1];
-  const Both x = both(l.cells[i].time), g{left.gap, right.gap}, u{left.closing, right.closing},
-             was_due{l.due[i - 1], l.due[i + 1]};
-  const Both due = u > 0 ? x + g / u : both(StepLine::never);
-  left.due = l.due[i - 1] = due[0];
-  right.due = l.due[i + 1] = due[planted(3) ? 0 : 1];
-  const auto soon = (due <= end) & (was_due > end);
-  follow(l, i - 1, soon[0] & 1, i + 1, soon[1] & 1);
+using FourPlaces = hn::CappedTag<std::uint32_t, 4>;
+// Appends those of four places that are set to a list.
+HWY_INLINE void append(unsigned set, hn::Vec<FourPlaces> places_of, std::uint32_t* list, std::size_t& length) {
+  const FourPlaces d;
+  hn::StoreU(hn::TableLookupLanes(places_of, hn::IndicesFromVec(d, hn::LoadU(d, places.of[set]))), d, list + length);
+  length += static_cast<std::size_t>(__builtin_popcount(set));
+}
+// As `follow`, for four collisions. Their own tiles have been visited, as those of all candidates.
+HWY_INLINE void follow(Local& l, const std::uint32_t* four, unsigned left_soon, unsigned right_soon, unsigned valid) {
+  static_assert(StepLine::tile == 16);
+  const FourPlaces d;
+  constexpr std::size_t at_once = hn::MaxLanes(d);
+  for (std::size_t k = 0; k < 4; k += at_once, left_soon >>= at_once, right_soon >>= at_once, valid >>= at_once) {
+    constexpr unsigned mask = (1U << at_once) - 1;
+    const auto i = hn::LoadU(d, four + k), one = hn::Set(d, 1U), left = hn::Sub(i, one), right = hn::Add(i, one);
+    append(left_soon & mask, left, l.waiting, l.later);
+    append(right_soon & mask, right, l.waiting, l.later);
+    const auto own = hn::ShiftRight<4>(i),
+               beside = hn::Sub(hn::Add(hn::ShiftRight<4>(left), hn::ShiftRight<4>(right)), own);
+    append(bits_of(d, hn::Ne(beside, own)) & valid & mask, beside, l.visited, l.visits);
+  }
+}
+
+// Repeats the last collision of a pass, so that there are four to the end.
+HWY_INLINE void fill_up(StepLine& line, const Local& l, bool with_outcomes) {
+  for (std::size_t k = l.firsts; k > 0 && k < l.firsts + 3; ++k) {
+    l.first[k] = l.first[k - 1];
+    if (!with_outcomes) continue;
+    line.after[k] = line.after[k - 1], line.to_left[k] = line.to_left[k - 1], line.to_right[k] = line.to_right[k - 1];
+  }
+}
+
+// Makes four collisions of a pass from number k on; the last ones may be one and the same. So far apart, they touch
+// different gaps, and all gaps are read before any is written.
+template <StepLaw law, bool unequal>
+HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t k, double end, Made& made) {
+  const Places4 places(l, l.first + k);
+  const Cells own = Cells::at(places, 0), left = Cells::at(places, -1), right = Cells::at(places, 1);
+  const Four x = own.due, w = own.closing;
+  Four after, to_left, to_right;
+  if constexpr (law == StepLaw::any) {
+    after = fetch(line.after.data() + k), to_left = fetch(line.to_left.data() + k),
+    to_right = fetch(line.to_right.data() + k);
+  } else {
+    if constexpr (law == StepLaw::of_speed) {
+      after = fetch(line.after.data() + k), to_left = fetch(line.to_left.data() + k);
+    } else if constexpr (law == StepLaw::hard) {
+      to_left = (w < task.cutoff ? all(1) : all(task.half_sum)) * w;
+      after = w - (to_left + to_left);
+    } else {
+      after = -((w < task.cutoff ? all(1) : all(task.restitution)) * w);
+      to_left = (w - after) * 0.5;
+    }
+    to_right = to_left;
+    if constexpr (unequal) {
+      const Four share = places.of(l.fraction), both = to_left + to_left, small = both * (share < 0 ? -share : share),
+                 large = both - small;
+      to_left = share < 0 ? large : small, to_right = share < 0 ? small : large;
+      put(places.of(l.reduced), l.struck_mass + k);
+    }
+    put(w, l.struck + k);
+  }
+  made.own_flown = least(x - own.time, made.own_flown);
+  made.latest = x > made.latest ? x : made.latest;
+  Four since_left = x - left.time, since_right = x - right.time;
+  if (bits_up_to(least(left.time, right.time), 0) != 0) [[unlikely]] {
+    since_left -= left.time < 0 ? places.of(l.lag - 1) : all(0);
+    since_right -= right.time < 0 ? places.of(l.lag + 1) : all(0);
+  }
+  const Cells now_left = kick(left, since_left, x, to_left, made),
+              now_right = kick(right, since_right, x, to_right, made);
+  Cells{all(0), x, all(StepLine::never), after}.put_at(places, 0, l.due);
+  now_left.put_at(places, -1, l.due), now_right.put_at(places, 1, l.due);
+  const unsigned valid = l.firsts - k < 4 ? (1U << (l.firsts - k)) - 1 : 15;
+  follow(l, l.first + k, bits_up_to(now_left.due, end) & ~bits_up_to(left.due, end) & valid,
+         bits_up_to(now_right.due, end) & ~bits_up_to(right.due, end) & valid, valid);
 }
 
 // Enters the collisions of a pass in the ledger (ledger.hpp), by their closing speeds in `struck`.
@@ -115,10 +194,9 @@ HWY_INLINE void enter(const StepLine& line, const Local& l, const StepTask& task
 template <StepLaw law, bool unequal> struct Doubles {
   Made made;
 
-  HWY_INLINE Doubles(const StepTask&, const StepResult& before) : made{.latest = before.last} {}
+  HWY_INLINE Doubles(const StepTask&, const StepResult& before) : made{.latest = all(before.last)} {}
 
-  // Makes those that are first in a pass. In two loops: the shorter a turn, the more of them are in the processor at
-  // once, and each operation waits for the one before (1.2 times as fast as one loop).
+  // Makes those that are first in a pass.
   HWY_INLINE void make(StepLine& line, Local& l, const StepTask& task, StepScalars& scalars, double end) {
     if (law == StepLaw::of_speed && l.firsts > 0) {
       for (std::size_t k = 0; k < l.firsts; ++k) l.struck[k] = l.cells[l.first[k]].closing;
@@ -130,13 +208,13 @@ template <StepLaw law, bool unequal> struct Doubles {
   template <StepLaw as, bool masses_too>
   HWY_INLINE void make_by(StepLine& line, Local& l, const StepTask& task, StepScalars& scalars, double end) {
     if (as == StepLaw::any) scalars.outcomes(l.first, l.firsts);
-    for (std::size_t k = 0; k < l.firsts; ++k) collide<as, masses_too>(line, l, task, l.first[k], k, made);
-    for (std::size_t k = 0; k < l.firsts; ++k) foresee(l, end, l.first[k]);
+    fill_up(line, l, as == StepLaw::any || as == StepLaw::of_speed);
+    for (std::size_t k = 0; k < l.firsts; k += 4) collide<as, masses_too>(line, l, task, k, end, made);
     if (as != StepLaw::any) enter<as, masses_too>(line, l, task, made);
   }
   // Whether all of them were in order.
   HWY_INLINE bool report(const StepTask& task, double end, StepResult& result) const {
-    result.last = made.latest;
+    result.last = std::max(std::max(made.latest[0], made.latest[1]), std::max(made.latest[2], made.latest[3]));
     result.lost += hn::GetLane(hn::SumOfLanes(Lanes(), made.lost));
     result.rest += hn::GetLane(hn::SumOfLanes(Lanes(), made.rest));
     result.below_cutoff += made.below_cutoff;

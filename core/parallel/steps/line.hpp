@@ -42,6 +42,12 @@ class StepLine {
   std::size_t left_of(std::size_t i) const { return i > 0 ? i - 1 : ring ? gaps_ - 1 : 0; }
   std::size_t right_of(std::size_t i) const { return ring && i + 1 == gaps_ ? 0 : i + 1; }
 
+  // A step may leave a few gaps that are due to the next one. Those that are due up to `listed_to` are the first `left`
+  // candidates.
+  bool may_leave = false;
+  double listed_to = -never;
+  std::size_t left = 0;
+
   // ---- lists of a step
   std::vector<std::uint32_t> candidates, waiting, first, edges;
   std::vector<std::uint32_t> visited;  // tiles with collisions
@@ -84,6 +90,7 @@ class StepLine {
     if (k + 2 >= tiles()) keep_tile(tiles() - 1), keep_tile(0);
   }
   void restore() {
+    listed_to = -never, left = 0;
     const Gap<double>* from = kept_.data();
     const double* number = kept_numbers_.data();
     for (const std::uint32_t k : kept_tiles_) {
@@ -106,6 +113,7 @@ class StepLine {
   std::size_t in_tile(std::size_t k) const { return std::min(tile, gaps_ - tile * k); }
   void resize(std::size_t gaps, bool pairs) {
     gaps_ = gaps;
+    listed_to = -never, left = 0;
     const std::size_t stride = (gaps + tile - 1) / tile * tile + 2 * tile,
                       needed = (pairs ? 17 : 4) * stride + alignment;
     if (numbers_.size() < needed) numbers_.resize(needed + needed / 4);

@@ -14,7 +14,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tests plant errors: no radius, no check, a mask of the wrong lane, no bounds of tiles.
+// Tests plant errors: no radius, no check, a mask of the wrong lane, no bounds of tiles, collisions left out that a
+// step leaves to the next.
 #ifndef CRADLE_PLANTED_ERROR
 #define CRADLE_PLANTED_ERROR 0
 #endif
@@ -70,25 +71,45 @@ struct Local {
   std::size_t count = 0, later = 0, firsts = 0, at_edges = 0, visits = 0;  // in these lists
 };
 
-// Which of a group are due up to `last`.
-HWY_INLINE unsigned due_of_group(const double* due, hn::Vec<Lanes> last) {
+// Which of a group are due after `from` and up to `last`.
+HWY_INLINE unsigned due_of_group(const double* due, hn::Vec<Lanes> from, hn::Vec<Lanes> last) {
   const Lanes d;
   unsigned set = 0;
-  for (std::size_t k = 0; k < group; k += lanes) set |= bits_of(d, hn::Le(hn::Load(d, due + k), last)) << k;
+  for (std::size_t k = 0; k < group; k += lanes) {
+    const auto times = hn::Load(d, due + k);
+    set |= bits_of(d, hn::And(hn::Le(times, last), hn::Gt(times, from))) << k;
+  }
   return set;
 }
 
-// Lists all gaps that are due up to `end`, and the tiles that have some.
+// Lists all gaps that are due up to `end` and not listed yet, and the tiles that have some.
 HWY_INLINE void scan(StepLine& line, Local& l, double end) {
-  const auto last = hn::Set(Lanes(), end);
+  const auto last = hn::Set(Lanes(), end), listed = hn::Set(Lanes(), line.listed_to);
   for (std::size_t k = 0, all = line.tiles(); k < all; k += group)
-    append(due_of_group(l.bound + k, last), k, l.visited, l.visits);
+    append(due_of_group(l.bound + k, hn::Set(Lanes(), -StepLine::never), last), k, l.visited, l.visits);
   for (std::size_t v = 0; v < l.visits; ++v) {
     line.guard(l.visited[v]);
     const std::size_t from = StepLine::tile * l.visited[v];
     for (std::size_t k = from; k < from + StepLine::tile; k += group)
-      append(due_of_group(l.due + k, last), k, l.candidates, l.count);
+      append(due_of_group(l.due + k, listed, last), k, l.candidates, l.count);
   }
+}
+
+// Leaves what is still due up to `end` to the next step, if few collisions are left over from so many: passes with few
+// collisions are dear. None is left twice, or the dense parts of the line would fall behind.
+HWY_INLINE bool leave(StepLine& line, Local& l, double end, std::size_t made) {
+  constexpr std::size_t few = 16;
+  if (few * l.later > made) return false;
+  std::size_t left = 0;
+  for (std::size_t k = 0; k < l.later; ++k) {
+    const double due = l.due[l.waiting[k]];
+    if (due <= line.listed_to) return false;
+    l.waiting[left] = l.waiting[k];
+    left += due <= end;
+  }
+  std::copy_n(l.waiting, left, line.candidates.data());
+  line.left = planted(5) ? 0 : left;
+  return true;
 }
 
 // The bounds of the tiles in which collisions were made, or beside them.
@@ -135,7 +156,7 @@ HWY_INLINE void decide(Local& l, double end) {
       if (now) l.edges[l.at_edges++] = static_cast<std::uint32_t>(i);
       continue;
     }
-    l.later += is_due & !now;
+    l.later += is_due - now;
     l.first[l.firsts] = static_cast<std::uint32_t>(i);
     l.firsts += now;
   }
@@ -168,10 +189,12 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
   constexpr int most_passes = 128, reach = StepLine::tile - 1;  // StepLine::guard
   Local l(line);
   Collisions collisions(task, result);
+  const std::uint64_t before = result.collisions;
   int passes = 0;
-  for (scan(line, l, end); l.count > 0; ++passes, std::swap(l.candidates, l.waiting), l.count = l.later) {
+  l.count = std::exchange(line.left, 0);
+  for (scan(line, l, end); l.count > 0; std::swap(l.candidates, l.waiting), l.count = l.later) {
     if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return -1;
-    if (passes % reach == reach - 1) [[unlikely]]
+    if (passes++ % reach == reach - 1) [[unlikely]]
       for (std::size_t k = 0; k < l.count; ++k) line.guard(l.candidates[k] / StepLine::tile);
     decide(l, end);
     if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
@@ -183,7 +206,10 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
     }
     result.collisions += l.firsts;
+    if (line.may_leave && end < task.stop && leave(line, l, end, result.collisions - before)) break;
   }
+  passes += line.left > 0;  // what is left takes at least one more
+  line.listed_to = end;
   renew_bounds(l);
   return collisions.report(task, end, result) || planted(2) ? passes : -1;
 }

@@ -71,11 +71,13 @@ struct StepResult {
 };
 
 // How a segment is computed: the length of a step (0: unknown), chosen such that it takes about so many passes; the
-// number of steps between undo copies. After time slabs in which steps failed, the next ones are left to the event
-// loop: `rest` is how many still are, `next_rest` how many will be after the next failure.
+// number of steps between undo copies; and of steps since the last failure. After time slabs in which steps failed, the
+// next ones are left to the event loop: `rest` is how many still are, `next_rest` how many will be after the next
+// failure.
 struct StepPace {
+  static constexpr int most = 1 << 20;
   double length = 0, passes = 5;
-  int stretch = 32;
+  int stretch = 32, since_failure = most;
   int rest = 0, next_rest = 1;
 
   void made(bool done) {

@@ -97,17 +97,9 @@ TEST(CertifyGravity, WhatIsProvedIsWhatAHundredDigitsGive) {
 }
 
 TEST(CertifyGravity, CollisionsOfTheExactGasAreProved) {
-  std::uint64_t counted = 0, all = 0;
-  for (std::uint64_t number = 600; number < 900; ++number) {
-    const Drawn d = draw_falling(number);
-    const WideRun run = wide_run(d);
-    if (!run.ended || run.gas.tied) continue;
-    ++all;
-    Checker<B> checker(particles_of<B>(d), law_of(d));
-    if (proved(checker, run.collisions)) ++counted;
-  }
-  EXPECT_GE(counted, all * 9 / 10);
-  EXPECT_GE(all, 150U);
+  const ProvedRuns runs = proved_of_exact_runs(600, 900, draw_falling, [](const Drawn& d) { return wide_run(d); });
+  EXPECT_GE(runs.proved, runs.all * 9 / 10);
+  EXPECT_GE(runs.all, 150U);
 }
 
 TEST(CertifyGravity, ARunThatIsWrongInOneCollisionIsNeverProved) {

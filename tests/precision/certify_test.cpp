@@ -52,15 +52,8 @@ TEST(Certify, WhatIsProvedOfInelasticParticlesIsWhatRationalsGive) { compare_wit
 TEST(Certify, WhatIsProvedOfStickyParticlesIsWhatRationalsGive) { compare_with_the_exact_gas(true, 400, 300); }
 
 TEST(Certify, CollisionsOfTheExactGasAreProved) {
-  std::uint64_t counted = 0;
-  for (std::uint64_t number = 0; number < 500; ++number) {
-    const Drawn d = draw(number, false);
-    const ExactRun run = exact_run(d);
-    if (!run.ended || run.tied) continue;
-    Checker<B> checker(particles_of<B>(d), law_of(d));
-    if (proved(checker, run.collisions)) ++counted;
-  }
-  EXPECT_GE(counted, 400U);
+  const auto inelastic = [](std::uint64_t number) { return draw(number, false); };
+  EXPECT_GE(proved_of_exact_runs(0, 500, inelastic, [](const Drawn& d) { return exact_run(d); }).proved, 400U);
 }
 
 TEST(Certify, ARunThatIsWrongInOneCollisionIsNeverProved) {

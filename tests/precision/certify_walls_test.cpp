@@ -68,16 +68,8 @@ TEST(CertifyWalls, WhatIsProvedIsWhatRationalsGive) {
 }
 
 TEST(CertifyWalls, CollisionsOfTheExactGasAreProved) {
-  std::uint64_t counted = 0, all = 0;
-  for (std::uint64_t number = 350; number < 600; ++number) {
-    const Drawn d = draw_with_walls(number);
-    const ExactRun run = exact_run(d);
-    if (!run.ended || run.tied) continue;
-    ++all;
-    Checker<B> checker(particles_of<B>(d), law_of(d));
-    if (proved(checker, run.collisions)) ++counted;
-  }
-  EXPECT_GE(counted, all * 9 / 10);
+  const ProvedRuns runs = proved_of_exact_runs(350, 600, draw_with_walls, [](const Drawn& d) { return exact_run(d); });
+  EXPECT_GE(runs.proved, runs.all * 9 / 10);
 }
 
 TEST(CertifyWalls, ARunThatIsWrongInOneCollisionIsNeverProved) {

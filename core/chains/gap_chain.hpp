@@ -186,37 +186,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     else
       return all;
   }
-  void loaded() {
-    find_inner();
-    const ParticleIndex count = particles_->count();
-    const GapRange all = particles_->gaps();
-    require_state(range_.fits(slots(), count) && range_.on_ring() == particles_->on_ring(), "slots");
-    const ParticleIndex first_held = all.first + range_.unheld_left();
-    require_state(line_.particle_of_slot_0 == first_held - static_cast<ParticleIndex>(first()), "particles");
-    require_state(on_ring() ? particle(first()) == 0 && particle(last()) + 1 == count
-                            : particle(last()) == all.last - range_.unheld_right(),
-                  "particles");
-    require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
-    require_state(!on_ring() || (range_.front_left() == first() && range_.front_right() == last()), "seam");
-    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Slots beyond the held gaps are filled again before use.
-    const T fastest = particles_->walled() ? far_away<T>() : T(T(2) + T(4) * particles_->energy_over_least_mass());
-    for (Slot s = first(); s <= last(); ++s) {
-      const T& w = closing(s);
-      require_state(fits(s) && is_finite(line_.gaps.lag(s)) && !(fastest < magnitude(w)) &&
-                        line_.has_mass(s, *particles_),
-                    "gaps");
-    }
-    for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
-    if constexpr (falls) {
-      const auto pile = static_cast<std::size_t>(field_.resting()), held = last() + 1 - first();
-      require_state(pile < held || (pile == held && !field_.pulls(particle(slot_in_pile(field_.resting())))), "pile");
-      for (ParticleIndex h = 0; h < field_.resting(); ++h)
-        require_state(line_.gaps[slot_in_pile(h)].gap == T(0) && closing(slot_in_pile(h)) == T(0), "pile");
-    }
-    require_state(line_.has_mass(last() + 1, *particles_), "masses");
-    for (const Anchor<T>* anchor : {&left_, &right_})
-      require_state(on_ring() || (anchor->particle() >= all.first && anchor->particle() <= all.last + 1), "anchors");
-  }
+  void loaded();  // checks what was loaded (gap_chain_state.hpp)
 
   // ---- for segments (segments.hpp)
   const Particles<T>& particles() const { return *particles_; }
@@ -271,30 +241,10 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // (gap_chain_walls.hpp)
   Flight<T> from_wall(const T& time) const;
 
-  // Predicts the next collisions with walls under gravity, where all others have just been.
-  void foresee_walls() {
-    if constexpr (falls) {
-      for (const Slot s : {first(), last()})
-        if (field_.at_wall(particle(s))) line_.foresee(field_, s);
-      if (field_.resting() > 0)
-        if (const Slot above = slot_in_pile(field_.resting()); field_.above_pile(particle(above)))
-          line_.foresee(field_, above);
-    }
-  }
-  // Whether a loaded gap has numbers that a gap can have.
-  bool fits(Slot s) const {
-    const auto& gap = line_.gaps[s];
-    if constexpr (falls)
-      if (field_.pulls(particle(s)))  // it may be due while it opens
-        return is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing) && has_due(gap);
-    return gap.fits(gap.closing);
-  }
-  static bool has_due(const auto& gap) {
-    if constexpr (keys_are_exact)
-      return gap.due == gap.due;
-    else
-      return true;
-  }
+  // Predicts the next collisions with walls under gravity, where all others have just been. (gap_chain_walls.hpp)
+  void foresee_walls();
+  // Whether a loaded gap has numbers that a gap can have. (gap_chain_state.hpp)
+  bool fits(Slot s) const;
 
   // Under gravity, the slots in which a collision concerns no end, wall or pile, nor a gap beside one.
   struct Inner {
@@ -331,16 +281,8 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     if (!walls_.has(end)) anchor.follow(flight(anchor, time), time, gain);
   }
 
-  // Changes to enough slots for the zone to grow by half on either side, with the gaps at `kept`.
-  void lay_out(const std::vector<Slot>& kept, ParticleIndex held) {
-    const std::size_t slots = range_.lay_out(static_cast<std::size_t>(held), held / 2 + 8, kept);
-    line_.particle_of_slot_0 = particles_->gaps().first + range_.unheld_left() - static_cast<ParticleIndex>(first());
-    line_.gaps.lay_out(slots, first(), kept);
-    memory_.lay_out(slots, first(), kept);
-    line_.masses.resize(slots);
-    for (Slot s = first(); s <= last() + 1; ++s) line_.load_mass(s, *particles_);
-    find_inner();
-  }
+  // Changes to enough slots for the zone to grow by half on either side, with the gaps at `kept`. (gap_chain_ends.hpp)
+  void lay_out(const std::vector<Slot>& kept, ParticleIndex held);
 
   template <LawChoice Law>
   [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time, const T& w) {
@@ -360,23 +302,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   template <LawChoice Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
     return law.visit([&](const auto& own) { return outcome_at_wall(own, s, time); });
   }
-  template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
-    bool rested = true;
-    if constexpr (LawWithMemory<Law, T>)
-      rested = memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots());
-    if constexpr (falls) {
-      const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
-      const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
-      const Pair<T> elapsed = clock().since_start(time);
-      const bool stays = field_.holds(particle(s), w, elapsed), below = !stays && below_cutoff(law, w);
-      const T restitution = stays ? T(0) : below || !rested ? T(1) : walls_.wall(wall).restitution;
-      Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));
-      outcome.below_cutoff = below;
-      return outcome;
-    } else {
-      return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
-    }
-  }
+  template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time);
   // A collision at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
     if constexpr (falls) {
@@ -423,4 +349,5 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
 
 #include "cradle/core/chains/gap_chain_configuration.hpp"
 #include "cradle/core/chains/gap_chain_ends.hpp"
+#include "cradle/core/chains/gap_chain_state.hpp"
 #include "cradle/core/chains/gap_chain_walls.hpp"

@@ -1,10 +1,21 @@
 #pragma once
 // The ends of the active zone of a chain in gaps and closing speeds: how it takes in the particles that its fronts
-// reach, collision by collision or, after a held range (segments.hpp), all at once.
+// reach, collision by collision or, after a held range (segments.hpp), all at once; the slots for them.
 
 #include "cradle/core/chains/gap_chain.hpp"
 
 namespace cradle {
+
+template <Real T, class Masses, class Field>
+inline void GapChain<T, Masses, Field>::lay_out(const std::vector<Slot>& kept, ParticleIndex held) {
+  const std::size_t slots = range_.lay_out(static_cast<std::size_t>(held), held / 2 + 8, kept);
+  line_.particle_of_slot_0 = particles_->gaps().first + range_.unheld_left() - static_cast<ParticleIndex>(first());
+  line_.gaps.lay_out(slots, first(), kept);
+  memory_.lay_out(slots, first(), kept);
+  line_.masses.resize(slots);
+  for (Slot s = first(); s <= last() + 1; ++s) line_.load_mass(s, *particles_);
+  find_inner();
+}
 
 template <Real T, class Masses, class Field>
 inline void GapChain<T, Masses, Field>::continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left,

@@ -19,6 +19,36 @@ namespace cradle {
 
 template <Real T, class Masses, class Field>
 template <class Law>
+inline Outcome<T> GapChain<T, Masses, Field>::outcome_at_wall(const Law& law, Slot s, const T& time) {
+  bool rested = true;
+  if constexpr (LawWithMemory<Law, T>)
+    rested = memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots());
+  if constexpr (falls) {
+    const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
+    const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
+    const Pair<T> elapsed = clock().since_start(time);
+    const bool stays = field_.holds(particle(s), w, elapsed), below = !stays && below_cutoff(law, w);
+    const T restitution = stays ? T(0) : below || !rested ? T(1) : walls_.wall(wall).restitution;
+    Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));
+    outcome.below_cutoff = below;
+    return outcome;
+  } else {
+    return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+  }
+}
+
+template <Real T, class Masses, class Field> inline void GapChain<T, Masses, Field>::foresee_walls() {
+  if constexpr (falls) {
+    for (const Slot s : {first(), last()})
+      if (field_.at_wall(particle(s))) line_.foresee(field_, s);
+    if (field_.resting() > 0)
+      if (const Slot above = slot_in_pile(field_.resting()); field_.above_pile(particle(above)))
+        line_.foresee(field_, above);
+  }
+}
+
+template <Real T, class Masses, class Field>
+template <class Law>
 CollisionResult<T> GapChain<T, Masses, Field>::collide_falling(const Law& law, Slot s, const T& time) {
   const ParticleIndex resting = field_.resting(), height = field_.piles() ? field_.height(particle(s)) : 0;
   const bool beside_pile = field_.piles() && height <= resting + 1;

@@ -12,6 +12,7 @@
 
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"
+#include "cradle/tests/precision/wrong_runs.hpp"
 
 namespace certify_gravity_test {
 
@@ -96,17 +97,9 @@ TEST(CertifyGravity, WhatIsProvedIsWhatAHundredDigitsGive) {
 }
 
 TEST(CertifyGravity, CollisionsOfTheExactGasAreProved) {
-  std::uint64_t counted = 0, all = 0;
-  for (std::uint64_t number = 600; number < 900; ++number) {
-    const Drawn d = draw_falling(number);
-    const WideRun run = wide_run(d);
-    if (!run.ended || run.gas.tied) continue;
-    ++all;
-    Checker<B> checker(particles_of<B>(d), law_of(d));
-    if (proved(checker, run.collisions)) ++counted;
-  }
-  EXPECT_GE(counted, all * 9 / 10);
-  EXPECT_GE(all, 150U);
+  const ProvedRuns runs = proved_of_exact_runs(600, 900, draw_falling, [](const Drawn& d) { return wide_run(d); });
+  EXPECT_GE(runs.proved, runs.all * 9 / 10);
+  EXPECT_GE(runs.all, 150U);
 }
 
 TEST(CertifyGravity, ARunThatIsWrongInOneCollisionIsNeverProved) {
@@ -116,31 +109,10 @@ TEST(CertifyGravity, ARunThatIsWrongInOneCollisionIsNeverProved) {
     const Drawn d = draw_falling(number);
     const WideRun run = wide_run(d);
     if (!run.ended || run.gas.tied || run.collisions.empty()) continue;
-    const auto refuse = [&](const Collisions& collisions) {
-      Checker<B> checker(particles_of<B>(d), law_of(d));
-      ++mutants;
-      ASSERT_FALSE(proved(checker, collisions));
-    };
-    const auto pick = [&](std::uint64_t salt, std::size_t of) { return random_bits(6, number, salt) % of; };
-    for (std::size_t k = 0; k < run.collisions.size(); ++k) {
-      Collisions dropped = run.collisions;
-      dropped.erase(dropped.begin() + static_cast<std::ptrdiff_t>(k));
-      refuse(dropped);
-    }
-    for (std::uint64_t salt = 0; salt < 4; ++salt) {
-      Collisions invented = run.collisions;
-      const auto left = static_cast<ParticleIndex>(pick(salt + 10, d.gaps.size() + 1)) - 1;
-      invented.insert(invented.begin() + static_cast<std::ptrdiff_t>(pick(salt + 20, invented.size() + 1)),
-                      {left, left + 1});
-      refuse(invented);
-      Collisions late = run.collisions;
-      for (std::size_t k = pick(salt + 30, late.size()); k + 1 < late.size(); ++k)
-        if (late[k] != late[k + 1] && shares_a_particle(late[k], late[k + 1])) {
-          std::swap(late[k], late[k + 1]);
-          refuse(late);
-          break;
-        }
-    }
+    WrongRuns wrong(d, run.collisions, 6, number);
+    for (std::size_t k = 0; k < run.collisions.size(); ++k) wrong.refuse_dropped(k);
+    for (std::uint64_t salt = 0; salt < 4; ++salt) wrong.refuse_invented(salt), wrong.refuse_late(salt);
+    mutants += wrong.refused();
   }
   EXPECT_GE(mutants, 2000U);
 }

@@ -10,6 +10,7 @@
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"
+#include "cradle/tests/precision/wrong_runs.hpp"
 
 namespace certify_test {
 
@@ -51,15 +52,8 @@ TEST(Certify, WhatIsProvedOfInelasticParticlesIsWhatRationalsGive) { compare_wit
 TEST(Certify, WhatIsProvedOfStickyParticlesIsWhatRationalsGive) { compare_with_the_exact_gas(true, 400, 300); }
 
 TEST(Certify, CollisionsOfTheExactGasAreProved) {
-  std::uint64_t counted = 0;
-  for (std::uint64_t number = 0; number < 500; ++number) {
-    const Drawn d = draw(number, false);
-    const ExactRun run = exact_run(d);
-    if (!run.ended || run.tied) continue;
-    Checker<B> checker(particles_of<B>(d), law_of(d));
-    if (proved(checker, run.collisions)) ++counted;
-  }
-  EXPECT_GE(counted, 400U);
+  const auto inelastic = [](std::uint64_t number) { return draw(number, false); };
+  EXPECT_GE(proved_of_exact_runs(0, 500, inelastic, [](const Drawn& d) { return exact_run(d); }).proved, 400U);
 }
 
 TEST(Certify, ARunThatIsWrongInOneCollisionIsNeverProved) {
@@ -69,38 +63,17 @@ TEST(Certify, ARunThatIsWrongInOneCollisionIsNeverProved) {
     const Drawn d = draw(number, number % 4 == 3);
     const ExactRun run = exact_run(d);
     if (!run.ended || run.tied || run.collisions.empty()) continue;
-    const auto refuse = [&](const Collisions& collisions, const std::optional<Said>& said = {}) {
-      Checker<B> checker(particles_of<B>(d), law_of(d));
-      ++mutants;
-      ASSERT_FALSE(proved(checker, collisions, said));
-    };
-    const auto pick = [&](std::uint64_t salt, std::size_t of) { return random_bits(5, number, salt) % of; };
+    WrongRuns wrong(d, run.collisions, 5, number);
+    const bool has_sides = !d.sticky && d.cutoff > 0 && std::string(d.restitution) != "1";
     for (std::uint64_t salt = 0; salt < 2; ++salt) {
-      Collisions dropped = run.collisions;
-      dropped.erase(dropped.begin() + static_cast<std::ptrdiff_t>(pick(salt, dropped.size())));
-      refuse(dropped);
-
-      Collisions invented = run.collisions;
-      const auto left = static_cast<ParticleIndex>(pick(salt + 10, d.gaps.size() - (d.length > 0 ? 0 : 1)));
-      const auto right = (left + 1) % static_cast<ParticleIndex>(d.gaps.size());
-      invented.insert(invented.begin() + static_cast<std::ptrdiff_t>(pick(salt + 20, invented.size() + 1)),
-                      {left, right});
-      refuse(invented);
-
-      // Later than the one after it, which shares a particle with it.
-      Collisions late = run.collisions;
-      for (std::size_t k = pick(salt + 30, late.size()); k + 1 < late.size(); ++k)
-        if (late[k] != late[k + 1] && shares_a_particle(late[k], late[k + 1])) {
-          std::swap(late[k], late[k + 1]);
-          refuse(late);
-          break;
-        }
-
-      const bool has_sides = !d.sticky && d.cutoff > 0 && std::string(d.restitution) != "1";
-      const ExactRun wrong = exact_run(d, pick(salt + 40, run.collisions.size()));
-      if (has_sides && wrong.ended && !wrong.tied)
-        refuse(wrong.collisions, Said{wrong.below, wrong.gas.energy()}), ++of_side;
+      wrong.refuse_dropped(wrong.pick(salt, run.collisions.size()));
+      wrong.refuse_invented(salt);
+      wrong.refuse_late(salt);
+      const ExactRun other_side = exact_run(d, wrong.pick(salt + 40, run.collisions.size()));
+      if (has_sides && other_side.ended && !other_side.tied)
+        wrong.refuse(other_side.collisions, Said{other_side.below, other_side.gas.energy()}), ++of_side;
     }
+    mutants += wrong.refused();
   }
   EXPECT_GE(mutants, 2000U);
   EXPECT_GE(of_side, 300U);

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "cradle/tests/precision/drawn_scenes.hpp"
+#include "cradle/tests/precision/wrong_runs.hpp"
 #ifdef CRADLE_WITH_MPFR
 #include "cradle/precision/mpfr.hpp"
 #endif
@@ -67,16 +68,8 @@ TEST(CertifyWalls, WhatIsProvedIsWhatRationalsGive) {
 }
 
 TEST(CertifyWalls, CollisionsOfTheExactGasAreProved) {
-  std::uint64_t counted = 0, all = 0;
-  for (std::uint64_t number = 350; number < 600; ++number) {
-    const Drawn d = draw_with_walls(number);
-    const ExactRun run = exact_run(d);
-    if (!run.ended || run.tied) continue;
-    ++all;
-    Checker<B> checker(particles_of<B>(d), law_of(d));
-    if (proved(checker, run.collisions)) ++counted;
-  }
-  EXPECT_GE(counted, all * 9 / 10);
+  const ProvedRuns runs = proved_of_exact_runs(350, 600, draw_with_walls, [](const Drawn& d) { return exact_run(d); });
+  EXPECT_GE(runs.proved, runs.all * 9 / 10);
 }
 
 TEST(CertifyWalls, ARunThatIsWrongInOneCollisionIsNeverProved) {
@@ -86,31 +79,13 @@ TEST(CertifyWalls, ARunThatIsWrongInOneCollisionIsNeverProved) {
     const Drawn d = draw_with_walls(number);
     const ExactRun run = exact_run(d);
     if (!run.ended || run.tied || run.collisions.empty()) continue;
-    const auto refuse = [&](const Collisions& collisions) {
-      Checker<B> checker(particles_of<B>(d), law_of(d));
-      ++mutants;
-      ASSERT_FALSE(proved(checker, collisions));
-    };
-    const auto pick = [&](std::uint64_t salt, std::size_t of) { return random_bits(5, number, salt) % of; };
+    WrongRuns wrong(d, run.collisions, 5, number);
     for (std::uint64_t salt = 0; salt < 3; ++salt) {
-      Collisions dropped = run.collisions;
-      dropped.erase(dropped.begin() + static_cast<std::ptrdiff_t>(pick(salt, dropped.size())));
-      refuse(dropped);
-
-      Collisions invented = run.collisions;  // walls are no neighbours where they are not
-      const auto left = static_cast<ParticleIndex>(pick(salt + 10, d.gaps.size() + 1)) - 1;
-      invented.insert(invented.begin() + static_cast<std::ptrdiff_t>(pick(salt + 20, invented.size() + 1)),
-                      {left, left + 1});
-      refuse(invented);
-
-      Collisions late = run.collisions;  // later than the one after it, which shares a particle with it
-      for (std::size_t k = pick(salt + 30, late.size()); k + 1 < late.size(); ++k)
-        if (late[k] != late[k + 1] && shares_a_particle(late[k], late[k + 1])) {
-          std::swap(late[k], late[k + 1]);
-          refuse(late);
-          break;
-        }
+      wrong.refuse_dropped(wrong.pick(salt, run.collisions.size()));
+      wrong.refuse_invented(salt);
+      wrong.refuse_late(salt);
     }
+    mutants += wrong.refused();
   }
   EXPECT_GE(mutants, 1000U);
 }

@@ -275,6 +275,25 @@ inline ExactRun exact_run(const Drawn& d, std::size_t wrong = most_collisions) {
   return run;
 }
 
+// Of the scenes from number `from` on whose run, by `run_of`, is short and without ties: how many there are, and of how
+// many the collisions are proved.
+struct ProvedRuns {
+  std::uint64_t all = 0, proved = 0;
+};
+template <class Draw, class RunOf>
+ProvedRuns proved_of_exact_runs(std::uint64_t from, std::uint64_t to, const Draw& draw, const RunOf& run_of) {
+  ProvedRuns count;
+  for (std::uint64_t number = from; number < to; ++number) {
+    const Drawn d = draw(number);
+    const auto run = run_of(d);
+    if (!run.ended || run.gas.tied) continue;
+    ++count.all;
+    Checker<B> checker(particles_of<B>(d), law_of(d));
+    if (proved(checker, run.collisions)) ++count.proved;
+  }
+  return count;
+}
+
 // The collisions that the engine makes in doubles.
 template <class Run> Collisions made_by(Run&& run) {
   Collisions collisions;

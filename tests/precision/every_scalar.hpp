@@ -30,8 +30,10 @@ struct Joined<testing::Types<P...>, testing::Types<Q...>, More...> : Joined<test
 // The types that this build has.
 #ifdef CRADLE_WITH_FLOAT128
 using Binary128 = testing::Types<Precision<float128>>;
+using FixedTypes = testing::Types<double, long double, double_double, float128>;
 #else
 using Binary128 = testing::Types<>;
+using FixedTypes = testing::Types<double, long double, double_double>;
 #endif
 #ifdef CRADLE_WITH_MPFR
 using Mpfr50 = testing::Types<Precision<Mpfr<4>, 50>>;
@@ -58,6 +60,17 @@ struct PrecisionName {
     return P::digits > 0 ? name + std::to_string(P::digits) : name;
   }
 };
+
+// The number, exactly: as a sum of doubles.
+template <class Reference, class T> Reference sum_of_doubles(T x) {
+  Reference sum(0);
+  for (int part = 0; part < 8 && !(x == T(0)); ++part) {
+    const double leading = to_double(x);
+    sum += cradle::exactly<Reference>(leading);
+    x -= cradle::exactly<T>(leading);
+  }
+  return sum;
+}
 
 // Exact dynamics until a gap is smaller than this; 0: until the collapse time is known.
 template <class T> Policy<T> stop_below(const T& gap) {

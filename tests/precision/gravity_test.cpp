@@ -86,17 +86,7 @@ TYPED_TEST(FallIn, AColumnKeepsItsEnergy) {
 #ifdef CRADLE_WITH_MPFR
 using Reference = Mpfr<16>;
 constexpr unsigned reference_digits = 200;
-
-// The number, exactly: as a sum of doubles.
-template <class T> Reference exact(T x) {
-  Reference sum(0);
-  for (int part = 0; part < 8 && !(x == T(0)); ++part) {
-    const double leading = to_double(x);
-    sum += exactly<Reference>(leading);
-    x -= exactly<T>(leading);
-  }
-  return sum;
-}
+template <class T> Reference exact(const T& x) { return sum_of_doubles<Reference>(x); }
 
 struct ByDigits {
   bool meets;
@@ -110,12 +100,7 @@ ByDigits by_digits(const Reference& g, const Reference& w, const Reference& p) {
 }
 
 template <class T> class ApproachIn : public testing::Test {};
-#ifdef CRADLE_WITH_FLOAT128
-using OfApproaches = testing::Types<double, long double, double_double, float128>;
-#else
-using OfApproaches = testing::Types<double, long double, double_double>;
-#endif
-TYPED_TEST_SUITE(ApproachIn, OfApproaches);
+TYPED_TEST_SUITE(ApproachIn, FixedTypes);
 
 // Random gaps, among them such that only just reach the ceiling or do not. Errors in units u of half an epsilon: the
 // speed has that of its square (u/2 after the root) and one of the root; the time twice that, less for the Newton step,

@@ -184,164 +184,21 @@ template <Real T> class SceneRun {
   }
 
   // ---- what is recorded
-  // Returns false if a signal has stopped a loop over rows, which can be very long; then nothing of this time is
-  // recorded yet.
-  bool sample_at(const T& time) {
-    const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
-               masses = holds(plan_.masses, time), zone = holds(plan_.zone, time),
-               averaged = holds(plan_.averages, time), counted = holds(plan_.counting, time),
-               correlated = correlations_ && correlations_->due(time);
-    std::optional<Configuration<T>> now;
-    std::optional<Profile> seen;
-    if (snapshot || profiled || masses || zone || averaged || counted || correlated) now = engine_.configuration(time);
-    if (now) guards_.require_held(*now);
-    try {
-      if (profiled) seen = profile_at(*now, time);
-      const T elapsed = time - number<T>(scene_.run.start);
-      const auto stop = [this] { return stopped(); };
-      if (averaged) averages_->find(*now, *particles_, elapsed, stop);
-      if (correlated) correlations_->find(*now, time, stop);
-      if (zone) zone_->add(*now, *particles_, elapsed, stop);
-    } catch (const WalkStopped&) {
-      return false;
-    }
-    if (averaged) averages_->add_found();
-    if (counted) histograms_->add(*now);
-    if (correlated) correlations_->add(time, [this](Group&& table) { put(std::move(table)); });
-    if (holds(plan_.series, time)) record_sample(time);
-    if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
-    if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
-    if (masses) put(masses_table(*now, particles_->least_mass(), numbered("masses", masses_)));
-    guards_.check(time, !(time < plan_.stops.back()));
-    inspected_ = time;
-    if (options_.observer != nullptr) notify_observer(time, false);
-    if (options_.store == nullptr) return true;
-    options_.store->check_clock();
-    if (options_.store->due())
-      keep(time);
-    else if (series_.rows() >= most_rows)
-      put_rows();
-    return true;
-  }
-  void record_collision(const Collision<T>& c) {
-    events_.made(engine_.counts());
-    if (options_.store != nullptr && events_.rows() >= most_rows) put(events_.take());
-    events_(c);
-  }
-
-  Profile profile_at(const Configuration<T>& now, const T& time) const {
-    const auto& wanted = scene_.output.profiles;
-    const T elapsed = time - number<T>(scene_.run.start);
-    BinRange range{to_double(now.x.front()), to_double(now.x.back())};
-    if (!wanted.range.empty())
-      range = {wanted.range[0].value, wanted.range[1].value};
-    else if (engine_.collided_particles() > 0 && !engine_.on_ring())
-      range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
-    if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
-    if (!std::isfinite(range.to - range.from))
-      throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the particles are where no double reaches",
-                  to_text(time), "give it, or remove output.profiles", Exit::lost);
-    return profile(now, *particles_, elapsed, range, wanted.bins, [this] { return stopped(); });
-  }
-
-  void record_sample(const T& time) {
-    const Moment<T> now(engine_, particles_, number<T>(scene_.run.start), time);
-    guards_.require_held(now.state.energy, "the energy", time);
-    for (const auto& front : {now.state.front_left, now.state.front_right})
-      if (front) guards_.require_held(*front, "a front", time);
-    series_.add(now);
-    if (!has_clouds(scene_)) return;
-    heaviest_.add(now.cloud());
-    if (scene_.output.scenario)
-      scenario_.sample(now.cloud(), to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
-  }
-
+  // (scene_run_samples.hpp)
+  bool sample_at(const T& time);
+  void record_collision(const Collision<T>& c);
+  Profile profile_at(const Configuration<T>& now, const T& time) const;
+  void record_sample(const T& time);
   void notify_observer(const T& time, bool at_collision) {
     options_.observer->sample(run_sample(scene_, plan_, engine_, energy_, time, at_collision));
   }
-  // Records the last state of a run that ends early.
-  void record_end(const T& time) {
-    if (options_.observer != nullptr) notify_observer(time, true);
-    record_sample(time);
-    put(snapshot_rows(engine_.configuration_at_last_collision(), numbered("snapshots", snapshots_)));
-  }
-
   static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
 
-  RunOutcome finish(Status status, const T& time) {
-    const Counts& counts = engine_.counts();
-    RunOutcome end;
-    end.end = end_of(status, engine_.account().order_lost > 0);
-    if (end.end == RunEnd::collapsed && !engine_.collapse()->settled) end.end = RunEnd::small_gap;
-    end.collisions = counts.collisions;
-    end.merges = counts.merges;
-    end.time = to_double(time);
-    end.energy = to_double(energy_now(engine_, energy_, time));
-    end.energy_digits = energy_digits(engine_, scene_, to_double(energy_), end.energy);
-    ReportedAccount account = reported(engine_.account());
-    if (const auto particle = engine_.uncertain_at(time); particle && !account.uncertain && status == Status::reached) {
-      account.uncertain_end = true;
-      account.first_uncertain = {to_text(time), to_double(time), 0, *particle};
-    }
-    end.warning = account_warning(account, scene_.run);
-    if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.collisions, scene_.run);
-    end.result.attributes = provenance(scene_, precision_name(scene_.run), end_row(end.end).text);
-    for (const Attribute& attribute :
-         {Attribute("simultaneous_collisions", account.simultaneous), Attribute("order_lost", account.order_lost),
-          Attribute("unresolved_gaps", account.unresolved), Attribute("energy_digits", end.energy_digits),
-          Attribute("ledger_error", to_double(ledger_error(time)))})
-      end.result.attributes.push_back(attribute);
-    if (account.uncertain || account.uncertain_end)
-      end.result.attributes.emplace_back("uncertain_from", account.first_uncertain.value);
-    put_tables(end, time);
-    if (status == Status::collapsed) {
-      const ReportedCollapse collapse = reported(*engine_.collapse());
-      end.report = collapse_report(collapse, counts.collisions);
-      end.collapse_time = (collapse.settled ? collapse.time : collapse.last_collision).digits;
-      end.result.groups.push_back(collapse_table(collapse));
-    }
-    return end;
-  }
-
-  // What the ledger leaves of the energy minus the sums over particles.
-  T ledger_error(const T& time) const {
-    T error = energy_ - engine_.energy_lost(time) - engine_.kinetic_energy(time);
-    if (particles_->fall())
-      error += particles_->potential_energy() - cradle::potential_energy(engine_.configuration(time), *particles_,
-                                                                         T(time - number<T>(scene_.run.start)));
-    return error;
-  }
-
-  void put_tables(RunOutcome& end, const T& time) {
-    put_rows();
-    std::vector<Group>& groups = end.result.groups;
-    groups = std::move(tables_).in_order();
-    // The table is written even if there was no collision.
-    if (scene_.output.events && options_.store != nullptr) append(groups, tables(events_.take(), true));
-    if (scene_.output.events) {
-      const Configuration<T> now = engine_.configuration_at_last_collision();
-      append(groups, tables(initial_rows(*particles_, now.from, now.to), options_.store != nullptr));
-    }
-    if (word_) groups.push_back(word_->table());
-    if (zone_) {
-      const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single particles
-      const ZoneWidth width = zone_->width(scene_.initial.speed.value, single);
-      groups.push_back(zone_result(*zone_, width, scene_));
-      end.summary.emplace_back("zone_width", width.width);
-    }
-    // Ensembles combine what covers the whole time only.
-    const bool partial = options_.store != nullptr;
-    if (averages_ && averages_->samples() > 0 && (partial || averages_->complete()))
-      groups.push_back(averages_result(*averages_, scene_));
-    if (histograms_ && (partial || !(time < number<T>(scene_.output.counting.until))))
-      append(groups, histograms_->tables());
-    if (correlations_) append(groups, correlations_->tables(partial));
-    if (scene_.output.scenario) {
-      const auto numbers = scenario_numbers(scenario_.result(engine_.counts().merges));
-      groups.push_back({"scenario", {numbers.begin(), numbers.end()}, {}});
-      end.summary.insert(end.summary.end(), numbers.begin(), numbers.end());
-    }
-  }
+  // ---- how it ends (scene_run_end.hpp)
+  void record_end(const T& time);
+  RunOutcome finish(Status status, const T& time);
+  T ledger_error(const T& time) const;
+  void put_tables(RunOutcome& end, const T& time);
 
   const Scene& scene_;
   const RunOptions& options_;
@@ -367,3 +224,6 @@ template <Real T> class SceneRun {
 };
 
 }  // namespace cradle::tools
+
+#include "cradle/tools/run/scene_run_end.hpp"
+#include "cradle/tools/run/scene_run_samples.hpp"

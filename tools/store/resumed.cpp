@@ -46,7 +46,12 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
   Series& series = scene.output.series;
   if (series.points && !series.over && scene.run.start < scene.run.until) series.over = scene.run.until;
   scene.run.until = later;
-  return parse_scene(effective_toml(scene), file);  // as a scene with that end is read
+  try {
+    return parse_scene(effective_toml(scene), file);  // as a scene with that end is read
+  } catch (const Error&) {                            // which was valid with its own end
+    throw Error({"--until", 0, ""}, "too late for this run, whose precision and spacing of samples stay", until,
+                "give an earlier time, or run the scene anew with this run.until");
+  }
 }
 
 // Lists of times are not extended: of a run that was cut short by --set run.until they have lost the times of the scene

@@ -91,7 +91,9 @@ TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
   const Printed none = shell("cradle resume b.h5");
   EXPECT_EQ(none.status, 4);
   EXPECT_NE(none.err.find("nothing to continue from"), std::string::npos) << none.err;
-  for (const auto& [until, said] : {std::pair("100", "before the end"), std::pair("soon", "not a number")}) {
+  for (const auto& [until, said] :
+       {std::pair("100", "--until: before the end"), std::pair("soon", "--until: not a number"),
+        std::pair("1e99", "--until: too late for this run"), std::pair("1e400", "--until: too late for this run")}) {
     const Printed wrong = shell(std::string("cradle resume a.h5 --until ") + until);
     EXPECT_EQ(wrong.status, 2) << until;
     EXPECT_NE(wrong.err.find(said), std::string::npos) << wrong.err;

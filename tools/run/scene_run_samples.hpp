@@ -1,0 +1,80 @@
+#pragma once
+// What a run records at its output times and at collisions, and when it gives rows and its state to the store.
+
+#include "cradle/tools/run/scene_run.hpp"
+
+namespace cradle::tools {
+
+// Returns false if a signal has stopped a loop over rows, which can be very long; then nothing of this time is
+// recorded yet.
+template <Real T> inline bool SceneRun<T>::sample_at(const T& time) {
+  const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
+             masses = holds(plan_.masses, time), zone = holds(plan_.zone, time), averaged = holds(plan_.averages, time),
+             counted = holds(plan_.counting, time), correlated = correlations_ && correlations_->due(time);
+  std::optional<Configuration<T>> now;
+  std::optional<Profile> seen;
+  if (snapshot || profiled || masses || zone || averaged || counted || correlated) now = engine_.configuration(time);
+  if (now) guards_.require_held(*now);
+  try {
+    if (profiled) seen = profile_at(*now, time);
+    const T elapsed = time - number<T>(scene_.run.start);
+    const auto stop = [this] { return stopped(); };
+    if (averaged) averages_->find(*now, *particles_, elapsed, stop);
+    if (correlated) correlations_->find(*now, time, stop);
+    if (zone) zone_->add(*now, *particles_, elapsed, stop);
+  } catch (const WalkStopped&) {
+    return false;
+  }
+  if (averaged) averages_->add_found();
+  if (counted) histograms_->add(*now);
+  if (correlated) correlations_->add(time, [this](Group&& table) { put(std::move(table)); });
+  if (holds(plan_.series, time)) record_sample(time);
+  if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
+  if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
+  if (masses) put(masses_table(*now, particles_->least_mass(), numbered("masses", masses_)));
+  guards_.check(time, !(time < plan_.stops.back()));
+  inspected_ = time;
+  if (options_.observer != nullptr) notify_observer(time, false);
+  if (options_.store == nullptr) return true;
+  options_.store->check_clock();
+  if (options_.store->due())
+    keep(time);
+  else if (series_.rows() >= most_rows)
+    put_rows();
+  return true;
+}
+
+template <Real T> inline void SceneRun<T>::record_collision(const Collision<T>& c) {
+  events_.made(engine_.counts());
+  if (options_.store != nullptr && events_.rows() >= most_rows) put(events_.take());
+  events_(c);
+}
+
+template <Real T> inline Profile SceneRun<T>::profile_at(const Configuration<T>& now, const T& time) const {
+  const auto& wanted = scene_.output.profiles;
+  const T elapsed = time - number<T>(scene_.run.start);
+  BinRange range{to_double(now.x.front()), to_double(now.x.back())};
+  if (!wanted.range.empty())
+    range = {wanted.range[0].value, wanted.range[1].value};
+  else if (engine_.collided_particles() > 0 && !engine_.on_ring())
+    range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
+  if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
+  if (!std::isfinite(range.to - range.from))
+    throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the particles are where no double reaches",
+                to_text(time), "give it, or remove output.profiles", Exit::lost);
+  return profile(now, *particles_, elapsed, range, wanted.bins, [this] { return stopped(); });
+}
+
+template <Real T> inline void SceneRun<T>::record_sample(const T& time) {
+  const Moment<T> now(engine_, particles_, number<T>(scene_.run.start), time);
+  guards_.require_held(now.state.energy, "the energy", time);
+  for (const auto& front : {now.state.front_left, now.state.front_right})
+    if (front) guards_.require_held(*front, "a front", time);
+  series_.add(now);
+  if (!has_clouds(scene_)) return;
+  heaviest_.add(now.cloud());
+  if (scene_.output.scenario)
+    scenario_.sample(now.cloud(), to_double(T(time - number<T>(scene_.run.start))), engine_.counts().merges);
+}
+
+}  // namespace cradle::tools

@@ -6,7 +6,8 @@ namespace cradle {
 
 // Steps are as long as some five passes take: the densest part decides. If a step fails, those since the last undo copy
 // are undone and made again, as shorter ones, up to where it failed. Steps that leave collisions to the next one are up
-// to a fifth faster, but fail more often in the dense core of a shock: so they do only while none fails.
+// to a fifth faster, but fail more often in the dense core of a shock: so they do only while none fails, and not where
+// particles collapse, since a restitution that rises to 1 at low speeds lets them come apart again.
 bool run_steps(Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,
                StepResult& result) {
   constexpr int most_failures = 6, least_stretch = 4, most_stretch = 512, calm = 65536;
@@ -19,7 +20,7 @@ bool run_steps(Step step, StepLine& line, const StepTask& task, StepScalars& sca
     if (left == 0) {
       line.keep(), scalars.keep();
       kept = result, kept_at = now;
-      line.may_leave = pace.since_failure >= calm;
+      line.may_leave = pace.since_failure >= calm && task.law != StepLaw::of_speed;
       if (failures == 0) {
         pace.since_failure = std::min(pace.since_failure + pace.stretch, StepPace::most);
         pace.stretch = std::min(pace.stretch + pace.stretch / 16 + 1, most_stretch);

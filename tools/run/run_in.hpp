@@ -79,6 +79,9 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
   return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{}, law);
 }
 
+// Whether the choice of a law at every collision costs a run anything beside its arithmetic: not with larger numbers.
+template <Real T> inline constexpr bool chooses_at_a_cost = sizeof(T) <= 2 * sizeof(double);
+
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
@@ -94,12 +97,13 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const BouncingLaw<T> law = bouncing_law<T>(scene);
   if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
   if (to_be_watched(*particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
-  // Only the most used law has engines of its own, one of them for identical masses; the bits are the same.
+  // Only the most used law has engines of its own, one for identical masses and one for others; the bits are the same.
   const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};
   const auto* inelastic = law.template as<Inelastic<T>>();
-  if (inelastic == nullptr) return on(individual, law);
-  if (particles->identical_masses()) return on(std::type_identity<GapChain<T>>{}, *inelastic);
-  return on(individual, *inelastic);
+  if (inelastic != nullptr && particles->identical_masses()) return on(std::type_identity<GapChain<T>>{}, *inelastic);
+  if constexpr (chooses_at_a_cost<T>)
+    if (inelastic != nullptr) return on(individual, *inelastic);
+  return on(individual, law);
 }
 
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {

@@ -400,8 +400,9 @@ template <class Chain> void fuzz_once(Dice& dice) {
   const double restitution = dice.one_of({1., 0.999, 0.95, 0.6, 0.4});
   const double cutoff = restitution > 0.99 ? dice.one_of({0., 1e-5, 0.1}) : dice.one_of({0.01, 0.1});
   if (std::same_as<Chain, Unequal> && dice.below(3) == 0)
-    expect_same<Unequal>(scene, SpeedDependent<double>(restitution, 0.05 + dice.uniform(), 0.1 + dice.uniform()), times,
-                         ways);
+    expect_same<Unequal>(
+        scene, SpeedDependent<double>(std::max(restitution, 0.95), 0.05 + dice.uniform(), 0.1 + dice.uniform()), times,
+        ways);
   else
     expect_same<Chain>(scene, Inelastic<double>(restitution, cutoff), times, ways);
 }

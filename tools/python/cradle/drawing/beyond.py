@@ -95,7 +95,7 @@ def draw_excess(ax, result, since, units, colour, label=None, line="-"):
     ax.plot(time, excess(result)[late], line, color=colour, label=label)
     if result.replicas:
         ax.fill_between(time, excess(result, "min")[late], excess(result, "max")[late], color=colour, alpha=0.2, lw=0)
-    ax.set_yscale("symlog", linthresh=1e-5)
+    ax.set_yscale("symlog", linthresh=1.000001e-5)  # of 1e-5 the logarithm is rounded down, to ticks at 1e-6
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)
     ax.set_ylabel(r"$(E-E_\mathrm{sticky})\,/\,E_0$")
 

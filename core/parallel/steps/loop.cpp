@@ -5,8 +5,8 @@
 namespace cradle {
 
 // Steps are as long as some five passes take: the densest part decides. If a step fails, those since the last undo copy
-// are undone and made again, as shorter ones, up to where it failed. Steps that leave collisions to the next one are up
-// to a fifth faster, but fail more often in the dense core of a shock: so they do only while none fails, and not where
+// are undone and made again, as shorter ones, up to where it failed. Steps that leave collisions to the next one are
+// some 5 % faster, but fail more often in the dense core of a shock: so they do only while none fails, and not where
 // particles collapse, since a restitution that rises to 1 at low speeds lets them come apart again.
 bool run_steps(Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,
                StepResult& result) {

@@ -29,7 +29,8 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   static constexpr bool keys_are_exact = false;
   static constexpr bool may_collapse = true;
 
-  // Throws std::invalid_argument for particles on a ring, and for walls that hold particles.
+  // Throws std::invalid_argument for particles on a ring or without order in the working precision, and for walls that
+  // hold particles.
   PositionChain(std::shared_ptr<const Particles<T>> particles, const T& start)
       : count_(static_cast<std::size_t>(particles->count())), start_(start), origin_(start),
         first_particle_(particles->gaps().first), walls_(particles->walls()), of_walls_(particles), field_(*particles),
@@ -41,6 +42,11 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
                                   in_message(particles->circumference()) + "): use a chain in gaps");
     for (ParticleIndex b = first_particle_; b <= particles->gaps().last + 1; ++b)
       particles_.push_back({particles->position(b), particles->velocity(b), start, particles->mass(b)});
+    for (Slot s = first(); s <= last(); ++s)
+      if (!(at(s).x < at(s + 1).x))
+        throw std::invalid_argument("particles " + std::to_string(particle(s)) + " and " +
+                                    std::to_string(particle(s) + 1) + " have the same place in absolute positions (" +
+                                    in_message(at(s).x) + "): use a chain in gaps, or more digits");
     if (const Wall<T>* wall = particles->holding())
       throw std::invalid_argument("a particle that rests on a wall in absolute positions (rest speed " +
                                   in_message(wall->rest_speed) + "): use a chain in gaps");

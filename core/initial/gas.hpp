@@ -52,6 +52,11 @@ template <Real T> class Gas final : public Particles<T> {
   T gap(ParticleIndex particle) const override {
     return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * unit_;
   }
+  // Between the particle at an end and that end of the gas.
+  T gap_to(End end) const {
+    const std::int64_t half = displacement_unit / 2;
+    return T(end == End::left ? half + displacement_(0) : half - displacement_(count_ - 1)) * unit_;
+  }
   T closing_speed(ParticleIndex particle) const override {
     return T(velocity_(particle) - velocity_(particle + 1)) * velocity_unit_;
   }

@@ -1,5 +1,7 @@
 #pragma once
-// Particles given one by one, on a line or a ring: positions, velocities and, where they differ, masses.
+// Particles given one by one, on a line or a ring: positions, velocities and, where they differ, masses. Gaps and
+// closing speeds are differences of these numbers, unless they are given too: a difference of rounded positions may
+// have no correct digit.
 
 #include <algorithm>
 #include <optional>
@@ -12,15 +14,19 @@
 
 namespace cradle {
 
+// Gaps and closing speeds of all neighbours, on a ring also those of the last particle and the first one.
+template <Real T> struct NeighbourDifferences { std::vector<T> gaps, closing_speeds; };
+
 template <Real T> class List final : public Particles<T> {
  public:
   // One velocity per position; as many masses, or none if all are 1. With a circumference the particles are on a ring.
-  // `momentum`: if it is known more precisely than as a sum. Throws std::invalid_argument if lengths differ, a number
-  // is not finite, positions do not increase in the working precision or span the ring, or a mass is not positive.
+  // `momentum`, `differences`: if they are known more precisely than as sums and differences; then positions may be
+  // equal in the working precision. A gap is 0 only if its particles do not approach. Throws std::invalid_argument if
+  // lengths differ, a number is not finite, particles are not in order or span the ring, or a mass is not positive.
   List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {}, T circumference = T(0),
-       std::optional<T> momentum = {})
+       std::optional<T> momentum = {}, NeighbourDifferences<T> differences = {})
       : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)),
-        circumference_(std::move(circumference)) {
+        differences_(std::move(differences)), circumference_(std::move(circumference)) {
     if (x_.empty()) throw std::invalid_argument("no particles: list at least one");
     if (v_.size() != x_.size() || (!m_.empty() && m_.size() != x_.size()))
       throw std::invalid_argument("lists of different lengths (" + std::to_string(x_.size()) + " positions, " +
@@ -34,11 +40,7 @@ template <Real T> class List final : public Particles<T> {
     if (is_negative(circumference_))
       throw std::invalid_argument("circumference is negative (" + in_message(circumference_) +
                                   "): give a positive one for a ring, 0 for a line");
-    for (std::size_t i = 0; i + 1 < x_.size(); ++i)
-      if (!(x_[i] < x_[i + 1]))
-        throw std::invalid_argument("particles " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                                    " are not in order in the working precision (at " + in_message(x_[i]) + " and " +
-                                    in_message(x_[i + 1]) + "): sort them by position, or use more digits");
+    require_order();
     for (std::size_t i = 0; i < m_.size(); ++i) {
       if (!(m_[i] > T(0)))
         throw std::invalid_argument("particle " + std::to_string(i) + " has no positive mass (" + in_message(m_[i]) +
@@ -50,10 +52,6 @@ template <Real T> class List final : public Particles<T> {
       total.add(mass(particle)), sum.add(mass(particle) * velocity(particle));
     total_mass_ = total.value(), momentum_ = sum.value();
     conserved_ = momentum ? *momentum : momentum_;
-    if (this->on_ring() && !(x_.back() - x_.front() < circumference_))
-      throw std::invalid_argument("the particles do not fit on the ring (from " + in_message(x_.front()) + " to " +
-                                  in_message(x_.back()) + ", circumference " + in_message(circumference_) +
-                                  "): give it a larger circumference");
   }
 
   ParticleIndex count() const override { return static_cast<ParticleIndex>(x_.size()); }
@@ -62,10 +60,12 @@ template <Real T> class List final : public Particles<T> {
   T mass(ParticleIndex particle) const override { return m_.empty() ? T(1) : m_[at(particle)]; }
   bool identical_masses() const override { return identical_; }
   T gap(ParticleIndex particle) const override {
+    if (!differences_.gaps.empty()) return differences_.gaps[at(particle)];
     return is_last(particle) ? T(x_[0] + (circumference_ - x_[at(particle)]))
                              : T(x_[at(particle) + 1] - x_[at(particle)]);
   }
   T closing_speed(ParticleIndex particle) const override {
+    if (!differences_.closing_speeds.empty()) return differences_.closing_speeds[at(particle)];
     return v_[at(particle)] - v_[is_last(particle) ? 0 : at(particle) + 1];
   }
   T circumference() const override { return circumference_; }
@@ -82,13 +82,40 @@ template <Real T> class List final : public Particles<T> {
   T total_mass() const override { return total_mass_; }
   T least_mass() const override { return m_.empty() ? T(1) : *std::min_element(m_.begin(), m_.end()); }
   T greatest_mass() const override { return m_.empty() ? T(1) : *std::max_element(m_.begin(), m_.end()); }
-  T rounded_place(ParticleIndex particle) const override { return position(particle); }
+  T rounded_place(ParticleIndex particle) const override {
+    return differences_.gaps.empty() ? position(particle) : T(0);
+  }
 
  private:
   bool is_last(ParticleIndex particle) const { return particle + 1 == count(); }
   static std::size_t at(ParticleIndex particle) { return static_cast<std::size_t>(particle); }
 
+  void require_order() const {
+    const std::size_t gaps = x_.size() - (this->on_ring() ? 0 : 1);
+    const auto& [given, speeds] = differences_;
+    if ((!given.empty() && given.size() != gaps) || (!speeds.empty() && speeds.size() != gaps))
+      throw std::invalid_argument("not one gap and closing speed for each pair of neighbours (" +
+                                  std::to_string(given.size()) + " and " + std::to_string(speeds.size()) + " for " +
+                                  std::to_string(gaps) + "): give all of them, or none");
+    for (ParticleIndex i = 0; i + 1 < count(); ++i) {
+      if (given.empty() ? x_[at(i)] < x_[at(i + 1)] : is_positive(given[at(i)])) continue;
+      const std::string pair = "particles " + std::to_string(i) + " and " + std::to_string(i + 1);
+      const bool touch = !given.empty() && !is_negative(given[at(i)]);
+      if (touch && !is_positive(closing_speed(i))) continue;
+      throw std::invalid_argument(
+          pair + (touch ? " touch and approach" : " are not in order in the working precision") + " (at " +
+          in_message(x_[at(i)]) + " and " + in_message(x_[at(i + 1)]) +
+          (touch ? "): give them the velocities that they have after this collision, or a gap, 1e-300 for instance"
+                 : "): sort them by position, give their gaps, or use more digits"));
+    }
+    if (this->on_ring() && !(given.empty() ? x_.back() - x_.front() < circumference_ : is_positive(given.back())))
+      throw std::invalid_argument("the particles do not fit on the ring (from " + in_message(x_.front()) + " to " +
+                                  in_message(x_.back()) + ", circumference " + in_message(circumference_) +
+                                  "): give it a larger circumference");
+  }
+
   std::vector<T> x_, v_, m_;
+  NeighbourDifferences<T> differences_;
   T circumference_, total_mass_{0}, momentum_{0}, conserved_{0};
   bool identical_ = true;
 };

@@ -13,14 +13,18 @@
 
 namespace cradle {
 
+// Gap and closing speed of a particle at an end and its wall, which is in its place.
+template <Real T> struct AtWall { T gap, closing_speed; };
+
 template <Real T> class Walled final : public Particles<T> {
  public:
   // Throws std::invalid_argument for particles on a ring, walls that are not outside the particles, a floor that keeps
   // what falls on it without a rest speed, two walls on which several can rest, and numbers out of range.
+  // `at_left`, `at_right`: what is known more precisely than as a difference of rounded numbers.
   Walled(std::shared_ptr<const Particles<T>> particles, std::optional<Wall<T>> left, std::optional<Wall<T>> right,
-         const T& acceleration = T(0))
+         const T& acceleration = T(0), std::optional<AtWall<T>> at_left = {}, std::optional<AtWall<T>> at_right = {})
       : particles_(std::move(particles)), left_(std::move(left)), right_(std::move(right)),
-        acceleration_(acceleration) {
+        at_left_(std::move(at_left)), at_right_(std::move(at_right)), acceleration_(acceleration) {
     require_finite(acceleration_, "acceleration of the particles");
     if (particles_->on_ring() && this->fall())
       throw std::invalid_argument("gravity on a ring (circumference " + in_message(particles_->circumference()) +
@@ -65,12 +69,17 @@ template <Real T> class Walled final : public Particles<T> {
   }
 
   T gap(ParticleIndex particle) const override {
-    return is_wall(particle) || is_wall(particle + 1) ? T(position(particle + 1) - position(particle))
-                                                      : particles_->gap(particle);
+    if (!is_wall(particle) && !is_wall(particle + 1)) return particles_->gap(particle);
+    const auto& known = is_wall(particle) ? at_left_ : at_right_;
+    if (!known) return position(particle + 1) - position(particle);
+    return is_wall(particle) ? T(known->gap - at_start(particle).x) : T(known->gap + at_start(particle + 1).x);
   }
   T closing_speed(ParticleIndex particle) const override {
-    return is_wall(particle) || is_wall(particle + 1) ? T(velocity(particle) - velocity(particle + 1))
-                                                      : particles_->closing_speed(particle);
+    if (!is_wall(particle) && !is_wall(particle + 1)) return particles_->closing_speed(particle);
+    const auto& known = is_wall(particle) ? at_left_ : at_right_;
+    if (!known) return velocity(particle) - velocity(particle + 1);
+    return is_wall(particle) ? T(known->closing_speed + at_start(particle).v)
+                             : T(known->closing_speed - at_start(particle + 1).v);
   }
   GapRange gaps_in_motion() const override {
     const GapRange inner = particles_->gaps_in_motion(), all = this->gaps();
@@ -87,7 +96,8 @@ template <Real T> class Walled final : public Particles<T> {
   T least_mass() const override { return particles_->least_mass(); }
   T greatest_mass() const override { return particles_->greatest_mass(); }
   T rounded_place(ParticleIndex particle) const override {
-    return is_wall(particle) ? at(particle).position : particles_->rounded_place(particle);
+    if (!is_wall(particle)) return particles_->rounded_place(particle);
+    return (particle < 0 ? at_left_ : at_right_) ? T(0) : at(particle).position;
   }
   // Walls may add energy: the ledger allows for a million times the initial energy, which costs 20 of its spare bits.
   T energy_to_lose() const override {
@@ -135,6 +145,7 @@ template <Real T> class Walled final : public Particles<T> {
 
   std::shared_ptr<const Particles<T>> particles_;
   std::optional<Wall<T>> left_, right_;
+  std::optional<AtWall<T>> at_left_, at_right_;
   T acceleration_, potential_energy_{0};
 };
 

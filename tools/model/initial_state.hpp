@@ -14,6 +14,7 @@
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/precision/text.hpp"
+#include "cradle/tools/model/at_walls.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
@@ -24,6 +25,15 @@ template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
   std::vector<T> values;
   values.reserve(column.size());
   for (std::size_t i = 0; i < column.size(); ++i) values.push_back(from_text<T>(column[i]));
+  return values;
+}
+
+/// The exact differences of neighbours, right less left (sign 1) or left less right (-1), each rounded once.
+template <Real T> std::vector<T> neighbour_differences(const DecimalColumn& column, int sign) {
+  std::vector<T> values;
+  values.reserve(column.size());
+  for (std::size_t i = 1; i < column.size(); ++i)
+    values.push_back(from_text<T>(difference(column[sign > 0 ? i : i - 1], column[sign > 0 ? i - 1 : i])));
   return values;
 }
 
@@ -51,8 +61,9 @@ inline cradle::HotPlace hot_place(const Initial& initial) {
   return initial.place == scene::HotPlace::left ? cradle::HotPlace::left : cradle::HotPlace::middle;
 }
 
-/// Where particles are, as displacements from equal distances.
+/// Where particles are, as displacements from equal distances; null for a list.
 inline Displacement displacement_of(const Initial& initial) {
+  if (initial.type == InitialType::list) return {};
   if (initial.positions == Positions::lattice)
     // The nearest double may be 1/2; the perturbation is smaller.
     return uniform_displacement(std::min(initial.perturbation.value, std::nextafter(0.5, 0.)), initial.seed,
@@ -93,15 +104,22 @@ std::shared_ptr<const cradle::Particles<T>> cold_particles(const Initial& initia
 
 namespace detail {
 
-template <Real T> std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Scene& scene) {
+template <Real T>
+std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Scene& scene,
+                                                                    const Displacement& displacement) {
   const Initial& initial = scene.initial;
   if (initial.type == InitialType::list) {
-    const auto momentum = sum_of_products(initial.v, initial.m);
-    return std::make_shared<List<T>>(numbers<T>(initial.x), numbers<T>(initial.v), numbers<T>(initial.m),
-                                     number<T>(initial.length),
-                                     momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt);
+    const DecimalColumn &x = initial.x, &v = initial.v;
+    const auto momentum = sum_of_products(v, initial.m);
+    NeighbourDifferences<T> between{neighbour_differences<T>(x, 1), neighbour_differences<T>(v, -1)};
+    if (initial.on_ring()) {
+      between.gaps.push_back(from_text<T>(difference(initial.length.text, difference(x.back(), x[0]))));
+      between.closing_speeds.push_back(from_text<T>(difference(v.back(), v[0])));
+    }
+    return std::make_shared<List<T>>(numbers<T>(x), numbers<T>(v), numbers<T>(initial.m), number<T>(initial.length),
+                                     momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt,
+                                     std::move(between));
   }
-  const Displacement displacement = displacement_of(initial);
   if (initial.type == InitialType::cold) return cold_particles<T>(initial, displacement);
   if (initial.type == InitialType::ring || initial.type == InitialType::gas) {
     using std::sqrt;
@@ -113,9 +131,9 @@ template <Real T> std::shared_ptr<const cradle::Particles<T>> particles_without_
     if (initial.type == InitialType::ring)
       return std::make_shared<Ring<T>>(count, number<T>(initial.length), deviation, draw, displacement,
                                        mass_pattern<T>(initial));
-    const T left = number<T>(*scene.walls.left.position), right = number<T>(*scene.walls.right.position);
-    return std::make_shared<Gas<T>>(count, left, T(right - left), deviation, draw, displacement,
-                                    mass_pattern<T>(initial));
+    const Decimal &left = *scene.walls.left.position, &right = *scene.walls.right.position;
+    return std::make_shared<Gas<T>>(count, number<T>(left), from_text<T>(difference(right.text, left.text)), deviation,
+                                    draw, displacement, mass_pattern<T>(initial));
   }
   if (!initial.general_rows())
     return std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<ParticleIndex>(initial.particles),
@@ -150,17 +168,41 @@ template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initi
   return made;
 }
 
+// Not of balls: they enclose differences of their own numbers.
+template <Real T>
+std::optional<AtWall<T>> at_wall_in(const Scene& scene, End end, const Displacement& displacement,
+                                    const cradle::Particles<T>& particles, const std::optional<Wall<T>>& wall) {
+  if constexpr (requires(const T& x) { x.radius(); }) return {};
+  if (!wall) return {};
+  const T v = particles.velocity(end == End::left ? 0 : particles.count() - 1);
+  AtWall<T> at{T(0), end == End::left ? T(wall->speed - v) : T(v - wall->speed)};
+  if (const auto* gas = dynamic_cast<const Gas<T>*>(&particles)) {
+    at.gap = gas->gap_to(end);
+    return at;
+  }
+  const auto text = at_wall(scene, end, displacement);
+  if (!text) return {};
+  at.gap = from_text<T>(text->gap);
+  if (text->closing_speed) at.closing_speed = from_text<T>(*text->closing_speed);
+  return at;
+}
+
 }  // namespace detail
 
 /// Throws Error if this precision cannot represent the scene's particles, or if its walls do not fit beside them.
 template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
   try {
-    auto particles = detail::particles_without_walls<T>(scene);
+    const Displacement displacement = displacement_of(scene.initial);
+    auto particles = detail::particles_without_walls<T>(scene, displacement);
     require_sums(*particles);
     if (!scene.walls.any() && !scene.gravity.acts()) return particles;
-    return std::make_shared<Walled<T>>(std::move(particles), detail::wall_of<T>(scene.walls.left, scene.initial),
-                                       detail::wall_of<T>(scene.walls.right, scene.initial),
-                                       scene.gravity.acts() ? number<T>(*scene.gravity.acceleration) : T(0));
+    auto left = detail::wall_of<T>(scene.walls.left, scene.initial),
+         right = detail::wall_of<T>(scene.walls.right, scene.initial);
+    auto at_left = detail::at_wall_in<T>(scene, End::left, displacement, *particles, left),
+         at_right = detail::at_wall_in<T>(scene, End::right, displacement, *particles, right);
+    return std::make_shared<Walled<T>>(std::move(particles), std::move(left), std::move(right),
+                                       scene.gravity.acts() ? number<T>(*scene.gravity.acceleration) : T(0),
+                                       std::move(at_left), std::move(at_right));
   } catch (const std::invalid_argument& error) {
     throw Error({scene.name, 0, scene.walls.any() ? "initial, walls" : "initial"}, "the particles cannot be set up",
                 error.what(), "change the scene");

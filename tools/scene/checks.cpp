@@ -15,6 +15,7 @@
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/list_file.hpp"
 #include "cradle/tools/scene/number_range.hpp"
 
 namespace cradle::tools {
@@ -54,9 +55,11 @@ class Checks {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::list) return;
     if (entries_.contains("initial.word")) return word_alone();
-    const bool inline_particles = !initial.x.empty() || entries_.contains("initial.x");
+    const char* const given = entries_.contains("initial.x") ? "initial.x" : "initial.gap";
+    const bool inline_particles = !initial.x.empty() || entries_.contains(given);
     if (initial.file && inline_particles)
-      throw Error(place("initial.file"), "two lists of particles", "initial.file and initial.x", "remove one of them");
+      throw Error(place("initial.file"), "two lists of particles", std::string("initial.file and ") + given,
+                  "remove one of them");
     if (initial.file) {
       if (initial.file->empty())
         throw Error(place("initial.file"), "no file name", "an empty text", "name a CSV file of particles");
@@ -68,20 +71,19 @@ class Checks {
     }
     if (!inline_particles)
       throw Error(place("initial.file"), "missing", "",
-                  "name a CSV file of particles, or give initial.x and initial.v");
+                  "name a CSV file of particles, or give initial.x (or initial.gap) and initial.v");
     if (initial.x.empty())
       throw Error(place("initial.x"), "no particles", "an empty list", "give at least one position");
     same_length("initial.v", initial.v.size());
     if (entries_.contains("initial.m")) same_length("initial.m", initial.m.size());
-    for (std::size_t i = 1; i < initial.x.size(); ++i)
-      if (const auto order = compare_decimals(initial.x[i], initial.x[i - 1]); std::is_lteq(order))
-        throw Error(item_place("initial.x", i), std::is_eq(order) ? "coincident particles" : "not increasing",
-                    fmt::format("{} after {}", initial.x[i], initial.x[i - 1]), "give increasing positions");
+    const bool gaps = entries_.contains("initial.gap");
+    check_order({initial.x, initial.v, initial.m}, scene_.run,
+                [&](std::size_t i) { return gaps ? item_place("initial.gap", i - 1) : item_place("initial.x", i); });
   }
 
   // A word says where its particles are and how they move.
   void word_alone() const {
-    for (const char* key : {"initial.x", "initial.v", "initial.file"})
+    for (const char* key : {"initial.x", "initial.gap", "initial.v", "initial.file"})
       if (entries_.contains(key))
         throw Error(place(key), "particles of a word and others", "initial.word too", "remove one of them");
     if (scene_.law.type != LawType::inelastic)

@@ -58,6 +58,37 @@ std::strong_ordering compare_magnitudes(const Parts& a, const Parts& b) {
   return a.digits <=> b.digits;  // both begin with the same power of ten and have no zeros at the end
 }
 
+// Float128 has numbers from 1e-4966 to 1e4932.
+constexpr std::int64_t most_digits_of_sum = 20'000;
+
+using Integer = boost::multiprecision::cpp_int;
+
+// The power of ten of the last digit.
+std::int64_t unit_of(const Parts& p) { return p.exponent - static_cast<std::int64_t>(p.digits.size()); }
+
+// The finer one of two numbers' units; that of zero does not count.
+std::int64_t finest_unit(const Parts& a, const Parts& b) {
+  return a.digits.empty() ? unit_of(b) : b.digits.empty() ? unit_of(a) : std::min(unit_of(a), unit_of(b));
+}
+
+// In units of this power of ten, which is no larger than the number's own.
+Integer in_units(const Parts& p, std::int64_t unit) {
+  if (p.digits.empty()) return 0;
+  const Integer size = Integer(p.digits) * pow(Integer(10), static_cast<unsigned>(unit_of(p) - unit));
+  return p.negative ? Integer(-size) : size;
+}
+
+// Without an exponent where that needs at most 64 places.
+std::string text_of(const Integer& number, std::int64_t unit) {
+  std::string digits = Integer(abs(number)).str();
+  const std::string sign = number < 0 ? "-" : "";
+  if (unit > 0 || unit < -64) return sign + digits + "e" + std::to_string(unit);
+  const auto places = static_cast<std::size_t>(-unit);
+  if (places == 0) return sign + digits;
+  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
+  return sign + digits.substr(0, digits.size() - places) + "." + digits.substr(digits.size() - places);
+}
+
 }  // namespace
 
 std::optional<std::string> canonical_decimal(std::string_view written) {
@@ -143,29 +174,89 @@ Decimal::Decimal(std::string_view literal) {
 }
 
 std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step) {
-  using Integer = boost::multiprecision::cpp_int;
   constexpr std::int64_t most_digits = 4096;
   const Parts a = parts_of(start.text), b = parts_of(step.text);
-  const auto unit_of = [](const Parts& p) { return p.exponent - static_cast<std::int64_t>(p.digits.size()); };
   if (a.digits.empty() && (k == 0 || b.digits.empty())) return start;
-  const std::int64_t unit = a.digits.empty()   ? unit_of(b)
-                            : b.digits.empty() ? unit_of(a)
-                                               : std::min(unit_of(a), unit_of(b));
-  const auto in_units = [&](const Parts& p) -> Integer {
-    if (p.digits.empty()) return 0;
-    const Integer size = Integer(p.digits) * pow(Integer(10), static_cast<unsigned>(unit_of(p) - unit));
-    return p.negative ? Integer(-size) : size;
-  };
+  const std::int64_t unit = finest_unit(a, b);
   if (std::max(unit_of(a), unit_of(b)) - unit > most_digits) return {};
-  const Integer sum = in_units(a) + in_units(b) * k;
-  std::string digits = Integer(abs(sum)).str();
-  const std::string sign = sum < 0 ? "-" : "";
-  const auto places = static_cast<std::size_t>(std::min<std::int64_t>(-unit, 64));
-  if (unit > 0 || unit < -64) return Decimal(sign + digits + "e" + std::to_string(unit));
-  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
-  return Decimal(sign + (places == 0
-                             ? digits
-                             : digits.substr(0, digits.size() - places) + "." + digits.substr(digits.size() - places)));
+  return Decimal(text_of(in_units(a, unit) + in_units(b, unit) * k, unit));
+}
+
+namespace {
+
+// A number of at most 18 digits, so that most sums need no integers of any size.
+struct Short {
+  std::int64_t digits = 0, unit = 0;
+};
+
+std::optional<Short> short_number(std::string_view text) {
+  Short number;
+  const bool negative = text.starts_with('-');
+  int digits = 0;
+  std::size_t i = negative ? 1 : 0;
+  bool fraction = false;
+  for (; i < text.size() && (is_digit(text[i]) || text[i] == '.'); ++i) {
+    if (text[i] == '.') {
+      fraction = true;
+      continue;
+    }
+    if (number.digits != 0 || text[i] != '0')
+      if (++digits > 18) return {};
+    number.digits = 10 * number.digits + (text[i] - '0');
+    number.unit -= fraction;
+  }
+  if (i < text.size()) {
+    std::int64_t power = 0;
+    std::from_chars(text.data() + i + 1, text.data() + text.size(), power);
+    number.unit += power;
+  }
+  if (negative) number.digits = -number.digits;
+  return number;
+}
+
+std::optional<std::string> short_sum(std::string_view a_text, std::string_view b_text, int sign) {
+  const auto a = short_number(a_text), b = short_number(b_text);
+  if (!a || !b) return {};
+  const Short &coarse = a->unit < b->unit ? *b : *a, &fine = a->unit < b->unit ? *a : *b;
+  std::int64_t scaled = coarse.digits, sum = 0;
+  for (std::int64_t shift = coarse.digits == 0 ? 0 : coarse.unit - fine.unit; shift > 0; --shift)
+    if (__builtin_mul_overflow(scaled, std::int64_t{10}, &scaled)) return {};
+  const std::int64_t first = a->unit < b->unit ? fine.digits : scaled,
+                     second = sign * (a->unit < b->unit ? scaled : fine.digits);
+  if (__builtin_add_overflow(first, second, &sum)) return {};
+  return sum == 0 ? "0" : std::to_string(sum) + (fine.unit == 0 ? "" : "e" + std::to_string(fine.unit));
+}
+
+}  // namespace
+
+std::optional<std::string> exact_sum(std::string_view a_text, std::string_view b_text, int sign) {
+  if (auto quick = short_sum(a_text, b_text, sign)) return quick;
+  const Parts a = parts_of(a_text), b = parts_of(b_text);
+  if (a.digits.empty() && b.digits.empty()) return "0";
+  const std::int64_t unit = finest_unit(a, b);
+  if (std::max(a.exponent, b.exponent) - unit > most_digits_of_sum) return {};
+  return text_of(in_units(a, unit) + sign * in_units(b, unit), unit);
+}
+
+std::string difference(std::string_view a, std::string_view b) {
+  if (auto exact = exact_sum(a, b, -1)) return std::move(*exact);
+  // What is left of the smaller one is its sign: it decides a number that would be in the middle between two others.
+  const Parts of_a = parts_of(a), of_b = parts_of(b);
+  const bool first = of_a.exponent > of_b.exponent;
+  const Parts& larger = first ? of_a : of_b;
+  const std::int64_t unit = std::min(unit_of(larger), larger.exponent - most_digits_of_sum);
+  const Integer large = in_units(larger, unit), small = (first ? of_b : of_a).negative ? -1 : 1;
+  return text_of(first ? large - small : small - large, unit);
+}
+
+std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColumn& steps, int sign) {
+  DecimalColumn sums{first};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto next = exact_sum(sums.back(), steps[i], sign);
+    if (!next) return {};
+    sums.push_back(*next);
+  }
+  return sums;
 }
 
 void DecimalColumn::push_back(std::string_view literal) {
@@ -186,28 +277,27 @@ bool operator==(const DecimalColumn& a, const DecimalColumn& b) {
 }
 
 std::optional<std::string> sum_of_products(const DecimalColumn& a, const DecimalColumn& b) {
-  using boost::multiprecision::cpp_int;
   constexpr std::size_t most_terms = 100'000;
   constexpr std::int64_t most_digits = 2000;
   if (a.size() > most_terms) return {};
-  std::map<std::int64_t, cpp_int> sums;  // by powers of ten
+  std::map<std::int64_t, Integer> sums;  // by powers of ten
   for (std::size_t i = 0; i < a.size(); ++i) {
-    cpp_int product = 1;
+    Integer product = 1;
     std::int64_t power = 0;
     for (const DecimalColumn* column : {&a, &b}) {
       if (column->empty()) continue;
       const Parts parts = parts_of((*column)[i]);
-      product *= parts.digits.empty() ? cpp_int(0) : cpp_int(parts.digits);
+      product *= parts.digits.empty() ? Integer(0) : Integer(parts.digits);
       if (parts.negative) product = -product;
-      power += parts.exponent - static_cast<std::int64_t>(parts.digits.size());
+      power += unit_of(parts);
     }
     if (product != 0) sums[power] += product;
   }
-  cpp_int sum = 0;
+  Integer sum = 0;
   if (sums.empty()) return "0";
   const std::int64_t lowest = sums.begin()->first;
   if (sums.rbegin()->first - lowest > most_digits) return {};
-  for (const auto& [power, of_it] : sums) sum += of_it * pow(cpp_int(10), static_cast<unsigned>(power - lowest));
+  for (const auto& [power, of_it] : sums) sum += of_it * pow(Integer(10), static_cast<unsigned>(power - lowest));
   return sum.str() + "e" + std::to_string(lowest);
 }
 

@@ -47,6 +47,13 @@ struct Decimal {
   }
 };
 
+/// a + sign b of canonical decimals, exactly; `sign` is 1 or -1. Nothing if that needs more than 20,000 digits.
+std::optional<std::string> exact_sum(std::string_view a, std::string_view b, int sign);
+
+/// a - b of canonical decimals: exactly, or where that needs more than 20,000 digits a number that is rounded to the
+/// same one in any working precision.
+std::string difference(std::string_view a, std::string_view b);
+
 /// start + k step, exactly; nothing if that needs thousands of digits.
 std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step);
 
@@ -78,6 +85,10 @@ class DecimalColumn {
   };
   std::shared_ptr<Data> data_;
 };
+
+/// first, first + sign steps[0], first + sign (steps[0] + steps[1]), ..., exactly. Nothing if that needs more than
+/// 20,000 digits.
+std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColumn& steps, int sign);
 
 /// The exact sum of the products of two columns, or of the first column alone if the second is empty. Nothing for more
 /// than 1e5 rows or if it needs thousands of digits.

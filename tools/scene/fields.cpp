@@ -243,9 +243,12 @@ const Field all_fields[] = {
     {"initial.variance", initial_of<&Initial::variance>, "l^2/t^2", "1", "(0, inf)", &thermal_gas,
      "variance of the velocities"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
-     "CSV file of the particles, relative to the scene: a line x,v or x,v,m, then decimals, x increasing; or a result, "
-     "the last snapshot of which is taken if it has all particles; results hold the particles themselves"},
+     "CSV file of the particles, relative to the scene: a line x,v, x,v,m or gap,v (tools/README.md), then decimals; "
+     "or a result, the last snapshot of which is taken if it has all particles; results hold the particles themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
+    {"initial.gap", initial_of<&Initial::gap>, "l", "", "[0, inf)", &list,
+     "distances to the next particle, of any size, of all particles but the last; instead of initial.x, or beside the "
+     "first particle's x, which is 0 by default. Results hold the positions, with all their digits"},
     {"initial.word", initial_of<&Initial::file>, "", "", "", &list,
      "a word of collisions, letters are gaps from the left: the particles start on its self-similar state (`cradle "
      "words`), at distances that add up to 1; instead of x and v"},

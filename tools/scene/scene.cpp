@@ -46,6 +46,17 @@ void store_all(const Entries& entries, const std::string& scene_file, Scene& sce
   }
 }
 
+// Replaces the gaps of a list by the places that they add up to.
+void place_particles(const Entries& entries, Scene& scene) {
+  Initial& initial = scene.initial;
+  if (initial.gap.empty() || initial.file || initial.v.empty()) return;
+  auto placed =
+      tools::placed({std::move(initial.x), std::move(initial.v), std::move(initial.m), std::move(initial.gap), {}},
+                    initial.length, entries.at("initial.gap").place);
+  initial.x = std::move(placed.x), initial.v = std::move(placed.v), initial.m = std::move(placed.m);
+  initial.gap = {};
+}
+
 void sort_times(std::vector<Decimal>& times) {
   if (!std::ranges::is_sorted(times)) std::ranges::sort(times);
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -72,6 +83,7 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   refuse_unknown_keys(entries, scene);
   store_all(entries, source_name, scene);
   refuse_inapplicable_keys(entries, scene);
+  place_particles(entries, scene);
   check_scene(scene, entries, source_name);
   sort_times(scene.output.series.times);
   sort_times(scene.output.snapshots);

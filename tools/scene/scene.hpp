@@ -85,6 +85,7 @@ struct Initial {
   std::optional<std::string>
       file;                     // list: the file with the particles, or a result; a scene that was read has them here:
   DecimalColumn x, v, m;        // list; m empty: all 1. clusters: two x, two v
+  DecimalColumn gap;            // list: instead of all x but the first; a scene that was read has them in x
   std::vector<Decimal> growth;  // clusters: share of the incoming mass that each takes up
   scene::Meeting meeting = scene::Meeting::energy;
   std::uint64_t seed = 0;

@@ -4,42 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <compare>
 #include <string>
 
 #include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/rational.hpp"
 
 namespace cradle::tools {
 
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
-using Whole = boost::multiprecision::cpp_int;
-
 constexpr std::uint64_t most_collisions = 64;
-constexpr long most_exponent = 5000;
-
-// Nothing for numbers of thousands of digits.
-std::optional<Rational> rational(std::string_view decimal) {
-  std::string text(decimal);
-  long exponent = 0;
-  if (const auto e = text.find_first_of("eE"); e != text.npos) {
-    exponent = std::stol(text.substr(e + 1));
-    text.resize(e);
-  }
-  if (const auto point = text.find('.'); point != text.npos) {
-    exponent -= static_cast<long>(text.size() - point - 1);
-    text.erase(point, 1);
-  }
-  if (std::abs(exponent) > most_exponent) return {};
-  const bool negative = text.starts_with('-');
-  const auto first = text.find_first_not_of("-0");
-  const Whole digits(first == text.npos ? "0" : text.substr(first));
-  const Whole scale = pow(Whole(10), static_cast<unsigned>(std::abs(exponent)));
-  const Rational number = exponent < 0 ? Rational(digits, scale) : Rational(digits * scale);
-  return negative ? Rational(-number) : number;
-}
 
 struct ThreeParticles {
   std::array<Rational, 2> gap, closing, coupling;  // c: what a collision at this gap adds to the other one's speed

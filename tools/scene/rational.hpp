@@ -1,0 +1,21 @@
+// Decimals as quotients of integers of any size, for what is computed exactly from numbers of a scene.
+#pragma once
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cradle::tools {
+
+using Rational = boost::multiprecision::cpp_rational;
+using Whole = boost::multiprecision::cpp_int;
+
+/// The value of a canonical decimal. Nothing for a power of ten beyond 5000.
+std::optional<Rational> rational(std::string_view decimal);
+
+/// A decimal of this many digits; one more, not 0, if they are not all: it is rounded to the same number in any type of
+/// fewer digits.
+std::string decimal_text(const Rational& number, unsigned digits);
+
+}  // namespace cradle::tools

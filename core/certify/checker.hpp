@@ -130,6 +130,8 @@ template <Enclosing N> class Checker {
   }
 
   const Proved& proved() const { return proved_; }
+  // The last one that `collision` has proved.
+  const LastMeeting<N>& last() const { return last_; }
 
  private:
   // Takes in what stands beside them, too.

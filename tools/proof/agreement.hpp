@@ -27,6 +27,9 @@
 // Under gravity E_0 + G is increased by what particles gain at most by falling, Sizes::fall_energy; free fall adds the
 // same to all velocities and places. How fast a falling particle meets a wall is not linear, as below.
 //
+// A gap of a run in gaps has no error of a place: it is as wrong as rounding makes it from its own size, and then as
+// its closing speed makes it, 2 Delta (gap + u t).
+//
 // Energies: sqrt(2 E_0 M) Delta u + M (Delta u)^2/2 from the velocities and Delta E_0 from the sums. The time of a
 // collision with closing speed w: what its particles' places are off at that time, over w. Wet particles,
 // restitutions r(w), thermal walls and walls under gravity are not linear: what they make of an error shows in the
@@ -39,11 +42,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/precision/ball_text.hpp"
+#include "cradle/tools/result/result.hpp"
 
 namespace cradle::tools {
 
@@ -55,6 +64,7 @@ struct Disagreement {
 /// Up to which a run's numbers may be off.
 struct RunErrors {
   long double place = 0, speed = 0, energy = 0, mass = 0;
+  long double gap = 0, of_gap = 0;                 // of_gap: for each unit of the gap
   long double wall_energy = 0, wall_momentum = 0;  // for each collision with a wall
   long double of_radius = 0;                       // and so many radii of the proof
 };
@@ -74,6 +84,8 @@ inline RunErrors run_errors(const Sizes& of, std::uint64_t collisions, bool mean
           grown * speed,
           delta * twice_energy / 2 + speed * std::sqrt(twice_energy * mass) + speed * speed * mass / 2,
           delta * mass,
+          2 * grown * delta * fastest * time,
+          2 * grown * delta,
           4 * mass * grown * speed * fastest,
           4 * mass * grown * speed,
           0};
@@ -117,6 +129,56 @@ template <Enclosing N> class Agreement {
 
   RunErrors errors_;
   std::optional<Disagreement> broken_;
+};
+
+/// What a proof encloses of the tables of a result, which it is compared with as a whole before anything is called
+/// proved: each number below /exact and each double, which may be half a unit off.
+template <Enclosing N> class ProvedTables {
+ public:
+  /// A number of a column like "snapshots/0000/gap"; empty: the file has no number there.
+  void add(const std::string& column, std::size_t row, std::optional<N> proved, long double bound) {
+    columns_[column].push_back({row, std::move(proved), bound});
+  }
+
+  std::optional<Disagreement> compare(const Result& result, const RunErrors& errors) const {
+    Agreement<N> agreement(errors);
+    for (const auto& [path, rows] : columns_) {
+      const auto slash = path.rfind('/');
+      for (const std::string& folder : {std::string(), std::string("exact/")})
+        if (const Group* group = result.find(folder + path.substr(0, slash)))
+          for (const Column& column : group->columns)
+            if (column.name == path.substr(slash + 1)) compare(folder + path, column, rows, agreement);
+    }
+    return agreement.broken();
+  }
+
+ private:
+  struct Row {
+    std::size_t number;
+    std::optional<N> proved;
+    long double bound;
+  };
+  static void compare(const std::string& path, const Column& column, const std::vector<Row>& rows,
+                      Agreement<N>& agreement) {
+    for (const Row& row : rows) {
+      const auto compare = [&](const std::string& of_run, long double rounding) {
+        agreement.number(fmt::format("row {} of /{}", row.number, path), of_run, row.proved, row.bound + rounding);
+      };
+      if (row.number >= column.rows()) return agreement.count("rows of /" + path, column.rows(), row.number + 1);
+      if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
+        const std::string& text = (*texts)[row.number];
+        compare(text == "nan" ? "" : text, 0);
+      } else if (const auto* counts = std::get_if<std::vector<std::uint64_t>>(&column.values)) {
+        compare(fmt::format("{}", (*counts)[row.number]), 0);
+      } else {
+        const double number = std::get<std::vector<double>>(column.values)[row.number];
+        compare(std::isnan(number) ? "" : fmt::format("{}", number),
+                std::abs(number) * static_cast<long double>(std::numeric_limits<double>::epsilon()));
+      }
+    }
+  }
+
+  std::map<std::string, std::vector<Row>> columns_;
 };
 
 }  // namespace cradle::tools

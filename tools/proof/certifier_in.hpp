@@ -59,7 +59,7 @@ template <class M> class CertifierIn final : public Certifier {
                (law_.kind != Kind::inelastic || particles_->identical_masses())),
         linear_(law_.linear() && !(particles_->fall() && particles_->walled()) && !scene.walls.left.temperature &&
                 !scene.walls.right.temperature),
-        checker_(particles_, law_) {
+        events_(scene.output.events), in_gaps_(scene.run.coordinates == Coordinates::gaps), checker_(particles_, law_) {
     certificate_.digits = digits;
     certificate_.digits_text = digits == 31 ? "double-double" : fmt::format("mpfr, {} digits", digits);
     if (const auto doubt = checker_.begin()) certificate_.doubt = reported(*doubt, scene.run.start.value);
@@ -69,6 +69,7 @@ template <class M> class CertifierIn final : public Certifier {
 
   void collision(ParticleIndex left, ParticleIndex right, double time) override {
     if (certificate_.doubt) throw ProofEnds();
+    if (events_) return one_collision(left, right, time);
     proposed_.pairs.emplace_back(left, right);
     proposed_.times.push_back(time);
     if (proposed_.pairs.size() == most_proposed) check();
@@ -82,7 +83,12 @@ template <class M> class CertifierIn final : public Certifier {
   void sample(const RunSample& sample) override {
     if (certificate_.doubt) throw ProofEnds();
     check_all();
-    for (const RequestedTime& asked : sample.requested) inspect(asked, sample);
+    bool of_series = sample.of_series;
+    for (const RequestedTime& asked : sample.requested) {
+      inspect(asked, sample, of_series && asked.of_series);
+      if (asked.of_series) of_series = false;
+    }
+    series_rows_ += sample.of_series;
   }
 
   Certificate certificate() const override {
@@ -90,6 +96,24 @@ template <class M> class CertifierIn final : public Certifier {
     all.collisions = checker_.proved().collisions;
     all.in_doubles = checker_.proved().in_doubles;
     return all;
+  }
+
+  std::optional<ReportedDoubt> disagreement(const Result& result) const override {
+    ProvedTables<N> tables = tables_;
+    N before = start_;
+    for (std::size_t k = 0; k < meetings_.size(); ++k) {
+      const Meeting& meeting = meetings_[k];
+      const auto closing = static_cast<long double>(meeting.closing.least_size());
+      const long double time = time_error(errors_, since_, closing);
+      // The file has the time as a double and what it misses.
+      tables.add("events/time", k, meeting.time, time);
+      tables.add("events/interval", k, meeting.time - before, 2 * time);
+      tables.add("events/closing_speed", k, meeting.closing, 2 * errors_.speed);
+      before = meeting.time;
+    }
+    if (const auto broken = tables.compare(result, errors_))
+      return reported(*broken, certificate_.samples.empty() ? 0 : certificate_.samples.back().time);
+    return {};
   }
 
  private:
@@ -107,7 +131,22 @@ template <class M> class CertifierIn final : public Certifier {
             static_cast<long double>(doubt.first.radius() + doubt.second.radius())};
   }
 
-  void inspect(const RequestedTime& asked, const RunSample& sample) {
+  ReportedDoubt reported(const Disagreement& broken, double time) const {
+    return {
+        Check::agreement, true,           -1, -1, time, checker_.proved().collisions, broken.of_run, broken.of_proof,
+        broken.bound,     broken.quantity};
+  }
+
+  // One whose time and closing speed the file has.
+  void one_collision(ParticleIndex left, ParticleIndex right, double time) {
+    if (const auto doubt = checker_.collision(left, right)) {
+      certificate_.doubt = reported(*doubt, time);
+      throw ProofEnds();
+    }
+    meetings_.push_back({start_ + checker_.last().time, checker_.last().closing});
+  }
+
+  void inspect(const RequestedTime& asked, const RunSample& sample, bool of_series) {
     const N time = number<N>(asked.time) - start_;
     const CertainState<N> state = sample.at_collision ? checker_.state_now() : checker_.state_at(time);
     snapshots_ += asked.of_snapshots;
@@ -116,7 +155,7 @@ template <class M> class CertifierIn final : public Certifier {
       if (!asked.last) return;
       certificate_.doubt = reported(*state.doubt, sample.time);
     } else {
-      compare(sample, asked, time, state);
+      compare(sample, asked, time, state, of_series);
     }
     if (certificate_.doubt) throw ProofEnds();
     add_sample(sample, asked, state);
@@ -125,13 +164,16 @@ template <class M> class CertifierIn final : public Certifier {
 
   // All that the run has of what is proved of it. A collision on the wrong side of a threshold need not change their
   // sequence; and what the program gets wrong here or there would be called proved.
-  void compare(const RunSample& sample, const RequestedTime& asked, const N& time, const CertainState<N>& state) {
+  void compare(const RunSample& sample, const RequestedTime& asked, const N& time, const CertainState<N>& state,
+               bool of_series) {
     const auto& proved = checker_.proved();
     const long double since = std::abs(to_double(time)) + 2 * std::abs(to_double(start_));
     RunErrors errors = run_errors(state.sizes, proved.collisions, means_, sample.epsilon, since,
                                   to_double(particles_->circumference()));
     if (!linear_)
       errors.of_radius = sample.epsilon / of_balls() * (static_cast<long double>(state.sizes.particles) + 64);
+    if (!in_gaps_) errors.gap += 2 * errors.place;
+    errors_ = errors, since_ = since;
     Agreement<N> run(errors);
     run.count("collisions", sample.counts.collisions, proved.collisions);
     run.count("merges", sample.counts.merges, proved.merges);
@@ -139,7 +181,8 @@ template <class M> class CertifierIn final : public Certifier {
     if (!law_.elastic || particles_->fall())
       run.count("collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
     if (sample.at_collision)
-      run.number("time of the last collision", sample.time_text, start_ + state.time, time_error(errors, since, state));
+      run.number("time of the last collision", sample.time_text, start_ + state.time,
+                 time_error(errors, since, static_cast<long double>(state.closing.least_size())));
     else
       run.number("time of the sample", sample.time_text, number<N>(asked.time), 8 * sample.epsilon * since);
     run.number("energy", sample.energy, state.energy, errors.energy);
@@ -148,17 +191,41 @@ template <class M> class CertifierIn final : public Certifier {
     compare_wall(sample.walls[0], state.walls[0], "left", run);
     compare_wall(sample.walls[1], state.walls[1], "right", run);
     if (asked.of_snapshots) compare_particles(sample.particles, time, run);
-    if (const auto& broken = run.broken())
-      certificate_.doubt = ReportedDoubt{Check::agreement,
-                                         true,
-                                         -1,
-                                         -1,
-                                         sample.time,
-                                         proved.collisions,
-                                         broken->of_run,
-                                         broken->of_proof,
-                                         broken->bound,
-                                         broken->quantity};
+    if (of_series) add_series(sample, asked, state);
+    if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time);
+  }
+
+  // The rows of the file's tables that are proved at this time.
+  void add_series(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
+    const RunErrors& errors = errors_;
+    const std::size_t row = series_rows_;
+    const auto& proved = checker_.proved();
+    const auto count = [](std::uint64_t number) { return N(static_cast<std::int64_t>(number)); };
+    if (sample.at_collision)
+      tables_.add("series/time", row, start_ + state.time,
+                  time_error(errors, since_, static_cast<long double>(state.closing.least_size())));
+    else
+      tables_.add("series/time", row, number<N>(asked.time), 8 * sample.epsilon * since_);
+    tables_.add("series/energy", row, state.energy, errors.energy);
+    tables_.add("series/collisions", row, count(proved.collisions), 0);
+    tables_.add("series/merges", row, count(proved.merges), 0);
+    if (!law_.elastic || particles_->fall())
+      tables_.add("series/collisions_below_cutoff", row, count(proved.below_cutoff), 0);
+    if (!particles_->walled() && !particles_->fall())
+      tables_.add("series/energy_lost", row, particles_->kinetic_energy() - state.energy, 2 * errors.energy);
+    if (!particles_->on_ring()) {
+      tables_.add("series/front_left", row, state.front_left, errors.place);
+      tables_.add("series/front_right", row, state.front_right, errors.place);
+    }
+    for (const End end : {End::left, End::right}) {
+      if (particles_->wall(end) == nullptr) continue;
+      const CertainAccount<N>& wall = state.walls[static_cast<std::size_t>(end)];
+      const std::string name = end == End::left ? "series/wall_left_" : "series/wall_right_";
+      const auto collisions = static_cast<long double>(wall.collisions);
+      tables_.add(name + "energy", row, wall.given, collisions * errors.wall_energy);
+      tables_.add(name + "momentum", row, wall.momentum, collisions * errors.wall_momentum);
+      tables_.add(name + "collisions", row, count(wall.collisions), 0);
+    }
   }
   static void compare_wall(const SampledWall& of_run, const CertainAccount<N>& proved, const char* which,
                            Agreement<N>& run) {
@@ -170,18 +237,18 @@ template <class M> class CertifierIn final : public Certifier {
                collisions * run.errors().wall_momentum);
     run.number(name("energy lost in the"), of_run.dissipated, proved.dissipated, collisions * run.errors().wall_energy);
   }
-  static long double time_error(const RunErrors& errors, long double since, const CertainState<N>& state) {
-    const auto closing = static_cast<long double>(state.closing.least_size());
+  static long double time_error(const RunErrors& errors, long double since, long double closing) {
     return closing > 0 ? 2 * (errors.place + since * errors.speed) / closing + errors.place
                        : std::numeric_limits<long double>::infinity();
   }
   static long double of_balls() { return from_text<long double>(to_text(M(std::numeric_limits<M>::epsilon()))); }
 
-  void compare_particles(const SampledParticles& particles, const N& time, Agreement<N>& run) const {
+  void compare_particles(const SampledParticles& particles, const N& time, Agreement<N>& run) {
     std::unordered_map<ParticleIndex, std::size_t> at;  // by cluster
     for (std::size_t j = 0; j < particles.index.size(); ++j)
       if (const auto cluster = checker_.cluster(particles.index[j]))
         run.count("particles of the snapshot in one cluster", at.emplace(*cluster, j).second ? 1 : 2, 1);
+    std::vector<std::optional<ProvedParticle>> rows(particles.index.size());
     checker_.for_each(time, [&](ParticleIndex particle, const N& m, const N& x, const N& v) {
       const auto found = at.find(particle);
       const bool there = found != at.end();
@@ -191,10 +258,43 @@ template <class M> class CertifierIn final : public Certifier {
         run.number(fmt::format("{} of particle {} in the snapshot", what, particle), there ? all[found->second] : "",
                    of_proof, bound);
       };
+      const N place = there ? nearest_image(x, particles.x[found->second]) : x;
       number("m", particles.m, m, run.errors().mass);
-      number("x", particles.x, there ? nearest_image(x, particles.x[found->second]) : x, run.errors().place);
+      number("x", particles.x, place, run.errors().place);
       number("v", particles.v, v, run.errors().speed);
+      if (there) rows[found->second] = ProvedParticle{m, place, v};
     });
+    add_particles(rows);
+  }
+  // The rows of a snapshot in the file, from left to right.
+  struct ProvedParticle {
+    N m, x, v;
+  };
+  void add_particles(const std::vector<std::optional<ProvedParticle>>& rows) {
+    const std::string table = fmt::format("snapshots/{:04}/", snapshots_ - 1);
+    const auto add = [&](const char* column, std::size_t j, std::optional<N> proved, long double bound) {
+      tables_.add(table + column, j, std::move(proved), bound);
+    };
+    const bool on_ring = particles_->on_ring();
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      if (!rows[j]) continue;
+      const ProvedParticle& row = *rows[j];
+      add("m", j, row.m, errors_.mass);
+      add("x", j, row.x, errors_.place);
+      add("v", j, row.v, errors_.speed);
+      if (j + 1 == rows.size() && !on_ring) break;
+      if (const auto& next = rows[j + 1 < rows.size() ? j + 1 : 0]) {
+        N gap = next->x - row.x;
+        if (on_ring) gap = between_neighbours(gap);
+        add("gap", j, gap, errors_.gap + errors_.of_gap * static_cast<long double>(gap.size()));
+        add("closing_speed", j, row.v - next->v, 2 * errors_.speed);
+      }
+    }
+  }
+  // On a ring: places are folded to one circumference, or not.
+  N between_neighbours(const N& gap) const {
+    const N length = particles_->circumference();
+    return gap - N(std::floor(to_double(N(gap / length)))) * length;
   }
   // On a ring: the run folds places to one circumference.
   N nearest_image(const N& x, const std::string& of_run) const {
@@ -288,9 +388,18 @@ template <class M> class CertifierIn final : public Certifier {
   std::shared_ptr<const cradle::Particles<N>> particles_;
   bool means_;   // velocities after a collision are means of those before, or those that walls give
   bool linear_;  // and places and velocities linear functions of them
+  bool events_, in_gaps_;
   Checker<N> checker_;
   Certificate certificate_;
-  std::size_t snapshots_ = 0;  // that the run has taken
+  // Of the run's tables: what is proved of them, and how far off the run may be at the last sample.
+  ProvedTables<N> tables_;
+  struct Meeting {
+    N time, closing;
+  };
+  std::vector<Meeting> meetings_;  // those that the file has
+  RunErrors errors_;
+  long double since_ = 0;
+  std::size_t snapshots_ = 0, series_rows_ = 0;  // that the run has taken
   bool beside_ = false;
   Proposed proposed_, checked_;                      // next and last
   std::future<std::optional<DoubtAt<N>>> checking_;  // last: waits for the thread at the end

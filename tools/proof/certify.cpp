@@ -124,6 +124,7 @@ Certified certify(const Scene& requested, const CertifyOptions& options) {
       throw Error({}, "interrupted", "", "run it again; nothing is kept of a proof that did not finish",
                   status_of_signal(options.interrupt->signal()));
     Certificate certificate = observer->certificate();
+    if (!certificate.doubt) certificate.doubt = observer->disagreement(outcome.result);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     const auto& samples = certificate.samples;
     attempts.push_back({precision_name(scene.run), certificate.digits_text, samples.empty() ? 0 : samples.back().time,

@@ -300,10 +300,11 @@ class Continued : public tests::ProgramTest {
     const double end = std::stod(times.back()), eps = std::numeric_limits<double>::epsilon(),
                  roundings = 8 * eps * static_cast<double>(whole.size() + at_end.size() + 64);
     for (std::size_t i = 0; i < at_end.size(); ++i)
-      if (!std::isnan(at_end[i]))
+      if (!std::isnan(at_end[i])) {
         EXPECT_NEAR(in_pieces[i], at_end[i],
                     collapse > 0 ? roundings * collapse / (collapse - end) * at_end[i] : roundings * (5 + 2 * end))
             << i;
+      }
   }
 };
 

@@ -1,5 +1,6 @@
 // What a proof says: as text, and as groups of a result.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -50,6 +51,18 @@ std::string shown(const Enclosed& x) {
     return fmt::format("{} to {}", low, high);
   return fmt::format("{}...{} (known to {:.2g})", low.substr(0, std::min({shared, most, end})), low.substr(end),
                      x.radius);
+}
+
+// Tables of a run that no proof encloses: they are sums over what is proved, but rounded by the run alone.
+std::vector<std::string> of_run_alone(const Result& result) {
+  std::vector<std::string> names;
+  for (const Group& group : result.groups) {
+    const std::string name = group.name.substr(0, group.name.find('/'));
+    if (name != "series" && name != "snapshots" && name != "events" && name != "exact" &&
+        (names.empty() || names.back() != name))
+      names.push_back(name);
+  }
+  return names;
 }
 
 }  // namespace
@@ -113,6 +126,9 @@ std::string certificate_text(const Certified& run) {
         if (of.temperature || of.speed != Decimal("0")) text += fmt::format(", energy given {}", shown(wall->given));
         text += '\n';
       }
+    if (const auto alone = of_run_alone(run.outcome.result); run.proved() && !alone.empty())
+      text +=
+          fmt::format("  no bounds for {}: numbers of the run, computed from what is proved\n", fmt::join(alone, ", "));
     if (run.proved() && last.over)
       text += "  after it  no particles approach each other: there are no more collisions\n";
   }
@@ -122,27 +138,19 @@ std::string certificate_text(const Certified& run) {
   return text;
 }
 
-namespace {
+void Bounds::add(const std::optional<Enclosed>& x) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  low.push_back(x ? x->doubles.low : none), high.push_back(x ? x->doubles.high : none);
+  low_text.push_back(x ? x->decimals.low : "nan"), high_text.push_back(x ? x->decimals.high : "nan");
+}
 
-struct Bounds {
-  std::vector<double> low, high;
-  std::vector<std::string> low_text, high_text;
-
-  void add(const std::optional<Enclosed>& x) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    low.push_back(x ? x->doubles.low : none), high.push_back(x ? x->doubles.high : none);
-    low_text.push_back(x ? x->decimals.low : "nan"), high_text.push_back(x ? x->decimals.high : "nan");
-  }
-  void put(Group& doubles, Group& exact, const std::string& name, const std::string& unit,
-           const std::string& what) const {
-    doubles.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", rounded down", low});
-    doubles.columns.push_back({name + "_high", unit, "upper bound of the " + what + ", rounded up", high});
-    exact.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", all digits known", low_text});
-    exact.columns.push_back({name + "_high", unit, "upper bound of the " + what + ", all digits known", high_text});
-  }
-};
-
-}  // namespace
+void Bounds::put(Group& doubles, Group& exact, const std::string& name, const std::string& unit,
+                 const std::string& what) const {
+  doubles.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", rounded down", low});
+  doubles.columns.push_back({name + "_high", unit, "upper bound of the " + what + ", rounded up", high});
+  exact.columns.push_back({name + "_low", unit, "lower bound of the " + what + ", all digits known", low_text});
+  exact.columns.push_back({name + "_high", unit, "upper bound of the " + what + ", all digits known", high_text});
+}
 
 Result certified_result(Certified run) {
   const Certificate& c = run.certificate;
@@ -154,6 +162,7 @@ Result certified_result(Certified run) {
                      {"undecided", run.undecided()},
                      {"proved_until", c.samples.empty() ? "" : c.samples.back().time_text},
                      {"not_proved", run.not_proved()},
+                     {"of_run_alone", fmt::format("{}", fmt::join(of_run_alone(result), ", "))},
                      {"precision", precision_name(run.scene.run)},
                      {"digits", std::uint64_t{c.digits}},
                      {"collisions_in_doubles", c.in_doubles},

@@ -24,6 +24,16 @@ struct Enclosed {
   long double radius = std::numeric_limits<long double>::infinity();
 };
 
+/// Columns of such numbers: NAME_low and NAME_high, as doubles and as decimals; NaN where there is none.
+struct Bounds {
+  std::vector<double> low, high;
+  std::vector<std::string> low_text, high_text;
+
+  void add(const std::optional<Enclosed>& x);
+  void put(Group& doubles, Group& exact, const std::string& name, const std::string& unit,
+           const std::string& what) const;
+};
+
 /// The account of a wall since the start.
 struct CertainWallSample {
   std::uint64_t collisions = 0;

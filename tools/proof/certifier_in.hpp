@@ -276,6 +276,7 @@ template <class M> class CertifierIn final : public Certifier {
       tables_.add(table + column, j, std::move(proved), bound);
     };
     const bool on_ring = particles_->on_ring();
+    between_.clear();
     for (std::size_t j = 0; j < rows.size(); ++j) {
       if (!rows[j]) continue;
       const ProvedParticle& row = *rows[j];
@@ -286,8 +287,11 @@ template <class M> class CertifierIn final : public Certifier {
       if (const auto& next = rows[j + 1 < rows.size() ? j + 1 : 0]) {
         N gap = next->x - row.x;
         if (on_ring) gap = between_neighbours(gap);
+        between_.push_back({enclosed(gap), enclosed(row.v - next->v)});
         add("gap", j, gap, errors_.gap + errors_.of_gap * static_cast<long double>(gap.size()));
         add("closing_speed", j, row.v - next->v, 2 * errors_.speed);
+      } else {
+        between_.push_back({});
       }
     }
   }
@@ -332,26 +336,20 @@ template <class M> class CertifierIn final : public Certifier {
     Group doubles{fmt::format("certificate/snapshots/{:04}", number), {{"time", of_run}}, {}},
         exact{fmt::format("exact/snapshots/{:04}", number), {{"time", of_run}}, {}};
     std::vector<std::uint64_t> index;
-    std::vector<double> ends[4];
-    std::vector<std::string> decimals[4];
+    Bounds places, velocities, gaps, closing_speeds;
     checker_.for_each(time, [&](ParticleIndex particle, const N&, const N& x, const N& v) {
       index.push_back(static_cast<std::uint64_t>(particle));
-      const Enclosed place = enclosed(x), velocity = enclosed(v);
-      for (const auto& [at, of] : {std::pair{0, &place}, {2, &velocity}}) {
-        ends[at].push_back(of->doubles.low), ends[at + 1].push_back(of->doubles.high);
-        decimals[at].push_back(of->decimals.low), decimals[at + 1].push_back(of->decimals.high);
-      }
+      places.add(enclosed(x)), velocities.add(enclosed(v));
     });
-    constexpr const char* names[] = {"x_low", "x_high", "v_low", "v_high"};
-    constexpr const char* units[] = {"l", "l", "l/t", "l/t"};
+    for (const auto& [gap, closing] : between_) gaps.add(gap), closing_speeds.add(closing);
     for (Group* group : {&doubles, &exact}) {
       group->columns.push_back({"index", "1", "of a particle of the cluster, at the start", index});
       group->columns.back().names = true;
     }
-    for (std::size_t k = 0; k < 4; ++k) {
-      doubles.columns.push_back({names[k], units[k], "bound, rounded outwards", ends[k]});
-      exact.columns.push_back({names[k], units[k], "bound, all digits that are known", decimals[k]});
-    }
+    places.put(doubles, exact, "x", "l", "position");
+    velocities.put(doubles, exact, "v", "l/t", "velocity");
+    gaps.put(doubles, exact, "gap", "l", "distance between a row of the run's snapshot and the next");
+    closing_speeds.put(doubles, exact, "closing_speed", "l/t", "closing speed of these two");
     certificate_.snapshots.push_back(std::move(doubles));
     certificate_.snapshots.push_back(std::move(exact));
   }
@@ -396,7 +394,8 @@ template <class M> class CertifierIn final : public Certifier {
   struct Meeting {
     N time, closing;
   };
-  std::vector<Meeting> meetings_;  // those that the file has
+  std::vector<Meeting> meetings_;                       // those that the file has
+  std::vector<std::pair<Enclosed, Enclosed>> between_;  // gaps and closing speeds of the last snapshot
   RunErrors errors_;
   long double since_ = 0;
   std::size_t snapshots_ = 0, series_rows_ = 0;  // that the run has taken

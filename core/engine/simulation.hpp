@@ -349,7 +349,9 @@ class Simulation {
   Status judge(Slot s) {
     const bool watched = policy_.collapse == CollapsePolicy::stop;
     const bool followed = watched && watch_.settled(law_, chain_, s, last_collision_, counts_.collisions);
-    return policy_.after(chain_.nearest_gap(s), watched && watch_.report.settled, followed);
+    const T gap = chain_.nearest_gap(s);
+    if (watched && !policy_.follows_a_gap() && watch_.ends_unproved(chain_, s, gap)) return Status::collapsed;
+    return policy_.after(gap, watched && watch_.report.settled, followed);
   }
 
   struct Target {

@@ -7,11 +7,15 @@
 // Inelastic gas, early: homogeneous, Gaussian velocities (Haff, J. Fluid Mech. 134, 401 (1983),
 // doi 10.1017/S0022112083003419). A particle meets others at the rate 2 n s/sqrt(pi); a collision costs
 // mu <w^3>/<w> (1 - eps^2)/2 = m s^2 (1 - eps^2), shared by two, so that
-//     ds/dt = -n (1 - eps^2) s^2/sqrt(pi),   E = E_0/(1 + t/tau)^2,   tau = sqrt(pi)/(n (1 - eps^2) s_0).
+//     ds/dt = -n (1 - eps^2) s^2/sqrt(pi),   E = E_0/(1 + t/tau)^2,   tau = sqrt(pi)/(n (1 - eps^2) s_0),
+// and, as two particles share a collision, N n s/sqrt(pi) collisions per time: N ln(1 + t/tau)/(1 - eps^2) up to t. The
+// elastic limit, N n s t/sqrt(pi), is exact: particles that pass through each other meet as often. Haff's law neglects
+// correlations. It ends where particles cluster, about where its energy falls below that of the sticky gas.
 // Units of the scene.
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace cradle::theory {
@@ -48,6 +52,35 @@ inline double haff_time(const FreeCooling& gas, double restitution) {
 inline double haff_energy_per_particle(const FreeCooling& gas, double restitution, double t) {
   const double slowed = restitution < 1 ? 1 + t / haff_time(gas, restitution) : 1;
   return gas.mass * gas.variance / (2 * slowed * slowed);
+}
+
+/// Collisions per particle up to t by Haff's law; restitution 1: exact on the average over places at random.
+inline double haff_collisions_per_particle(const FreeCooling& gas, double restitution, double t) {
+  if (!(restitution < 1)) return gas.density * std::sqrt(gas.variance) * t * std::numbers::inv_sqrtpi;
+  return std::log1p(t / haff_time(gas, restitution)) / ((1 - restitution) * (1 + restitution));
+}
+
+/// The time at which Haff's energy falls below that of the sticky gas, restitution < 1: the larger root of
+/// 1 + k z^3 = z/sqrt(2 C_E) with z^3 = s n t, k z^3 = t/tau. It has none if eps < 0.33: then where they are closest.
+inline double clustering_time(const FreeCooling& gas, double restitution) {
+  const double flights = 1 / (gas.density * std::sqrt(gas.variance)), k = flights / haff_time(gas, restitution),
+               slope = 1 / std::sqrt(2 * sticky_cooling_energy);
+  const double closest = std::sqrt(slope / (3 * k));
+  double z = 2 * closest;  // beyond the larger root, since k z^3 - slope z >= 0 from sqrt(3) of it on: Newton descends
+  for (int step = 0; step < 60 && z > closest; ++step) z -= (1 + (k * z * z - slope) * z) / (3 * k * z * z - slope);
+  z = z > closest ? z : closest;
+  return flights * z * z * z;
+}
+
+/// Collisions per time, those with walls included, of N elastic particles of mass m between walls of the temperatures
+/// T_1, T_2 at a distance L, after many passages. Particles that pass through each other leave wall i with the density
+/// v exp(-m v^2/2 T_i): half Gaussians of deviation s_i = sqrt(T_i/m), densities n_1 s_1 = n_2 s_2 by equal fluxes. The
+/// mean |v - v'| is (2 - sqrt 2)(2/sqrt pi) s_i within one half, sqrt(2/pi)(s_1 + s_2) between the two.
+inline double heated_collision_rate(double particles, double length, double s1, double s2) {
+  const double n = particles / length, n1 = n * s2 / (s1 + s2), n2 = n - n1,
+               root = std::numbers::sqrt2 * std::numbers::inv_sqrtpi,  // sqrt(2/pi)
+      within = (std::numbers::sqrt2 - 1) * root * (n1 * n1 * s1 + n2 * n2 * s2);
+  return length * (within + n1 * n2 * root * (s1 + s2)) + 2 * n1 * s1 * root;
 }
 
 }  // namespace cradle::theory

@@ -27,13 +27,10 @@ Exit check(const CommonOptions& options) {
 
   const Cost cost = expected_cost(scene);
   fmt::print("\nparticles in the active zone at the end: {:.3g} at most\n", cost.particles);
-  if (cost.collisions) {
-    fmt::print("{}", collisions_line(scene, cost));
-    fmt::print("time{}: about {:.2g} s at {:.2g} collisions/s\n", cost.collapse ? " until then" : "",
+  fmt::print("{}", expected_lines(scene, cost));
+  if (cost.collisions)
+    fmt::print("time{}: about {:.2g} s at {:.2g} collisions/s\n", cost.collapse || cost.clustering ? " until then" : "",
                *cost.collisions / cost.collisions_per_second, cost.collisions_per_second);
-  } else {
-    fmt::print("collisions and time: not known beforehand for this initial state\n");
-  }
   const unsigned threads = thread_count(options.threads);
   const Threading threading = expected_threading(scene, cost, threads);
   if (threading.alone.empty())

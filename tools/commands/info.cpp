@@ -83,7 +83,7 @@ Exit info_of_run(const InfoArguments& options) {
     TimeLeft pace;
     pace.add(0, scene.run.start.value);
     for (const RunStatus& status : journal.statuses) pace.add(status.seconds, status.time);
-    const auto left = expected_cost(scene).collapse ? std::nullopt : pace.until(until);
+    const auto left = expected_cost(scene).predictable() ? pace.until(until) : std::nullopt;
     fmt::print(
         "{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
         line("collisions", fmt::format("{}", now.collisions)),

@@ -64,7 +64,7 @@ Exit run(const RunArguments& options) {
   const FileClaim claim(output);
   check_overwrite(output, "run", &scene, options.force());
   RunFiles files(output, scene, options.force());
-  if (!options.quiet) notify(past_collapse_warning(scene));
+  if (!options.quiet) notify(expected_warning(scene));
   return run_command(files, output, options, interrupt);
 }
 

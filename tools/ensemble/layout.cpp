@@ -117,7 +117,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
 }
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  const RunEnd end = run.end == RunEnd::small_gap ? RunEnd::collapsed : run.end;
+  const RunEnd end = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
   ReplicaRow row{index, end, run.collisions, run.merges, std::vector<double>(numbers.size(), missing)};
   const auto put = [&](const std::string& name, double value) {
     for (std::size_t k = 0; k < numbers.size(); ++k)

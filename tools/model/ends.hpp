@@ -18,7 +18,8 @@ enum class RunEnd : std::uint64_t {
   failed,
   small_gap,  // below run.stop_gap, without a proof of collapse; for replicas: collapsed
   interrupted,
-  undecided  // of a proof
+  undecided,  // of a proof
+  unproved    // where many particles collapse, by the default (core/engine/collapse.hpp); for replicas: collapsed
 };
 inline constexpr std::size_t outcome_count = 5;
 
@@ -28,7 +29,7 @@ struct EndRow {
   Exit status;
 };
 
-inline constexpr std::array<EndRow, 8> run_ends{{
+inline constexpr std::array<EndRow, 9> run_ends{{
     {RunEnd::reached, "reached the end", Exit::done},
     {RunEnd::collapsed, "inelastic collapse", Exit::collapse},
     {RunEnd::order_lost, "order of collisions lost", Exit::lost},
@@ -37,6 +38,7 @@ inline constexpr std::array<EndRow, 8> run_ends{{
     {RunEnd::small_gap, "a gap below run.stop_gap", Exit::collapse},
     {RunEnd::interrupted, "interrupted", Exit::interrupted},
     {RunEnd::undecided, "undecided", Exit::lost},
+    {RunEnd::unproved, "inelastic collapse of many particles, not proved", Exit::collapse},
 }};
 
 constexpr const EndRow& end_row(RunEnd end) { return run_ends[static_cast<std::size_t>(end)]; }

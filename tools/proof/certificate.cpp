@@ -90,7 +90,7 @@ std::string Certified::undecided() const {
 }
 
 std::string Certified::not_proved() const {
-  if (certificate.doubt || outcome.end != RunEnd::collapsed) return "";
+  if (certificate.doubt || (outcome.end != RunEnd::collapsed && outcome.end != RunEnd::unproved)) return "";
   return "that this is an inelastic collapse, and when it is complete; that is an estimate of the run, which ended at "
          "the last collision that is proved";
 }

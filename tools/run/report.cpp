@@ -60,11 +60,15 @@ std::string within(const Figure& x, const Figure& error) {
 
 }  // namespace
 
-std::string collapse_report(const ReportedCollapse& r, std::uint64_t collisions) {
-  std::string text = r.settled
-                         ? fmt::format("inelastic collapse at t_c = {}\n", within(r.time, r.uncertainty))
-                         : std::string("a gap fell below run.stop_gap: the run stops there as requested; that this is "
-                                       "an inelastic collapse is not proved, and no time of it is known\n");
+std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t collisions) {
+  std::string text =
+      r.settled ? fmt::format("inelastic collapse at t_c = {}\n", within(r.time, r.uncertainty))
+      : end == RunEnd::small_gap
+          ? std::string("a gap fell below run.stop_gap: the run stops there as requested; that this is "
+                        "an inelastic collapse is not proved, and no time of it is known\n")
+          : std::string("many particles collapse: a gap fell below 2^-100 of what the gap beside it was at the start, "
+                        "where a run of more than 16 particles stops without run.stop_gap; that this is an inelastic "
+                        "collapse is not proved, and no time of it is known\n");
   text +=
       fmt::format("  last collision t = {}, number {}, {}\n", r.last_collision.digits, collisions, place(r.particle));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));

@@ -9,6 +9,7 @@
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/precision/text.hpp"
+#include "cradle/tools/model/ends.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
@@ -39,7 +40,7 @@ template <Real T> ReportedCollapse reported(const CollapseReport<T>& r) {
           figure(r.ratio_uncertainty)};
 }
 /// The text for standard output; times have all digits that are known.
-std::string collapse_report(const ReportedCollapse& collapse, std::uint64_t collisions);
+std::string collapse_report(const ReportedCollapse& collapse, RunEnd end, std::uint64_t collisions);
 Group collapse_table(const ReportedCollapse& collapse);
 
 struct ReportedIncident {

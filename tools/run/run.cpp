@@ -99,7 +99,7 @@ RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
   check_built(scene);
   if (scene.initial.type == InitialType::clusters) return run_clusters(scene, options);
   RunOptions how = options;
-  if (how.progress != Progress::Show::never) how.predictable = !expected_cost(scene).collapse;
+  if (how.progress != Progress::Show::never) how.predictable = expected_cost(scene).predictable();
   return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, how); });
 }
 

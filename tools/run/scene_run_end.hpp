@@ -17,7 +17,8 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
   const Counts& counts = engine_.counts();
   RunOutcome end;
   end.end = end_of(status, engine_.account().order_lost > 0);
-  if (end.end == RunEnd::collapsed && !engine_.collapse()->settled) end.end = RunEnd::small_gap;
+  if (end.end == RunEnd::collapsed && !engine_.collapse()->settled)
+    end.end = scene_.run.stop_gap ? RunEnd::small_gap : RunEnd::unproved;
   end.collisions = counts.collisions;
   end.merges = counts.merges;
   end.time = to_double(time);
@@ -41,7 +42,7 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
   put_tables(end, time);
   if (status == Status::collapsed) {
     const ReportedCollapse collapse = reported(*engine_.collapse());
-    end.report = collapse_report(collapse, counts.collisions);
+    end.report = collapse_report(collapse, end.end, counts.collisions);
     end.collapse_time = (collapse.settled ? collapse.time : collapse.last_collision).digits;
     end.result.groups.push_back(collapse_table(collapse));
   }

@@ -30,17 +30,19 @@ int callers_socket() {
 }  // namespace
 
 ProgressLine::ProgressLine(Show show)
-    : socket_(callers_socket()), terminal_(socket_ < 0 && ::isatty(STDERR_FILENO) != 0),
-      active_(show == Show::always || (show == Show::on_terminal && (terminal_ || socket_ >= 0))) {}
+    : socket_(callers_socket()), terminal_(socket_ < 0 && ::isatty(STDERR_FILENO) != 0), active_(show != Show::never),
+      every_(terminal_ || socket_ >= 0 ? 0.2
+             : show == Show::always    ? 10
+                                       : 60) {}
 
 ProgressLine::~ProgressLine() {
   if (drawn_ && terminal_) notify("\r\033[K");
 }
 
-std::optional<double> ProgressLine::due() const {
+std::optional<double> ProgressLine::due(Clock::time_point now) const {
   if (!active_) return std::nullopt;
-  const double passed = std::chrono::duration<double>(Clock::now() - last_).count();
-  return passed < (terminal_ || socket_ >= 0 ? 0.2 : 10.0) ? std::nullopt : std::optional(passed);
+  const double passed = std::chrono::duration<double>(now - last_).count();
+  return passed < every_ ? std::nullopt : std::optional(passed);
 }
 
 void ProgressLine::draw(double share, const std::string& state) {

@@ -1,7 +1,7 @@
-// Progress on standard error: a bar on a terminal, else, if requested, a plain line every ten seconds. For a run:
-// simulated time, collisions, collisions/s, time left where it can be predicted; for an ensemble: replicas, replicas/s,
-// time left. For programs that call this one: if CRADLE_PROGRESS_FD names a socket, each line is also written there as
-// `SHARE<tab>TEXT`, with SHARE from 0 to 1.
+// Progress on standard error: a bar on a terminal, else a plain line every minute or, if requested, every ten seconds.
+// For a run: simulated time, collisions, collisions/s, time left where it can be predicted; for an ensemble: replicas,
+// replicas/s, time left. For programs that call this one: if CRADLE_PROGRESS_FD names a socket, each line is also
+// written there as `SHARE<tab>TEXT`, with SHARE from 0 to 1.
 #pragma once
 
 #include <chrono>
@@ -27,16 +27,17 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
+  using Clock = std::chrono::steady_clock;
+
   /// Seconds since the line was last drawn, if it is time to draw it again: a few times a second on a terminal, every
-  /// ten seconds elsewhere. Cheap to call often.
-  std::optional<double> due() const;
+  /// minute elsewhere, or every ten seconds if it is always shown. Cheap to call often.
+  std::optional<double> due(Clock::time_point now = Clock::now()) const;
   void draw(double share, const std::string& state);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   int socket_;  // negative: none
   bool terminal_, active_, drawn_ = false;
+  double every_;  // seconds
   Clock::time_point last_ = Clock::now();
 };
 
@@ -49,7 +50,7 @@ class Progress {
 
   /// Sets where a resumed run begins.
   void continue_from(double time, std::uint64_t collisions);
-  /// Cheap to call often: prints at most a few times a second on a terminal, every ten seconds elsewhere.
+  /// Cheap to call often: prints as often as a line is due.
   void report(double time, std::uint64_t collisions);
 
  private:

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
+#include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/parallel/workers.hpp"
+#include "cradle/core/theory/free_cooling.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/record/tables.hpp"
@@ -93,6 +96,68 @@ double share_of_elastic(double s) {
   return below->share + (above->share - below->share) * (s - below->s) / (above->s - below->s);
 }
 
+// A run of many particles that ends by itself although no collapse is proved.
+bool ends_unproved(const Scene& scene) {
+  return !scene.run.stop_gap && scene.run.coordinates == Coordinates::gaps &&
+         scene.initial.particles > static_cast<std::uint64_t>(CollapseWatch<double>::few);
+}
+
+double deviation(const std::optional<Decimal>& temperature) { return std::sqrt(temperature->value); }
+
+// Gases of equal particles at rest on the whole, on a ring or between elastic or heated walls at rest.
+void gas(const Scene& scene, Cost& cost) {
+  const Initial& initial = scene.initial;
+  const WallAt &left = scene.walls.left, &right = scene.walls.right;
+  const auto ends = extent(scene);
+  if (!ends || unequal_masses(scene) || scene.law.cutoff_exponent || scene.gravity.acts() || scene.walls.shaken() ||
+      left.dissipates() || right.dissipates() || scene.law.type == LawType::wet)
+    return;
+  const double particles = static_cast<double>(initial.particles), length = ends->second.value - ends->first.value,
+               time = span(scene);
+  const bool walls = scene.walls.any();
+  const theory::FreeCooling cooling{initial.variance.value, (particles - (walls ? 0 : 1)) / length};
+  if (scene.law.type == LawType::sticky) {
+    const double left_over = theory::sticky_clusters_per_particle(cooling, time);
+    if (left_over < 0.5) cost.collisions = particles * (1 - left_over);
+    return;
+  }
+  const double eps = scene.law.restitution.value, flights = cooling.density * std::sqrt(cooling.variance);
+  if (walls && (left.temperature || right.temperature)) {
+    const double s1 = deviation(left.temperature ? left.temperature : right.temperature),
+                 s2 = deviation(right.temperature ? right.temperature : left.temperature);
+    // Particles forget how they started within some passages.
+    if (eps == 1 && time * std::min({s1, s2, std::sqrt(cooling.variance)}) > 10 * length)
+      cost.collisions = theory::heated_collision_rate(particles, length, s1, s2) * time;
+    return;
+  }
+  double until = time, elastic = 0;
+  if (eps < 1) {
+    // Once closing speeds, of variance 2 s^2, are below the cut-off, they stay as they are.
+    const double tau = theory::haff_time(cooling, eps), slow = scene.law.cutoff.value / std::sqrt(2 * cooling.variance),
+                 cooled = slow > 0 ? tau * std::max(0., 1 / slow - 1) : until,
+                 clustering = theory::clustering_time(cooling, eps);
+    const auto onset = theory::collapse_onset_particles(eps);
+    if (cooled < std::min(until, clustering)) {
+      until = cooled;
+      elastic = std::min(1., slow) * (time - until);
+    } else if (clustering < until && particles >= *onset) {
+      until = clustering;
+      cost.clustering = scene.run.start.value + clustering;
+    }
+  }
+  // A particle between equal ones at distances l meets the first after l, not after l/2 on the average.
+  const double before = initial.positions == Positions::lattice ? 0.25 : 0;
+  const auto uniform = [&](double factor) { return initial.velocities == Velocities::uniform ? factor : 1; };
+  double each =
+      theory::haff_collisions_per_particle(cooling, eps, until) + flights * elastic * std::numbers::inv_sqrtpi;
+  // Elastic particles keep their velocities: of uniform ones the mean |v - v'| is 2 s/sqrt(3), not 2 s/sqrt(pi).
+  if (eps == 1) each *= uniform(std::sqrt(std::numbers::pi / 3));
+  cost.collisions = particles * std::max(0., each - before);
+  if (walls && eps == 1)  // mean |v|: s sqrt(2/pi), of uniform velocities s sqrt(3)/2
+    *cost.collisions +=
+        flights * time * std::numbers::sqrt2 * std::numbers::inv_sqrtpi * uniform(std::sqrt(3 * std::numbers::pi / 8));
+}
+
 }  // namespace
 
 void bouncing_rows(const Scene& scene, Cost& cost) {
@@ -126,6 +191,7 @@ Cost expected_cost(const Scene& scene) {
   Cost cost;
   cost.particles = particles_at_end(scene);
   if (const auto of_rows = law_row(scene).cost_of_rows; of_rows && equal_rows(scene)) of_rows(scene, cost);
+  if (scene.initial.type == InitialType::ring || scene.initial.type == InitialType::gas) gas(scene, cost);
   const ScalarRow& type = scalar_row(scene.run.precision);
   const std::uint64_t digits = scene.run.digits;
   constexpr double fastest = 2e7;
@@ -145,18 +211,56 @@ Cost expected_cost(const Scene& scene) {
   return cost;
 }
 
-std::string collisions_line(const Scene& scene, const Cost& cost) {
+namespace {
+
+// How a run ends at a collapse, and what takes it past.
+std::string end_line(const Scene& scene) {
+  if (particles_merge(scene)) return "";
+  if (!stops_at_collapse(scene))
+    return "to end sooner: run.collapse = \"stop\" without law.cutoff ends the run at the collapse; run.collapse = "
+           "\"merge\" with a run.merge_speed and without law.cutoff, or a larger law.cutoff, takes fewer collisions "
+           "past "
+           "it\n";
+  const std::string unproved =
+      scene.run.stop_gap     ? fmt::format("a gap is below run.stop_gap = {}", scene.run.stop_gap->text)
+      : ends_unproved(scene) ? "a gap is below 2^-100 of one beside it at the start"
+                             : "numbers leave the range of the type (status 5), which may take long: run.stop_gap "
+                               "ends it sooner";
+  return fmt::format("the run ends (status 3) where a collapse is proved or, without proof, {}; to go past it: "
+                     "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nin the collapse more collisions "
+                     "follow, how many is not "
+                     "known beforehand (of 200 particles some 1e7 at restitution 0.9, unless run.stop_gap ends it "
+                     "sooner)\n",
+                     unproved);
+}
+
+}  // namespace
+
+std::string expected_lines(const Scene& scene, const Cost& cost) {
+  const bool loses = law_row(scene).merges || scene.law.restitution < Decimal("1");
+  if (!cost.collisions)
+    return fmt::format("collisions and time: not known beforehand for this initial state{}\n",
+                       loses && !particles_merge(scene) && !stops_at_collapse(scene)
+                           ? "; where particles collapse they may have no limit"
+                           : "");
   const auto* after = stops_at_collapse(scene) ? "where the run stops"
                       : particles_merge(scene) ? "after which particles merge"
                                                : "without limit after it";
-  const std::string until =
-      cost.collapse ? fmt::format(" until inelastic collapse at about t = {:.3g}, {}", *cost.collapse, after) : "";
-  return fmt::format("collisions: about {:.2g}{}\n", *cost.collisions, until);
+  std::string text = fmt::format("collisions: about {:.2g}", *cost.collisions);
+  if (cost.collapse) text += fmt::format(" until inelastic collapse at about t = {:.3g}, {}", *cost.collapse, after);
+  if (cost.clustering)
+    text += fmt::format(" until particles cluster at about t = {:.3g}, by Haff's law; how many follow is not known{}",
+                        *cost.clustering,
+                        particles_merge(scene)     ? ""
+                        : stops_at_collapse(scene) ? ", until clusters collapse"
+                                                   : ": clusters collapse, and have no limit after it");
+  text += '\n';
+  return cost.collapse || cost.clustering ? text + end_line(scene) : text;
 }
 
-std::string past_collapse_warning(const Scene& scene) {
+std::string expected_warning(const Scene& scene) {
   const Cost cost = expected_cost(scene);
-  return cost.collapse && !stops_at_collapse(scene) && !particles_merge(scene) ? collisions_line(scene, cost) : "";
+  return (cost.collapse || cost.clustering) && !particles_merge(scene) ? expected_lines(scene, cost) : "";
 }
 
 Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads) {

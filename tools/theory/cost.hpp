@@ -1,5 +1,5 @@
-// The cost of a run, estimated before it starts: collisions by the laws of the shock, time by the speed of each scalar
-// type, memory by the bytes per particle. Orders of magnitude, for planning.
+// The cost of a run, estimated before it starts: collisions by the laws of the shock and of gases, time by the speed of
+// each scalar type, memory by the bytes per particle. Orders of magnitude, for planning.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,23 @@ namespace cradle::tools {
 struct Cost {
   double particles = 0;              // in the active zone at the end, at most
   std::optional<double> collisions;  // none: not known for this initial state
-  std::optional<double> collapse;    // of inelastic collapse, if before the end
+  std::optional<double> collapse;    // of inelastic collapse, if before the end; collisions: until then
+  std::optional<double> clustering;  // of a gas that cools, likewise
   double collisions_per_second = 0;
   double memory = 0;  // bytes
+
+  /// Whether the pace of a run says how long the rest takes.
+  bool predictable() const { return !collapse && !clustering; }
 };
 
 Cost expected_cost(const Scene& scene);
 
-/// The expected collisions as a line, where they are known: how many, until which collapse, and what follows it.
-std::string collisions_line(const Scene& scene, const Cost& cost);
+/// What is expected, in lines: how many collisions, until which collapse or clustering, what follows it, where the run
+/// ends then and what ends it sooner or takes it past; or that nothing is known.
+std::string expected_lines(const Scene& scene, const Cost& cost);
 
-/// That line if the run goes past a collapse, after which its collisions have no limit; else empty.
-std::string past_collapse_warning(const Scene& scene);
+/// These lines if the run ends at a collapse, goes past it or past clustering; else empty.
+std::string expected_warning(const Scene& scene);
 
 // Expected collisions of two equal rows, by law (tools/model/laws.hpp).
 void bouncing_rows(const Scene& scene, Cost& cost);

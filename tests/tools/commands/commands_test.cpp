@@ -101,6 +101,19 @@ TEST_F(Commands, RunWarnsOfCollapseAsCheckDoes) {
   EXPECT_TRUE(has(merge.out, "after which particles merge\n")) << merge.out;
 }
 
+// Plain rows of 200: said beforehand, ended within seconds, with status 3. Restitution 0.8 takes 2e6 collisions, 0.9
+// 1e7.
+TEST_F(Commands, ACollapseOfManyParticlesEndsAsSaidBeforehand) {
+  write("rows.toml", "law = { type = 'inelastic', restitution = 0.8 }\nrun.until = 1e4\n"
+                     "initial = { type = 'rows', particles = 200, speed = 0.5, spacing = 1, perturbation = 0.3 }\n");
+  const Printed run = shell("timeout 100 cradle run rows.toml", 3);
+  EXPECT_TRUE(has(run.out, "that this is an inelastic collapse is not proved")) << run.out;
+  EXPECT_TRUE(has(run.out, "inelastic collapse of many particles, not proved: t = 3")) << run.out;
+  EXPECT_TRUE(has(run.err, "where the run stops\nthe run ends (status 3) where a collapse is proved or")) << run.err;
+  EXPECT_TRUE(has(shell("cradle check rows.toml").out, run.err));
+  EXPECT_TRUE(has(shell("cradle info rows.h5").out, "inelastic collapse of many particles, not proved"));
+}
+
 TEST_F(Commands, CheckShowsLongListsByTheirEnds) {
   std::string csv = "x,v\n";
   for (int k = 0; k < 1000; ++k) csv += std::to_string(k) + ",1\n";

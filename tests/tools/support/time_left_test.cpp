@@ -4,7 +4,9 @@
 #include "cradle/tools/support/time_left.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "cradle/tools/support/progress.hpp"
@@ -65,6 +67,21 @@ TEST(TimeLeft, ThinsOutItsPoints) {
   for (int k = 0; k <= 100'000; ++k) pace.add(0.2 * k, k);
   ASSERT_TRUE(pace.until(200'000));
   EXPECT_NEAR(*pace.until(200'000), 20'000, 1);
+}
+
+// Standard error is no terminal in the tests: a line a minute, every ten seconds on request, none if quiet.
+TEST(ProgressLine, IsDueOnceAMinuteWhereThereIsNoTerminal) {
+  if (::isatty(STDERR_FILENO) != 0) GTEST_SKIP() << "standard error is a terminal";
+  using Show = tools::ProgressLine::Show;
+  const auto due = [](Show show, int seconds) {
+    const tools::ProgressLine line(show);
+    return line.due(std::chrono::steady_clock::now() + std::chrono::seconds(seconds)).has_value();
+  };
+  EXPECT_FALSE(due(Show::on_terminal, 59));
+  EXPECT_TRUE(due(Show::on_terminal, 60));
+  EXPECT_FALSE(due(Show::always, 9));
+  EXPECT_TRUE(due(Show::always, 10));
+  EXPECT_FALSE(due(Show::never, 3600));
 }
 
 }  // namespace cradle::tests::time_left_test

@@ -192,7 +192,10 @@ def warnings(result: Result, version: str) -> list[str]:
         found.append("The run is in progress: this page shows what it had recorded when the page was made.")
     if not result.sealed:
         found.append("The file has no seal: it was changed since the program wrote it, or written by an older version.")
-    if "inelastic collapse" in result.outcome and result.kind == "run":
+    if "collapse of many particles" in result.outcome and result.kind == "run":
+        found.append("The run ended in a collapse of many particles, before <code>run.until</code>; that it is an "
+                     "inelastic collapse is not proved.")
+    elif "inelastic collapse" in result.outcome and result.kind == "run":
         found.append("The run ended at inelastic collapse, before <code>run.until</code>.")
     elif result.outcome == "a gap below run.stop_gap":
         found.append("The run ended where a gap fell below <code>run.stop_gap</code>, before <code>run.until</code>; "

@@ -1,0 +1,83 @@
+// What `cradle check` expects of a scene, against runs of the same initial state: elastic gases, whose mean number of
+// collisions is exact, up to the spread of N velocities; and what it says where a gas clusters or a shock collapses.
+#include "cradle/tools/theory/cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cradle/core/chains/gap_chain.hpp"
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/tests/texts.hpp"
+#include "cradle/tools/model/initial_state.hpp"
+
+namespace cradle::tools::cost_test {
+
+using test::has;
+
+double counted(const Scene& scene) {
+  const double restitution = scene.law.restitution.value;
+  Simulation run(Inelastic<double>(restitution), GapChain<double>(initial_particles<double>(scene), 0.0));
+  EXPECT_EQ(run.advance(scene.run.until.value), Status::reached);
+  return static_cast<double>(run.counts().collisions);
+}
+
+Scene scene_of(const std::string& text) { return parse_scene(text, "gas.toml"); }
+
+// The sum of |v - v'| over pairs of N velocities has the relative deviation 0.715/sqrt(N) if they are Gaussian
+// (free_cooling_test.cpp), less if they are uniform. Four of these. Walls: a passage between walls with a temperature
+// takes L/s, after which velocities are new ones; so there are t s/L independent states at least.
+TEST(ExpectedCollisions, OfElasticGasesAreCounted) {
+  const std::string law = "law = { type = 'inelastic', restitution = 1 }\n";
+  const std::vector<std::pair<std::string, double>> gases{
+      {"run.until = 100\ninitial = { type = 'ring', particles = 4000, length = 2000, variance = 3 }", 4000},
+      {"run.until = 100\ninitial = { type = 'ring', particles = 4000, length = 2000, velocities = 'uniform' }", 4000},
+      {"run.until = 100\ninitial = { type = 'gas', particles = 4000, density = 2, positions = 'poisson' }\n"
+       "walls.left.position = 0",
+       4000},
+      {"run.until = 8000\ninitial = { type = 'gas', particles = 200, density = 1 }\n"
+       "walls = { left = { position = 0, temperature = 1 }, right = { temperature = 9 } }",
+       200 * 8000 / 200.}};
+  for (const auto& [text, velocities] : gases) {
+    const Scene scene = scene_of(law + text);
+    const Cost cost = expected_cost(scene);
+    ASSERT_TRUE(cost.collisions) << text;
+    EXPECT_TRUE(cost.predictable());
+    EXPECT_NEAR(*cost.collisions / counted(scene), 1, 4 * 0.715 / std::sqrt(velocities)) << text;
+  }
+}
+
+TEST(ExpectedCollisions, OfACoolingGasEndWhereItClusters) {
+  const std::string ring = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-6 }\nrun.until = 1000\n"
+                           "initial = { type = 'ring', particles = 10000, length = 10000 }\n";
+  Scene scene = scene_of(ring);
+  const Cost cost = expected_cost(scene);
+  ASSERT_TRUE(cost.clustering);
+  EXPECT_FALSE(cost.predictable());
+  EXPECT_TRUE(has(expected_warning(scene), "how many follow is not known"));
+  EXPECT_TRUE(has(expected_warning(scene), "to end sooner: run.collapse = \"stop\""));
+  // Until a quarter of that time the law holds (free_cooling_test.cpp); fewer than N_c particles do not collapse.
+  scene.run.until = Decimal(std::to_string(*cost.clustering / 4));
+  EXPECT_EQ(expected_warning(scene), "");
+  EXPECT_NEAR(*expected_cost(scene).collisions / counted(scene), 1, 4 * 0.715 / 100 + 1. / 16);
+  scene = parse_scene(ring, "gas.toml", {"initial.particles=50", "initial.length=50"});
+  EXPECT_FALSE(expected_cost(scene).clustering);
+  // Nothing is known of unequal masses.
+  scene = parse_scene(ring, "gas.toml", {"initial.masses=[1,2]"});
+  EXPECT_TRUE(has(expected_lines(scene, expected_cost(scene)), "not known beforehand"));
+}
+
+// With what a run ends at a collapse of many particles.
+TEST(ExpectedCollisions, SayWithWhatACollapseEnds) {
+  const std::string rows =
+      "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 1e4\n"
+      "initial = { type = 'rows', particles = 200, speed = 0.5, spacing = 1, perturbation = 0.3 }\n";
+  EXPECT_TRUE(has(expected_warning(scene_of(rows)), "without proof, a gap is below 2^-100 of one beside it"));
+  EXPECT_TRUE(has(expected_warning(scene_of(rows + "run.stop_gap = 1e-9\n")), "a gap is below run.stop_gap = 1e-9;"));
+  EXPECT_TRUE(has(expected_warning(scene_of(rows + "run.coordinates = 'absolute'\n")), "which may take long"));
+  EXPECT_TRUE(has(expected_warning(parse_scene(rows, "rows.toml", {"law.cutoff=1e-6"})), "to end sooner"));
+}
+
+}  // namespace cradle::tools::cost_test

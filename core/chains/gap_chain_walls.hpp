@@ -88,8 +88,7 @@ CollisionResult<T> GapChain<T, Masses, Field>::collide_falling(const Law& law, S
     return more;
   };
   CollisionResult<T> made = line_.strike(field_, s - 1, s, s + 1, time, of_law, notice, after, renew);
-  if (const auto back = rebound(s); back && back->height < line_.gaps.floor())
-    made.notice |= Notice::gap_below_floor;
+  if (const auto back = rebound(s); back && back->height < line_.gaps.floor()) made.notice |= Notice::gap_below_floor;
   find_inner();
   return made;
 }

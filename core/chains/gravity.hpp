@@ -11,11 +11,9 @@
 namespace cradle {
 
 // A flight that ends on the wall where it begins: the speed at which a particle leaves it, and how far it gets,
-// w^2/(2 p), of a shaken wall with its acceleration then, p + s''. On an inelastic floor the heights shrink by a constant
-// factor per collision, as gaps do in other collapses.
-template <Real T> struct Rebound {
-  T speed, height;
-};
+// w^2/(2 p), of a shaken wall with its acceleration then, p + s''. On an inelastic floor the heights shrink by a
+// constant factor per collision, as gaps do in other collapses.
+template <Real T> struct Rebound { T speed, height; };
 
 template <Real T> class Gravity {
  public:

@@ -105,8 +105,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     if (s > first()) notice |= resolve(s - 1, time);
     if (s < last()) notice |= resolve(s + 1, time);
     if constexpr (falls)
-      if (const auto back = rebound(s); back && back->height < floor_)
-        notice |= Notice::gap_below_floor;
+      if (const auto back = rebound(s); back && back->height < floor_) notice |= Notice::gap_below_floor;
     return {outcome, queue_due(s - 1), queue_due(s), queue_due(s + 1), notice, s - 1, s + 1};
   }
 

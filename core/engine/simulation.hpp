@@ -41,7 +41,7 @@ class Simulation {
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
         last_collision_(chain_.local_time(chain_.start())), pacing_(last_collision_, Chain::may_collapse),
         standstill_(last_collision_, ends_at_a_size(), followed()), target_{chain_.start(), last_collision_,
-                                                                                 last_collision_} {
+                                                                            last_collision_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
     const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());
@@ -337,9 +337,8 @@ class Simulation {
         fill_queue();
       }
     const bool move = pacing_.origin_moves(notice, counts_.collisions, last_collision_, active());
-    const bool stands_still =
-        (move || !pacing_.in_epochs) &&
-        standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, active());
+    const bool stands_still = (move || !pacing_.in_epochs) &&
+                              standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, active());
     const bool moves = move && !stands_still, poll = moves || counts_.collisions >= pacing_.next_review;
     const T before = last_collision_;
     if (moves) move_origin(before);

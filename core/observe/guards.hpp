@@ -1,6 +1,6 @@
 #pragma once
-// Conditions that hold in every run, for any physics. If one fails, the machine or the program is at fault, and later
-// results mean nothing. They are checked on a configuration from time to time:
+// Conditions that hold in every run, for any physics. If one fails, the machine or the program is at fault, or absolute
+// positions do not resolve what happens, and later results mean nothing. They are checked from time to time:
 //
 //   order     no two particles have changed places, unless the run's account records it
 //   wall      no particle is beyond a wall: no collision with it was missed
@@ -112,8 +112,8 @@ std::optional<GuardReport<T>> beyond_a_wall(const Run& run, const Particles<T>& 
     const Wall<T>& wall = *particles.wall(end);
     const ParticleIndex last = particles.count() - 1;
     const T top_speed = root_above(T(T(2) * particles.most_kinetic_energy(elapsed) / particles.least_mass()));
-    const T extent = magnitude(particles.position(0)) + magnitude(particles.position(last)) +
-                     magnitude(wall.position) + wall.fastest() * elapsed;
+    const T extent = magnitude(particles.position(0)) + magnitude(particles.position(last)) + magnitude(wall.position) +
+                     wall.fastest() * elapsed;
     const T bound = -detail::guard_unit(particles, run.counts().collisions) * (extent + top_speed * elapsed);
     if (*gap < bound) return GuardReport<T>{Guard::wall, *gap, bound, end == End::left ? 0 : last};
   }

@@ -81,8 +81,9 @@ std::string collapse_report(const ReportedCollapse& r, std::uint64_t collisions,
     text += fmt::format("  interval       {} since the collision there before\n", brief(r.interval));
   if (r.settled)
     text += fmt::format("  ratio          {} of successive intervals there\n", within(r.ratio, r.ratio_uncertainty));
-  text += fmt::format("  to continue    give {} a speed, or run.stop_gap a smaller gap to follow the collapse further\n",
-                      at_wall.empty() ? "law.cutoff" : at_wall + ".rest_speed");
+  text +=
+      fmt::format("  to continue    give {} a speed, or run.stop_gap a smaller gap to follow the collapse further\n",
+                  at_wall.empty() ? "law.cutoff" : at_wall + ".rest_speed");
   return text;
 }
 
@@ -164,8 +165,9 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
   // A gap to a wall that has just closed is not in the account.
   if (run.coordinates == Coordinates::absolute &&
       (account.order_lost + account.unresolved > 0 || g.guard == Guard::wall))
-    return broken + "positions do not resolve what decides the next collisions. Use run.coordinates = \"gaps\", or more "
-                    "digits (run.precision)";
+    return broken +
+           "positions do not resolve what decides the next collisions. Use run.coordinates = \"gaps\", or more "
+           "digits (run.precision)";
   return broken + "the machine or the program is at fault. `cradle resume` continues from the last checkpoint, made "
                   "before; if it stops here again, please report the scene";
 }

@@ -25,7 +25,9 @@ class Endings : public ProgramTest {
   Printed run(const std::string& scene, const std::string& more, int status) const {
     return shell("timeout 60 cradle run " + scene + " --quiet --force -o end.h5 " + more, status);
   }
-  double end_of_run() const { return tools::attribute<double>(read("end.h5").find("collapse")->attributes, "time", ""); }
+  double end_of_run() const {
+    return tools::attribute<double>(read("end.h5").find("collapse")->attributes, "time", "");
+  }
 };
 
 constexpr double at_rest = 15.5635628146137;
@@ -36,9 +38,10 @@ TEST_F(Endings, AStopGapEndsACollapseOnAFloor) {
     for (const char* coordinates : {"gaps", "absolute"})
       for (const double gap : {1e-6, 1e-12, 1e-300}) {
         SCOPED_TRACE(fmt::format("{} {} {}", type, coordinates, gap));
-        const Printed end = run("ball.toml", fmt::format("--set run.precision={} --set run.coordinates={} --set "
-                                                         "run.stop_gap={}",
-                                                         type, coordinates, gap),
+        const Printed end = run("ball.toml",
+                                fmt::format("--set run.precision={} --set run.coordinates={} --set "
+                                            "run.stop_gap={}",
+                                            type, coordinates, gap),
                                 3);
         EXPECT_TRUE(has(end.out, "between the left wall and particle 0")) << end.out;
         // The flights left out last 4 sqrt(2 h/g)/(1 - r) in all, for heights below the gap: with r = 0.7, 7 sqrt(h).
@@ -126,8 +129,8 @@ std::string random_scene(std::uint64_t seed) {
     const std::string all[] = {std::string(choices)...};
     return all[bits() % sizeof...(choices)];
   };
-  const std::string kind = one_of("list", "list", "list", "rows", "ring"), policy = one_of("cutoff", "contact-time",
-                                                                                           "merge", "stop", "stop", "");
+  const std::string kind = one_of("list", "list", "list", "rows", "ring"),
+                    policy = one_of("cutoff", "contact-time", "merge", "stop", "stop", "");
   const auto particles = 1 + bits() % (kind == "list" ? 6 : 24);
   const bool merge = policy == "merge";
   std::string text = fmt::format("law = {{ type = 'inelastic', restitution = {}{} }}\n",

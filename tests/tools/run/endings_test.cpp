@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <random>
 
@@ -75,9 +77,11 @@ TEST_F(Endings, TheEnergyAtTheEndIsThatAfterTheLastCollision) {
   write_ball();
   run("ball.toml", "--set run.stop_gap=1e-28 --set output.snapshots=[]", 3);
   const tools::Result result = read("end.h5");
-  const double v = numbers(result, "snapshots/0000", "v").back();
   EXPECT_EQ(numbers(result, "snapshots/0000", "x").back(), 0);
-  EXPECT_DOUBLE_EQ(numbers(result, "series", "energy").back(), v * v / 2);
+  EXPECT_EQ(numbers(result, "series", "potential_energy").back(), 0);
+  const auto n = static_cast<double>(numbers<std::uint64_t>(result, "series", "collisions").back());
+  const double energy = 9.81 * 37 * std::pow(0.49, n);  // each of n factors is rounded
+  EXPECT_NEAR(numbers(result, "series", "energy").back(), energy, 1e-13 * n * energy);
 }
 
 // A floor on which flights become too short for positions to resolve: the ball stays on it.
@@ -113,11 +117,15 @@ TEST_F(Endings, ASineWallStartsInTypesOfAnyRange) {
   run("sine.toml", "--set gravity.acceleration=-1e-1000000 --set walls.left.rest_speed=1e-3", 0);
 }
 
-double reached(const Printed& interrupted) {
-  const std::string said = interrupted.out + interrupted.err;
-  const auto at = said.find("interrupted: t = ");
-  return at == std::string::npos ? 0 : std::stod(said.substr(at + 17));
-}
+struct Reached {
+  double time = 0, collisions = 0;
+  explicit Reached(const Printed& interrupted) {
+    const auto at = interrupted.err.find("interrupted: t = ");
+    if (at != std::string::npos) std::sscanf(&interrupted.err[at], "interrupted: t = %lf, %lf", &time, &collisions);
+  }
+};
+// With 48 particles and less so many collisions may follow each other at one time (standstill.hpp).
+constexpr double most_at_one_time = (1 << 20) + 4096. * 48 * 48;
 
 // A scene of any kind. (The engine is specified bit by bit, and so are these numbers.)
 std::string random_scene(std::uint64_t seed) {
@@ -197,8 +205,8 @@ TEST_F(Endings, NoRunStaysAtOneTime) {
     const Printed end = for_seconds(wanted != nullptr ? 60 : 10);
     EXPECT_NE(end.status, 1) << seed << "\n" << scene << end.err;
     // A run may have very many collisions; then its time advances. Interrupted it says how far it has come.
-    if (end.status == 124)
-      EXPECT_LT(reached(for_seconds(2)), reached(end)) << seed << ": at one time\n" << scene << end.out << end.err;
+    if (const Reached late(end); end.status == 124 && late.collisions > most_at_one_time)
+      EXPECT_LT(Reached(for_seconds(2)).time, late.time) << seed << ": at one time\n" << scene << end.err;
     EXPECT_FALSE(has(end.err, "is at fault")) << seed << "\n" << scene << end.err;
     refused += end.status == 2;
     if (end.status == 2 && wanted != nullptr) std::puts((std::to_string(seed) + " " + end.err).c_str());

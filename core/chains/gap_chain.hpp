@@ -143,6 +143,10 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
             on_right = on_ring() || s < last() ? line_.gaps[right(s)].gap : far;
     return on_left < on_right ? on_left : on_right;
   }
+  // After a collision at s, if it was with a floor (gravity.hpp).
+  std::optional<Rebound<T>> rebound(Slot s) const requires(falls) {
+    return field_.rebound(particle(s), closing(s), line_.gaps.since_start(s));
+  }
   const Account<T>& account() const { return line_.gaps.account(); }
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
   T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }

@@ -87,7 +87,8 @@ CollisionResult<T> GapChain<T, Masses, Field>::collide_falling(const Law& law, S
           more |= line_.renew(field_, slot_in_pile(h), time) | Notice::origin_must_move;  // which predicts them
     return more;
   };
-  const CollisionResult<T> made = line_.strike(field_, s - 1, s, s + 1, time, of_law, notice, after, renew);
+  CollisionResult<T> made = line_.strike(field_, s - 1, s, s + 1, time, of_law, notice, after, renew);
+  if (const auto back = rebound(s); back && back->height < line_.gaps.floor()) made.notice |= Notice::gap_below_floor;
   find_inner();
   return made;
 }

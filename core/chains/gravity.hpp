@@ -10,6 +10,11 @@
 
 namespace cradle {
 
+// A flight that ends on the wall where it begins: the speed at which a particle leaves it, and how far it gets,
+// w^2/(2 p), of a shaken wall with its acceleration then, p + s''. On an inelastic floor the heights shrink by a
+// constant factor per collision, as gaps do in other collapses.
+template <Real T> struct Rebound { T speed, height; };
+
 template <Real T> class Gravity {
  public:
   static constexpr bool acts = true;
@@ -69,6 +74,14 @@ template <Real T> class Gravity {
   // Whether the wall at the end of the pile holds what has come to rest there.
   bool wall_presses(const Pair<T>& elapsed) const {
     return (pile_end_ == End::left ? left_ : right_).wall.presses(pull(pile_end_), elapsed);
+  }
+  // What follows a collision at a wall, if the wall presses the particle and does not hold it.
+  std::optional<Rebound<T>> rebound(ParticleIndex gap, const T& closing, const Pair<T>& elapsed) const {
+    if (!at_wall(gap)) return {};
+    const HoldingWall<T>& wall = (gap == left_.gap ? left_ : right_).wall;
+    const T press = wall.pressure(pull(gap == left_.gap ? End::left : End::right), elapsed);
+    if (!is_positive(press) || (wall.holds && closing == T(0))) return {};
+    return Rebound<T>{magnitude(closing), T(closing * closing / (press + press))};
   }
   // The speed towards the particles at which the wall at a gap is shaken.
   T shaken_at(ParticleIndex gap, const Pair<T>& elapsed) const {

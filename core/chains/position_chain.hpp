@@ -79,9 +79,14 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   }
 
   const T& due(Slot s) const { return due_[s]; }
-  double queue_due(Slot s) const { return closing_[s] > T(0) ? queue_time(due_[s]) : EventQueue::never; }
+  // A particle at rest on a floor meets it at once, at the speed 0.
+  double queue_due(Slot s) const {
+    bool meets = closing_[s] > T(0);
+    if constexpr (falls) meets = meets || (closing_[s] == T(0) && field_.pulls(particle(s)));
+    return meets ? queue_time(due_[s]) : EventQueue::never;
+  }
 
-  // At the next collision; of a gap to a wall under gravity without one, 0.
+  // At the next collision; of a gap to a wall under gravity without one, negative.
   const T& closing(Slot s) const { return closing_[s]; }
   T closing_when_due(Slot s) const { return closing_[s]; }
 
@@ -96,6 +101,8 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     walls_.right_of(particle(s)) ? left.x = right.x : right.x = left.x;
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
+    if constexpr (falls)
+      if (at_wall) leave_wall(s, outcome.closing);
     front_left_ = std::min(front_left_, s);
     front_right_ = std::max(front_right_, s);
 
@@ -103,6 +110,8 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     predict(s, time);
     if (s > first()) notice |= resolve(s - 1, time);
     if (s < last()) notice |= resolve(s + 1, time);
+    if constexpr (falls)
+      if (const auto back = rebound(s); back && back->height < floor_) notice |= Notice::gap_below_floor;
     return {outcome, queue_due(s - 1), queue_due(s), queue_due(s + 1), notice, s - 1, s + 1};
   }
 
@@ -114,6 +123,11 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     const T time = at(s).time;
     const T on_left = s > first() ? gap_at(s - 1, time) : far, on_right = s < last() ? gap_at(s + 1, time) : far;
     return on_left < on_right ? on_left : on_right;
+  }
+  // After a collision at s, if it was with a floor (gravity.hpp).
+  std::optional<Rebound<T>> rebound(Slot s) const requires(falls) {
+    const T& time = at(s).time;
+    return field_.rebound(particle(s), T(velocity(s, time) - velocity(s + 1, time)), since_start(time));
   }
   const Account<T>& account() const { return account_; }
   void lose(Slot, const T& energy) { lost_.add(energy); }
@@ -268,13 +282,20 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     p.collided = true;
   }
 
+  // Where flights are shorter than times resolve, the particle has not fallen to the wall by the time of the collision:
+  // it leaves at the speed of the outcome, not by the impulse.
+  void leave_wall(Slot s, const T& closing) {
+    const bool left = walls_.left_of(particle(s));
+    at(left ? s + 1 : s).v = left ? T(at(s).v - closing) : T(at(s + 1).v + closing);
+  }
+
   void predict(Slot s, const T& now) {
     closing_[s] = velocity(s, now) - velocity(s + 1, now);
     if constexpr (falls)
       if (field_.pulls(particle(s))) {
         const WallApproach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s], since_start(now));
         const auto wait = approach.meeting_in();
-        closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(0);
+        closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(-1);
         due_[s] = wait ? T(now + *wait) : T(0);
         return;
       }

@@ -36,7 +36,7 @@ enum class CollapsePolicy { cutoff, stop };
 template <Real T> struct CollapseReport {
   T last_collision{0};          // time of the last collision made
   T interval{0};                // since the previous collision at the same gap, 0 if there was none
-  T gap{0};                     // smallest gap beside the last collision
+  T gap{0};                     // smallest gap beside the last collision, or height of the rebound from a floor
   ParticleIndex particle = -1;  // the particle on the left of the gap of the last collision
   bool settled = false;
   // If it is settled: t_c, the limit of the ratio of successive intervals there, and bounds of their errors.
@@ -48,6 +48,14 @@ template <Real T> struct CollapseReport {
                     self.uncertainty, self.ratio, self.ratio_uncertainty);
   }
 };
+
+// After the collision at slot s, if it was with a floor (gravity.hpp).
+template <class Chain> std::optional<Rebound<typename Chain::Scalar>> rebound(const Chain& chain, Slot s) {
+  if constexpr (requires { chain.rebound(s); })
+    return chain.rebound(s);
+  else
+    return {};
+}
 
 // The proved collapse of two neighbouring gaps, with the best bounds known.
 template <Real T> struct KnownCollapse {
@@ -96,7 +104,10 @@ template <Real T> struct CollapseWatch {
     const ParticleIndex particle = chain.particle(s);
     const Pair<T> now = chain.stamp(local);
     const auto before = last.find(particle);
-    report = {now.value(), before == last.end() ? T(0) : T(local - before->second), chain.nearest_gap(s), particle};
+    const T nearest = chain.nearest_gap(s);
+    const auto back = rebound(chain, s);
+    report = {now.value(), before == last.end() ? T(0) : T(local - before->second),
+              back && back->height < nearest ? back->height : nearest, particle};
     last.insert_or_assign(particle, local);
     for (const auto& gap : {left_of(chain, s), std::optional(s), right_of(chain, s)})
       if (gap) moves_at(chain.closing(*gap));

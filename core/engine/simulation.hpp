@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "cradle/core/chains/chain.hpp"
@@ -39,8 +40,8 @@ class Simulation {
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
         last_collision_(chain_.local_time(chain_.start())), pacing_(last_collision_, Chain::may_collapse),
-        standstill_(last_collision_, has_threshold(law_) || can_rest()), target_{chain_.start(), last_collision_,
-                                                                                 last_collision_} {
+        standstill_(last_collision_, ends_at_a_size(), followed()), target_{chain_.start(), last_collision_,
+                                                                            last_collision_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
     const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());
@@ -113,14 +114,24 @@ class Simulation {
   const Account<T>& account() const { return chain_.account(); }
 
   // The state at a time between the last collision and the time advanced to.
-  Configuration<T> configuration(const T& time) const { return chain_.configuration(chain_.local_time(time)); }
+  Configuration<T> configuration(const T& time) const { return chain_.configuration(local(time)); }
   // The state right after the last collision. At the rounded time of the scene, gaps that close within the rounding
   // would be negative.
   Configuration<T> configuration_at_last_collision() const { return chain_.configuration(last_collision_); }
   bool on_ring() const { return chain_.on_ring(); }
   ParticleIndex collided_particles() const { return chain_.collided_particles(); }
-  T front_left(const T& time) const { return chain_.front_left(chain_.local_time(time)); }
-  T front_right(const T& time) const { return chain_.front_right(chain_.local_time(time)); }
+  T front_left(const T& time) const { return chain_.front_left(local(time)); }
+  T front_right(const T& time) const { return chain_.front_right(local(time)); }
+  // The gap between a wall and the particle beside it, at such a time; nothing if there is no wall.
+  std::optional<T> gap_to_wall(End end, const T& time) const {
+    if constexpr (requires { chain_.walls(); }) {
+      const Slot s = end == End::left ? chain_.first() : chain_.last();
+      const ParticleIndex gap = chain_.particle(s);
+      const auto& walls = chain_.walls();
+      if (end == End::left ? walls.left_of(gap) : walls.right_of(gap)) return chain_.gap_at(s, local(time));
+    }
+    return {};
+  }
   const Counts& counts() const { return counts_; }
   T energy_lost() const { return chain_.energy_lost(); }
   // At a time between the last collision and the time advanced to, which matters if a wall carries a particle.
@@ -133,13 +144,13 @@ class Simulation {
   WallTallies<T> wall_tallies(const T& time) const requires requires(const Chain& c) { c.walls(); }
   {
     if constexpr (requires { chain_.walls_at(time); })
-      return chain_.walls_at(chain_.local_time(time)).tallies();
+      return chain_.walls_at(local(time)).tallies();
     else
       return chain_.walls().tallies();
   }
   // After the last collision; at a time between it and the time advanced to, which matters if particles fall.
   T kinetic_energy() const { return chain_.kinetic_energy(last_collision_); }
-  T kinetic_energy(const T& time) const { return chain_.kinetic_energy(chain_.local_time(time)); }
+  T kinetic_energy(const T& time) const { return chain_.kinetic_energy(local(time)); }
   static constexpr bool falls() { return FallingChain<Chain>; }
   // The start if there has been no collision.
   T last_collision_time() const { return chain_.stamp(last_collision_).value(); }
@@ -170,12 +181,27 @@ class Simulation {
     Simulation& run;
   };
 
+  // The local time of a reading. Where particles fall, the rounded time of the last collision is that of the state
+  // which it has left: at another one a particle that has come to rest on a floor would have fallen for a rounding.
+  T local(const T& time) const {
+    if constexpr (FallingChain<Chain>)
+      if (time == last_collision_time()) return last_collision_;
+    return chain_.local_time(time);
+  }
   // Whether particles slower than a given speed come to rest on a wall.
   bool can_rest() const {
     if constexpr (FallingChain<Chain> && requires { chain_.particles(); })
       return chain_.particles().holding() != nullptr;
     else
       return false;
+  }
+  // Whether collisions that follow each other at one time end at a speed or at a gap.
+  bool ends_at_a_size() const { return has_threshold(law_) || can_rest() || policy_.follows_a_gap(); }
+  // By what factor gaps shrink until the run stops at a given size.
+  T followed() const {
+    if (!policy_.follows_a_gap() || chain_.last() < chain_.first()) return T(1);
+    const T factor = smallest_gap(chain_) / policy_.stop_gap;
+    return T(1) < factor ? factor : T(1);
   }
   bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_); }
 
@@ -311,9 +337,8 @@ class Simulation {
         fill_queue();
       }
     const bool move = pacing_.origin_moves(notice, counts_.collisions, last_collision_, active());
-    const bool stands_still =
-        (move || !pacing_.in_epochs) && standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions,
-                                                       active(), policy_.follows_a_gap());
+    const bool stands_still = (move || !pacing_.in_epochs) &&
+                              standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, active());
     const bool moves = move && !stands_still, poll = moves || counts_.collisions >= pacing_.next_review;
     const T before = last_collision_;
     if (moves) move_origin(before);
@@ -351,7 +376,7 @@ class Simulation {
     const bool followed = watched && watch_.settled(law_, chain_, s, last_collision_, counts_.collisions);
     const T gap = chain_.nearest_gap(s);
     if (watched && !policy_.follows_a_gap() && watch_.ends_unproved(chain_, s, gap)) return Status::collapsed;
-    return policy_.after(gap, watched && watch_.report.settled, followed);
+    return policy_.after(gap, rebound(chain_, s), watched && watch_.report.settled, followed);
   }
 
   struct Target {

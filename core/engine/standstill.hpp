@@ -8,9 +8,10 @@
 // left.
 //
 // Offsets from a moving origin distinguish times as long as the exponents of the type suffice, possibly for ever. So
-// there is a second bound, the same in every type: on the collisions at one rounded time since the start. A cut-off may
-// end a collapse there. n particles can collapse only if 1 - eps is at least about pi/n: then their speeds fall by a
-// factor exp(x) within n^2 x/pi collisions, and the bound allows for a factor of 10^5000.
+// there is a second bound, the same in every type and for every policy: on the collisions at one rounded time since the
+// start. A cut-off may end a collapse there, or a gap at which the run is to stop. n particles can collapse only if
+// 1 - eps is at least about pi/n: then their speeds fall by a factor exp(x) within n^2 x/pi collisions, and the bound
+// allows for a factor of 10^5000, or for that of the smallest gap to the one at which the run stops, if it is more.
 
 #include <cstdint>
 #include <tuple>
@@ -20,8 +21,10 @@
 namespace cradle {
 
 template <Real T> struct Standstill {
-  // `threshold`: the law has one, below which collisions lose less and less, or nothing.
-  explicit Standstill(const T& start, bool threshold = false) : time(start), threshold_(threshold) {}
+  // `threshold`: below one collisions lose less and less, or nothing, or the run stops. `followed`: by what factor gaps
+  // shrink until it stops, at least 1.
+  explicit Standstill(const T& start, bool threshold = false, const T& followed = T(1))
+      : time(start), threshold_(threshold), times_(1 + binary_exponent(followed) / 16384) {}
 
   T time;                             // local, at the last review
   T elapsed{0};                       // since the start, at the last advance of time
@@ -31,14 +34,13 @@ template <Real T> struct Standstill {
     return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
-  // Called at a review with local time, time since the start, collisions made, active particles. `endless`: collisions
-  // at one time since the start have no bound.
-  bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active, bool endless) {
+  // Called at a review with local time, time since the start, collisions made, active particles.
+  bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active) {
     if (now > time) collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;
     const std::uint64_t long_ones = (1 << 20) + 4096 * active * active;
     return collisions - collisions_then > (threshold_ ? long_ones : 64 + 4 * active * active) ||
-           (!endless && collisions - collisions_at_elapsed > long_ones);
+           collisions - collisions_at_elapsed > times_ * long_ones;
   }
   // An epoch has ended; its local time is now called `now`.
   void epoch_ended(const T& now, const T& since_start, std::uint64_t collisions) {
@@ -47,7 +49,18 @@ template <Real T> struct Standstill {
   }
 
  private:
+  static std::uint64_t binary_exponent(const T& x) {
+    if constexpr (WiderRange<T>) {
+      long exponent = 0;
+      split(x, exponent);
+      return exponent > 0 ? static_cast<std::uint64_t>(exponent) : 0;
+    } else {
+      return 0;  // the range has less than 16384 binary exponents
+    }
+  }
+
   bool threshold_;
+  std::uint64_t times_;
 };
 
 }  // namespace cradle

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 
@@ -16,7 +17,7 @@ namespace cradle {
 enum class Status {
   reached,     // all collisions up to the requested time are made
   collapsed,   // policy stop: inelastic collapse, or a gap below the given one; see collapse()
-  exhausted,   // a gap is about to underflow, or time does not advance: the scalar type resolves no more
+  exhausted,   // a gap or a rebound is about to underflow, or time does not advance: the scalar type resolves no more
   interrupted  // the caller's `interrupt` returned true
 };
 
@@ -47,20 +48,22 @@ template <Real T> struct Collision {
 
 template <Real T> struct Policy {
   CollapsePolicy collapse = CollapsePolicy::cutoff;
-  T stop_gap{0};  // policy stop: continue until a gap is smaller; 0: until the collapse time is known
+  T stop_gap{0};  // policy stop: continue until a gap, or a rebound, is smaller; 0: until the collapse time is known
   // Called after some of the collisions. Exceptions from them leave `advance`; the run is unchanged and can continue.
   std::function<bool()> interrupt = {};  // true ends the run
   std::function<void(const T& time, const Counts&)> progress = {};
 
-  // Whether a gap size is given: then a collapse is followed for any number of collisions.
+  // Whether a gap size is given: then a collapse is followed until a gap is smaller.
   bool follows_a_gap() const { return collapse == CollapsePolicy::stop && is_positive(stop_gap); }
-  // The status of the run after a collision that leaves this gap beside it; `settled`: its collapse is known,
-  // `followed`: for long enough. If a gap leaves the type's range without a settled collapse, the particles may still
-  // separate.
-  Status after(const T& gap, bool settled, bool followed) const {
+  // The status of the run after a collision that leaves this gap beside it, or this rebound from a floor; `settled`:
+  // its collapse is known, `followed`: for long enough. If a gap leaves the type's range without a settled collapse,
+  // the particles may still separate. The height of a rebound leaves it long before the speed.
+  Status after(const T& gap, const std::optional<Rebound<T>>& back, bool settled, bool followed) const {
     const T underflow{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows none
-    const bool ends = is_positive(gap) && gap < underflow;
-    if (follows_a_gap() ? is_positive(gap) && gap < stop_gap : settled && (followed || ends)) return Status::collapsed;
+    const auto below = [&](const T& size) { return is_positive(gap) && gap < size; };
+    const bool ends = below(underflow) || (back && back->speed < underflow);
+    if (follows_a_gap() ? below(stop_gap) || (back && back->height < stop_gap) : settled && (followed || ends))
+      return Status::collapsed;
     return ends ? Status::exhausted : Status::reached;
   }
   Status poll(const T& time, const Counts& counts) const {

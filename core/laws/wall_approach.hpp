@@ -18,10 +18,11 @@ template <Real T> struct HoldingWall {
   bool holds = false;
   std::optional<T> release;
 
-  // Whether it presses a particle of this pull at a time since the start.
-  bool presses(const T& pull, const Pair<T>& elapsed) const {
-    return is_positive(motion != nullptr ? T(pull + motion->acceleration(motion->at(elapsed).rest)) : pull);
+  // The pull that a particle of this pull has on it at a time since the start, and whether the wall presses it then.
+  T pressure(const T& pull, const Pair<T>& elapsed) const {
+    return motion != nullptr ? T(pull + motion->acceleration(motion->at(elapsed).rest)) : pull;
   }
+  bool presses(const T& pull, const Pair<T>& elapsed) const { return is_positive(pressure(pull, elapsed)); }
 };
 
 template <Real T> class WallApproach {

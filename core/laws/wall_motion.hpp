@@ -79,12 +79,18 @@ template <Real T> class WallMotion {
     return is_negative(y) ? curving_ : T(-curving_);
   }
   // The phase from -1/4 to 1/2 at which it ceases to press a particle of this pull, or drops from under it; nothing if
-  // it never does. Of the sine by bisection, to the last bit.
+  // it never does. Of the sine, where sin(2 pi y) = pull/(A omega^2), by bisection, to the last bit: for a small ratio
+  // s between s/8 and s/4, since halving towards 0 from afar would take as many steps as the type has exponents.
   std::optional<T> release(const T& pull) const {
     if (shape_ == Shape::sawtooth) return T(1) / T(2);
     if (!(pull < curving_)) return {};
-    if (shape_ == Shape::parabola) return T(0);
-    T low = T(-1) / T(4), high = T(1) / T(4);
+    if (shape_ == Shape::parabola || pull == T(0)) return T(0);
+    const T quarter = T(1) / T(4), ratio = pull / curving_;
+    T low = -quarter, high = quarter;
+    if (magnitude(ratio) < T(1) / T(1 << 30)) {
+      const T near = ratio / T(8), far = ratio / T(4);
+      low = is_negative(ratio) ? far : near, high = is_negative(ratio) ? near : far;
+    }
     for (;;) {
       const T middle = (low + high) / T(2);
       if (!(low < middle && middle < high)) return high;

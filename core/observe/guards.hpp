@@ -1,8 +1,9 @@
 #pragma once
-// Conditions that hold in every run, for any physics. If one fails, the machine or the program is at fault, and later
-// results mean nothing. They are checked on a configuration from time to time:
+// Conditions that hold in every run, for any physics. If one fails, the machine or the program is at fault, or absolute
+// positions do not resolve what happens, and later results mean nothing. They are checked from time to time:
 //
 //   order     no two particles have changed places, unless the run's account records it
+//   wall      no particle is beyond a wall: no collision with it was missed
 //   past      the last collision is not later than the time of the check, nor earlier than that of the check before
 //   energy    the sum over all particles is what the ledger of losses leaves; no particle has more than there was
 //   momentum  is what it was at the start, with what gravity has added, except between walls
@@ -49,6 +50,7 @@
 // the particles' own, for 5e8 sqrt(E/(M U^2/2)) if they are sums. An error in a position is found if it exceeds delta U
 // t; masses of 1e-8 beside 1 can make this 1e4 times larger than equal masses do.
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -57,12 +59,12 @@
 
 namespace cradle {
 
-enum class Guard { order, past, energy, momentum, closure };
+enum class Guard { order, wall, past, energy, momentum, closure };
 
 template <Real T> struct GuardReport {
   Guard guard = Guard::order;
   T found{0}, bound{0};
-  ParticleIndex particle = -1;  // order: the particle on the left
+  ParticleIndex particle = -1;  // order: the particle on the left; wall: that beyond it
 };
 
 // The result of a check.
@@ -72,13 +74,10 @@ template <Real T> struct GuardCheck {
   T closure_gap{0}, closure_speed{0};  // 0 if the configuration has none
 };
 
-// A number from the root of x >= 0 to 1.06 times the root, by the four operations: some types have no root.
+// A number from the root of x >= 0 to 1.06 times the root.
 template <Real T> T root_above(const T& x) {
-  if (!is_positive(x)) return T(0);
-  T root = x < T(1) ? T(1) : x;  // an upper bound; halved until it is near, then Newton's steps, which remain above
-  while (x < root * root / T(4)) root /= T(2);
-  for (int step = 0; step < 2; ++step) root = (root + x / root) / T(2);
-  return root;
+  using std::sqrt;
+  return is_positive(x) ? T(T(sqrt(x)) * T(33) / T(32)) : T(0);
 }
 
 namespace detail {
@@ -95,7 +94,31 @@ T work_at_ends(const Configuration<T>& c, const Particles<T>& particles, const T
   return is_positive(room) ? T(T(2) * twice_energy * magnitude(*c.closure_gap) / room) : T(0);
 }
 
+template <Real T> T guard_unit(const Particles<T>& particles, std::uint64_t collisions) {
+  return T(8) * T(std::numeric_limits<T>::epsilon()) *
+         (T(static_cast<std::int64_t>(collisions)) + T(particles.count()) + T(64));
+}
+
 }  // namespace detail
+
+// The guard of walls, with |dx| above as the bound. It costs little, so it need not wait for many collisions.
+// Run::gap_to_wall as of a Simulation.
+template <class Run, Real T = typename Run::Scalar>
+std::optional<GuardReport<T>> beyond_a_wall(const Run& run, const Particles<T>& particles, const T& time,
+                                            const T& elapsed) {
+  for (const End end : {End::left, End::right}) {
+    const std::optional<T> gap = run.gap_to_wall(end, time);
+    if (!gap || !is_negative(*gap)) continue;
+    const Wall<T>& wall = *particles.wall(end);
+    const ParticleIndex last = particles.count() - 1;
+    const T top_speed = root_above(T(T(2) * particles.most_kinetic_energy(elapsed) / particles.least_mass()));
+    const T extent = magnitude(particles.position(0)) + magnitude(particles.position(last)) + magnitude(wall.position) +
+                     wall.fastest() * elapsed;
+    const T bound = -detail::guard_unit(particles, run.counts().collisions) * (extent + top_speed * elapsed);
+    if (*gap < bound) return GuardReport<T>{Guard::wall, *gap, bound, end == End::left ? 0 : last};
+  }
+  return {};
+}
 
 // `energy`: what the ledger leaves, potential energy included; `elapsed`: since the start; `ordered`: the account has
 // no lost order.
@@ -140,7 +163,7 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   const T start_energy = particles.mechanical_energy(), mass = particles.total_mass();
   const T rest = all ? T(0) : T(start_energy - twice_before.value() / T(2));
   const T epsilon = std::numeric_limits<T>::epsilon();
-  const T delta = T(8) * epsilon * (T(static_cast<std::int64_t>(collisions)) + T(particles.count()) + T(64));
+  const T delta = detail::guard_unit(particles, collisions);
   const bool driven = particles.driven();
   const T twice_energy = T(2) * particles.most_kinetic_energy(elapsed);
   const bool bounded_by_start = particles.identical_masses() && !driven && !fall;

@@ -54,6 +54,7 @@ template <Real T> class Engine {
 
   virtual bool on_ring() const = 0;
   virtual ParticleIndex collided_particles() const = 0;
+  virtual std::optional<T> gap_to_wall(End end, const T& time) const = 0;
   virtual T front_left(const T& time) const = 0;
   virtual T front_right(const T& time) const = 0;
   virtual Configuration<T> configuration(const T& time) const = 0;
@@ -134,6 +135,12 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   }
 
   bool on_ring() const override { return run_.on_ring(); }
+  std::optional<T> gap_to_wall(End end, const T& time) const override {
+    if constexpr (requires { run_.gap_to_wall(end, time); })
+      return run_.gap_to_wall(end, time);
+    else
+      return {};
+  }
   ParticleIndex collided_particles() const override { return run_.collided_particles(); }
   T front_left(const T& time) const override { return run_.front_left(time); }
   T front_right(const T& time) const override { return run_.front_right(time); }

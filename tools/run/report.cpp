@@ -60,7 +60,17 @@ std::string within(const Figure& x, const Figure& error) {
 
 }  // namespace
 
-std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t collisions) {
+std::string collapsing_floor(const Scene& scene) {
+  const auto collapses = [&](const WallAt& wall, bool floor) { return wall.dissipates() && (floor || wall.shaken()); };
+  const auto& [left, right] = scene.walls;
+  const bool acts = scene.gravity.acts(), to_left = acts && *scene.gravity.acceleration < Decimal("0");
+  if (left.shaken() && right.shaken() && left.position && right.position) return "";  // between which none can rest
+  if (collapses(right, acts && !to_left) && !(to_left && collapses(left, true))) return "walls.right";
+  return collapses(left, to_left) ? "walls.left" : "";
+}
+
+std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t collisions,
+                            const std::string& at_wall) {
   std::string text =
       r.settled ? fmt::format("inelastic collapse at t_c = {}\n", within(r.time, r.uncertainty))
       : end == RunEnd::small_gap
@@ -76,7 +86,9 @@ std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t
     text += fmt::format("  interval       {} since the collision there before\n", brief(r.interval));
   if (r.settled)
     text += fmt::format("  ratio          {} of successive intervals there\n", within(r.ratio, r.ratio_uncertainty));
-  text += "  to continue    give law.cutoff a speed, or run.stop_gap a smaller gap to follow the collapse further\n";
+  text +=
+      fmt::format("  to continue    give {} a speed, or run.stop_gap a smaller gap to follow the collapse further\n",
+                  at_wall.empty() ? "law.cutoff" : at_wall + ".rest_speed");
   return text;
 }
 
@@ -128,11 +140,14 @@ std::string account_warning(const ReportedAccount& account, const Run& run) {
   return text;
 }
 
-std::string guard_message(const ReportedGuard& g) {
+std::string guard_message(const ReportedGuard& g, const ReportedAccount& account, const Run& run) {
   const char* what = "";
   switch (g.guard) {
   case Guard::order:
     what = "order: two particles have changed places, the gap is less than rounding can make it";
+    break;
+  case Guard::wall:
+    what = "wall: a particle is beyond it";
     break;
   case Guard::past:
     what = "past: the last collision is not between the one before and the time of the check";
@@ -147,21 +162,35 @@ std::string guard_message(const ReportedGuard& g) {
     what = "closure: gaps or closing speeds do not add up to what the ends of the line give";
     break;
   }
-  return fmt::format(
-      "stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): the machine or the program is at fault. "
-      "`cradle resume` continues from the last checkpoint, made before; if it stops here again, please report the "
-      "scene",
-      what, g.found, g.bound, g.time, g.particle < 0 ? "" : ", " + place(g.particle));
+  const std::string broken = fmt::format("stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): ", what,
+                                         g.found, g.bound, g.time,
+                                         g.guard == Guard::wall ? fmt::format(", particle {}", g.particle)
+                                         : g.particle < 0       ? ""
+                                                                : ", " + place(g.particle));
+  // A gap to a wall that has just closed is not in the account.
+  if (run.coordinates == Coordinates::absolute &&
+      (account.order_lost + account.unresolved > 0 || g.guard == Guard::wall))
+    return broken +
+           "positions do not resolve what decides the next collisions. Use run.coordinates = \"gaps\", or more "
+           "digits (run.precision)";
+  return broken + "the machine or the program is at fault. `cradle resume` continues from the last checkpoint, made "
+                  "before; if it stops here again, please report the scene";
 }
 
-std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Run& run) {
+std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene) {
+  const Run& run = scene.run;
   const bool stops = run.collapse == scene::CollapsePolicy::stop;
-  return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}a "
-                     "law.cutoff{}, or more digits (long double reaches gaps of 1e-4932, mpfr any)\n",
+  const std::string floor = collapsing_floor(scene), cutoff = scene.law.cutoff > Decimal("0") ? "a larger " : "a ";
+  std::string remedies = run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "";
+  if (!floor.empty())
+    remedies += fmt::format("{}.rest_speed, a speed below which particles stay on this wall, ", floor);
+  remedies += cutoff + "law.cutoff";
+  if (!run.stop_gap) remedies += stops ? ", or run.stop_gap to end there" : ", or run.collapse = \"stop\" to end there";
+  // On a floor no number of digits is enough.
+  if (floor.empty()) remedies += ", or more digits (long double reaches gaps of 1e-4932, mpfr any)";
+  return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}\n",
                      time, collisions, precision_name(run),
-                     stops ? ", and that this is an inelastic collapse is not proved" : "",
-                     run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "",
-                     stops ? "" : ", or collapse = \"stop\"");
+                     stops ? ", and that this is an inelastic collapse is not proved" : "", remedies);
 }
 
 }  // namespace cradle::tools

@@ -40,7 +40,12 @@ template <Real T> ReportedCollapse reported(const CollapseReport<T>& r) {
           figure(r.ratio_uncertainty)};
 }
 /// The text for standard output; times have all digits that are known.
-std::string collapse_report(const ReportedCollapse& collapse, RunEnd end, std::uint64_t collisions);
+/// `at_wall`: the wall on which it was, if it can hold particles.
+std::string collapse_report(const ReportedCollapse& collapse, RunEnd end, std::uint64_t collisions,
+                            const std::string& at_wall);
+/// The wall on which a single particle collapses, "walls.left" or "walls.right", which a rest speed of it would end;
+/// empty if there is none.
+std::string collapsing_floor(const Scene& scene);
 Group collapse_table(const ReportedCollapse& collapse);
 
 struct ReportedIncident {
@@ -77,12 +82,12 @@ struct ReportedGuard {
 template <Real T> ReportedGuard reported(const GuardReport<T>& r, const T& time) {
   return {r.guard, to_double(r.found), to_double(r.bound), r.particle, to_text(time)};
 }
-/// The message of a guard that stops a run.
-std::string guard_message(const ReportedGuard& guard);
+/// The message of a guard that stops a run. What positions may not have resolved is not the machine's fault.
+std::string guard_message(const ReportedGuard& guard, const ReportedAccount& account, const Run& run);
 
 /// The text for standard error; empty if everything was resolved.
 std::string account_warning(const ReportedAccount& account, const Run& run);
 /// The warning when time or a gap cannot get smaller.
-std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Run& run);
+std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene);
 
 }  // namespace cradle::tools

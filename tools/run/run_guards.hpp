@@ -28,6 +28,7 @@ template <Real T> class RunGuards {
   /// Checks all particles if that is due. Checks take about a hundredth of the time of the collisions. Whether one is
   /// due depends on the count of collisions, not on the clock, so that a failing run always stops at the same place.
   void check(const T& time, bool at_end) {
+    require_between_walls(time);
     const std::uint64_t collisions = engine_.counts().collisions;
     const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
     const std::uint64_t between = collisions_between / (at_end ? 2 : 1);
@@ -41,6 +42,11 @@ template <Real T> class RunGuards {
     const std::uint64_t before = checked_at_;
     if (static_cast<std::uint64_t>(engine_.collided_particles()) <= most_guarded) check_all(time);
     checked_at_ = before;
+  }
+
+  /// Throws if a particle is beyond a wall, at a time not before the last collision.
+  void require_between_walls(const T& time) const {
+    if (const auto found = beyond_a_wall(engine_, particles_, time, T(time - start_))) stop(*found, time);
   }
 
   /// Throws if the number is beyond the type's range: all that follows would be noise.
@@ -61,6 +67,9 @@ template <Real T> class RunGuards {
   static auto state(auto& self) { return std::tie(self.checked_at_, self.last_before_); }
 
  private:
+  [[noreturn]] void stop(const GuardReport<T>& broken, const T& time) const {
+    throw Error(guard_message(reported(broken, time), reported(engine_.account()), scene_.run), Exit::lost);
+  }
   void check_all(const T& time) {
     const std::uint64_t collisions = engine_.counts().collisions;
     const Account<T>& account = engine_.account();
@@ -68,7 +77,7 @@ template <Real T> class RunGuards {
     const GuardCheck<T> found =
         guarded(now, particles_, collisions, T(energy_ - engine_.energy_lost(time)), T(time - start_),
                 engine_.last_collision_time(), last_before_, account.order_lost + account.unresolved == 0);
-    if (found.broken) throw Error(guard_message(reported(*found.broken, time)), Exit::lost);
+    if (found.broken) stop(*found.broken, time);
     // A check also visits merged particles, so the next one, except for that at the end, is delayed by their number.
     const auto merged = static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size();
     checked_at_ = collisions + collisions_between * merged;

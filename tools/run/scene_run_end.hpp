@@ -8,6 +8,7 @@ namespace cradle::tools {
 
 // Records the last state of a run that ends early.
 template <Real T> inline void SceneRun<T>::record_end(const T& time) {
+  guards_.require_between_walls(time);
   if (options_.observer != nullptr) notify_observer(time, true);
   record_sample(time);
   put(snapshot_rows(engine_.configuration_at_last_collision(), numbered("snapshots", snapshots_)));
@@ -30,7 +31,7 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
     account.first_uncertain = {to_text(time), to_double(time), 0, *particle};
   }
   end.warning = account_warning(account, scene_.run);
-  if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.collisions, scene_.run);
+  if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.collisions, scene_);
   end.result.attributes = provenance(scene_, precision_name(scene_.run), end_row(end.end).text);
   for (const Attribute& attribute :
        {Attribute("simultaneous_collisions", account.simultaneous), Attribute("order_lost", account.order_lost),
@@ -42,7 +43,10 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
   put_tables(end, time);
   if (status == Status::collapsed) {
     const ReportedCollapse collapse = reported(*engine_.collapse());
-    end.report = collapse_report(collapse, end.end, counts.collisions);
+    const ParticleIndex at = collapse.particle;
+    const std::string floor = collapsing_floor(scene_);
+    const bool on_floor = floor == "walls.left" ? at < 0 : floor == "walls.right" && at + 1 == particles_->count();
+    end.report = collapse_report(collapse, end.end, counts.collisions, on_floor ? floor : "");
     end.collapse_time = (collapse.settled ? collapse.time : collapse.last_collision).digits;
     end.result.groups.push_back(collapse_table(collapse));
   }

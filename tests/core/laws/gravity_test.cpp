@@ -91,6 +91,25 @@ TEST(Gravity, AnInelasticBallCollapsesOnTheFloor) {
   EXPECT_NEAR(run.energy_lost(), 2, 1e-14);  // losses below the grid of the ledger are 0
 }
 
+// It leaves the floor at the speeds 1, 1/2, ..., and rises to 1/4 of their squares: 4^-k after k collisions.
+TEST(Gravity, AStopGapIsComparedWithTheReboundFromAFloor) {
+  const auto particles = under(-2, list<double>({1}, {0}), Wall<double>{0., 0., 0.5});
+  const auto check = [&](auto&& chain) {
+    for (const int k : {3, 40, 200}) {
+      Policy<double> policy{CollapsePolicy::stop, std::ldexp(1.5, -2 * k)};
+      Simulation run(Inelastic<double>(1), chain, policy);
+      EXPECT_EQ(run.advance(4.), Status::collapsed);
+      EXPECT_EQ(run.counts().collisions, static_cast<std::uint64_t>(k));
+      EXPECT_EQ(run.collapse().gap, std::ldexp(1, -2 * k));
+      EXPECT_EQ(run.collapse().particle, -1);
+      EXPECT_EQ(run.last_collision_time(), 3 - std::ldexp(1, 2 - k));
+      EXPECT_EQ(run.kinetic_energy(run.last_collision_time()), std::ldexp(1, 1 - 2 * k));
+    }
+  };
+  check(GapChain<double, IdenticalMasses<double>, Gravity<double>>(particles, 0.));
+  check(PositionChain<double, Gravity<double>>(particles, 0.));
+}
+
 // Below the cut-off collisions with the floor are elastic too.
 TEST(Gravity, ACutOffEndsTheCollapseOnTheFloor) {
   const auto particles = under(-2, list<double>({1}, {0}), Wall<double>{0., 0., 0.5});

@@ -130,4 +130,24 @@ TEST_F(Broken, WhatIsNoNumber) {
   expect(Guard::energy);
 }
 
+// Of a run in which a collision with a wall was missed.
+struct Missed {
+  using Scalar = double;
+  double left = 1, right = 1;
+  std::optional<double> gap_to_wall(End end, double) const { return end == End::left ? left : right; }
+  Counts counts() const { return {}; }
+};
+TEST(Guards, FindAParticleBeyondAWall) {
+  const auto list = std::make_shared<List<double>>(std::vector{1., 2.}, std::vector{1., -1.});
+  const Walled<double> particles(list, Wall<double>{0}, Wall<double>{3});
+  EXPECT_FALSE(beyond_a_wall(Missed{1e-3, 0}, particles, 5., 5.));
+  EXPECT_FALSE(beyond_a_wall(Missed{-1e-15, -1e-15}, particles, 5., 5.)) << "by rounding";
+  const auto on_left = beyond_a_wall(Missed{-1e-11, 1}, particles, 5., 5.),
+             on_right = beyond_a_wall(Missed{1, -1e-11}, particles, 5., 5.);
+  ASSERT_TRUE(on_left && on_right);
+  EXPECT_EQ(on_left->guard, Guard::wall);
+  EXPECT_EQ(on_left->particle, 0);
+  EXPECT_EQ(on_right->particle, 1);
+}
+
 }  // namespace guards_test

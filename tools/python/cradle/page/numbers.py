@@ -202,7 +202,7 @@ def warnings(result: Result, version: str) -> list[str]:
                      "that it is an inelastic collapse is not proved.")
     elif result.outcome in ("order of collisions lost", "resolution exhausted"):
         found.append(f"The run ended early: {text(result.outcome)}. More digits (<code>run.precision</code>) reach "
-                     "further.")
+                     "further, but not on an inelastic floor: give that a <code>rest_speed</code>.")
     for name, message in (
             ("order_lost", "collisions came too late by more than rounding"),
             ("unresolved_gaps", "collisions beside a gap that positions do not resolve: take "

@@ -69,7 +69,7 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   Scene scene;
   const std::filesystem::path path(source_name);
   scene.name = path.stem().string();
-  refuse_unknown_keys(entries, scene);
+  refuse_unknown_keys(entries);
   store_all(entries, source_name, scene);
   refuse_inapplicable_keys(entries, scene);
   check_scene(scene, entries, source_name);
@@ -143,6 +143,7 @@ bool operator==(const Scene& a, const Scene& b) {
 Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {
   Entries entries = read_entries(text, source_name);
   apply_overrides(entries, overrides);
+  gather_tables(entries);
   return scene_of(entries, source_name);
 }
 

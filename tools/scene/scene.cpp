@@ -15,6 +15,7 @@
 #include "cradle/tools/scene/list_file.hpp"
 #include "cradle/tools/scene/overrides.hpp"
 #include "cradle/tools/scene/source.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/words/start.hpp"
 
@@ -96,6 +97,8 @@ SceneText text_of(const std::string& path_or_name) {
   std::error_code unreadable;
   const bool exists = std::filesystem::exists(path_or_name, unreadable);
   if (exists && !std::filesystem::is_directory(path_or_name, unreadable)) {
+    if (const auto found = instead_of_file(path_or_name); !found.empty())
+      throw Error({path_or_name, 0, {}}, "not a scene file", found, "save the scene in a file and give this", Exit::io);
     std::ifstream file(path_or_name, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     if (!file || file.bad())

@@ -40,8 +40,8 @@ TEST(ListFile, RefusesWithTheLine) {
   EXPECT_EQ(message(""),
             "b.csv: no particles (found an empty file): give a line x,v or x,v,m and then one line per particle");
   EXPECT_TRUE(begins(message("x,v\n\n"), "b.csv: no particles (found only the names of the columns)"));
-  EXPECT_EQ(message("0,1\n"),
-            "b.csv:1: the columns are not named (found \"0,1\"): begin the file with a line x,v or x,v,m");
+  EXPECT_EQ(message("0,1\n"), "b.csv:1: the columns are not named (found a line of numbers, 2 of them): begin the file "
+                              "with a line x,v or x,v,m");
   EXPECT_TRUE(begins(message("v,x\n"), "b.csv:1:"));
   EXPECT_EQ(message("x,v\n0,1,2\n"), "b.csv:2: wrong number of columns (found 3): give 2 as in the first line");
   EXPECT_EQ(message("x,v,m\n0,1\n"), "b.csv:2: wrong number of columns (found 2): give 3 as in the first line");

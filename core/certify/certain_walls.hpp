@@ -75,6 +75,7 @@ template <Enclosing N> class CertainWalls {
     at.time = start + meeting.in, at.closing = meeting.speed;
     return std::nullopt;
   }
+  bool reflects(ParticleIndex wall) const { return !walls_[number_of(end_of(wall))]->thermal(); }
   // Makes that collision, which is known to be later than the last one of the particle. `elastic`: whatever the wall's
   // restitution is.
   std::optional<Doubt<N>> strike(Motion<N>& motion, const Approaching& at, bool elastic) {

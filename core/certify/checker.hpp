@@ -222,7 +222,7 @@ template <Enclosing N> class Checker {
     if (struck.touched)
       if (auto doubt = less(at.time - struck.changed, law.contact_time, soon)) return doubt;
     if (auto doubt = walls_.strike(motion_, at, slow || soon)) return doubt;
-    return made({at_l, at_r, at.time, at.closing}, slow);
+    return made({at_l, at_r, at.time, at.closing}, (slow || soon) && walls_.reflects(at.wall));
   }
 
   typename CertainLaws<N>::Open outcome_of(ParticleIndex at_l, ParticleIndex at_r, const N& closing, const N& time,

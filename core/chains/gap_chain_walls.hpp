@@ -27,10 +27,10 @@ inline Outcome<T> GapChain<T, Masses, Field>::outcome_at_wall(const Law& law, Sl
     const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
     const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
     const Pair<T> elapsed = clock().since_start(time);
-    const bool stays = field_.holds(particle(s), w, elapsed), below = !stays && below_cutoff(law, w);
-    const T restitution = stays ? T(0) : below || !rested ? T(1) : walls_.wall(wall).restitution;
+    const bool stays = field_.holds(particle(s), w, elapsed), elastic = !stays && (!rested || below_cutoff(law, w));
+    const T restitution = stays ? T(0) : elastic ? T(1) : walls_.wall(wall).restitution;
     Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));
-    outcome.below_cutoff = below;
+    outcome.below_cutoff = elastic && walls_.wall(wall).reflects();
     return outcome;
   } else {
     return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);

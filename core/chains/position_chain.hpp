@@ -223,11 +223,11 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
       bool rested = true;
       if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
       const T& w = closing_[s];
-      const bool below = below_cutoff(law, w);
-      Outcome<T> outcome =
-          walls_.strike(particle(s), w, struck.m, below || !rested ? T(1) : walls_.wall(particle(s)).restitution,
-                        field_.shaken_at(particle(s), since_start(time)));
-      outcome.below_cutoff = below;
+      const Wall<T>& wall = walls_.wall(particle(s));
+      const bool elastic = !rested || below_cutoff(law, w);
+      Outcome<T> outcome = walls_.strike(particle(s), w, struck.m, elastic ? T(1) : wall.restitution,
+                                         field_.shaken_at(particle(s), since_start(time)));
+      outcome.below_cutoff = elastic && wall.reflects();
       return outcome;
     } else {
       return walls_.strike(particle(s), closing_[s], struck.m);

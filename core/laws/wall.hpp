@@ -42,7 +42,8 @@ template <Real T> struct Wall {
   std::shared_ptr<const WallMotion<T>> motion = nullptr;  // of a shaken wall
   T rest_speed{0};  // particles that meet it more slowly stay on it while it presses them, under gravity or if shaken
 
-  bool holds() const { return is_positive(rest_speed) && !(temperature > 0); }
+  bool reflects() const { return !(temperature > 0); }
+  bool holds() const { return is_positive(rest_speed) && reflects(); }
   bool moves() const { return !(speed == T(0)) || motion != nullptr; }
   T fastest() const { return magnitude(speed) + (motion != nullptr ? motion->fastest() : T(0)); }
 };

@@ -169,7 +169,7 @@ template <class T> struct Gas {
     wall.lost += lost;
     wall.given += gain + lost;
     wall.momentum += cell.m * (after - before);
-    below_cutoff += below;
+    below_cutoff += (below || soon) && !wall.random_speed;  // a thermal wall is never elastic
     ++wall.collisions, ++collisions;
     const std::int64_t particle = cell.particles.front();
     return left ? std::pair{std::int64_t{-1}, particle} : std::pair{particle, last() + 1};

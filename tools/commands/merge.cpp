@@ -11,6 +11,7 @@ namespace cradle::tools {
 namespace {
 
 struct MergeArguments : OutputOptions {
+  bool quiet = false;
   std::vector<std::string> files;
 };
 
@@ -20,6 +21,7 @@ Exit merge(const MergeArguments& options) {
   if (!options.forced) all->check_replaces(options.output);
   const Result result = all->result();
   write_result(result, options.output);
+  if (options.quiet) return Exit::done;
   fmt::print("{} replicas: {}\nwrote {}\n", attribute<std::uint64_t>(result.attributes, "replicas", options.output),
              attribute<std::string>(result.attributes, "outcome", options.output), options.output);
   return Exit::done;
@@ -33,6 +35,7 @@ void add_merge(CommandLine& program) {
   const auto options = std::make_shared<MergeArguments>();
   command.arguments("FILE", options->files, "result files of `cradle ensemble` or `cradle sweep`");
   add_output_options(command, *options, "result file", Needed::yes);
+  command.flag("--quiet", options->quiet, "no message about the file");
   command.does([options] { return merge(*options); });
 }
 

@@ -58,10 +58,13 @@ class Folder {
   // something else among `names`, which are about to be written.
   void clear(const std::string& of, const std::vector<std::string>& names, bool forced) {
     heading_ = "exported from " + of;
-    std::ifstream list(path_ / list_of_files);
+    const std::string listed = (path_ / list_of_files).string();
+    if (!instead_of_file(listed).empty()) refuse(list_of_files);
+    std::ifstream list(listed);
     std::string line;
     const bool exported = static_cast<bool>(std::getline(list, line));
-    if (!forced && exported && line != heading_) refuse(line);
+    if (!forced && exported && line != heading_)
+      refuse(line.starts_with("exported from ") ? excerpt(line) : list_of_files);
     std::error_code none;
     if (!forced && !exported)
       for (const std::string& name : names)

@@ -49,6 +49,8 @@ class LiveRun {
   /// Makes the next `n` collisions, or those up to `until` if these are fewer: then the run is at that time. Returns
   /// the number of those that are left.
   virtual std::uint64_t step(std::uint64_t n, const Decimal& until) = 0;
+  /// Ends the run at its last collision: what it has recorded can then be written. Throws Error if it is over.
+  virtual void stop() = 0;
   /// Called before every collision from now on; empty: not any more.
   virtual void observe(std::function<void(const LiveCollision&)> observer) = 0;
 

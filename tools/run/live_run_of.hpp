@@ -66,6 +66,11 @@ template <Real T> class LiveRunOf final : public LiveRun {
       });
     return n;
   }
+  void stop() override {
+    require_in_progress();
+    if (failed_) throw *failed_;
+    over_ = run_.end_with(Status::interrupted);
+  }
   void observe(std::function<void(const LiveCollision&)> observer) override {
     if (!observer) return run_.observe();
     run_.observe([observer = std::move(observer)](const Collision<T>& c) {
@@ -104,10 +109,11 @@ template <Real T> class LiveRunOf final : public LiveRun {
     require_own_law("written");
     if (!over_)
       throw Error({scene_.name, 0, ""}, "not at its end", "t = " + to_text(time_),
-                  "advance to run.until = " + scene_.run.until.text + " first, or save a checkpoint");
+                  "advance to run.until = " + scene_.run.until.text +
+                      " first, stop the run here, or save a checkpoint");
     const FileClaim claim(path);
     check_overwrite(path, "run", &scene_, force);
-    if (!without_collisions(scene_)) return store_.write(over_->result, path);
+    if (over_->end == RunEnd::interrupted || !without_collisions(scene_)) return store_.write(over_->result, path);
     MemoryStore store({});
     const RunOutcome direct = run_scene(scene_, {Progress::Show::never, nullptr, nullptr, {}, &store, false});
     store.write(direct.result, path);

@@ -106,7 +106,27 @@ Group collapse_table(const ReportedCollapse& r) {
           {}};
 }
 
-std::string account_warning(const ReportedAccount& account, const Run& run) {
+namespace {
+
+// Whether the scene asks for averages over many collisions, to which the order of single ones does not matter.
+bool measures_averages(const Output& output) {
+  return output.averages.every || !output.histograms.empty() || output.correlations.every || output.structure.every ||
+         output.pair_distribution.every;
+}
+
+// What keeps three particles from meeting at one time.
+std::string apart(const Scene& scene) {
+  if (scene.law.type == LawType::inelastic && scene.law.restitution == Decimal("0"))
+    return "with law.restitution = 0 particles stay together; give a small one to part them";
+  return scene.initial.type == InitialType::list
+             ? "where that matters, give other initial.x or initial.v"
+             : "where that matters, give unequal distances, by initial.perturbation or initial.positions = \"poisson\"";
+}
+
+}  // namespace
+
+std::string account_warning(const ReportedAccount& account, const Scene& scene) {
+  const Run& run = scene.run;
   std::string text;
   if (account.order_lost > 0)
     text += fmt::format(
@@ -121,17 +141,18 @@ std::string account_warning(const ReportedAccount& account, const Run& run) {
         account.first_unresolved.gap);
   if (account.simultaneous > 0)
     text += fmt::format(
-        "three particles met within rounding ({} collisions): the tie rule decided their order; perturb the "
-        "initial state where that matters (of law.restitution = 0, which leaves particles together, take "
-        "a small one; where particles rest on one another it is always so)\n",
-        account.simultaneous);
+        "in {} collisions three particles met at one time, within rounding: then the numbers do not say which pair "
+        "collides first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
+        account.simultaneous, apart(scene));
   if (account.uncertain)
     text += fmt::format(
         "collisions are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided "
         "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
-        "system that starts a rounding away. Use more digits (run.precision), and `cradle trust` to see how many\n",
+        "system that starts a rounding away. {} more digits (run.precision), and `cradle trust` to see how many\n",
         account.first_uncertain.time, account.first_uncertain.gap, place(account.first_uncertain.particle),
-        std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run));
+        std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run),
+        measures_averages(scene.output) ? "Averages over many collisions are as good from it; to follow one motion use"
+                                        : "Use");
   if (account.uncertain_end)
     text += fmt::format(
         "rounding may decide whether there is one more collision before the end (t = {}, {}): use more digits "
@@ -179,15 +200,19 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
 
 std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene) {
   const Run& run = scene.run;
-  const bool stops = run.collapse == scene::CollapsePolicy::stop;
-  const std::string floor = collapsing_floor(scene), cutoff = scene.law.cutoff > Decimal("0") ? "a larger " : "a ";
+  const bool stops = run.collapse == scene::CollapsePolicy::stop, cut_off = scene.law.cutoff > Decimal("0");
+  const std::string floor = collapsing_floor(scene);
   std::string remedies = run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "";
   if (!floor.empty())
     remedies += fmt::format("{}.rest_speed, a speed below which particles stay on this wall, ", floor);
-  remedies += cutoff + "law.cutoff";
-  if (!run.stop_gap) remedies += stops ? ", or run.stop_gap to end there" : ", or run.collapse = \"stop\" to end there";
+  remedies += cut_off ? "a higher law.cutoff, or none, with which a run ends at a collapse" : "a law.cutoff";
+  if (!cut_off && !run.stop_gap)
+    remedies += stops ? ", or run.stop_gap to end there" : ", or run.collapse = \"stop\" to end there";
   // On a floor no number of digits is enough.
-  if (floor.empty()) remedies += ", or more digits (long double reaches gaps of 1e-4932, mpfr any)";
+  if (floor.empty())
+    remedies += run.precision == Precision::mpfr
+                    ? ", or more digits (run.digits)"
+                    : ", or more digits (run.precision; long double reaches gaps of 1e-4932, mpfr any)";
   return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}\n",
                      time, collisions, precision_name(run),
                      stops ? ", and that this is an inelastic collapse is not proved" : "", remedies);

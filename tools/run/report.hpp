@@ -86,7 +86,7 @@ template <Real T> ReportedGuard reported(const GuardReport<T>& r, const T& time)
 std::string guard_message(const ReportedGuard& guard, const ReportedAccount& account, const Run& run);
 
 /// The text for standard error; empty if everything was resolved.
-std::string account_warning(const ReportedAccount& account, const Run& run);
+std::string account_warning(const ReportedAccount& account, const Scene& scene);
 /// The warning when time or a gap cannot get smaller.
 std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene);
 

@@ -30,7 +30,7 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
     account.uncertain_end = true;
     account.first_uncertain = {to_text(time), to_double(time), 0, *particle};
   }
-  end.warning = account_warning(account, scene_.run);
+  end.warning = account_warning(account, scene_);
   if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.collisions, scene_);
   end.result.attributes = provenance(scene_, precision_name(scene_.run), end_row(end.end).text);
   for (const Attribute& attribute :

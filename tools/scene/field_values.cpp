@@ -80,7 +80,7 @@ std::vector<std::string_view> choices_of(const Field& field) {
 
 // Shows numbers without quotation marks.
 [[noreturn]] void refuse(const Field& field, const Value& value, const Scene& scene, std::string_view wrong) {
-  throw Error(value.place, wrong, canonical_decimal(value.text) ? value.text : describe(value), advice(field, scene));
+  throw Error(value.place, wrong, canonical_decimal(value.text) ? excerpt(value.text) : describe(value), advice(field, scene));
 }
 
 // The literal of a number within its range, quoted or not.
@@ -97,6 +97,7 @@ void read(const Field& field, const Value& value, Scene& scene, std::string& tar
   // In `--set title=2026` any bare word is a text.
   const bool bare = value.place.source == "--set" && value.kind != Value::Kind::array;
   if (value.kind != Value::Kind::text && !(bare && !value.text.empty())) refuse(field, value, scene, "wrong type");
+  if (value.text.find('\0') != value.text.npos) refuse(field, value, scene, "a text with a character 0");
   target = value.text;
 }
 

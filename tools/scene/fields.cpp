@@ -237,11 +237,12 @@ const Field all_fields[] = {
      "two masses, the smaller one first: each particle has one drawn uniformly between them; instead of "
      "initial.masses"},
     {"initial.length", initial_of<&Initial::length>, "l", "initial.particles", "(0, inf)", &ring,
-     "circumference of the ring", particles_as_length},
+     "circumference of the ring; positions on it are from 0 to below this", particles_as_length},
     {"initial.velocities", initial_of<&Initial::velocities>, "", "\"gaussian\"", "gaussian | uniform", &thermal_gas,
      "distribution of the velocities"},
     {"initial.variance", initial_of<&Initial::variance>, "l^2/t^2", "1", "(0, inf)", &thermal_gas,
-     "variance of the velocities"},
+     "variance of the velocities, one for all masses: of equal masses the temperature is mass times variance, and a "
+     "mixture starts out of equilibrium"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
      "CSV file of the particles, relative to the scene: a line x,v, x,v,m or gap,v (tools/README.md), then decimals; "
      "or a result, the last snapshot of which is taken if it has all particles; results hold the particles themselves"},

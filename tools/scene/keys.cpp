@@ -29,20 +29,41 @@ std::string_view nearest_key(std::string_view key) {
   return nearest;
 }
 
-void refuse_unknown_key(std::string_view key, const Value& value, const Scene& scene) {
+// What is called otherwise here, or is not there.
+struct OtherName {
+  std::string_view key, advice;
+};
+constexpr std::string_view points =
+    "particles are points; a rod of the length d is one whose distances to all that it meets are shorter by d";
+constexpr OtherName other_names[] = {
+    {"initial.temperature", "give initial.variance, the temperature over the mass: T for particles of mass 1"},
+    {"initial.diameter", points},
+    {"initial.diameters", points},
+    {"initial.radius", points},
+    {"initial.size", points},
+    {"law.epsilon", "did you mean law.restitution?"},
+    {"law.e", "did you mean law.restitution?"},
+    {"law.r", "did you mean law.restitution?"},
+    {"gravity.g", "did you mean gravity.acceleration?"},
+    {"initial.n", "did you mean initial.particles?"},
+    {"initial.N", "did you mean initial.particles?"},
+    {"run.time", "did you mean run.until?"},
+    {"run.end", "did you mean run.until?"},
+};
+
+void refuse_unknown_key(std::string_view key, const Value& value) {
   const auto is_inside = [](std::string_view inner, std::string_view outer) {
     return inner.size() > outer.size() && inner.starts_with(outer) && inner[outer.size()] == '.';
   };
   for (const Field& field : scene_fields()) {
     if (field.key == key) return;
-    if (is_inside(key, field.key))
-      throw Error({value.place.source, value.place.line, std::string(field.key)}, "wrong type", "a table",
-                  advice(field, scene));
     if (is_inside(field.key, key)) {
       if (value.kind == Value::Kind::table) return;  // an empty table has no keys
       throw Error(value.place, "wrong type", describe(value), fmt::format("give a table, such as {} = ...", field.key));
     }
   }
+  for (const OtherName& other : other_names)
+    if (key == other.key) throw Error(value.place, "unknown key", describe(value), other.advice);
   const auto nearest = nearest_key(key);
   throw Error(value.place, "unknown key", describe(value),
               nearest.empty() ? "remove it; the manual lists all keys" : fmt::format("did you mean {}?", nearest));
@@ -67,8 +88,23 @@ std::string belongs_to(std::string_view key) {
 
 }  // namespace
 
-void refuse_unknown_keys(const Entries& entries, const Scene& scene) {
-  for (const auto& [key, value] : entries) refuse_unknown_key(key, value, scene);
+void gather_tables(Entries& entries) {
+  for (const Field& field : scene_fields()) {
+    const std::string inside = std::string(field.key) + '.';
+    Value table{Value::Kind::table, "", {}, {}};
+    std::erase_if(entries, [&](const auto& entry) {
+      if (!entry.first.starts_with(inside)) return false;
+      const Place& place = entry.second.place;
+      if (table.place.key.empty() || place.line < table.place.line)
+        table.place = {place.source, place.line, std::string(field.key)};
+      return true;
+    });
+    if (!table.place.key.empty()) entries.emplace(field.key, std::move(table));
+  }
+}
+
+void refuse_unknown_keys(const Entries& entries) {
+  for (const auto& [key, value] : entries) refuse_unknown_key(key, value);
 }
 
 void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::string_view decider) {

@@ -12,10 +12,12 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cradle/tools/model/initial_state.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/scene/number_range.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -34,6 +36,19 @@ void split(std::string_view line, std::vector<std::string_view>& cells) {
     if (comma == line.npos) return;
     line.remove_prefix(comma + 1);
   }
+}
+
+// Names of columns are shown; of a file that is something else, nothing.
+std::string described(const std::vector<std::string_view>& cells) {
+  const auto is_name = [](std::string_view cell) {
+    const auto in_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+    return !cell.empty() && cell.size() <= 20 && std::isalpha(static_cast<unsigned char>(cell.front())) != 0 &&
+           std::ranges::all_of(cell, in_name);
+  };
+  const auto is_number = [](std::string_view cell) { return canonical_decimal(cell).has_value(); };
+  if (std::ranges::all_of(cells, is_number)) return fmt::format("a line of numbers, {} of them", cells.size());
+  if (cells.size() <= 8 && std::ranges::all_of(cells, is_name)) return fmt::format("\"{}\"", fmt::join(cells, ","));
+  return "other text";
 }
 
 bool is_not_finite(std::string_view cell) {
@@ -57,7 +72,7 @@ class Reader {
     for (const std::string_view cell : cells) {
       const auto name = std::ranges::find(column_names, cell);
       if (name == std::end(column_names) || has(static_cast<ColumnName>(name - column_names)))
-        throw Error({file_, line, {}}, "the columns are not named", fmt::format("\"{:.40}\"", cell), how_to_begin);
+        throw Error({file_, line, {}}, "the columns are not named", described(cells), how_to_begin);
       order_.push_back(static_cast<ColumnName>(name - column_names));
     }
     if (!has(v_column) || !(has(x_column) || has(gap_column)))
@@ -117,7 +132,7 @@ class Reader {
     auto literal = plain_decimal(cell);
     if (!literal)
       throw Error(place(column), is_not_finite(cell) ? "not finite" : "not a decimal number",
-                  fmt::format("\"{}\"", cell), "give a decimal number");
+                  fmt::format("\"{}\"", excerpt(cell)), "give a decimal number");
     range_.check(*literal, place(column));
     return std::move(*literal);
   }
@@ -334,8 +349,11 @@ ListedParticles last_state(const std::string& file, Scene& scene) {
 }  // namespace
 
 void read_list(const std::filesystem::path& path, Scene& scene) {
+  if (const auto found = instead_of_file(path.string()); !found.empty())
+    throw Error({path.string(), 0, {}}, "not a list of particles", found,
+                "name a CSV file of particles or a result in initial.file, relative to the scene file", Exit::io);
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
+  if (!file)
     throw Error({path.string(), 0, {}}, "the list of particles cannot be read", "no such file, or no permission",
                 "correct initial.file, which is relative to the scene file", Exit::io);
   char first = 0;

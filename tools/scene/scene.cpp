@@ -15,6 +15,7 @@
 #include "cradle/tools/scene/list_file.hpp"
 #include "cradle/tools/scene/overrides.hpp"
 #include "cradle/tools/scene/source.hpp"
+#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/words/start.hpp"
 
@@ -80,7 +81,7 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   Scene scene;
   const std::filesystem::path path(source_name);
   scene.name = path.stem().string();
-  refuse_unknown_keys(entries, scene);
+  refuse_unknown_keys(entries);
   store_all(entries, source_name, scene);
   refuse_inapplicable_keys(entries, scene);
   place_particles(entries, scene);
@@ -108,6 +109,8 @@ SceneText text_of(const std::string& path_or_name) {
   std::error_code unreadable;
   const bool exists = std::filesystem::exists(path_or_name, unreadable);
   if (exists && !std::filesystem::is_directory(path_or_name, unreadable)) {
+    if (const auto found = instead_of_file(path_or_name); !found.empty())
+      throw Error({path_or_name, 0, {}}, "not a scene file", found, "save the scene in a file and give this", Exit::io);
     std::ifstream file(path_or_name, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     if (!file || file.bad())
@@ -155,6 +158,7 @@ bool operator==(const Scene& a, const Scene& b) {
 Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {
   Entries entries = read_entries(text, source_name);
   apply_overrides(entries, overrides);
+  gather_tables(entries);
   return scene_of(entries, source_name);
 }
 

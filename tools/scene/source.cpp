@@ -2,6 +2,7 @@
 #include "cradle/tools/scene/source.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 
 #include <toml++/toml.h>
@@ -191,12 +192,33 @@ std::optional<Entries> assigned(std::string_view text, const Place& place) {
   }
 }
 
+// One item of a list that the scene has: `initial.m[1]=50`.
+void replace_item(Entries& entries, const Place& place, std::string_view text) {
+  const auto bracket = place.key.find('[');
+  const std::string list = place.key.substr(0, bracket);
+  const auto entry = entries.find(list);
+  if (bracket == place.key.npos || entry == entries.end() || entry->second.kind != Value::Kind::array)
+    throw Error(place, "not an item of a list in the scene",
+                entry == entries.end() ? "no " + list : describe(entry->second), "give the whole list, " + list);
+  std::vector<Value>& items = entry->second.items;
+  const std::string index = place.key.substr(bracket + 1, place.key.size() - bracket - 2);
+  std::size_t k = 0;
+  const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), k);
+  if (error != std::errc() || end != index.data() + index.size() || k >= items.size())
+    throw Error(place, "not an item of the list", describe(entry->second),
+                items.empty() ? "give the whole list, " + list
+                              : "give " + list + "[0] to " + list + "[" + std::to_string(items.size() - 1) + "]");
+  auto given = assigned(text, place);
+  items[k] = given ? std::move(given->begin()->second) : Value{Value::Kind::text, std::string(text), {}, place};
+  items[k].place = {place.source, 0, list};
+}
+
 }  // namespace
 
 std::string describe(const Value& value) {
   switch (value.kind) {
   case Value::Kind::text:
-    return '"' + value.text + '"';
+    return '"' + excerpt(value.text) + '"';
   case Value::Kind::array:
     return value.items.size() == 1 ? "an array of 1 value"
                                    : "an array of " + std::to_string(value.items.size()) + " values";
@@ -205,7 +227,7 @@ std::string describe(const Value& value) {
   case Value::Kind::date:
     return "a date or time";
   default:
-    return value.text;
+    return excerpt(value.text);
   }
 }
 
@@ -233,6 +255,7 @@ void apply_override(Entries& entries, std::string_view assignment) {
     throw Error({"--set", 0, {}}, "not an assignment", assignment, "write table.key=value");
   const Place place{"--set", 0, key};
   const auto text = trimmed(assignment.substr(equals + 1));
+  if (key.ends_with(']')) return replace_item(entries, place, text);
 
   const auto inside = [](const std::string& inner, const std::string& outer) { return inner.starts_with(outer + '.'); };
   std::erase_if(entries, [&](const auto& entry) {

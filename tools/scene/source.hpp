@@ -30,6 +30,7 @@ Entries read_entries(std::string_view toml, const std::string& source_name);
 
 /// Applies one `table.key=value`: the value is TOML or else a bare word, which is a text; an empty value removes the
 /// key. A table or array replaces the old one completely, and so does a key of a table where there was no table.
+/// `list[k]=value` replaces one item of a list that is there.
 void apply_override(Entries& entries, std::string_view assignment);
 
 /// A single value in TOML syntax, which must be valid.

@@ -120,6 +120,13 @@ std::string file_behind(const std::string& path) {
   throw Error({path, 0, ""}, "cannot be written", "links that lead nowhere", "give another -o FILE", Exit::io);
 }
 
+std::string_view instead_of_file(const std::string& path) {
+  std::error_code error;
+  const fs::file_status found = fs::status(path, error);
+  if (!fs::exists(found) || found.type() == fs::file_type::regular || found.type() == fs::file_type::unknown) return {};
+  return kind_of(found.type());
+}
+
 void write_all(int descriptor, std::array<std::string_view, 3> parts, const std::string& path) {
   for (std::size_t first = 0; first < parts.size();) {
     std::array<iovec, 3> left{};

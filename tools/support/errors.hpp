@@ -23,6 +23,29 @@ enum class Exit : int {
   terminated = 143,   // SIGTERM, SIGUSR1, SIGHUP
 };
 
+/// The text with its control characters written out, so that none cuts a message or reaches a terminal.
+inline std::string printable(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string shown;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code >= 0x20 && code != 0x7F) || c == '\n')
+      shown += c;
+    else
+      shown.append("\\x").append(1, digits[code / 16U]).append(1, digits[code % 16U]);
+  }
+  return shown;
+}
+
+/// The beginning of a text of a user, for a message.
+inline std::string excerpt(std::string_view text) {
+  std::size_t most = 100;
+  if (text.size() <= most) return std::string(text);
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U)
+    --most;  // of a character of several bytes
+  return std::string(text.substr(0, most)) + "...";
+}
+
 /// A place in the input; each part may be missing (empty, or line 0).
 struct Place {
   std::string source;    // file as the user named it, or "--set"
@@ -42,7 +65,7 @@ struct Place {
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, Exit status_ = Exit::bad_input)
-      : std::runtime_error(message), status(status_) {}
+      : std::runtime_error(printable(message)), status(status_) {}
 
   /// `wrong (found FOUND): advice` after the place's prefix; without "(found ...)" where `found` is empty.
   Error(const Place& place, std::string_view wrong, std::string_view found, std::string_view advice,

@@ -128,6 +128,13 @@ TEST(Gravity, ACutOffEndsTheCollapseOnTheFloor) {
   EXPECT_EQ(brief.advance(10), Status::reached);
   // Flights of 1, 1/2, ..., 1/16 end inelastically: that of 1/16 is shorter than the contact time.
   EXPECT_EQ(brief.energy_lost(), 2 - std::ldexp(1, -9));
+  EXPECT_GT(brief.counts().below_cutoff, 100U);
+  EXPECT_EQ(brief.counts().collisions - brief.counts().below_cutoff, 5U);
+  // A thermal floor is never elastic.
+  auto warm = falling(under(-2, list<double>({1}, {0}), thermal(0, 1)), Inelastic<double>(1, 1e9));
+  EXPECT_EQ(warm.advance(10), Status::reached);
+  EXPECT_GT(warm.counts().collisions, 1U);
+  EXPECT_EQ(warm.counts().below_cutoff, 0U);
 }
 
 // On a floor too any collision of the particle counts: here that with another one, 0.19 before, so nothing is lost
@@ -137,6 +144,7 @@ TEST(Gravity, AContactTimeCountsAllCollisionsOfAParticle) {
   const auto lost = [&](auto run) {
     EXPECT_EQ(run.advance(0.4375), Status::reached);
     EXPECT_EQ(run.counts().collisions, 2U);
+    EXPECT_EQ(run.counts().below_cutoff, 1U);
     return run.energy_lost();
   };
   const ContactTime<double> law(Inelastic<double>(0.5), 0.25);

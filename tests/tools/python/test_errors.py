@@ -8,6 +8,7 @@ import unittest
 import h5py
 
 import cradle
+import cradle.errors
 import small
 from cradle import program
 
@@ -94,6 +95,79 @@ class Files(unittest.TestCase):
         with cradle.open("lacking.h5") as result:
             self.assertFalse(result.sealed)
             self.refused("lacking.h5", "lacks data", lambda _: cradle.plot.shock(result))
+
+
+class Arguments(unittest.TestCase):
+    """Whatever is wrong with an argument is one cradle.Error, at once, that names it and speaks of Python."""
+
+    def refused(self, wrong, call):
+        with self.assertRaises(cradle.Error) as raised:
+            call()
+        self.assertEqual(raised.exception.status, 2, raised.exception.message)
+        self.assertRegex(raised.exception.message, wrong)
+        self.assertRegex(raised.exception.message, r"\(found .*\): |character 0")
+
+    def test_of_simulations(self):
+        sim = cradle.Simulation("collapse3")
+        for wrong, call in (
+                ("scene", lambda: cradle.Simulation(5)), ("scene", lambda: cradle.Simulation(None)),
+                ("scene", lambda: cradle.Simulation(b"fig2")), ("scene", lambda: cradle.Simulation(["fig2"])),
+                ("set:", lambda: cradle.Simulation("fig2", 5)),
+                *(("threads:", lambda n=n: cradle.Simulation("fig2", threads=n)) for n in (-1, 2 ** 40, 1.5, "two")),
+                ("restitution:", lambda: cradle.Simulation("collapse3", restitution=0.5)),
+                *(("step:", lambda n=n: sim.step(n)) for n in (-1, 1.5, "3", None)),
+                ("a time", lambda: sim.advance("soon")), ("a time", lambda: sim.advance([1])),
+                ("every: not a function", lambda: sim.every(1, 3)), ("on_collision:", lambda: sim.on_collision(5)),
+                ("every: too many calls", lambda: sim.every(1e-300, print)),
+                ("every: no positive", lambda: sim.every(0, print)),
+                ("every: no positive", lambda: sim.every(-1, print)),
+                ("save:", lambda: sim.save(5)), ("load:", lambda: cradle.Simulation.load(None))):
+            self.refused(wrong, call)
+        sim.step(2 ** 64)  # more than there are
+        self.assertTrue(sim.over)
+        self.refused("write:", lambda: sim.write(5))
+
+    def test_events_that_fill_the_memory_are_warned_of(self):
+        from cradle import simulation
+        self.addCleanup(setattr, simulation, "MOST_EVENTS", simulation.MOST_EVENTS)
+        self.addCleanup(setattr, simulation, "PART", simulation.PART)
+        simulation.MOST_EVENTS, simulation.PART = 100, 7
+        whole, parts = (cradle.Simulation("fig2", small.SHOCK | {"output.events": events}) for events in (False, True))
+        whole.advance()
+        with self.assertWarnsRegex(RuntimeWarning, "events so far take .* GB of memory: .*on_collision"):
+            parts.advance()
+        self.assertEqual((parts.collisions, parts.decimals("energy"), parts.time),
+                         (whole.collisions, whole.decimals("energy"), whole.time))
+
+    def test_of_commands(self):
+        for wrong, call in (
+                ("scene", lambda: cradle.run(5)), ("scene", lambda: cradle.check(5)),
+                ("set:", lambda: cradle.run("fig2", 5)),
+                ("output", lambda: cradle.run("collapse3", output=5)), ("open", lambda: cradle.open(5)),
+                ("character 0", lambda: cradle.run("collapse3", {"title": "a\0b"})),
+                ("resume", lambda: cradle.resume(5))):
+            self.refused(wrong, call)
+
+    def test_messages_name_arguments(self):
+        cradle.run("collapse3", output="other.h5").close()
+        for call in (lambda: cradle.run("collapse3", {"law.restitution": 0.06}, output="other.h5"),
+                     lambda: live.write("other.h5")):
+            live = cradle.Simulation("collapse3", {"law.restitution": 0.06})
+            live.advance()
+            with self.assertRaisesRegex(cradle.Error, "give another output, or force=True") as raised:
+                call()
+            self.assertNotIn("--", raised.exception.message)
+        cradle.run("collapse3", {"law.restitution": 0.06}, output="other.h5", force=True).close()
+        with self.assertRaisesRegex(cradle.Error, r"^set law.restitution: out of range \(found 7\)"):
+            cradle.run("collapse3", {"law.restitution": 7})
+        self.assertEqual(cradle.errors.in_python("`cradle run --force`, or --until"), "`cradle run --force`, or until")
+
+    def test_pipes_and_devices_are_no_results(self):
+        os.mkfifo("pipe.h5")
+        for path in ("pipe.h5", "/dev/zero", "a\0b"):
+            with self.assertRaises(cradle.Error) as raised:
+                cradle.open(path)
+            self.assertEqual(raised.exception.status, 4)
 
 
 class InProgress(unittest.TestCase):

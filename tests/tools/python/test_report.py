@@ -8,6 +8,7 @@ import types
 import unittest
 
 import cradle
+import cradle.drawing.theory
 import small
 from cradle import program
 from cradle.page.elements import enclosed, measured, number
@@ -93,6 +94,54 @@ class Reports(unittest.TestCase):
                       "10<sup>−5</sup>&nbsp;l/t.", first)
         # What a sweep varies is not said to have one value.
         self.assertIn("run into each other; two that collide part at a part of the speed", small.page(small.sweep))
+
+    def begin_of(self, name, scene):
+        """The first paragraph of the report of a run of this scene, and the whole page."""
+        scene = {"law": {"type": "inelastic", "restitution": 0.9}, "run": {"until": 1, "stop_gap": 1e-9}} | scene
+        with cradle.run(scene, output=name + ".h5") as result:
+            page = read(cradle.report(result))
+        return html.unescape(re.search("<p class=intro>(.*)</p>", page)[1]).replace("\xa0", " "), page
+
+    def test_say_what_defines_the_system(self):
+        list_of = {"type": "list", "x": [1, 2], "v": [0, -1]}
+        begin, page = self.begin_of("floor", {
+            "initial": list_of | {"m": [1, 50]}, "gravity": {"acceleration": -9.5},
+            "walls": {"left": {"position": 0, "motion": "sine", "amplitude": 0.01, "frequency": 10, "rest_speed": 1e-3},
+                      "right": {"position": 7, "temperature": 2.5}}})
+        for said in ("2 particles start from given positions", "with the masses 1, 50", "fall to the left, at 9.5 l/t²",
+                     "The left wall is at x = 0 l, is shaken as a sine of amplitude 0.01 l and angular frequency 10 1/t, "
+                     "reflects without loss and holds what comes more slowly than 0.001 l/t.",
+                     "The right wall is at x = 7 l and has the temperature 2.5 m l²/t²."):
+            self.assertIn(said, begin)
+        self.assertNotIn("front at the end", page)
+        begin, page = self.begin_of("piston", {"initial": list_of, "walls": {"right": {
+            "position": 3, "speed": -0.25, "restitution": 0.5}}})
+        self.assertIn("The right wall starts at x = 3 l and moves at −0.25 l/t and reflects with the restitution 0.5.",
+                      begin)
+        self.assertIn("left front at the end", page)
+        self.assertNotIn("right front at the end", page)
+        begin, page = self.begin_of("gas", {"initial": {"type": "gas", "particles": 20, "random_masses": [1, 3]}})
+        self.assertIn("20 particles with random velocities move between two walls, with random masses from 1 to 3",
+                      begin)
+        self.assertNotIn("front at the end", page)
+        begin, _ = self.begin_of("centre", {"initial": {
+            "type": "rows", "left": {"particles": 20, "speed": 1}, "right": {"particles": 1, "speed": -1},
+            "centre": {"mass": 50}}})
+        self.assertIn("A row of 20 particles on the left and one of 1 particle on the right meet a particle of mass 50 at "
+                      "rest between them, at the velocities 1 and -1 l/t;", begin)
+        begin, page = self.begin_of("one", {"initial": {"type": "list", "x": [1], "v": [0]}})
+        self.assertIn("1 particle starts from given positions", begin)
+        self.assertIn("1 particle in gaps", page)
+
+    def test_name_the_paper_where_it_is_cited(self):
+        paper = "Figures, equations and sections are those of the paper"
+        self.assertIn(paper, small.page(small.shock))
+        for make in (small.words, small.threshold):
+            self.assertNotIn(paper, small.page(make), make.__name__)
+        theory = cradle.drawing.theory.Theory("quantity,equation,form,t,value\nenergy,(7),continuous,,1\n"
+                                              "energy_haff,Haff 1983,continuous,,1\nn,\"(6), line 1\",continuous,,1\n")
+        self.assertEqual(theory.equation("energy", "n"), "Eqs. (7), (6)")
+        self.assertEqual(theory.equation("energy_haff"), "Haff 1983")
 
     def test_distinguish_what_is_proved_estimated_and_unknown(self):
         def mark(text, label):

@@ -51,6 +51,34 @@ def shock(**more):
     return cradle.Simulation("fig2", set=small.SHOCK | more)
 
 
+class Stopped(unittest.TestCase):
+    def test_a_run_that_is_stopped_can_be_written(self):
+        sim = shock(**EVENTS)
+
+        def stop_at_30(_):
+            raise KeyboardInterrupt
+        sim.every(30, stop_at_30)
+        with self.assertRaises(KeyboardInterrupt):
+            sim.advance()
+        with self.assertRaisesRegex(cradle.Error, "not at its end .*stop the run here"):
+            sim.write("stopped.h5")
+        sim.stop()
+        self.assertEqual(sim.outcome, "interrupted")
+        with sim.write("stopped.h5") as stopped, cradle.open(small.shock()) as whole:
+            self.assertEqual(stopped.outcome, "interrupted")
+            for name in stopped.events:
+                found = stopped.events[name].values
+                np.testing.assert_array_equal(found, whole.events[name].values[:len(found)])
+            self.assertEqual(len(stopped.events.left), sim.collisions)
+            recorded = len(stopped.series.time)
+            self.assertLess(0, recorded)
+            np.testing.assert_array_equal(stopped.series.energy.values, whole.series.energy.values[:recorded])
+            self.assertEqual([table.attributes["time"] for table in stopped.snapshots], [20])
+        for call in (sim.stop, sim.advance):
+            with self.assertRaisesRegex(cradle.Error, "the run is over"):
+                call()
+
+
 class Bytes(unittest.TestCase):
     def test_those_of_cradle_run(self):
         for name, (scene, settings) in SCENES.items():
@@ -327,7 +355,7 @@ class Calls(unittest.TestCase):
                               (lambda: sim.advance(61), "a time after the end .found 61.: the end is run.until = 60"),
                               (lambda: sim.advance("soon"), "not a time .found soon"),
                               (lambda: sim.advance(float("inf")), "not a time"),
-                              (lambda: sim.step(-1), "fewer than no"),
+                              (lambda: sim.step(-1), "not a number of collisions"),
                               (lambda: sim.every(0, print), "no positive time"),
                               (lambda: sim.write("no.h5"), "not at its end .found t = 30"),
                               (lambda: cradle.Simulation("no_such_scene"), "^no_such_scene: no such scene"),

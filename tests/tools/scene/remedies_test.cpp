@@ -30,6 +30,65 @@ TEST_F(Remedies, AreRightForMisplacedAndUnknownKeys) {
   }
 }
 
+// Keys that others have: the answer says what there is instead.
+TEST_F(Remedies, AnswerKeysOfOtherPrograms) {
+  const std::string ring = "fig2 --set initial.type=ring --set initial.length= --set initial.spacing= --set "
+                           "initial.speed= --set initial.particles=20 --set run.until=1 ";
+  for (const auto& [key, advice] : {std::pair{"initial.temperature=2", "give initial.variance, the temperature over"},
+                                    {"initial.diameter=0.1", "particles are points; a rod of the length d"},
+                                    {"initial.radius=0.1", "particles are points; a rod of the length d"},
+                                    {"law.e=0.5", "did you mean law.restitution?"},
+                                    {"gravity.g=-9.81", "did you mean gravity.acceleration?"},
+                                    {"run.time=10", "did you mean run.until?"},
+                                    {"initial.n=10", "did you mean initial.particles?"}})
+    EXPECT_TRUE(has(shell("cradle check " + ring + "--set " + key, 2).err, std::string("unknown key (found ")));
+  EXPECT_TRUE(has(shell("cradle check " + ring + "--set initial.temperature=2", 2).err, "give initial.variance"));
+  shell("cradle check " + ring + "--set initial.variance=2", 0);
+}
+
+// One number of a list, by `--set`, as a value that a sweep varies, and in its points.
+TEST_F(Remedies, OneNumberOfAList) {
+  const std::string scene = "collapse3 --set initial.m=[1,1,1] --set run.until=1 ";
+  EXPECT_TRUE(has(shell("cradle check " + scene + "--set initial.m[3]=2", 2).err,
+                  "--set initial.m[3]: not an item of the list (found an array of 3 values): give initial.m[0] to "
+                  "initial.m[2]"));
+  EXPECT_TRUE(has(shell("cradle check collapse3 --set initial.m[0]=2", 2).err,
+                  "--set initial.m[0]: not an item of a list in the scene (found no initial.m): give the whole list, "
+                  "initial.m"));
+  EXPECT_TRUE(has(shell("cradle check " + scene + "--set initial.m[1]=a", 2).err, "--set initial.m: wrong type"));
+  EXPECT_TRUE(has(shell("cradle check " + scene + "--set initial.m[1]=2.5").out, "[1, 2.5, 1]"));
+  shell("cradle sweep " + scene + "--vary initial.m[1]=1:3:3 --point initial.m[0]=5 --quiet -o s.h5", 0);
+  EXPECT_EQ(numbers(read("s.h5"), "sweep", "initial.m[1]")[2], 2);
+  shell("cradle threshold " + scene + "--vary initial.m[1]=0.5:3 --no-proof --quiet -o t.h5");
+}
+
+TEST_F(Remedies, MergeIsQuiet) {
+  const std::string one = "cradle ensemble fig2 --replicas 1 --set initial.particles=20 --set run.until=1 --set "
+                          "initial.perturbation=0.1 --set output.snapshots= --set output.profiles.times= --quiet ";
+  shell(one + "-o a.h5 && " + one + "--first 1 -o b.h5", 0);
+  EXPECT_EQ(shell("cradle merge a.h5 b.h5 -o c.h5 --quiet", 0).out, "");
+  EXPECT_TRUE(has(shell("cradle merge a.h5 b.h5 -o c.h5", 0).out, "wrote c.h5"));
+}
+
+// What a run says of what it could not resolve can be followed.
+TEST_F(Remedies, OfWhatARunCannotResolve) {
+  const std::string three =
+      "cradle run collapse3 --set initial.x=[0,1,2] --set law.restitution=0.9 --set run.stop_gap= "
+      "--set run.until=1 --force -o a.h5 ";
+  EXPECT_TRUE(has(shell(three, 0).err, "in 3 collisions three particles met at one time, within rounding: then the "
+                                       "numbers do not say which pair collides first, and the left one is taken; "
+                                       "where that matters, give other initial.x or initial.v"));
+  EXPECT_EQ(shell(three + "--set initial.x=[0,1,2.1]", 0).err, "");
+  // A cut-off that is too low for the run is to be raised.
+  write("low.toml", "law = { type = 'inelastic', restitution = 0.05, cutoff = 1e-300 }\nrun.until = 2\n"
+                    "initial = { type = 'list', x = [0, 1, 3], v = [1, 0, -1] }\n");
+  const Printed low = shell("cradle run low.toml --force -o a.h5", 5);
+  EXPECT_TRUE(has(low.err, "use a higher law.cutoff, or none, with which a run ends at a collapse, or more digits"))
+      << low.err;
+  shell("cradle run low.toml --force -o a.h5 --set law.cutoff=1e-100", 0);
+  shell("cradle run low.toml --force -o a.h5 --set law.cutoff=", 3);
+}
+
 TEST_F(Remedies, NameTheSceneThatIsThere) {
   shell("cradle new shock.toml --from fig5 && mkdir deep && cp shock.toml deep", 0);
   EXPECT_TRUE(has(shell("cradle run shokc.toml", 4).err, "bundled scene): did you mean shock.toml?"));

@@ -13,6 +13,7 @@ namespace cradle::tools::scene_test {
 
 using test::begins;
 using test::has;
+using tests::matches;
 using tests::ProgramTest;
 using tests::refusal;
 
@@ -491,6 +492,40 @@ TEST_F(SceneFiles, ResultsAreNoScenes) {
             path("a.h5") +
                 ": a result, not a scene (found HDF5): give the scene file, or inspect it with `cradle info " +
                 path("a.h5") + "`");
+}
+
+// What is no file is neither waited for nor read without end, whatever command it is given to.
+TEST_F(SceneFiles, AreFiles) {
+  write("list.toml", "law.type = 'sticky'\nrun.until = 1\ninitial = { type = 'list', file = 'fifo' }\n");
+  shell("mkfifo fifo && mkdir out && mkfifo out/files.txt && cradle run collapse3 --quiet -o a.h5", 3);
+  for (const char* command :
+       {"check fifo", "run fifo", "run /dev/zero", "ensemble fifo --replicas 2", "sweep fifo", "trust fifo",
+        "certify fifo", "threshold fifo --vary law.restitution=0:1", "theory fifo", "new b.toml --from fifo",
+        "run list.toml", "run list.toml --set initial.file=/dev/zero", "info fifo", "export fifo --to csv",
+        "diff fifo a.h5", "merge fifo a.h5 -o b.h5", "resume fifo"}) {
+    const tests::Printed refused = shell(std::string("timeout 20 cradle ") + command, 4);
+    EXPECT_TRUE(matches(refused.err, "(fifo|zero): [^:]+ \\(found [^:]*(?:FIFO|device)[^:]*\\): .+").size() == 1)
+        << command << "\n"
+        << refused.err;
+  }
+  EXPECT_TRUE(has(shell("timeout 20 cradle export a.h5 --to out", 2).err, "a folder with other files"));
+  // A file that is given as another one is not shown.
+  write("secret", "root:$6$abcdef:19000:0:99999:7:::\nsecond,line\n");
+  for (const char* command : {"run list.toml --set initial.file=secret", "run secret", "info secret"})
+    EXPECT_FALSE(has(shell(std::string("cradle ") + command).err, "abcdef")) << command;
+}
+
+// A message is whole, and says what a terminal would do rather than show.
+TEST(Scene, ControlCharactersAreWrittenOut) {
+  expect_refused({
+      {restitution("\"a\\u0000b\\u001B[2J\""), 3, "law.restitution",
+       "wrong type (found \"a\\x00b\\x1b[2J\"): give a number from 0 to 1"},
+      {line(3, "\"a\\u0000b\" = 1"), 3, "law.a\\x00b", "unknown key (found 1): remove it; the manual lists all keys"},
+      {"title = \"a\\u0000b\"\n" + good, 1, "title", "a text with a character 0 (found \"a\\x00b\"): give a text"},
+      {line(5, "type = \"list\"\nfile = \"a\\u0000b\""), 6, "initial.file", "a text with a character 0..."},
+      {line(2, "type = \"" + std::string(5000, 'a') + "\""), 2, "law.type",
+       "no such choice (found \"" + std::string(100, 'a') + "...\"): give one of inelastic, wet, sticky"},
+  });
 }
 
 TEST(Overrides, ReplaceAddAndRemove) {

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Union
 
 from . import program
-from .errors import COLLAPSE, DONE, LOST, Error
+from .errors import BAD_INPUT, COLLAPSE, DONE, LOST, Error, in_python, path_of
 from .progress import Show, shown
 from .result import Result, open
 from .scene import scene_text, value_text
@@ -101,7 +101,7 @@ def threshold(scene: Scene, vary: Settings, set: Settings = None, *, outcome: st
 def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
            progress: bool | Show | None = None) -> Result:
     """Continues a run, an ensemble or a sweep that was stopped, or, with `until`, extends it; returns its result."""
-    path = os.fspath(path)
+    path = path_of(path, "resume")
     return called(["resume", path, *option("--until", until)], path, threads, progress)
 
 
@@ -112,7 +112,7 @@ def option(name: str, value: Any) -> list[str]:
 def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, force: bool = False,
             seed: int | None = None, threads: int | None = None, progress: bool | Show | None = None) -> Result:
     with scene_file(scene) as (path, name):
-        output = os.fspath(output) if output is not None else name + ending
+        output = path_of(output, "output") if output is not None else name + ending
         words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]
         words += ["--force"] * force
         return called(words, output, threads, progress)
@@ -121,6 +121,9 @@ def compute(command, ending, scene, set, options, *, output: str | os.PathLike |
 def assignments(set: Settings, table: str = "") -> list[str]:
     """The arguments of --set. The keys of a nested table are set one by one; a table under a dotted key replaces it."""
     found = []
+    if not isinstance(set, Mapping) and set is not None:
+        raise Error(f"set: not keys and values (found {set!r}): give a dict, {{'run.until': 5}} for instance",
+                    BAD_INPUT)
     for key, value in (set or {}).items():
         if isinstance(value, Mapping) and "." not in key:
             found += assignments(value, f"{table}{key}.")
@@ -136,7 +139,7 @@ def settings(set: Settings) -> list[str]:
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:
     with shown(progress) as show:
         call = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show)
-    said = call.messages.strip().removeprefix("cradle: ") or call.out.strip()
+    said = in_python(call.messages.strip().removeprefix("cradle: ") or call.out.strip())
     try:
         result = open(output)
     except Error:
@@ -156,9 +159,7 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
         scene, name = scene.scene_text, str(scene.attributes.get("name", "scene"))
     else:
         name = "scene"
-    if isinstance(scene, Mapping):
-        scene = scene_text(scene)
-    scene = os.fspath(scene)
+    scene = text_or_path(scene)
     if "\n" not in scene:
         yield scene, os.path.splitext(os.path.basename(scene))[0]
         return
@@ -167,6 +168,16 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
         with builtins_open(path, "w", encoding="utf-8") as file:
             file.write(scene)
         yield path, name
+
+
+def text_or_path(scene) -> str:
+    """A scene file, the name of a bundled scene, or the text of one. Raises Error for what is none."""
+    if isinstance(scene, (str, os.PathLike)):
+        return path_of(scene, "scene")
+    if isinstance(scene, Mapping):
+        return scene_text(scene)
+    raise Error(f"not a scene (found {scene!r}): give a file, the name of a bundled scene, a text with line breaks, "
+                "nested dicts or a result", BAD_INPUT)
 
 
 def bare(value: Any, between: str = "") -> str:

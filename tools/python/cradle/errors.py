@@ -1,6 +1,8 @@
 """The exception for all errors, and the meanings of the program's exit statuses."""
 from __future__ import annotations
 
+import os
+import re
 import sys
 
 DONE, DIFFERS, BAD_INPUT, COLLAPSE, BAD_FILE, LOST = 0, 1, 2, 3, 4, 5
@@ -18,6 +20,31 @@ class Error(Exception):
     def __init__(self, message: str, status: int = BAD_INPUT, result=None):
         super().__init__(message)
         self.message, self.status, self.result = message, status, result
+
+
+def path_of(value, what: str) -> str:
+    """A path as text. Raises Error for what is none."""
+    try:
+        if isinstance(path := os.fspath(value), str):
+            return path
+    except TypeError:
+        pass
+    raise Error(f"{what}: not a path (found {value!r}): give a text or a pathlib.Path", BAD_INPUT)
+
+
+def callable_of(function, what: str):
+    """Raises Error for what cannot be called."""
+    if not callable(function):
+        raise Error(f"{what}: not a function (found {function!r}): give one, or anything that can be called", BAD_INPUT)
+    return function
+
+
+def in_python(message: str) -> str:
+    """A message of the program with the arguments of functions in place of options; commands in it stay as they are."""
+    parts = message.split("`")
+    parts[::2] = [re.sub(r"(?<![\w-])--([a-z]+)", r"\1", part.replace("--force", "force=True").replace(
+        "-o FILE", "output").replace("--to DIR", "folder")) for part in parts[::2]]
+    return "`".join(parts)
 
 
 def missing(module: str) -> Error:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import stat
 
 import h5py
 
@@ -17,9 +18,11 @@ STORED_FORMAT = 4  # the last letter of how these files begin
 def stored_in(path: str) -> str:
     """"result" or "journal". Raises Error for any other file."""
     try:
+        if not stat.S_ISREG(os.stat(path).st_mode) and not os.path.isdir(path):
+            raise OSError("a FIFO or device")  # to read one might wait for ever
         with open(path, "rb") as file:
             head = file.read(8)
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise unreadable(path, error) from None
     stored = STORED.get(head[:7]) if head[7:].isdigit() else None
     if stored and int(head[7:]) != STORED_FORMAT:
@@ -45,8 +48,8 @@ def is_sealed(path: str, check: bool | None) -> bool:
     return sealed
 
 
-def unreadable(path: str, error: OSError) -> Error:
-    return Error(f"{path}: not a file that can be read ({error.strerror or error}): "
+def unreadable(path: str, error: OSError | ValueError) -> Error:
+    return Error(f"{path}: not a file that can be read ({getattr(error, 'strerror', None) or error}): "
                  "give a file written by `cradle run`", BAD_FILE)
 
 

@@ -21,7 +21,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from . import program
-from .errors import BAD_FILE, BAD_INPUT, Error
+from .errors import BAD_FILE, BAD_INPUT, Error, path_of
 from .files import check_replaced, made_from
 from .result import Result, open
 
@@ -99,7 +99,7 @@ def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: 
     force: False replaces only pictures that were made from a result of the same name.
     Returns their paths. Same result, same bytes. Raises Error.
     """
-    base, extension = os.path.splitext(os.fspath(output))
+    base, extension = os.path.splitext(path_of(output, "output"))
     if extension.lower() not in (".png", ".pdf", ".svg"):
         raise Error(f"unknown kind of picture ({extension or 'no extension'}): use .png, .pdf or .svg", BAD_INPUT)
     from .drawing.pictures import write_file

@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from .errors import BAD_FILE, DONE, Error
+from .errors import BAD_FILE, BAD_INPUT, DONE, Error, in_python
 
 WHERE = ((*[".."] * 3, "build", "release", "tools", "cradle"), (*[".."] * 4, "bin", "cradle"))  # from this package
 
@@ -71,6 +71,9 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
             if child is not None:
                 child.send_signal(signal.SIGINT)
                 child.wait()
+            elif isinstance(error, ValueError):  # a character 0
+                raise Error(f"a word that no program can be given ({error}): leave out the character 0",
+                            BAD_INPUT) from None
             elif isinstance(error, OSError):
                 raise Error(f"{command[0]} cannot be run ({error.strerror}): set CRADLE_PROGRAM to a program of this "
                             "machine", BAD_FILE) from None
@@ -80,7 +83,7 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     if status in accepted:
         return Call(printed, messages, status)
     said = ("\n" + messages.strip()).rpartition("\ncradle: ")[2]  # without what was noted before
-    raise Error(said or f"{' '.join(command[:2])} ended without a message (status {status}): "
+    raise Error(in_python(said) or f"{' '.join(command[:2])} ended without a message (status {status}): "
                 "run it in a terminal to see more", status if status >= 0 else 128 - status)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import h5py
 
 from . import program
-from .errors import BAD_FILE, Error
+from .errors import BAD_FILE, Error, path_of
 from .opening import is_sealed, open_file, stored_in
 from .scene import parse_toml
 from .tables import Means, Table, Tables, reading
@@ -23,7 +23,7 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     64 MiB, so that large ones open at once. Columns are read on first use.
     Raises Error (status 4) if the file is missing, empty, incomplete, damaged, or not a result of this program.
     """
-    path = os.fspath(path)
+    path = path_of(path, "open")
     if stored_in(path) == "journal":
         return so_far(path)
     sealed = is_sealed(path, check)

@@ -6,6 +6,7 @@ import glob
 import html
 import importlib.machinery
 import importlib.util
+import operator
 import os
 import sys
 import warnings
@@ -14,10 +15,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from . import program
-from .commands import Scene, Settings, assignments
-from .errors import BAD_FILE, BAD_INPUT, Error, missing
+from .commands import Scene, Settings, assignments, text_or_path
+from .errors import BAD_FILE, BAD_INPUT, Error, callable_of, missing, path_of
 from .result import Result, open
-from .scene import parse_toml, scene_text
+from .scene import parse_toml
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +27,9 @@ Time = Union[float, int, str, decimal.Decimal]
 MODULE = f"{__package__}._live"
 REACHED = "reached the end"
 COLUMNS = ("x", "v", "m", "gap", "closing_speed")
+MOST_COLLISIONS = 2 ** 64 - 1  # in a call of step: as many as a run can count
+PART, MOST_EVENTS, EVENT = 2 ** 20, 10 ** 7, 56  # collisions; bytes of one event
+MOST_CALLS, MOST_THREADS = 1e9, 4096
 EXACT = decimal.Context(prec=4096)  # for sums of times; wide types have many digits
 
 
@@ -70,13 +74,17 @@ class Simulation:
                  restitution: Callable[[float], float] | None = None):
         source, is_text, name = source_of(scene)
         settings = assignments(set) + ([] if seed is None else [f"initial.seed={seed}"])
-        self._begin(module().Run(source, is_text, name, settings, threads or 0, restitution is not None), restitution)
+        if restitution is not None:
+            callable_of(restitution, "restitution")
+        held = module().Run(source, is_text, name, settings, threads_of(threads), restitution is not None)
+        self._begin(held, restitution)
 
     def _begin(self, run, restitution=None) -> None:
         self._run, self._restitution = run, restitution
         self._observers: list[Callable[[Collision], Any]] = []
         self._timers: list[Timer] = []
         self._computing = self._warned = False
+        self._events = bool(self.scene.get("output", {}).get("events"))  # to be warned of
 
     # ---- advancing
 
@@ -90,9 +98,14 @@ class Simulation:
 
     def step(self, n: int = 1) -> None:
         """Makes the next n collisions, or all until run.until if these are fewer; the state is that after the last."""
-        if n < 0:
-            raise Error(f"step: fewer than no collisions (found {n}): give a number from 0 on", BAD_INPUT)
-        self._compute(decimal_of(self._run.until), n)
+        if not whole(n) or n < 0:
+            raise Error(f"step: not a number of collisions (found {n!r}): give a whole number from 0 on", BAD_INPUT)
+        self._compute(decimal_of(self._run.until), min(operator.index(n), MOST_COLLISIONS))
+
+    def stop(self) -> None:
+        """Ends the run at its last collision, with the outcome "interrupted", so that write() writes what has been
+        recorded. Raises Error if it is over."""
+        self._run.stop()
 
     def _compute(self, wanted: decimal.Decimal, n: int | None = None) -> None:
         if self._computing:
@@ -102,7 +115,7 @@ class Simulation:
             while True:
                 to = min((timer.due for timer in self._timers if timer.due < wanted), default=wanted)
                 if n is None:
-                    self._run.advance(str(to), self._observer(), self._restitution)
+                    self._advance(str(to))
                 else:
                     n = self._run.step(n, str(to), self._observer(), self._restitution)
                 self._warn_at_end()
@@ -114,6 +127,20 @@ class Simulation:
                     return
         finally:
             self._computing = False
+
+    def _advance(self, to: str) -> None:
+        """In parts while a warning of what events take may be due: all of them are kept in memory."""
+        while self._events:
+            left = self._run.step(PART, to, self._observer(), self._restitution)
+            if self.collisions > MOST_EVENTS:
+                self._events = False
+                size = self.collisions * EVENT / 1e9
+                warnings.warn(f"the {self.collisions} events so far take {size:.2g} GB of memory: take output.events "
+                              "out of the scene and use on_collision(), or cradle.run(), which writes them to the disk",
+                              RuntimeWarning, stacklevel=4)
+            if left > 0 or self.over:
+                return
+        self._run.advance(to, self._observer(), self._restitution)
 
     def _observer(self) -> Callable[[Collision], Any] | None:
         observers = tuple(self._observers)
@@ -135,7 +162,7 @@ class Simulation:
         f gets a Collision: left, right, time, interval, closing_speed. It cannot read the simulation, which is within a
         call; functions of every() can. If f raises, the collision has not been made.
         """
-        self._observers.append(f)
+        self._observers.append(callable_of(f, "on_collision"))
         return f
 
     def every(self, dt: Time, f: Callable[[Simulation], Any]) -> Callable[[Simulation], Any]:
@@ -146,7 +173,12 @@ class Simulation:
         step = decimal_of(dt)
         if not step > 0:
             raise Error(f"every: no positive time (found {dt}): give the time between two calls", BAD_INPUT)
-        self._timers.append(Timer(decimal_of(self._run.time_text), step, f))
+        start = decimal_of(self._run.time_text)
+        calls = EXACT.subtract(decimal_of(self._run.until), start) / step
+        if calls > MOST_CALLS:
+            raise Error(f"every: too many calls (found {dt}, which makes {calls:.3g} of them until run.until): give a "
+                        f"longer time, {MOST_CALLS:.0g} calls at most", BAD_INPUT)
+        self._timers.append(Timer(start, step, callable_of(f, "every")))
         return f
 
     def remove(self, f: Callable) -> None:
@@ -278,9 +310,9 @@ class Simulation:
         """Writes the result of a run that is over and opens it: the bytes of `cradle run`.
 
         output: by default the scene's name with .h5 in the working folder. force: replaces what output holds, also what
-            the same run would not make again. Raises Error before the end.
+            the same run would not make again. Raises Error before the end, which is run.until, a collapse or stop().
         """
-        output = self.name + ".h5" if output is None else os.fspath(output)
+        output = self.name + ".h5" if output is None else path_of(output, "write")
         self._run.write(output, force)
         result = open(output)
         _, result.status, report, warning = self._run.over
@@ -289,13 +321,13 @@ class Simulation:
 
     def save(self, path: str | os.PathLike) -> None:
         """Saves a checkpoint, from which load() continues with the same bits. Raises Error if the run is over."""
-        self._run.save(os.fspath(path))
+        self._run.save(path_of(path, "save"))
 
     @classmethod
     def load(cls, path: str | os.PathLike, *, threads: int | None = None) -> Simulation:
         """A simulation at the place where save() was called; the file stays. Raises Error."""
         loaded = cls.__new__(cls)
-        loaded._begin(module().Run(os.fspath(path), threads or 0))
+        loaded._begin(module().Run(path_of(path, "load"), threads_of(threads)))
         return loaded
 
     # ---- shown
@@ -338,11 +370,28 @@ def decimal_of(value: Time) -> decimal.Decimal:
     return number
 
 
+def whole(value: Any) -> bool:
+    try:
+        operator.index(value)
+    except TypeError:
+        return False
+    return True
+
+
+def threads_of(threads: int | None) -> int:
+    if threads is None:
+        return 0
+    if not whole(threads) or not 0 <= threads <= MOST_THREADS:
+        raise Error(f"threads: not a number of threads (found {threads!r}): give a whole number up to "
+                    f"{MOST_THREADS}, 0 or None for all processors", BAD_INPUT)
+    return operator.index(threads)
+
+
 def source_of(scene: Scene) -> tuple[str, bool, str]:
     """A text or what names a scene, whether it is a text, and the name of one."""
     if isinstance(scene, Result):
         return scene.scene_text, True, str(scene.attributes.get("name", "scene"))
-    text = os.fspath(scene_text(scene) if hasattr(scene, "items") else scene)
+    text = text_or_path(scene)
     return text, "\n" in text, "scene"
 
 

@@ -170,7 +170,11 @@ template <class F> auto reads(const F& f) {
 // Raises cradle.Error with the message and the status.
 void raise(const std::string& message, Exit status) {
   const py::object type = py::module_::import("cradle.errors").attr("Error");
-  const py::object error = type(message, static_cast<int>(status));
+  // A message may show bytes of a file that are no text.
+  const auto text = py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(message.data(), static_cast<Py_ssize_t>(message.size()), "replace"));
+  const py::object shown = py::module_::import("cradle.errors").attr("in_python")(text);
+  const py::object error = type(shown, static_cast<int>(status));
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 void translate(std::exception_ptr thrown) {
@@ -205,6 +209,7 @@ PYBIND11_MODULE(_live, module) {
       .def(py::init<const std::string&, unsigned>())
       .def("advance", &HeldRun::advance)
       .def("step", &HeldRun::step)
+      .def("stop", [](HeldRun& held) { held.use([](LiveRun& run) { run.stop(); }); })
       .def("column", &column_of)
       .def("decimals",
            [](HeldRun& held, LiveRun::Column which) {

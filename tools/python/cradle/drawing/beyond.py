@@ -229,7 +229,7 @@ def draw_rates(points, since, units, axes=None):
         ax.errorbar(cutoff, found[:, k, 0], yerr=found[:, k, 1], fmt="o-", color=colour, capsize=3,
                     label=name + ", and how it varies")
     ax.plot(cutoff, [most_frequent(p, slowest(p)) for p in points], "k:",
-            label=r"all that arrives lost at the cut-off, $2u_0^2/(1-\epsilon^2)\delta^2$")
+            label=r"all that arrives lost at the cut-off, $2u_0^2/(1-r^2)\delta^2$")
     ax.set(xscale="log", yscale="log", xlabel=r"cut-off $\delta$", ylabel=units.rate_label())
     ax.legend(loc="best")
     return figure

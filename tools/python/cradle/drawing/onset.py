@@ -63,17 +63,17 @@ def draw(curves, walled, axes=None):
         number = np.array([n for n, _, _ in points])
         share, low, high = np.array([wilson(hits, count) for _, hits, count in points]).T
         left.errorbar(number * (1 - eps), share, yerr=[share - low, high - share], fmt="o-", ms=3, lw=0.9, capsize=2,
-                      color=colour, label=rf"$\epsilon={eps:g}$")
-    left.set(xlabel=r"$N(1-\epsilon)$", ylabel="part of the replicas that collapse", ylim=(-0.03, 1.03))
+                      color=colour, label=rf"$r={eps:g}$")
+    left.set(xlabel=r"$N(1-r)$", ylabel="part of the replicas that collapse", ylim=(-0.03, 1.03))
     left.legend(loc="lower right")
     eps = np.array(list(curves))
     right.loglog(1 - eps, [half(points) for points in curves.values()], "o", ms=5, label="half of the replicas")
     least = [min((number for number, hits, _ in points if hits), default=np.nan) for points in curves.values()]
     right.loglog(1 - eps, least, "v", ms=4, label="one replica")
     fine = np.geomspace((1 - eps).min() / 1.5, min((1 - eps).max() * 1.5, 0.95), 100)
-    right.plot(fine, np.log(4 / fine) / fine, "k--", lw=1, label=r"$\ln(4/(1-\epsilon))/(1-\epsilon)$")
+    right.plot(fine, np.log(4 / fine) / fine, "k--", lw=1, label=r"$\ln(4/(1-r))/(1-r)$")
     right.plot(fine, free(1 - fine) / (2 if walled else 1), "k:", lw=1,
                label="at a wall, exact" if walled else "free space, exact")
-    right.set(xlabel=r"$1-\epsilon$", ylabel="particles $N_c$")
+    right.set(xlabel=r"$1-r$", ylabel="particles $N_c$")
     right.legend(loc="lower left")
     return figure

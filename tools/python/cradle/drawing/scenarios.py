@@ -116,7 +116,7 @@ def draw_collapse(result, axes=None):
         engaged = 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution))) * spacing / (2 * speed)
         times = known_times(point) / engaged
         ax.hist(times, bins=max(8, int(np.sqrt(len(times)) * 1.5)), density=True, histtype="step", lw=1.4, color=colour,
-                label=rf"$\epsilon={restitution:g}$: {times.mean():.4f} $\pm$ {times.std(ddof=1):.4f}, "
+                label=rf"$r={restitution:g}$: {times.mean():.4f} $\pm$ {times.std(ddof=1):.4f}, "
                       f"{len(times)} replicas")
     ax.axvline(1, color=GREY, lw=0.8, zorder=0)
     ax.set_xlabel(r"collapse time $t_c\,/\,(N_c/2u_0)$")

@@ -66,7 +66,7 @@ def cooling_points(result):
 
 def label_of(point):
     """The law with its parameter."""
-    parameter, symbol = {"wet": ("loss", r"E_\mathrm{loss}"), "inelastic": ("restitution", r"\epsilon")}.get(
+    parameter, symbol = {"wet": ("loss", r"E_\mathrm{loss}"), "inelastic": ("restitution", r"r")}.get(
         point.law, ("", ""))
     cutoff, exponent = point.setting("law", "cutoff", 0.0), point.setting("law", "cutoff_exponent")
     slow = "" if exponent is None else rf", $\delta={cutoff:.4g}$, $\sigma={exponent:.4g}$"

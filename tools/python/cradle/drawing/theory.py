@@ -31,10 +31,11 @@ class Theory:
         return points[0][1] if points else None
 
     def equation(self, *quantities):
-        """The form in which the table is cited, `Eq. (7)` or `Eqs. (4), (5)`; without a number, the text itself."""
+        """The form in which the table is cited, `Eq. (7)` or `Eqs. (4), (5)`; what has no equation of the paper is
+        named by the text itself, `Haff 1983`."""
         cited = [next((row[4] for row in self.rows if row[0] == quantity), "") or quantity for quantity in quantities]
-        numbers = [re.search(r"\d+", text) for text in cited]
+        numbers = [re.search(r"\((\d+)\)", text) for text in cited]
         if not all(numbers):
             return ", ".join(dict.fromkeys(cited))
-        numbers = list(dict.fromkeys(f"({number[0]})" for number in numbers))
+        numbers = list(dict.fromkeys(number[0] for number in numbers))
         return ("Eqs. " if len(numbers) > 1 else "Eq. ") + ", ".join(numbers)

@@ -31,6 +31,11 @@ def number(value: Any, digits: int = 12) -> str:
     return powers(f"{value:.{digits}g}")
 
 
+def count_of(count: int, noun: str) -> str:
+    """1 particle, 2 particles."""
+    return f"{number(int(count))} {noun}" + "s" * (count != 1)
+
+
 def measured(value: float, error: float) -> str:
     """A mean with its standard error: both to the same place, with two digits of the error."""
     if not (math.isfinite(value) and math.isfinite(error) and error > 0):

@@ -3,7 +3,7 @@ program; then the units, and what the marks beside the numbers mean."""
 from __future__ import annotations
 
 from ..result import Result
-from .elements import code, number, tag, text
+from .elements import code, count_of, number, tag, text, valued
 
 
 def introduction(result: Result) -> str:
@@ -13,7 +13,7 @@ def introduction(result: Result) -> str:
         return paragraph(f"For which restitutions do {text(about['system'])} repeat one order of collisions for ever, "
                          "in an inelastic collapse? The answers, with proofs, are by Cradle, a program that computes "
                          "granular gases on a line collision by collision.")
-    sentences = f"{particles(result)}{law(result)}. {program(result)}."
+    sentences = f"{particles(result)}{masses(result)}{law(result)}. {surroundings(result)}{program(result)}."
     return paragraph(sentences) + paragraph(units(result), "note") + marks(result)
 
 
@@ -28,8 +28,13 @@ def given(result: Result, table: str, key: str):
     return found.pop() if len(found) == 1 else None
 
 
-def whole(value, unknown: str = "some") -> str:
-    return unknown if value is None else number(int(value))
+def some(value, noun: str = "particle") -> str:
+    return f"Several {noun}s" if value is None else count_of(value, noun)
+
+
+def moved(count, verb: str) -> str:
+    """`moves` of one particle, `move` of more."""
+    return verb + "s" * (count == 1)
 
 
 def particles(result: Result) -> str:
@@ -42,20 +47,87 @@ def particles(result: Result) -> str:
                "simulated but modelled"
     if kind == "rows" and "left" not in initial:
         speed = given(result, "initial", "speed")
-        return f"Two rows of {whole(count and count / 2, '')} particles run into each other" \
+        return f"Two rows of {some(count and count / 2).lower()} run into each other" \
                + (f", each at the speed {number(speed)}&nbsp;l/t" if speed is not None else "")
     if kind == "rows":
-        sides = [whole(given(result, "initial", f"{side}.particles")) for side in ("left", "right")]
-        return f"Two rows of {sides[0]} and {sides[1]} particles run into each other"
+        rows = [some(given(result, "initial", f"{side}.particles")).lower() for side in ("left", "right")]
+        speeds = [given(result, "initial", f"{side}.speed") for side in ("left", "right")]
+        at = f", at the velocities {number(speeds[0])} and {number(speeds[1])}&nbsp;l/t" if None not in speeds else ""
+        mass, speed = given(result, "initial", "centre.mass"), given(result, "initial", "centre.speed")
+        if mass == 0:
+            return f"A row of {rows[0]} and one of {rows[1]} run into each other{at}"
+        centre = "a particle" + (f" of mass {number(mass)}" if mass is not None else "")
+        resting = "at rest" if speed == 0 else f"at {number(speed)}&nbsp;l/t" if speed is not None else "that moves"
+        return f"A row of {rows[0]} on the left and one of {rows[1]} on the right meet {centre} {resting} between " \
+               f"them{at}"
     if kind == "ring":
-        return f"{whole(count, 'Several')} particles with random velocities move on a ring"
+        return f"{some(count)} with random velocities {moved(count, 'move')} on a ring"
     if kind == "gas":
-        return f"{whole(count, 'Several')} particles with random velocities move between two walls{where}"
+        return f"{some(count)} with random velocities {moved(count, 'move')} between two walls{where}"
     if kind == "cold":
         hot = given(result, "initial", "hot")
-        moved = "one is" if hot == 1 else f"{whole(hot)} are"
-        return f"{whole(count, 'Several')} particles stand in a line; {moved} set in motion{where}"
-    return f"{whole(len(initial.get('x', ())))} particles start from given positions with given velocities{where}"
+        start = "one is" if hot == 1 else "some are" if hot is None else f"{number(int(hot))} are"
+        return f"{some(count)} {moved(count, 'stand')} in a line; {start} set in motion{where}"
+    listed = len(initial.get("x", ()))
+    return f"{some(listed)} {moved(listed, 'start')} from given positions with given velocities{where}"
+
+
+def masses(result: Result) -> str:
+    """What is said of masses that are not all 1; those of a list in the order of its particles."""
+    initial = result.scene.get("initial", {})
+    if drawn := initial.get("random_masses"):
+        return f", with random masses from {number(float(drawn[0]))} to {number(float(drawn[1]))}"
+    found = [float(mass) for mass in initial.get("masses") or initial.get("m") or ()]
+    if not any(mass != 1 for mass in found):
+        return ""
+    if len(set(found)) == 1:
+        return f", each of mass {number(found[0])}"
+    if len(found) > 6:
+        return f", with masses from {number(min(found))} to {number(max(found))}"
+    return f", with the masses {', '.join(map(number, found))}" + ", repeated" * ("masses" in initial)
+
+
+def surroundings(result: Result) -> str:
+    """Sentences on gravity and walls: where they are, how they move, and what a collision with them does."""
+    sentences = []
+    acceleration = given(result, "gravity", "acceleration") if "gravity" in result.scene else 0
+    if acceleration:
+        side = "right" if acceleration > 0 else "left"
+        sentences.append(f"Particles fall to the {side}, at {number(abs(acceleration))}&nbsp;l/t²")
+    elif acceleration is None:
+        sentences.append("Their acceleration varies")
+    for side in ("left", "right"):
+        if side in result.scene.get("walls", {}):
+            sentences.append(f"The {side} wall {wall(result, side)}")
+    return "".join(f"{sentence}. " for sentence in sentences)
+
+
+def wall(result: Result, side: str) -> str:
+    def value(key: str, symbols: str = "") -> str:
+        found = given(result, "walls", f"{side}.{key}")
+        return "a value that varies" if found is None else valued(number(found), symbols)
+
+    def there(key: str) -> bool:
+        return given(result, "walls", f"{side}.{key}") not in (None, 0) or any(
+            key in scene.scene.get("walls", {}).get(side, {}) and given(scene, "walls", f"{side}.{key}") != 0
+            for scene in result.points)
+    own = result.scene["walls"][side]
+    parts = [f"is at x = {value('position', 'l')}"]
+    if there("speed"):
+        parts = [f"starts at x = {value('position', 'l')} and moves at {value('speed', 'l/t')}"]
+    motion = own.get("motion", "none")
+    if motion != "none":
+        parts.append(f"is shaken as a {text(motion)} of amplitude {value('amplitude', 'l')} and angular frequency "
+                     f"{value('frequency', '1/t')}")
+    if there("temperature"):
+        parts.append(f"has the temperature {value('temperature', 'm l^2/t^2')}")
+    elif given(result, "walls", f"{side}.restitution") == 1:
+        parts.append("reflects without loss")
+    else:
+        parts.append(f"reflects with the restitution {value('restitution')}")
+    if there("rest_speed"):
+        parts.append(f"holds what comes more slowly than {value('rest_speed', 'l/t')}")
+    return ", ".join(parts[:-1]) + " and " + parts[-1]
 
 
 def law(result: Result) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..result import Result
 from ..tables import Table
-from .elements import code, enclosed, number, rows, tag, text, valued
+from .elements import code, count_of, enclosed, number, rows, tag, text, valued
 
 END = {"energy": "energy at the end", "front_left": "left front at the end", "front_right": "right front at the end"}
 MOST_FAILURES = 5  # of an ensemble that are named
@@ -74,7 +74,7 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
     entries.append(("collisions", number(collisions or 0), f"{counted(result)} {share}"))
     if merges := last(series, "merges"):
         entries.append(("merges", number(merges), counted(result)))
-    for name in ("front_left", "front_right"):
+    for name in fronts(result):
         value = last(series, name)
         if value is not None and np.isfinite(value):
             entries.append((END[name], valued(number(value), "l"), tag("unknown")))
@@ -83,6 +83,13 @@ def ends(result: Result) -> list[tuple[str, str, str]]:
         mass = " and ".join(number(float(value)) for value in heaviest["mass"][-1])
         entries.append(("two heaviest clusters", valued(mass, "m"), tag("unknown")))
     return entries
+
+
+def fronts(result: Result) -> list[str]:
+    """The fronts that run into something: none towards a wall, which is all that there is to reach, or of a gas."""
+    if result.word("initial", "type") == "gas":
+        return []
+    return [f"front_{side}" for side in ("left", "right") if side not in result.scene.get("walls", {})]
 
 
 def resolved(value: float, error: float) -> int:
@@ -143,10 +150,10 @@ def scenario(result: Result) -> list[tuple[str, str, str]]:
 def certificate(result: Result) -> str:
     about = result.certificate.attributes
     if about.get("verdict") == "proved":
-        message = (f"<p class=proved><b>Proved</b>: each of the {number(about['collisions'])} collisions is that of "
+        message = (f"<p class=proved><b>Proved</b>: each of the {count_of(about['collisions'], 'collision')} is that of "
                    "the exact system, the one with the scene's decimals as they are written, and none is missing. ")
     else:
-        message = (f"<p class=open><b>Undecided</b> after {number(about.get('collisions', 0))} collisions: "
+        message = (f"<p class=open><b>Undecided</b> after {count_of(about.get('collisions', 0), 'collision')}: "
                    f"{text(about.get('undecided', ''))}. ")
     return message + f"Run in {text(about['precision'])}, proved with {number(about['digits'])} digits.</p>\n"
 
@@ -156,6 +163,8 @@ def proved(result: Result) -> list[tuple[str, str, str]]:
     exact = result.exact.get("series", {})
     entries = []
     for name, label in END.items():
+        if name.startswith("front") and name not in fronts(result):
+            continue
         if f"{name}_low" in exact and len(exact[f"{name}_low"]):
             low, high = (exact[f"{name}_{side}"] for side in ("low", "high"))
             bounds = str(low[-1]), str(high[-1])

@@ -15,7 +15,7 @@ from ..files import made_from
 from ..plot import PICTURES, drawings
 from ..result import Result
 from ..seal import read_seal
-from .elements import code, number, preformatted, rows, section, text
+from .elements import code, count_of, number, preformatted, rows, section, text
 from .captions import SEE
 from .intro import introduction
 from .numbers import last, numbers, warnings
@@ -76,22 +76,24 @@ def lead(result: Result) -> str:
             int(float(initial.get(side, {}).get("particles", 0))) for side in ("left", "right"))
         parts.append(f"{law.get('type', '')} law")
         coordinates = text(scene.get("run", {}).get("coordinates", ""))
-        parts.append(f"{number(int(float(particles)))} particles in {coordinates}")
+        parts.append(f"{count_of(float(particles), 'particle')} in {coordinates}")
     if about.get("replicas"):
-        parts.append(f"{number(about['replicas'])} replicas")
+        parts.append(count_of(about["replicas"], "replica"))
     parts += [text(about.get("precision", "")), f"<b>{text(result.outcome)}</b>"]
     return " · ".join(part for part in parts if part)
 
 
 def pictures(result: Result) -> str:
-    found = ["<p class=note>Figures, equations and sections are those of the paper, Zaburdaev and Herminghaus, "
-             "Phys. Rev. E <b>75</b>, 031304 (2007).</p>\n"]
+    found, cites = [], False
     for name, draw in drawings(result).items():
         caption = f"{PICTURES.get(name, name)} {SEE.get(name, '')}"
+        cites = cites or re.search(r"\bFigs?\. ", caption)
         found.append(f'<figure class="picture" id="picture-{name}">{picture(draw, caption)}\n'
                      f"<figcaption>{text(caption)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
                      "</figure>\n")
-    return "".join(found) if len(found) > 1 else ""
+    paper = ("<p class=note>Figures, equations and sections are those of the paper, Zaburdaev and Herminghaus, "
+             "Phys. Rev. E <b>75</b>, 031304 (2007).</p>\n")
+    return (paper if cites else "") + "".join(found)
 
 
 def microscope(result: Result) -> str:

@@ -5,7 +5,7 @@ import numpy as np
 
 from ..result import Result
 from ..tables import Column, Table
-from .elements import measured, number, rows, sortable, text, unit
+from .elements import count_of, measured, number, rows, sortable, text, unit
 
 MOST_ROWS = 1000  # of replicas: more are shown by their statistics
 BESIDE = ("_error", "_replicas")
@@ -57,7 +57,7 @@ def replicas(result: Result) -> str:
         outcomes = outcome_texts(table)
         rows = ([(int(value), text(outcomes[int(value)])) if name == "outcome" and int(value) in outcomes else
                  cell(value) for name in names for value in (table[name].values[row],)] for row in range(count))
-        return sortable(f"{number(count)} replicas", heads, rows)
+        return sortable(count_of(count, "replica"), heads, rows)
     rows = []
     for share in QUANTILES:
         rows.append([(share, f"{100 * share:g} %")])
@@ -94,7 +94,7 @@ def points(result: Result) -> str:
             error = table[name + "_error"].values[row] if name + "_error" in table else np.nan
             by, shown = cell(value)
             rows[-1].append((by, measured(by, error.item()) if np.isfinite(error) else shown))
-    return sortable(f"{number(len(labels))} points; means over replicas with their standard errors "
+    return sortable(f"{count_of(len(labels), 'point')}; means over replicas with their standard errors "
                     "(–: no replica has a value)", heads, rows)
 
 

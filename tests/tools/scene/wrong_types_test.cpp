@@ -1,0 +1,222 @@
+// Every row of the table of keys is given a value of every type that TOML has. Whatever is not of the type of the key
+// is refused with file, line and key, and nothing but a scene or such a refusal comes of any value.
+#include <map>
+#include <regex>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/scene/fields.hpp"
+
+namespace cradle::tools::wrong_types_test {
+
+using Assignments = std::map<std::string, std::string>;
+
+std::string text_of(const Assignments& scene) {
+  std::string text;
+  for (const auto& [key, value] : scene) text.append(key).append(" = ").append(value).append("\n");
+  return text;
+}
+
+Scene parse(const Assignments& scene) { return parse_scene(text_of(scene), "s.toml"); }
+
+Assignments with(Assignments scene, const Assignments& more) {
+  for (const auto& [key, value] : more) scene.insert_or_assign(key, value);
+  return scene;
+}
+
+// Scenes that together have every row of the table.
+std::vector<Assignments> scenes() {
+  const Assignments inelastic = {{"law.type", "'inelastic'"}, {"law.restitution", "0.9"}, {"run.until", "100"}};
+  const Assignments wet = {{"law.type", "'wet'"}, {"law.loss", "1e-4"}, {"run.until", "100"}};
+  const Assignments list =
+      with(inelastic, {{"initial.type", "'list'"}, {"initial.x", "[0, 1]"}, {"initial.v", "[1, 0]"}});
+  Assignments of_a_word = with(list, {{"initial.word", "'ab'"}, {"law.restitution", "0.05"}}),
+              of_a_file = with(list, {{"initial.file", "'a.csv'"}});
+  for (const char* key : {"initial.x", "initial.v"}) of_a_word.erase(key), of_a_file.erase(key);
+  return {
+      with(inelastic, {{"initial.type", "'rows'"},
+                       {"initial.particles", "20"},
+                       {"law.cutoff", "1e-3"},
+                       {"law.cutoff_exponent", "5"},
+                       {"output.series.points", "10"},
+                       {"output.averages.every", "1"},
+                       {"output.averages.range", "[0, 1]"},
+                       {"output.histograms", "['gap', 'cluster']"},
+                       {"output.counting.every", "1"},
+                       {"output.counting.cluster_gap", "1"},
+                       {"output.correlations.every", "1"},
+                       {"output.structure.every", "1"},
+                       {"output.structure.length", "1"},
+                       {"gravity.acceleration", "-1"},
+                       {"walls.left.position", "-100"},
+                       {"walls.left.motion", "'sine'"},
+                       {"walls.left.amplitude", "1"},
+                       {"walls.left.frequency", "1"},
+                       {"walls.right.position", "100"},
+                       {"walls.right.motion", "'sine'"},
+                       {"walls.right.amplitude", "1"},
+                       {"walls.right.frequency", "1"}}),
+      with(inelastic, {{"initial.type", "'rows'"},
+                       {"initial.left.particles", "2"},
+                       {"initial.left.speed", "1"},
+                       {"initial.right.particles", "2"},
+                       {"initial.right.speed", "-1"},
+                       {"initial.centre.mass", "1"},
+                       {"run.precision", "'mpfr'"}}),
+      with(inelastic, {{"initial.type", "'ring'"},
+                       {"output.pair_distribution.every", "1"},
+                       {"output.pair_distribution.distance", "1"},
+                       {"run.collapse", "'merge'"},
+                       {"run.merge_speed", "1"}}),
+      with(inelastic, {{"initial.type", "'cold'"}, {"run.collapse", "'contact-time'"}, {"run.contact_time", "1"}}),
+      with(inelastic, {{"initial.type", "'cold'"}, {"initial.hot", "2"}}),
+      with(inelastic, {{"initial.type", "'gas'"}}),
+      with(wet, {{"initial.type", "'rows'"}}),
+      with(wet, {{"initial.type", "'clusters'"}, {"initial.x", "[-1, 1]"}}),
+      list,
+      of_a_word,
+      of_a_file,
+  };
+}
+
+// `key` with this value, in place of what the scene says of it.
+Assignments with_value(Assignments scene, const std::string& key, const std::string& value) {
+  std::erase_if(scene, [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + "."); });
+  return with(scene, {{key, value}});
+}
+
+void expect_place(const std::string& message, const Assignments& scene, const std::string& key) {
+  std::size_t line = 1;
+  for (auto entry = scene.begin(); entry != scene.end() && entry->first != key; ++entry) ++line;
+  // A message on one of the keys of a table names this one.
+  const std::regex place("^s\\.toml:" + std::to_string(line) + ": " + key + "[.a-z_]*: [^:]+: .+");
+  EXPECT_TRUE(std::regex_search(message, place)) << message;
+}
+
+// Empty where the scene was taken.
+std::string answer(const Assignments& scene) {
+  try {
+    parse(scene);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << "not an Error: " << error.what() << "\n" << text_of(scene);
+    return "";
+  }
+}
+
+struct Wrong {
+  const char *value, *type;  // the types that take it, or may
+};
+const Wrong values[] = {
+    {"'a'", "text"},
+    {"''", "text"},
+    {"5", "number"},
+    {"-2.5e3", "number"},
+    {"0x1F", "number"},
+    {"'5'", "text number"},
+    {"true", "boolean"},
+    {"false", "boolean"},
+    {"[]", "numbers texts"},
+    {"[1, 2]", "numbers"},
+    {"['a']", "texts"},
+    {"['1', '2']", "numbers texts"},
+    {"[true]", ""},
+    {"[1, 'a']", ""},
+    {"[[]]", ""},
+    {"[[1]]", ""},
+    {"[['a'], 1]", ""},
+    {"{}", ""},
+    {"{ a = 1 }", ""},
+    {"{ a.b.c = 1 }", ""},
+    {"{ until = {} }", ""},
+    {"{ every = [] }", ""},
+    {"{ points = 'a' }", ""},
+    {"{ every = 1979-05-27 }", ""},
+    {"{ every = 1, from = true }", ""},
+    {"{ points = 3, spacing = [1] }", ""},
+    {"{ points = 3, spacing = 3 }", ""},
+    {"{ every = 1, until = {} }", ""},
+    {"{ points = { a = 1 } }", ""},
+    {"[{}]", ""},
+    {"[{ a = 1 }]", ""},
+    {"[1, {}]", ""},
+    {"1979-05-27", ""},
+    {"07:32:00", ""},
+    {"1979-05-27T07:32:00Z", ""},
+    {"[1979-05-27]", ""},
+    {"nan", ""},
+    {"[inf]", ""},
+};
+
+std::string kind(const Field& field) {
+  const auto type = type_name(field);
+  if (type == "text" || type == "one of") return "text";
+  if (type == "true or false") return "boolean";
+  if (type.starts_with("list of numbers")) return "numbers";
+  if (type.starts_with("list of texts")) return "texts";
+  return "number";
+}
+
+// Calls of(field, scene) for every row of the table and a scene to which it applies.
+template <class F> void for_each_row(const F& of) {
+  for (const Field& field : scene_fields()) {
+    bool applied = false;
+    for (const Assignments& scene : scenes()) {
+      Assignments plain = scene;
+      if (plain.erase("initial.file") > 0) plain = with(plain, {{"initial.x", "[0]"}, {"initial.v", "[0]"}});
+      if (!field.when->holds(parse(plain))) continue;
+      applied = true;
+      of(field, scene);
+      break;
+    }
+    EXPECT_TRUE(applied) << field.key;
+  }
+}
+
+bool may_be(const Wrong& wrong, const Field& field) {
+  return tests::has(std::string(" ") + wrong.type + " ", " " + kind(field) + " ");
+}
+
+TEST(WrongTypes, OfEveryKeyAreRefusedWithFileLineAndKey) {
+  for_each_row([](const Field& field, const Assignments& scene) {
+    for (const Wrong& wrong : values) {
+      const Assignments given = with_value(scene, std::string(field.key), wrong.value);
+      const std::string message = answer(given);
+      if (!may_be(wrong, field)) expect_place(message, given, std::string(field.key));
+    }
+  });
+}
+
+// What is no table where there are only tables.
+TEST(WrongTypes, OfEveryTableAreRefusedWithFileLineAndKey) {
+  for (const Field& field : scene_fields())
+    for (auto dot = field.key.find('.'); dot != field.key.npos; dot = field.key.find('.', dot + 1))
+      for (const Wrong& wrong : values) {
+        const std::string table(field.key.substr(0, dot)), value = wrong.value;
+        if (value.starts_with('{')) continue;
+        const Assignments given = with_value(scenes().front(), table, value);
+        expect_place(answer(given), given, table);
+      }
+}
+
+// The command line has no lines, and a bare word there is a text.
+TEST(WrongTypes, OnTheCommandLineAreRefusedWithTheirKey) {
+  for_each_row([](const Field& field, const Assignments& scene) {
+    for (const Wrong& wrong : values) {
+      const std::string setting = std::string(field.key) + "=" + wrong.value;
+      std::string message;
+      try {
+        parse_scene(text_of(scene), "s.toml", {setting});
+      } catch (const Error& error) {
+        message = error.what();
+      } catch (const std::exception& error) {
+        ADD_FAILURE() << setting << ": " << error.what();
+      }
+      if (may_be(wrong, field) || type_name(field) == "text") continue;
+      EXPECT_TRUE(tests::begins(message, "--set " + std::string(field.key))) << setting;
+    }
+  });
+}
+
+}  // namespace cradle::tools::wrong_types_test

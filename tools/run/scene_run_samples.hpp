@@ -56,7 +56,9 @@ template <Real T> inline Profile SceneRun<T>::profile_at(const Configuration<T>&
   BinRange range{to_double(now.x.front()), to_double(now.x.back())};
   if (!wanted.range.empty())
     range = {wanted.range[0].value, wanted.range[1].value};
-  else if (engine_.collided_particles() > 0 && !engine_.on_ring())
+  else if (engine_.on_ring())
+    range = {0, to_double(particles_->circumference())};
+  else if (engine_.collided_particles() > 0)
     range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
   if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
   if (!std::isfinite(range.to - range.from))

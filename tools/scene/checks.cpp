@@ -386,7 +386,14 @@ class Checks {
     constexpr double most = 1e7;  // as for points in the table of keys
     const Series& series = scene_.output.series;
     const bin_float start = number(scene_.run.start), span = number(scene_.run.until) - start;
+    const auto one_scale = [&](const char* key, const Decimal& a, const Decimal& b) {
+      for (const Decimal& end : {scene_.run.start, scene_.run.until})
+        if (!of_one_scale(end, a, b))
+          throw Error(place(key), "times of thousands of digits", b.text,
+                      "give it and the ends of the run fewer digits");
+    };
     const auto check = [&](const char* key, const Decimal& given, const bin_float& step) {
+      one_scale(key, scene_.run.start, given);
       const auto samples = static_cast<double>(bin_float(span / step));
       if (!(samples <= most))
         throw Error(place(key), "too many samples",
@@ -400,7 +407,9 @@ class Checks {
           std::pair("output.structure.every", scene_.output.structure.every),
           std::pair("output.pair_distribution.every", scene_.output.pair_distribution.every)})
       if (every) check(key, *every, number(*every));
+    if (scene_.output.zone.from) one_scale("output.zone.from", scene_.run.start, *scene_.output.zone.from);
     if (series.every) return check("output.series.every", *series.every, number(*series.every));
+    if (series.points) one_scale("run.until", scene_.run.start, scene_.run.until);
     if (!series.over) return;
     const bin_float over = number(*series.over) - start, points(static_cast<std::int64_t>(*series.points - 1));
     if (series.spacing == Spacing::linear) return check("output.series.over", *series.over, over / points);

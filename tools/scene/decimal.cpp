@@ -142,30 +142,114 @@ Decimal::Decimal(std::string_view literal) {
   }
 }
 
-std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step) {
-  using Integer = boost::multiprecision::cpp_int;
-  constexpr std::int64_t most_digits = 4096;
-  const Parts a = parts_of(start.text), b = parts_of(step.text);
-  const auto unit_of = [](const Parts& p) { return p.exponent - static_cast<std::int64_t>(p.digits.size()); };
-  if (a.digits.empty() && (k == 0 || b.digits.empty())) return start;
-  const std::int64_t unit = a.digits.empty()   ? unit_of(b)
-                            : b.digits.empty() ? unit_of(a)
-                                               : std::min(unit_of(a), unit_of(b));
-  const auto in_units = [&](const Parts& p) -> Integer {
-    if (p.digits.empty()) return 0;
-    const Integer size = Integer(p.digits) * pow(Integer(10), static_cast<unsigned>(unit_of(p) - unit));
-    return p.negative ? Integer(-size) : size;
-  };
-  if (std::max(unit_of(a), unit_of(b)) - unit > most_digits) return {};
-  const Integer sum = in_units(a) + in_units(b) * k;
-  std::string digits = Integer(abs(sum)).str();
-  const std::string sign = sum < 0 ? "-" : "";
-  const auto places = static_cast<std::size_t>(std::min<std::int64_t>(-unit, 64));
-  if (unit > 0 || unit < -64) return Decimal(sign + digits + "e" + std::to_string(unit));
+namespace {
+
+using Integer = boost::multiprecision::cpp_int;
+
+// An integer times a power of ten.
+struct Exact {
+  Integer integer;
+  std::int64_t power = 0;
+
+  explicit Exact(const Decimal& decimal) {
+    const Parts parts = parts_of(decimal.text);
+    if (parts.digits.empty()) return;
+    integer = Integer(parts.digits);
+    if (parts.negative) integer = -integer;
+    power = parts.exponent - static_cast<std::int64_t>(parts.digits.size());
+  }
+};
+
+Integer power_of_ten(std::int64_t power) { return pow(Integer(10), static_cast<unsigned>(power)); }
+
+// The lowest and the highest power of ten.
+std::pair<std::int64_t, std::int64_t> powers(std::initializer_list<Exact*> numbers) {
+  std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = std::numeric_limits<std::int64_t>::min();
+  for (const Exact* number : numbers)
+    if (number->integer != 0) low = std::min(low, number->power), high = std::max(high, number->power);
+  return low > high ? std::pair<std::int64_t, std::int64_t>() : std::pair(low, high);
+}
+
+// Gives all of these the lowest power of ten.
+void align(std::initializer_list<Exact*> numbers) {
+  const std::int64_t low = powers(numbers).first;
+  for (Exact* number : numbers) {
+    if (number->integer != 0) number->integer *= power_of_ten(number->power - low);
+    number->power = low;
+  }
+}
+
+// Without zeros at its end and, unless it is very long, without a power of ten.
+std::string text_of(const Integer& integer, std::int64_t power) {
+  constexpr std::int64_t longest = 64;
+  if (integer == 0) return "0";
+  std::string digits = Integer(abs(integer)).str();
+  const std::size_t last = digits.find_last_not_of('0') + 1;
+  power += static_cast<std::int64_t>(digits.size() - last);
+  digits.resize(last);
+  const std::string sign = integer < 0 ? "-" : "";
+  if (power > longest || power < -longest) return sign + digits + "e" + std::to_string(power);
+  if (power >= 0) return sign + digits + std::string(static_cast<std::size_t>(power), '0');
+  const auto places = static_cast<std::size_t>(-power);
   if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
-  return Decimal(sign + (places == 0
-                             ? digits
-                             : digits.substr(0, digits.size() - places) + "." + digits.substr(digits.size() - places)));
+  return sign + digits.insert(digits.size() - places, ".");
+}
+
+// integer 10^power/parts; see decimals_by_parts.
+std::string quotient_text(Integer integer, std::int64_t power, Integer parts, std::size_t digits) {
+  const Integer common = gcd(integer, parts);
+  integer /= common, parts /= common;
+  while (parts % 10 == 0) parts /= 10, --power;
+  while (parts % 5 == 0) parts /= 5, integer *= 2, --power;
+  while (parts % 2 == 0) parts /= 2, integer *= 5, --power;
+  if (parts == 1) return text_of(integer, power);
+  // A number in the middle of two binary ones is a fraction too: between two fractions is room for one unit of the
+  // product of their denominators.
+  const auto more =
+      static_cast<std::int64_t>(digits + integer.str().size() + parts.str().size()) + (power < 0 ? -power : power);
+  return text_of(integer * power_of_ten(more) / parts, power - more);
+}
+
+// from + k step/parts up to `until`, of one power of ten.
+DecimalColumn spaced(const Exact& from, const Exact& step, const Integer& parts, const Exact& until,
+                     std::size_t digits) {
+  DecimalColumn all;
+  const Integer end = until.integer * parts;
+  for (Integer at = from.integer * parts; at <= end; at += step.integer)
+    all.push_back(parts == 1 ? text_of(at, from.power) : quotient_text(at, from.power, parts, digits));
+  return all;
+}
+
+}  // namespace
+
+bool of_one_scale(const Decimal& a, const Decimal& b, const Decimal& c) {
+  constexpr std::int64_t most_digits = 4000;
+  Exact first(a), second(b), third(c);
+  const auto [low, high] = powers({&first, &second, &third});
+  return high - low <= most_digits;
+}
+
+DecimalColumn decimals_by_step(const Decimal& from, const Decimal& step, const Decimal& until) {
+  Exact first(from), by(step), last(until);
+  align({&first, &by, &last});
+  return spaced(first, by, 1, last, 0);
+}
+
+DecimalColumn decimals_by_parts(const Decimal& from, const Decimal& to, std::uint64_t parts, const Decimal& until,
+                                std::size_t digits) {
+  Exact first(from), end(to), last(until);
+  align({&first, &end, &last});
+  end.integer -= first.integer;
+  return spaced(first, end, parts, last, digits + 5);
+}
+
+Decimal decimal_between(const Decimal& from, const Decimal& to, const Decimal& share) {
+  Exact first(from), way(to);
+  const Exact part(share);
+  align({&first, &way});
+  way.integer = (way.integer - first.integer) * part.integer, way.power += part.power;
+  align({&first, &way});
+  return Decimal(text_of(first.integer + way.integer, first.power));
 }
 
 void DecimalColumn::push_back(std::string_view literal) {

@@ -14,18 +14,30 @@ template <Real T> struct Flight {
   static auto state(auto& self) { return std::tie(self.x, self.v); }
 };
 
+// What gravity adds in a time to the velocity and to the place of every particle.
+template <Real T> struct Fall {
+  T speed, way;
+  Fall(const Particles<T>& particles, const T& time)
+      : speed(particles.acceleration() * time), way(speed * time / T(2)) {}
+};
+
 // Adds to the straight flight of a particle, after a time, what gravity does in it.
 template <Real T>
 Flight<T> fallen(Flight<T> straight, const Particles<T>& particles, ParticleIndex particle, const T& time) {
   if (!particles.falls(particle)) return straight;
-  const T gained = particles.acceleration() * time;
-  return {straight.x + T(gained * time / T(2)), straight.v + gained};
+  const Fall<T> fall(particles, time);
+  return {straight.x + fall.way, straight.v + fall.speed};
 }
 
 // The flight of a particle that has not collided, at a time since the start.
 template <Real T> Flight<T> undisturbed(const Particles<T>& particles, ParticleIndex particle, const T& elapsed) {
   const T v = particles.velocity(particle);
   return fallen<T>({two_sum(particles.position(particle), T(v * elapsed)), {v, T(0)}}, particles, particle, elapsed);
+}
+
+// The way of such a particle from its place at the start, without the rounding of places.
+template <Real T> T undisturbed_way(const Particles<T>& particles, ParticleIndex particle, const T& elapsed) {
+  return particles.velocity(particle) * elapsed + Fall<T>(particles, elapsed).way;
 }
 
 // The flight of a wall.

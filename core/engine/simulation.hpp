@@ -114,7 +114,11 @@ class Simulation {
   const Account<T>& account() const { return chain_.account(); }
 
   // The state at a time between the last collision and the time advanced to.
-  Configuration<T> configuration(const T& time) const { return chain_.configuration(local(time)); }
+  Configuration<T> configuration(const T& time) const {
+    Configuration<T> now = chain_.configuration(local(time));
+    now.time = time;  // the clock, which counts from its origin, rounds it
+    return now;
+  }
   // The state right after the last collision. At the rounded time of the scene, gaps that close within the rounding
   // would be negative.
   Configuration<T> configuration_at_last_collision() const { return chain_.configuration(last_collision_); }

@@ -3,36 +3,54 @@
 
 #include <algorithm>
 
+#include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
 
-// Kinetic energy summed over all particles of the scene: the direct sum that is compared with the ledger.
-template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>& particles) {
-  CompensatedSum<T> twice, twice_before;  // of the particles in the configuration, now and at the start
+// Mass and momentum at the start of the particles that are not in a configuration.
+template <Real T> struct OfOthers {
+  T mass, momentum;
+  OfOthers(const Configuration<T>& c, const Particles<T>& particles)
+      : mass(particles.mass_between(0, c.from) + particles.mass_between(c.to + 1, particles.count())),
+        momentum(particles.momentum()) {
+    CompensatedSum<T> held;
+    for (ParticleIndex b = c.from; b <= c.to; ++b) held.add(particles.mass(b) * particles.velocity(b));
+    momentum -= held.value();
+  }
+};
+
+// Kinetic energy summed over all particles of the scene at a time since the start: the direct sum that is compared with
+// the ledger.
+template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed) {
+  // Of the particles in the configuration, now and at the start; and what the others have gained.
+  CompensatedSum<T> twice, twice_before, gained;
   for (std::size_t j = 0; j < c.x.size(); ++j) twice.add(c.m[j] * c.v[j] * c.v[j]);
   for (ParticleIndex b = c.from; b <= c.to; ++b)
     twice_before.add(particles.mass(b) * particles.velocity(b) * particles.velocity(b));
-  return particles.kinetic_energy() + (twice.value() - twice_before.value()) / T(2);
+  if (particles.fall()) {
+    const OfOthers<T> others(c, particles);
+    const T speed = Fall<T>(particles, elapsed).speed;
+    gained.add(T(2) * others.momentum * speed);
+    gained.add(others.mass * speed * speed);
+  }
+  return particles.kinetic_energy() + (twice.value() - twice_before.value() + gained.value()) / T(2);
 }
 
 // Potential energy of all particles of the scene under gravity, -a sum m x, at a time since the start.
 template <Real T> T potential_energy(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed) {
   const T a = particles.acceleration();
-  CompensatedSum<T> moment, moment_before, momentum_before;  // of the particles in the configuration
+  CompensatedSum<T> moment, moment_before;  // of the particles in the configuration
   for (std::size_t j = 0; j < c.x.size(); ++j) moment.add(c.m[j] * c.x[j]);
   if (c.from == 0 && c.to + 1 == particles.count()) return -(a * moment.value());
-  for (ParticleIndex b = c.from; b <= c.to; ++b) {
-    moment_before.add(particles.mass(b) * particles.position(b));
-    momentum_before.add(particles.mass(b) * particles.velocity(b));
-  }
-  const T mass = particles.mass_between(0, c.from) + particles.mass_between(c.to + 1, particles.count());
-  const T momentum = particles.momentum() - momentum_before.value();
-  const T of_others = momentum * elapsed + mass * (a * elapsed * elapsed / T(2));
+  for (ParticleIndex b = c.from; b <= c.to; ++b) moment_before.add(particles.mass(b) * particles.position(b));
+  const OfOthers<T> others(c, particles);
+  const T of_others = others.momentum * elapsed + others.mass * Fall<T>(particles, elapsed).way;
   return particles.potential_energy() - a * ((moment.value() - moment_before.value()) + of_others);
 }
 
-// Momentum that the particles of a configuration have gained since the start; zero except for rounding.
+// Momentum that the particles of a configuration have gained since the start; zero except for rounding, walls and
+// gravity.
 template <Real T> T momentum_gained(const Configuration<T>& c, const Particles<T>& particles) {
   CompensatedSum<T> gained;
   for (std::size_t j = 0; j < c.x.size(); ++j) gained.add(c.m[j] * c.v[j]);

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/observe/batch_means.hpp"
 #include "cradle/core/observe/octave_steps.hpp"
@@ -50,10 +51,11 @@ template <Real T> class TaggedParticles {
       const T x = particles_.on_ring() ? T(c.x[j] + T(turns - behind_seam(c, j)) * length) : c.x[j];
       put(c.index[j], T(x - particles_.position(c.index[j])), c.v[j]);
     }
-    // Those that the fronts have not reached fly as at the start.
+    // Those that the fronts have not reached.
     const auto fly = [&](ParticleIndex from, ParticleIndex to) {
       for (ParticleIndex particle = (from + every_ - 1) / every_ * every_; particle < to; particle += every_)
-        put(particle, T(particles_.velocity(particle) * elapsed), particles_.velocity(particle));
+        put(particle, undisturbed_way(particles_, particle, elapsed),
+            undisturbed(particles_, particle, elapsed).v.value());
     };
     fly(0, c.from);
     fly(c.to + 1, particles_.count());

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
@@ -64,24 +65,33 @@ struct WalkStopped : std::exception {
   const char* what() const noexcept override { return "a walk over particles was stopped"; }
 };
 
-// Calls visit(x, v, m) for every particle in a range, also for those that the fronts have not reached, which fly as at
-// the start. There may be very many of them: `stopped` is called from time to time; if it returns true, WalkStopped is
-// thrown.
+// Calls visit(x, v, m) for every particle in a range, also for those that the fronts have not reached (anchor.hpp). On
+// a ring a finite range has all images of the particles that are in it, a circumference apart. There may be very many
+// particles: `stopped` is called from time to time; if it returns true, WalkStopped is thrown.
 template <Real T, class Visit>
 void for_each_particle(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed, BinRange range,
                        Visit visit, const std::function<bool()>& stopped = {}) {
+  const double length = to_double(particles.circumference());
+  const bool images = length > 0 && std::isfinite(range.to - range.from);
+  const double most_turns = images ? (range.to - range.from) / length + 2 : 0;
+  if (!(most_turns < 0x1p21))
+    throw std::invalid_argument("a range of more turns of the ring than can be counted (" + in_message(most_turns) +
+                                "): give a shorter one");
+  const auto turns = static_cast<std::int64_t>(most_turns);
   for (std::size_t j = 0; j < c.x.size(); ++j) {
-    const double x = to_double(c.x[j]);
-    if (x >= range.from && x < range.to) visit(x, to_double(c.v[j]), to_double(c.m[j]));
+    const double x = to_double(c.x[j]), first = images ? std::floor((range.from - x) / length) : 0;
+    for (std::int64_t turn = 0; turn <= turns; ++turn) {
+      const double image = images ? x + (first + static_cast<double>(turn)) * length : x;
+      if (image >= range.from && image < range.to) visit(image, to_double(c.v[j]), to_double(c.m[j]));
+    }
   }
-  const T gained = particles.acceleration() * elapsed, fallen = gained * elapsed / T(2);
   const auto fly = [&](ParticleIndex particle) {
-    return to_double(T(particles.position(particle) + particles.velocity(particle) * elapsed + fallen));
+    return to_double(undisturbed(particles, particle, elapsed).x.value());
   };
   const auto visit_free = [&](ParticleIndex particle, double x) {
     constexpr ParticleIndex between_stops = 1 << 14;
     if (particle % between_stops == 0 && stopped && stopped()) throw WalkStopped();
-    visit(x, to_double(T(particles.velocity(particle) + gained)), to_double(particles.mass(particle)));
+    visit(x, to_double(undisturbed(particles, particle, elapsed).v.value()), to_double(particles.mass(particle)));
   };
   // They fly in order: finds the first of [low, high) that is not to the left of a position.
   const auto first_from = [&](ParticleIndex low, ParticleIndex high, double place) {

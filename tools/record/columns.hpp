@@ -25,10 +25,12 @@ namespace cradle::tools {
 /// requires them.
 template <Real T> class Moment {
  public:
-  Moment(const Engine<T>& run, std::shared_ptr<const cradle::Particles<T>> particles, const T& start, const T& time)
-      : state(sample(run, particles->kinetic_energy(), time)), run_(run), particles_(std::move(particles)),
-        start_(start) {}
+  Moment(const Engine<T>& run, std::shared_ptr<const cradle::Particles<T>> particles, const T& start,
+         const Given<T>& at)
+      : time(at), state(sample(run, particles->kinetic_energy(), at.value)), run_(run),
+        particles_(std::move(particles)), start_(start) {}
 
+  const Given<T> time;
   const Sample<T> state;
 
   const Configuration<T>& configuration() const {
@@ -65,18 +67,18 @@ template <Real T> class Moment {
 };
 
 /// How a column is filled: a container for its numbers, and a function that adds one. Numbers are of the run's type,
-/// doubles or whole numbers.
+/// given by the scene, doubles or whole numbers.
 template <Real T> struct Filling {
-  using Values = std::variant<std::vector<T>, Numbers>;
+  using Values = typename Columns<T>::value_type;
   Values (*empty)();
   void (*enter)(const Moment<T>&, Values&);
 };
 template <Real T, auto value> constexpr Filling<T> filled_by() {
   using Number = decltype(value(std::declval<const Moment<T>&>()));
   using Values = typename Filling<T>::Values;
-  if constexpr (std::same_as<Number, T>)
-    return {[] { return Values(std::vector<T>()); },
-            [](const Moment<T>& at, Values& to) { std::get<std::vector<T>>(to).push_back(value(at)); }};
+  if constexpr (std::same_as<Number, T> || std::same_as<Number, Given<T>>)
+    return {[] { return Values(std::vector<Number>()); },
+            [](const Moment<T>& at, Values& to) { std::get<std::vector<Number>>(to).push_back(value(at)); }};
   else
     return {[] { return Values(Numbers(std::vector<Number>())); },
             [](const Moment<T>& at, Values& to) {
@@ -103,7 +105,7 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
   constexpr auto core = [](const Scene& scene) { return scene.output.core; };
   static const std::vector<SeriesColumn<T>> all{
       {"time", "t", "a sample is the state after all collisions at times <= t", always,
-       filled_by<T, [](At at) { return at.state.time; }>()},
+       filled_by<T, [](At at) { return at.time; }>()},
       {"energy", "m l^2/t^2", "kinetic energy of all particles of the scene", always,
        filled_by<T, [](At at) { return at.state.energy; }>()},
       {"potential_energy", "m l^2/t^2", "potential energy of all particles under gravity, 0 at x = 0", gravity,

@@ -21,12 +21,12 @@ template <Real T, class Measure> class PlaceRecorder {
   using Table = Group (*)(const std::string& name, const Scene& scene);
   /// `averaged`, `at`: the times of its average and of its tables.
   PlaceRecorder(Measure measure, std::string name, Table table, const PlaceTimes& wanted, const Scene& scene,
-                const std::vector<T>& averaged, const std::vector<T>& at)
+                const Times<T>& averaged, const Times<T>& at)
       : measure_(std::move(measure)), name_(std::move(name)), table_(table), wanted_(wanted), scene_(scene),
         averaged_(averaged), at_(at),
         means_(table_(name_, scene_).columns.front().rows(), std::max<std::size_t>(averaged.size(), 1)) {}
 
-  bool due(const T& time) const { return holds(averaged_, time) || holds(at_, time); }
+  bool due(const T& time) const { return averaged_.hold(time) || at_.hold(time); }
   /// If the loop over particles is stopped, it throws WalkStopped.
   void find(const Configuration<T>& now, const cradle::Particles<T>& particles, const T& elapsed,
             const std::function<bool()>& stopped) {
@@ -34,9 +34,9 @@ template <Real T, class Measure> class PlaceRecorder {
   }
   /// What was found at this time.
   template <class Put> void add(const T& time, Put put) {
-    if (holds(averaged_, time)) means_.add(found_);
-    if (holds(at_, time))
-      put(at_time(table_(fmt::format("{}/{:04}", name_, written_++), scene_), to_double(time), found_));
+    if (averaged_.hold(time)) means_.add(found_);
+    if (const auto given = at_.find(time))
+      put(at_time(table_(fmt::format("{}/{:04}", name_, written_++), scene_), given->rounded, found_));
   }
   /// The average, if it has samples; `partial`: before it has all of them, too.
   std::optional<Group> average(bool partial) const {
@@ -52,7 +52,7 @@ template <Real T, class Measure> class PlaceRecorder {
   Table table_;
   const PlaceTimes& wanted_;
   const Scene& scene_;
-  const std::vector<T>&averaged_, &at_;
+  const Times<T>&averaged_, &at_;
   SampledMeans means_;
   std::uint64_t written_ = 0;  // tables at times
   std::vector<double> found_;
@@ -87,18 +87,18 @@ template <Real T> class CorrelationRecorder {
   }
 
   bool due(const T& time) const {
-    return holds(times_, time) || (structure_ && structure_->due(time)) || (pairs_ && pairs_->due(time));
+    return times_.hold(time) || (structure_ && structure_->due(time)) || (pairs_ && pairs_->due(time));
   }
   /// Measures, and changes nothing yet. If a loop over particles is stopped, it throws WalkStopped.
   void find(const Configuration<T>& now, const T& time, const std::function<bool()>& stopped) {
     const T elapsed = time - number<T>(scene_.run.start);
-    if (holds(times_, time)) tagged_->find(now, elapsed);
+    if (times_.hold(time)) tagged_->find(now, elapsed);
     if (structure_ && structure_->due(time)) structure_->find(now, particles_, elapsed, stopped);
     if (pairs_ && pairs_->due(time)) pairs_->find(now, particles_, elapsed, stopped);
   }
   /// What was found at this time; gives tables of this time to `put`.
   template <class Put> void add(const T& time, Put put) {
-    if (holds(times_, time)) correlator_->add(tagged_->displacement(), tagged_->velocity());
+    if (times_.hold(time)) correlator_->add(tagged_->displacement(), tagged_->velocity());
     if (structure_) structure_->add(time, put);
     if (pairs_) pairs_->add(time, put);
   }
@@ -124,7 +124,7 @@ template <Real T> class CorrelationRecorder {
  private:
   const Scene& scene_;
   const cradle::Particles<T>& particles_;
-  const std::vector<T>& times_;
+  const Times<T>& times_;
   std::optional<TaggedParticles<T>> tagged_;
   std::optional<Correlator> correlator_;
   std::optional<PlaceRecorder<T, StructureFactor>> structure_;

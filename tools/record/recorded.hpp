@@ -19,8 +19,22 @@ namespace cradle::tools {
 
 template <Real T> T none() { return std::numeric_limits<T>::quiet_NaN(); }
 
-/// Columns of a table, or some of them: numbers of the run's type, and others that a double holds completely.
-template <Real T> using Columns = std::vector<std::variant<std::vector<T>, Numbers>>;
+/// A number that the scene gives, rounded once to the run's type and once to a double.
+template <Real T> struct Given {
+  T value;
+  double rounded;
+  std::string text;  // all digits of the type, or the decimal of the scene if that is shorter and another one
+
+  Given(const T& number) : value(number), rounded(to_double(number)), text(to_text(number)) {}
+  Given(const T& number, std::string_view decimal) : Given(number) {
+    rounded = from_text<double>(decimal);
+    if (decimal.size() < text.size() && Decimal(decimal) != Decimal(text)) text = decimal;
+  }
+};
+
+/// Columns of a table, or some of them: numbers of the run's type, those that the scene gives, and others that a double
+/// holds completely.
+template <Real T> using Columns = std::vector<std::variant<std::vector<T>, std::vector<Given<T>>, Numbers>>;
 template <Real T, class... Values> Columns<T> columns(Values&&... values) {
   Columns<T> all;
   (all.emplace_back(std::forward<Values>(values)), ...);
@@ -38,18 +52,21 @@ template <Real T> inline constexpr std::string_view exact_part = std::same_as<T,
 template <Real T> struct Recorded {
   Group table;  // without numbers
   Columns<T> columns;
-  std::vector<std::pair<std::string, T>> attributes;
+  std::vector<std::pair<std::string, Given<T>>> attributes;
 };
 
 /// The same numbers as decimals with all digits, below /exact.
 template <Real T> Group as_decimals(const Recorded<T>& rows) {
   Group exact{std::string(exact_part<T>) + rows.table.name, {}, {}};
-  for (const auto& [name, value] : rows.attributes) exact.attributes.emplace_back(name, to_text(value));
+  for (const auto& [name, value] : rows.attributes) exact.attributes.emplace_back(name, value.text);
   for (std::size_t k = 0; k < rows.columns.size(); ++k) {
-    const auto* values = std::get_if<std::vector<T>>(&rows.columns[k]);
-    if (values == nullptr) continue;
     std::vector<std::string> texts;
-    for (const T& value : *values) texts.push_back(to_text(value));
+    if (const auto* values = std::get_if<std::vector<T>>(&rows.columns[k]))
+      for (const T& value : *values) texts.push_back(to_text(value));
+    else if (const auto* given = std::get_if<std::vector<Given<T>>>(&rows.columns[k]))
+      for (const Given<T>& value : *given) texts.push_back(value.text);
+    else
+      continue;
     Column& column = exact.columns.emplace_back(rows.table.columns.at(k));
     column.values = std::move(texts);
   }
@@ -59,8 +76,13 @@ template <Real T> Group as_decimals(const Recorded<T>& rows) {
 /// Rounds to float64, as the last step.
 template <Real T> Group as_doubles(Recorded<T>&& rows) {
   const auto rounded = [](auto& values) -> Numbers {
-    if constexpr (std::same_as<std::decay_t<decltype(values)>, Numbers> || std::same_as<T, double>) {
+    using Values = std::decay_t<decltype(values)>;
+    if constexpr (std::same_as<Values, Numbers> || std::same_as<Values, std::vector<double>>) {
       return std::move(values);
+    } else if constexpr (std::same_as<Values, std::vector<Given<T>>>) {
+      std::vector<double> doubles;
+      for (const Given<T>& value : values) doubles.push_back(value.rounded);
+      return doubles;
     } else {
       std::vector<double> doubles;
       doubles.reserve(values.size());
@@ -71,7 +93,7 @@ template <Real T> Group as_doubles(Recorded<T>&& rows) {
   };
   std::vector<Numbers> all;
   for (auto& column : rows.columns) all.push_back(std::visit(rounded, column));
-  for (const auto& [name, value] : rows.attributes) rows.table.attributes.emplace_back(name, to_double(value));
+  for (const auto& [name, value] : rows.attributes) rows.table.attributes.emplace_back(name, value.rounded);
   return filled(std::move(rows.table), std::move(all));
 }
 

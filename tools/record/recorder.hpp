@@ -41,21 +41,22 @@ template <Real T> class HeaviestRecorder {
 };
 
 /// The number of clusters of each mass.
-template <Real T> Group masses_table(const Configuration<T>& c, const T& least_mass, const std::string& name) {
+template <Real T>
+Group masses_table(const Configuration<T>& c, double time, const T& least_mass, const std::string& name) {
   std::vector<std::uint64_t> clusters = mass_distribution(c, least_mass);
   std::vector<double> from;
   for (std::size_t k = 0; k < clusters.size(); ++k)
     from.push_back(to_double(least_mass) * std::exp2(static_cast<double>(k) / 4));
   Group table = filled(masses_table(name), std::move(from), std::move(clusters));
-  table.attributes = {{"time", to_double(c.time)}};
+  table.attributes = {{"time", time}};
   return table;
 }
 
 /// All active particles at a time.
-template <Real T> Recorded<T> snapshot_rows(const Configuration<T>& c, const std::string& name) {
+template <Real T> Recorded<T> snapshot_rows(const Configuration<T>& c, const Given<T>& time, const std::string& name) {
   std::vector<std::uint64_t> index(c.index.begin(), c.index.end());
   Recorded<T> rows{
-      snapshot_table(name), columns<T>(c.x, c.v, c.m, std::move(index), c.gap, c.closing_speed), {{"time", c.time}}};
+      snapshot_table(name), columns<T>(c.x, c.v, c.m, std::move(index), c.gap, c.closing_speed), {{"time", time}}};
   if (c.x.size() < 2) return rows;
   const GapStatistics<T> gaps = gap_statistics(c);
   rows.attributes.emplace_back("gap_min", gaps.least);

@@ -143,7 +143,7 @@ Group histogram_table(std::string_view name) {
 Group correlations_table(const Scene& scene) {
   std::vector<double> lags;
   for (const std::uint64_t steps : Correlator::lags(longest_lag(scene)))
-    lags.push_back(static_cast<double>(steps) * scene.output.correlations.every->value);
+    lags.push_back(decimal_between(Decimal(), *scene.output.correlations.every, Decimal(std::to_string(steps))).value);
   return {"correlations",
           {},
           {{"lag", "t", "time between the two states", std::move(lags)},

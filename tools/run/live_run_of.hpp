@@ -31,15 +31,19 @@ template <Real T> class LiveRunOf final : public LiveRun {
         store_(options.poll), options_{Progress::Show::never, nullptr, nullptr, workers_of_calls(), &store_, false},
         progress_(Progress::Show::never, scene.run.start.value, scene.run.until.value, false),
         particles_(initial_particles<T>(scene_)), engine_(engine()),
-        run_(scene_, particles_, *engine_, options_, progress_), time_(number<T>(scene_.run.start)),
-        end_(number<T>(scene_.run.until)) {
+        run_(scene_, particles_, *engine_, options_, progress_),
+        time_(number<T>(scene_.run.start), scene_.run.start.text), end_(number<T>(scene_.run.until)) {
     run_.observe();
     if (from == nullptr) return;
     std::vector<Group> rows;
     try {
       cradle::load(*from, rows);
-      cradle::load(*from, time_);
+      T time{0};
+      std::string meant;
+      cradle::load(*from, time);
+      cradle::load(*from, meant);
       cradle::load(*from, at_collision_);
+      time_ = Given<T>(time, meant);
     } catch (const std::invalid_argument& error) {
       throw Error(std::string("the checkpoint cannot be extended: ") + error.what(), Exit::io);
     }
@@ -50,15 +54,16 @@ template <Real T> class LiveRunOf final : public LiveRun {
   const Scene& scene() const override { return scene_; }
 
   void advance(const Decimal& until) override {
-    const T time = checked(until);
-    computing(
-        [&] { stand(run_.pass(time, [&](const T& to) { return engine_->advance(to, run_.observer()); }), time); });
+    const Given<T> time = checked(until);
+    computing([&] {
+      stand(run_.pass(time.value, [&](const T& to) { return engine_->advance(to, run_.observer()); }), time);
+    });
   }
   std::uint64_t step(std::uint64_t n, const Decimal& until) override {
-    const T time = checked(until);
+    const Given<T> time = checked(until);
     if (n > 0)
       computing([&] {
-        const Status status = run_.pass(time, [&](const T& to) {
+        const Status status = run_.pass(time.value, [&](const T& to) {
           const Status made = engine_->step(n, to, run_.observer());
           return made == Status::reached && n == 0 ? Status::interrupted : made;
         });
@@ -80,10 +85,10 @@ template <Real T> class LiveRunOf final : public LiveRun {
 
   const RunOutcome* over() const override { return over_ ? &*over_ : nullptr; }
   const Counts& counts() const override { return engine_->counts(); }
-  double time() const override { return to_double(time_); }
-  std::string time_text() const override { return to_text(time_); }
-  double energy() const override { return to_double(run_.energy_at(time_)); }
-  std::string energy_text() const override { return to_text(run_.energy_at(time_)); }
+  double time() const override { return time_.rounded; }
+  std::string time_text() const override { return time_.text; }
+  double energy() const override { return to_double(run_.energy_at(time_.value)); }
+  std::string energy_text() const override { return to_text(run_.energy_at(time_.value)); }
   std::vector<double> column(Column which) override {
     return made_of<double>(which, [](const T& number) { return to_double(number); });
   }
@@ -100,7 +105,8 @@ template <Real T> class LiveRunOf final : public LiveRun {
     const Counts& made = engine_->counts();
     StateWriter to(path, {{live_kind, 0, effective_toml(scene_), scene_.name}, 0, 0, 0, time(), made.collisions});
     cradle::save(to, store_.tables());
-    cradle::save(to, time_);
+    cradle::save(to, time_.value);
+    cradle::save(to, time_.text);
     cradle::save(to, at_collision_);
     run_.save(to);
     to.finish();
@@ -108,7 +114,7 @@ template <Real T> class LiveRunOf final : public LiveRun {
   void write(const std::string& path, Force force) override {
     require_own_law("written");
     if (!over_)
-      throw Error({scene_.name, 0, ""}, "not at its end", "t = " + to_text(time_),
+      throw Error({scene_.name, 0, ""}, "not at its end", "t = " + time_.text,
                   "advance to run.until = " + scene_.run.until.text +
                       " first, stop the run here, or save a checkpoint");
     const FileClaim claim(path);
@@ -156,19 +162,19 @@ template <Real T> class LiveRunOf final : public LiveRun {
   // The time does not step back if there was no collision.
   void stand_at_last_collision() {
     const T last = engine_->last_collision_time();
-    if (last < time_) return;
-    time_ = last, at_collision_ = true;
+    if (last < time_.value) return;
+    time_ = Given<T>(last), at_collision_ = true;
   }
-  void stand(Status status, const T& time) {
+  void stand(Status status, const Given<T>& time) {
     if (status == Status::reached)
       time_ = time, at_collision_ = false;
     else
       stand_at_last_collision();
-    if (status != Status::reached || !(time < end_)) over_ = run_.end_with(status);
+    if (status != Status::reached || !(time.value < end_)) over_ = run_.end_with(status);
   }
 
   const Configuration<T>& now() {
-    if (!now_) now_ = at_collision_ ? engine_->configuration_at_last_collision() : engine_->configuration(time_);
+    if (!now_) now_ = at_collision_ ? engine_->configuration_at_last_collision() : engine_->configuration(time_.value);
     return *now_;
   }
   template <class Number, class F> std::vector<Number> made_of(Column which, const F& number) {
@@ -180,20 +186,21 @@ template <Real T> class LiveRunOf final : public LiveRun {
   }
 
   // The time to advance to.
-  T checked(const Decimal& until) const {
+  Given<T> checked(const Decimal& until) const {
     require_in_progress();
-    const T time = number<T>(until);
+    const Given<T> time(number<T>(until), until.text);
     const auto refuse = [&](const char* wrong, const std::string& advice) {
       throw Error({scene_.name, 0, ""}, wrong, until.text, advice);
     };
-    if (time < time_) refuse("a time in the past", "the run is at t = " + to_text(time_) + " and goes forward only");
-    if (end_ < time) refuse("a time after the end", "the end is run.until = " + scene_.run.until.text);
+    if (time.value < time_.value)
+      refuse("a time in the past", "the run is at t = " + time_.text + " and goes forward only");
+    if (end_ < time.value) refuse("a time after the end", "the end is run.until = " + scene_.run.until.text);
     return time;
   }
   void require_in_progress() const {
     if (over_)
       throw Error({scene_.name, 0, ""}, "the run is over",
-                  std::string(end_row(over_->end).text) + " at t = " + to_text(time_),
+                  std::string(end_row(over_->end).text) + " at t = " + time_.text,
                   "write its result, or begin another one");
   }
   void require_own_law(const char* what) const {
@@ -212,7 +219,8 @@ template <Real T> class LiveRunOf final : public LiveRun {
   std::shared_ptr<const cradle::Particles<T>> particles_;
   std::unique_ptr<Engine<T>> engine_;
   SceneRun<T> run_;
-  T time_, end_;
+  Given<T> time_;
+  T end_;
   bool at_collision_ = false;  // the state is the one right after the last collision
   std::optional<Configuration<T>> now_;
   std::optional<RunOutcome> over_;

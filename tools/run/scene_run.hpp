@@ -157,7 +157,7 @@ template <Real T> class SceneRun {
   void keep(const T& time, RunIs run_is = RunIs::in_progress) {
     put_rows();
     RunStatus now = guards_.status();
-    now.time = to_double(time);
+    now.time = plan_.meant(time).rounded;
     now.collisions = engine_.counts().collisions;
     options_.store->keep(
         now, [this](StateWriter& to) { save(to); }, run_is);
@@ -188,9 +188,9 @@ template <Real T> class SceneRun {
   bool sample_at(const T& time);
   void record_collision(const Collision<T>& c);
   Profile profile_at(const Configuration<T>& now, const T& time) const;
-  void record_sample(const T& time);
+  void record_sample(const Given<T>& at);
   void notify_observer(const T& time, bool at_collision) {
-    options_.observer->sample(run_sample(scene_, plan_, engine_, energy_, time, at_collision));
+    options_.observer->sample(run_sample(plan_, engine_, energy_, time, at_collision));
   }
   static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
 

@@ -10,8 +10,9 @@ namespace cradle::tools {
 template <Real T> inline void SceneRun<T>::record_end(const T& time) {
   guards_.require_between_walls(time);
   if (options_.observer != nullptr) notify_observer(time, true);
-  record_sample(time);
-  put(snapshot_rows(engine_.configuration_at_last_collision(), numbered("snapshots", snapshots_)));
+  const Given<T> at(time);
+  record_sample(at);
+  put(snapshot_rows(engine_.configuration_at_last_collision(), at, numbered("snapshots", snapshots_)));
 }
 
 template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& time) {
@@ -22,13 +23,14 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
     end.end = scene_.run.stop_gap ? RunEnd::small_gap : RunEnd::unproved;
   end.collisions = counts.collisions;
   end.merges = counts.merges;
-  end.time = to_double(time);
+  const Given<T> at = status == Status::reached ? plan_.meant(time) : Given<T>(time);
+  end.time = at.rounded;
   end.energy = to_double(energy_now(engine_, energy_, time));
   end.energy_digits = energy_digits(engine_, scene_, to_double(energy_), end.energy);
   ReportedAccount account = reported(engine_.account());
   if (const auto particle = engine_.uncertain_at(time); particle && !account.uncertain && status == Status::reached) {
     account.uncertain_end = true;
-    account.first_uncertain = {to_text(time), to_double(time), 0, *particle};
+    account.first_uncertain = {at.text, at.rounded, 0, *particle};
   }
   end.warning = account_warning(account, scene_);
   if (status == Status::exhausted) end.warning += exhausted_warning(to_text(time), counts.collisions, scene_);

@@ -8,9 +8,9 @@ namespace cradle::tools {
 // Returns false if a signal has stopped a loop over rows, which can be very long; then nothing of this time is
 // recorded yet.
 template <Real T> inline bool SceneRun<T>::sample_at(const T& time) {
-  const bool snapshot = holds(plan_.snapshots, time), profiled = holds(plan_.profiles, time),
-             masses = holds(plan_.masses, time), zone = holds(plan_.zone, time), averaged = holds(plan_.averages, time),
-             counted = holds(plan_.counting, time), correlated = correlations_ && correlations_->due(time);
+  const bool snapshot = plan_.snapshots.hold(time), profiled = plan_.profiles.hold(time),
+             masses = plan_.masses.hold(time), zone = plan_.zone.hold(time), averaged = plan_.averages.hold(time),
+             counted = plan_.counting.hold(time), correlated = correlations_ && correlations_->due(time);
   std::optional<Configuration<T>> now;
   std::optional<Profile> seen;
   if (snapshot || profiled || masses || zone || averaged || counted || correlated) now = engine_.configuration(time);
@@ -28,10 +28,11 @@ template <Real T> inline bool SceneRun<T>::sample_at(const T& time) {
   if (averaged) averages_->add_found();
   if (counted) histograms_->add(*now);
   if (correlated) correlations_->add(time, [this](Group&& table) { put(std::move(table)); });
-  if (holds(plan_.series, time)) record_sample(time);
-  if (snapshot) put(snapshot_rows(*now, numbered("snapshots", snapshots_)));
-  if (seen) put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
-  if (masses) put(masses_table(*now, particles_->least_mass(), numbered("masses", masses_)));
+  const Given<T> meant = plan_.meant(time);
+  if (plan_.series.hold(time)) record_sample(meant);
+  if (snapshot) put(snapshot_rows(*now, meant, numbered("snapshots", snapshots_)));
+  if (seen) seen->time = meant.rounded, put(profile_table(std::move(*seen), numbered("profiles", profiles_)));
+  if (masses) put(masses_table(*now, meant.rounded, particles_->least_mass(), numbered("masses", masses_)));
   guards_.check(time, !(time < plan_.stops.back()));
   inspected_ = time;
   if (options_.observer != nullptr) notify_observer(time, false);
@@ -56,7 +57,9 @@ template <Real T> inline Profile SceneRun<T>::profile_at(const Configuration<T>&
   BinRange range{to_double(now.x.front()), to_double(now.x.back())};
   if (!wanted.range.empty())
     range = {wanted.range[0].value, wanted.range[1].value};
-  else if (engine_.collided_particles() > 0 && !engine_.on_ring())
+  else if (engine_.on_ring())
+    range = {0, to_double(particles_->circumference())};
+  else if (engine_.collided_particles() > 0)
     range = {to_double(engine_.front_left(time)), to_double(engine_.front_right(time))};
   if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
   if (!std::isfinite(range.to - range.from))
@@ -65,8 +68,9 @@ template <Real T> inline Profile SceneRun<T>::profile_at(const Configuration<T>&
   return profile(now, *particles_, elapsed, range, wanted.bins, [this] { return stopped(); });
 }
 
-template <Real T> inline void SceneRun<T>::record_sample(const T& time) {
-  const Moment<T> now(engine_, particles_, number<T>(scene_.run.start), time);
+template <Real T> inline void SceneRun<T>::record_sample(const Given<T>& at) {
+  const T& time = at.value;
+  const Moment<T> now(engine_, particles_, number<T>(scene_.run.start), at);
   guards_.require_held(now.state.energy, "the energy", time);
   for (const auto& front : {now.state.front_left, now.state.front_right})
     if (front) guards_.require_held(*front, "a front", time);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -308,8 +309,8 @@ class Checks {
   }
 
   void ranges_of_bins() const {
-    range_of_bins("output.profiles.range", scene_.output.profiles.range);
-    range_of_bins("output.averages.range", scene_.output.averages.range);
+    range_of_bins("output.profiles.range", scene_.output.profiles.range, scene_.output.profiles.bins);
+    range_of_bins("output.averages.range", scene_.output.averages.range, scene_.output.averages.bins);
     range_of_bins("output.counting.range", scene_.output.counting.range);
   }
 
@@ -348,6 +349,14 @@ class Checks {
     if (!ends && scene_.initial.file) return;
     if (structure.any() && !structure.length && !ends)
       throw Error(place("output.structure.length"), "missing", neither, "give the length of the longest wave");
+    if (structure.any() && structure.length && ends && scene_.initial.on_ring()) {
+      // A quotient of decimals that is whole is so within rounding.
+      const bin_float waves = number(ends->second) / number(*structure.length), whole = round(waves);
+      if (whole == 0 || abs(bin_float(waves - whole)) > waves * std::numeric_limits<bin_float>::epsilon())
+        throw Error(
+            place("output.structure.length"), "waves that do not close on the ring", structure.length->text,
+            fmt::format("remove it, or give the length of the ring, {}, or a whole part of it", ends->second.text));
+    }
     if (!pairs.any()) return;
     const std::string_view key = pairs.every ? "output.pair_distribution.every" : "output.pair_distribution.times";
     if (!ends) throw Error(place(key), "pairs without a density to compare them with", neither, "remove it");
@@ -379,7 +388,14 @@ class Checks {
     constexpr double most = 1e7;  // as for points in the table of keys
     const Series& series = scene_.output.series;
     const bin_float start = number(scene_.run.start), span = number(scene_.run.until) - start;
+    const auto one_scale = [&](const char* key, const Decimal& a, const Decimal& b) {
+      for (const Decimal& end : {scene_.run.start, scene_.run.until})
+        if (!of_one_scale(end, a, b))
+          throw Error(place(key), "times of thousands of digits", b.text,
+                      "give it and the ends of the run fewer digits");
+    };
     const auto check = [&](const char* key, const Decimal& given, const bin_float& step) {
+      one_scale(key, scene_.run.start, given);
       const auto samples = static_cast<double>(bin_float(span / step));
       if (!(samples <= most))
         throw Error(place(key), "too many samples",
@@ -393,7 +409,9 @@ class Checks {
           std::pair("output.structure.every", scene_.output.structure.every),
           std::pair("output.pair_distribution.every", scene_.output.pair_distribution.every)})
       if (every) check(key, *every, number(*every));
+    if (scene_.output.zone.from) one_scale("output.zone.from", scene_.run.start, *scene_.output.zone.from);
     if (series.every) return check("output.series.every", *series.every, number(*series.every));
+    if (series.points) one_scale("run.until", scene_.run.start, scene_.run.until);
     if (!series.over) return;
     const bin_float over = number(*series.over) - start, points(static_cast<std::int64_t>(*series.points - 1));
     if (series.spacing == Spacing::linear) return check("output.series.over", *series.over, over / points);
@@ -403,7 +421,8 @@ class Checks {
   }
 
  private:
-  void range_of_bins(const char* key, const std::vector<Decimal>& range) const {
+  // `places`: how many bins are places of particles.
+  void range_of_bins(const char* key, const std::vector<Decimal>& range, std::uint64_t places = 0) const {
     if (!entries_.contains(key)) return;
     rising(key, range, "not a range",
            std::string_view(key) == "output.counting.range" ? "give two numbers, the lower one first"
@@ -411,6 +430,12 @@ class Checks {
     if (!(range[0].value < range[1].value) || !std::isfinite(range[1].value - range[0].value))
       throw Error(place(key), "not a range of doubles, in which bins are",
                   fmt::format("from {} to {}", range[0].text, range[1].text), "give ends that doubles distinguish");
+    const auto ring = places > 0 && scene_.initial.on_ring() ? extent(scene_) : std::nullopt;
+    if (!ring) return;
+    const bin_float most = number(ring->second) * bin_float(places);
+    if (number(range[1]) - number(range[0]) > most)
+      throw Error(place(key), "bins longer than the ring", fmt::format("from {} to {}", range[0].text, range[1].text),
+                  fmt::format("give a range of {:g} at most, or more bins", static_cast<double>(most)));
   }
 
   void rising(const char* key, const std::vector<Decimal>& range, const char* what, const char* advice) const {

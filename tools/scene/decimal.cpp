@@ -58,37 +58,6 @@ std::strong_ordering compare_magnitudes(const Parts& a, const Parts& b) {
   return a.digits <=> b.digits;  // both begin with the same power of ten and have no zeros at the end
 }
 
-// Float128 has numbers from 1e-4966 to 1e4932.
-constexpr std::int64_t most_digits_of_sum = 20'000;
-
-using Integer = boost::multiprecision::cpp_int;
-
-// The power of ten of the last digit.
-std::int64_t unit_of(const Parts& p) { return p.exponent - static_cast<std::int64_t>(p.digits.size()); }
-
-// The finer one of two numbers' units; that of zero does not count.
-std::int64_t finest_unit(const Parts& a, const Parts& b) {
-  return a.digits.empty() ? unit_of(b) : b.digits.empty() ? unit_of(a) : std::min(unit_of(a), unit_of(b));
-}
-
-// In units of this power of ten, which is no larger than the number's own.
-Integer in_units(const Parts& p, std::int64_t unit) {
-  if (p.digits.empty()) return 0;
-  const Integer size = Integer(p.digits) * pow(Integer(10), static_cast<unsigned>(unit_of(p) - unit));
-  return p.negative ? Integer(-size) : size;
-}
-
-// Without an exponent where that needs at most 64 places.
-std::string text_of(const Integer& number, std::int64_t unit) {
-  std::string digits = Integer(abs(number)).str();
-  const std::string sign = number < 0 ? "-" : "";
-  if (unit > 0 || unit < -64) return sign + digits + "e" + std::to_string(unit);
-  const auto places = static_cast<std::size_t>(-unit);
-  if (places == 0) return sign + digits;
-  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
-  return sign + digits.substr(0, digits.size() - places) + "." + digits.substr(digits.size() - places);
-}
-
 }  // namespace
 
 std::optional<std::string> canonical_decimal(std::string_view written) {
@@ -173,16 +142,87 @@ Decimal::Decimal(std::string_view literal) {
   }
 }
 
-std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step) {
-  constexpr std::int64_t most_digits = 4096;
-  const Parts a = parts_of(start.text), b = parts_of(step.text);
-  if (a.digits.empty() && (k == 0 || b.digits.empty())) return start;
-  const std::int64_t unit = finest_unit(a, b);
-  if (std::max(unit_of(a), unit_of(b)) - unit > most_digits) return {};
-  return Decimal(text_of(in_units(a, unit) + in_units(b, unit) * k, unit));
+namespace {
+
+using Integer = boost::multiprecision::cpp_int;
+
+// Float128 has numbers from 1e-4966 to 1e4932.
+constexpr std::int64_t most_digits_of_sum = 20'000;
+
+// An integer times a power of ten.
+struct Exact {
+  Integer integer;
+  std::int64_t power = 0;
+
+  explicit Exact(const Decimal& decimal) : Exact(decimal.text) {}
+  explicit Exact(std::string_view decimal) {
+    const Parts parts = parts_of(decimal);
+    if (parts.digits.empty()) return;
+    integer = Integer(parts.digits);
+    if (parts.negative) integer = -integer;
+    power = parts.exponent - static_cast<std::int64_t>(parts.digits.size());
+  }
+};
+
+Integer power_of_ten(std::int64_t power) { return pow(Integer(10), static_cast<unsigned>(power)); }
+
+// The lowest and the highest power of ten.
+std::pair<std::int64_t, std::int64_t> powers(std::initializer_list<Exact*> numbers) {
+  std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = std::numeric_limits<std::int64_t>::min();
+  for (const Exact* number : numbers)
+    if (number->integer != 0) low = std::min(low, number->power), high = std::max(high, number->power);
+  return low > high ? std::pair<std::int64_t, std::int64_t>() : std::pair(low, high);
 }
 
-namespace {
+// Gives all of these the lowest power of ten.
+void align(std::initializer_list<Exact*> numbers) {
+  const std::int64_t low = powers(numbers).first;
+  for (Exact* number : numbers) {
+    if (number->integer != 0) number->integer *= power_of_ten(number->power - low);
+    number->power = low;
+  }
+}
+
+// Without zeros at its end and, unless it is very long, without a power of ten.
+std::string text_of(const Integer& integer, std::int64_t power) {
+  constexpr std::int64_t longest = 64;
+  if (integer == 0) return "0";
+  std::string digits = Integer(abs(integer)).str();
+  const std::size_t last = digits.find_last_not_of('0') + 1;
+  power += static_cast<std::int64_t>(digits.size() - last);
+  digits.resize(last);
+  const std::string sign = integer < 0 ? "-" : "";
+  if (power > longest || power < -longest) return sign + digits + "e" + std::to_string(power);
+  if (power >= 0) return sign + digits + std::string(static_cast<std::size_t>(power), '0');
+  const auto places = static_cast<std::size_t>(-power);
+  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
+  return sign + digits.insert(digits.size() - places, ".");
+}
+
+// integer 10^power/parts; see decimals_by_parts.
+std::string quotient_text(Integer integer, std::int64_t power, Integer parts, std::size_t digits) {
+  const Integer common = gcd(integer, parts);
+  integer /= common, parts /= common;
+  while (parts % 10 == 0) parts /= 10, --power;
+  while (parts % 5 == 0) parts /= 5, integer *= 2, --power;
+  while (parts % 2 == 0) parts /= 2, integer *= 5, --power;
+  if (parts == 1) return text_of(integer, power);
+  // A number in the middle of two binary ones is a fraction too: between two fractions is room for one unit of the
+  // product of their denominators.
+  const auto more =
+      static_cast<std::int64_t>(digits + integer.str().size() + parts.str().size()) + (power < 0 ? -power : power);
+  return text_of(integer * power_of_ten(more) / parts, power - more);
+}
+
+// from + k step/parts up to `until`, of one power of ten.
+DecimalColumn spaced(const Exact& from, const Exact& step, const Integer& parts, const Exact& until,
+                     std::size_t digits) {
+  DecimalColumn all;
+  const Integer end = until.integer * parts;
+  for (Integer at = from.integer * parts; at <= end; at += step.integer)
+    all.push_back(parts == 1 ? text_of(at, from.power) : quotient_text(at, from.power, parts, digits));
+  return all;
+}
 
 // A number of at most 18 digits, so that most sums need no integers of any size.
 struct Short {
@@ -231,11 +271,11 @@ std::optional<std::string> short_sum(std::string_view a_text, std::string_view b
 
 std::optional<std::string> exact_sum(std::string_view a_text, std::string_view b_text, int sign) {
   if (auto quick = short_sum(a_text, b_text, sign)) return quick;
-  const Parts a = parts_of(a_text), b = parts_of(b_text);
-  if (a.digits.empty() && b.digits.empty()) return "0";
-  const std::int64_t unit = finest_unit(a, b);
-  if (std::max(a.exponent, b.exponent) - unit > most_digits_of_sum) return {};
-  return text_of(in_units(a, unit) + sign * in_units(b, unit), unit);
+  Exact a(a_text), b(b_text);
+  const auto [low, high] = powers({&a, &b});
+  if (high - low > most_digits_of_sum) return {};
+  align({&a, &b});
+  return text_of(a.integer + sign * b.integer, a.power);
 }
 
 std::string difference(std::string_view a, std::string_view b) {
@@ -243,10 +283,11 @@ std::string difference(std::string_view a, std::string_view b) {
   // What is left of the smaller one is its sign: it decides a number that would be in the middle between two others.
   const Parts of_a = parts_of(a), of_b = parts_of(b);
   const bool first = of_a.exponent > of_b.exponent;
-  const Parts& larger = first ? of_a : of_b;
-  const std::int64_t unit = std::min(unit_of(larger), larger.exponent - most_digits_of_sum);
-  const Integer large = in_units(larger, unit), small = (first ? of_b : of_a).negative ? -1 : 1;
-  return text_of(first ? large - small : small - large, unit);
+  Exact large(first ? a : b);
+  const std::int64_t power = std::min(large.power, (first ? of_a : of_b).exponent - most_digits_of_sum);
+  large.integer *= power_of_ten(large.power - power);
+  const Integer small = (first ? of_b : of_a).negative ? -1 : 1;
+  return text_of(first ? Integer(large.integer - small) : Integer(small - large.integer), power);
 }
 
 std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColumn& steps, int sign) {
@@ -257,6 +298,36 @@ std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColu
     sums.push_back(*next);
   }
   return sums;
+}
+
+bool of_one_scale(const Decimal& a, const Decimal& b, const Decimal& c) {
+  constexpr std::int64_t most_digits = 4000;
+  Exact first(a), second(b), third(c);
+  const auto [low, high] = powers({&first, &second, &third});
+  return high - low <= most_digits;
+}
+
+DecimalColumn decimals_by_step(const Decimal& from, const Decimal& step, const Decimal& until) {
+  Exact first(from), by(step), last(until);
+  align({&first, &by, &last});
+  return spaced(first, by, 1, last, 0);
+}
+
+DecimalColumn decimals_by_parts(const Decimal& from, const Decimal& to, std::uint64_t parts, const Decimal& until,
+                                std::size_t digits) {
+  Exact first(from), end(to), last(until);
+  align({&first, &end, &last});
+  end.integer -= first.integer;
+  return spaced(first, end, parts, last, digits + 5);
+}
+
+Decimal decimal_between(const Decimal& from, const Decimal& to, const Decimal& share) {
+  Exact first(from), way(to);
+  const Exact part(share);
+  align({&first, &way});
+  way.integer = (way.integer - first.integer) * part.integer, way.power += part.power;
+  align({&first, &way});
+  return Decimal(text_of(first.integer + way.integer, first.power));
 }
 
 void DecimalColumn::push_back(std::string_view literal) {
@@ -289,7 +360,7 @@ std::optional<std::string> sum_of_products(const DecimalColumn& a, const Decimal
       const Parts parts = parts_of((*column)[i]);
       product *= parts.digits.empty() ? Integer(0) : Integer(parts.digits);
       if (parts.negative) product = -product;
-      power += unit_of(parts);
+      power += parts.exponent - static_cast<std::int64_t>(parts.digits.size());
     }
     if (product != 0) sums[power] += product;
   }

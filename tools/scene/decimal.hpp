@@ -54,9 +54,6 @@ std::optional<std::string> exact_sum(std::string_view a, std::string_view b, int
 /// same one in any working precision.
 std::string difference(std::string_view a, std::string_view b);
 
-/// start + k step, exactly; nothing if that needs thousands of digits.
-std::optional<Decimal> stepped(const Decimal& start, std::uint64_t k, const Decimal& step);
-
 /// Canonical decimals of many particles, joined in one text, so that 2e7 particles fit in memory. Copies share it until
 /// one of them grows.
 class DecimalColumn {
@@ -89,6 +86,20 @@ class DecimalColumn {
 /// first, first + sign steps[0], first + sign (steps[0] + steps[1]), ..., exactly. Nothing if that needs more than
 /// 20,000 digits.
 std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColumn& steps, int sign);
+
+/// Whether sums and differences of these need no thousands of digits. What follows is for such numbers only.
+bool of_one_scale(const Decimal& a, const Decimal& b, const Decimal& c);
+
+/// from, from + step and so on up to `until`, exactly, for a step above 0.
+DecimalColumn decimals_by_step(const Decimal& from, const Decimal& step, const Decimal& until);
+
+/// from + k (to - from)/parts for k = 0, 1 and so on up to `until`, for to > from. Where that is no finite decimal, it
+/// has so many digits that it rounds as the number itself does, to a double and to types of so many decimal digits.
+DecimalColumn decimals_by_parts(const Decimal& from, const Decimal& to, std::uint64_t parts, const Decimal& until,
+                                std::size_t digits);
+
+/// from + share (to - from), exactly.
+Decimal decimal_between(const Decimal& from, const Decimal& to, const Decimal& share);
 
 /// The exact sum of the products of two columns, or of the first column alone if the second is empty. Nothing for more
 /// than 1e5 rows or if it needs thousands of digits.

@@ -363,7 +363,8 @@ const Field all_fields[] = {
     {"output.profiles.bins", output_of<&Output::profiles, &Profiles::bins>, "", "50", "[1, 1e6]", &always,
      "number of bins of the profiles"},
     {"output.profiles.range", output_of<&Output::profiles, &Profiles::range>, "l", "", any, &always,
-     "the two ends of the bins; without it, those of the interaction zone at that time (ensembles need it)"},
+     "the two ends of the bins; without it, those of the ring, or of the interaction zone at that time (ensembles need "
+     "it). Bins beyond a ring have the images of its particles"},
     {"output.masses", output_of<&Output::masses>, "t", "[]", within_run, &merging,
      "times at which the distribution of cluster masses is written"},
     {"output.zone.from", output_of<&Output::zone, &Zone::from>, "t", "", within_run, &wet_shock,
@@ -386,7 +387,7 @@ const Field all_fields[] = {
     {"output.averages.bins", output_of<&Output::averages, &Averages::bins>, "", "50", "[1, 1e5]", &averaged,
      "number of bins of the averages"},
     {"output.averages.range", output_of<&Output::averages, &Averages::range>, "l", "the ring, or between walls at rest",
-     any, &averaged, "the two ends of the bins", extent_of},
+     any, &averaged, "the two ends of the bins; beyond a ring they have the images of its particles", extent_of},
     {"output.histograms", output_of<&Output::histograms>, "", "",
      "free_flight | pair_flight | closing_speed | dissipative_closing_speed | collisions_per_particle | gap | cluster",
      &always, "what is counted in bins that are nearly logarithmic"},
@@ -423,7 +424,8 @@ const Field all_fields[] = {
     {"output.structure.waves", output_of<&Output::structure, &Structure::waves>, "", "1000", "[1, 1e9]", &structured,
      "largest n of the wave numbers 2 pi n/length; beyond 8 there are eight in every octave"},
     {"output.structure.length", output_of<&Output::structure, &Structure::length>, "l", "", "(0, inf)", &structured,
-     "length of the wave with n = 1; without it, that of the ring, or between walls at rest"},
+     "length of the wave with n = 1, on a ring a whole part of its length; without it, that of the ring, or between "
+     "walls at rest"},
     {"output.pair_distribution.times", output_of<&Output::pair_distribution, &Pairs::times>, "t", "", within_run,
      &always, "times at which the pair distribution is written"},
     {"output.pair_distribution.every", output_of<&Output::pair_distribution, &Pairs::every>, "t", "", "(0, inf)",

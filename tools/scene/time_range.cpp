@@ -17,28 +17,6 @@ constexpr std::string_view advice_on_parts = "give from, until and every, or fro
 
 bin_float precise(const Decimal& decimal) { return from_text<bin_float>(decimal.text); }
 
-// The same number without zeros at its end and, unless it is very long, without a power of ten: 5e1 is 50, 1.50 is 1.5.
-Decimal plain(const Decimal& number) {
-  constexpr std::int64_t longest = 30;
-  std::string_view text = number.text;
-  const auto e = std::min(text.find('e'), text.size());
-  const std::int64_t power = e < text.size() ? std::stoll(std::string(text.substr(e + 1))) : 0;
-  const bool negative = text.front() == '-';
-  text = text.substr(0, e);
-  if (negative) text.remove_prefix(1);
-  const auto point = std::min(text.find('.'), text.size());
-  std::string digits(text.substr(0, point));
-  if (point < text.size()) digits += text.substr(point + 1);
-  if (std::abs(power) > longest) return number;
-  std::int64_t whole = static_cast<std::int64_t>(point) + power;  // digits before the point
-  if (whole < 1) digits.insert(0, static_cast<std::size_t>(1 - whole), '0'), whole = 1;
-  if (const auto size = static_cast<std::size_t>(whole); digits.size() < size) digits.append(size - digits.size(), '0');
-  digits.insert(static_cast<std::size_t>(whole), ".");
-  digits.erase(digits.find_last_not_of('0') + 1);
-  if (digits.back() == '.') digits.pop_back();
-  return Decimal((negative ? "-" : "") + digits);
-}
-
 class TimeRange {
  public:
   // `first`: one of the entries of the table `key`.
@@ -105,14 +83,12 @@ class TimeRange {
     if (!(steps < most))
       throw Error(every.place, "too many times", fmt::format("{}, which makes {:.3g} of them", step.text, steps),
                   fmt::format("give a longer time, {:.0g} times at most", most));
+    if (!of_one_scale(from, step, until))
+      throw Error(every.place, "times of thousands of digits", step.text, "give from, until and every fewer digits");
+    const DecimalColumn all = decimals_by_step(from, step, until);
     std::vector<Decimal> times;
-    for (std::uint64_t k = 0;; ++k) {
-      const auto time = stepped(from, k, step);
-      if (!time)
-        throw Error(every.place, "times of thousands of digits", step.text, "give from and every fewer digits");
-      if (*time > until) return times;
-      times.push_back(plain(*time));
-    }
+    for (std::size_t k = 0; k < all.size(); ++k) times.emplace_back(all[k]);
+    return times;
   }
 
   std::vector<Decimal> by_points(const Decimal& from, const Decimal& until, const Value& points,

@@ -48,7 +48,7 @@ template <class Run> std::vector<double> times_of(Run& run, double until) {
   return times;
 }
 double mechanical(const Configuration<double>& c, const Particles<double>& particles) {
-  return kinetic_energy(c, particles) + potential_energy(c, particles, c.time);
+  return kinetic_energy(c, particles, c.time) + potential_energy(c, particles, c.time);
 }
 
 // From the height 1 with the acceleration 2: at the floor at t = 1, 3, 5 and so on. All numbers are exact.
@@ -234,7 +234,7 @@ TEST(Gravity, CoordinatesAgree) {
         const double start = particles->mechanical_energy();
         for (const auto& [now, at] : {std::pair(sample(gaps, 0., 24.), c), std::pair(sample(places, 0., 24.), d)}) {
           EXPECT_NEAR(now.energy + potential_energy(at, *particles, 24.), start - now.energy_lost + now.given, 1e-11);
-          EXPECT_NEAR(kinetic_energy(at, *particles), now.energy, 1e-12 * now.energy);
+          EXPECT_NEAR(kinetic_energy(at, *particles, at.time), now.energy, 1e-12 * now.energy);
         }
         for (const auto& [found, lost] : {std::pair(c, gaps.energy_lost()), std::pair(d, places.energy_lost())})
           EXPECT_FALSE(guarded(found, *particles, gaps.counts().collisions, start - lost, 24.,

@@ -66,7 +66,7 @@ TEST(OwnLaw, GapsAndPositionsAgreeAndTheLedgerIsTheDirectSum) {
   // side with them.
   const double rounding = static_cast<double>(gaps.counts().collisions) * 2 * 0x1p-54 * 400;
   const auto now = gaps.configuration(150.0);
-  EXPECT_NEAR(kinetic_energy(now, *particles), particles->kinetic_energy() - gaps.energy_lost(), rounding);
+  EXPECT_NEAR(kinetic_energy(now, *particles, now.time), particles->kinetic_energy() - gaps.energy_lost(), rounding);
   EXPECT_NEAR(momentum_gained(now, *particles), 0, rounding);
 }
 

@@ -1,12 +1,15 @@
 // Correlations. Proves: lags and values are those of all pairs of samples, taken one by one; errors are those of batch
 // means; places on rings are not folded, as steps so small that no fold can hide in them show, in every direction and
-// with masses; particles that no front has reached count; all from a saved state too.
+// with masses; particles that no front has reached count, and fall; all from a saved state too.
 #include "cradle/core/observe/correlations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
+#include "cradle/core/chains/gravity.hpp"
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/core/strict_real.hpp"
@@ -189,6 +192,31 @@ TEST(TaggedParticles, OfRowsAreThoseThatNoFrontHasReachedToo) {
       EXPECT_EQ(tagged.velocity()[k], now.v[j]);
     }
   }
+}
+
+// Two of five particles have met, the others only fall, as far as s + 1/2 from the time s to the next; one of all flies
+// at 1/2 besides, so the sums over them of squares are 4 (s + 1/2)^2 + s^2, and 4 t^2 + (t - 1/2)^2 of velocities.
+TEST(TaggedParticles, FallWhetherAFrontHasReachedThemOrNot) {
+  const auto particles = std::make_shared<Walled<double>>(list<double>({100, 101, 300, 400, 500}, {0.5, 0, 0, 0, 0}),
+                                                          Wall<double>{0.}, std::nullopt, -1.);
+  Simulation run(Inelastic<double>(1), GapChain<double, IdenticalMasses<double>, Gravity<double>>(particles, 0.));
+  TaggedParticles<double> tagged(*particles, 1);
+  Correlator correlator(tagged.size(), 10);
+  double ways = 0, speeds = 0;
+  for (int t = 0; t <= 10; ++t) {
+    run.advance(t);
+    const Configuration<double> now = run.configuration(t);
+    if (t >= 2) ASSERT_LT(now.to, 4);
+    tagged.find(now, t);
+    correlator.add(tagged.displacement(), tagged.velocity());
+    EXPECT_DOUBLE_EQ(kinetic_energy(now, *particles, double(t)), run.kinetic_energy(t));
+    speeds += (4 * t * t + (t - 0.5) * (t - 0.5)) / 55;
+    if (t < 10) ways += (4 * (t + 0.5) * (t + 0.5) + t * t) / 50;
+  }
+  EXPECT_EQ(run.counts().collisions, 1U);
+  const auto found = correlator.correlations();
+  EXPECT_DOUBLE_EQ(found[1].displacement.mean, ways);  // 32.3
+  EXPECT_DOUBLE_EQ(found[0].velocity.mean, speeds);    // 34.05
 }
 
 TEST(TaggedParticles, NeedOnlyWhatARealNumberHas) {

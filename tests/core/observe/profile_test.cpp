@@ -86,6 +86,25 @@ TEST(Profile, TemperatureKeepsItsDigitsInAFastFrame) {
   EXPECT_NEAR(p.temperature[0], std::ldexp(1, -40), 100 * std::ldexp(1, -40 - 13));
 }
 
+// On a ring of length 4 every place has images 4 apart; a range across the seam or of several turns has them.
+TEST(Profile, OnARingHasTheImagesOfItsParticles) {
+  const List<double> ring({0.5, 1.5, 1.75, 3.5}, {1, 2, 3, 4}, {}, 4.);
+  const auto run = gap_run<double>(std::make_shared<List<double>>(ring), Inelastic(0.5));
+  const auto density = [&](BinRange range, std::size_t bins) {
+    return profile(run.configuration(0.), ring, 0., range, bins).density;
+  };
+  using Densities = std::vector<double>;
+  EXPECT_EQ(density({0, 4}, 4), (Densities{1, 2, 0, 1}));
+  EXPECT_EQ(density({-2, 2}, 4), (Densities{0, 1, 1, 2}));
+  EXPECT_EQ(density({-101, -97}, 4), (Densities{1, 1, 2, 0}));
+  EXPECT_EQ(density({3, 12}, 9), (Densities{1, 1, 2, 0, 1, 1, 2, 0, 1}));
+  EXPECT_EQ(density({1.25, 1.75}, 1), (Densities{2}));  // the end is not in it
+  EXPECT_EQ(density({0, 0x1p12}, 1), (Densities{1}));   // N/L
+  const Profile across = profile(run.configuration(0.), ring, 0., {-0.75, -0.25}, 1);
+  EXPECT_EQ(across.velocity, (Densities{4}));
+  EXPECT_THROW(density({0, 1e300}, 5), std::invalid_argument);
+}
+
 TEST(Profile, CountsEveryParticleOfTheRowsWhetherReachedOrNot) {
   const auto particles = rshock<double>(400);
   for (const double t : {0., 0.25, 10., 100., 250.}) {

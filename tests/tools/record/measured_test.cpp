@@ -329,6 +329,23 @@ TEST(Measured, WhatIsRefused) {
                             "{ position = -15 }, right = { position = 15 } }\n";
   expect(message("pair_distribution = { every = 1, distance = 31 }", walls),
          "more than there is between the walls (found 31): give 30 at most");
+  const auto on_ring = [](const std::string& output) {
+    return refusal(tools::Exit::bad_input, [&] {
+      parse_scene("law = { type = 'inelastic', restitution = 1 }\ninitial = { type = 'ring', particles = 5, length = "
+                  "5 }\nrun.until = 40\n[output]\n" +
+                      output,
+                  "scene.toml");
+    });
+  };
+  EXPECT_EQ(on_ring("averages = { every = 1, bins = 2, range = [-5, 5.5] }"),
+            "scene.toml:5: output.averages.range: bins longer than the ring (found from -5 to 5.5): give a range of 10 "
+            "at most, or more bins");
+  EXPECT_EQ(on_ring("profiles = { times = [1], bins = 2, range = [-5, 5.5] }"),
+            "scene.toml:5: output.profiles.range: bins longer than the ring (found from -5 to 5.5): give a range of 10 "
+            "at most, or more bins");
+  EXPECT_EQ(on_ring("structure = { times = [1], length = 2 }"),
+            "scene.toml:5: output.structure.length: waves that do not close on the ring (found 2): remove it, or give "
+            "the length of the ring, 5, or a whole part of it");
   const auto tagged = refusal(tools::Exit::bad_input, [] {
     tools::run_scene(
         parse_scene("law = { type = 'inelastic', restitution = 1 }\ninitial = { type = 'ring', particles = "

@@ -61,18 +61,44 @@ TEST(Decimal, Integers) {
   EXPECT_FALSE(is_whole("-121e-1"));
 }
 
+using Texts = std::vector<std::string>;
+Texts texts(const DecimalColumn& column) {
+  Texts all;
+  for (std::size_t k = 0; k < column.size(); ++k) all.emplace_back(column[k]);
+  return all;
+}
+
 TEST(Decimal, Steps) {
-  const auto step = [](const char* start, std::uint64_t k, const char* by) {
-    return stepped(Decimal(start), k, Decimal(by)).value().text;
+  const auto steps = [](const char* from, const char* by, const char* until) {
+    return decimals_by_step(Decimal(from), Decimal(by), Decimal(until));
   };
-  EXPECT_EQ(step("0", 3, "0.1"), "0.3");
-  EXPECT_EQ(step("0", 0, "0.1"), "0");
-  EXPECT_EQ(step("-1", 3, "0.25"), "-0.25");
-  EXPECT_EQ(step("1000000000000000000000", 7, "1e-21"), "1000000000000000000000.000000000000000000007");
-  EXPECT_EQ(step("5", 1000, "2e3"), "2000005");
-  EXPECT_EQ(step("0", 3, "1e-400"), "3e-400");
-  EXPECT_EQ(step("0", 3, "1e400"), "3e400");
-  EXPECT_EQ(stepped(Decimal("1"), 3, Decimal("1e-999999")), std::nullopt);
+  EXPECT_EQ(texts(steps("0", "0.1", "0.3")), (Texts{"0", "0.1", "0.2", "0.3"}));
+  EXPECT_EQ(texts(steps("-1", "0.25", "-0.3")), (Texts{"-1", "-0.75", "-0.5"}));
+  EXPECT_EQ(texts(steps("1e21", "1e-21", "1e21")), (Texts{"1000000000000000000000"}));
+  EXPECT_EQ(texts(steps("1e21", "7e-21", "1000000000000000000000.00000000000000000001")).back(),
+            "1000000000000000000000.000000000000000000007");
+  EXPECT_EQ(texts(steps("5", "2e3", "4005")), (Texts{"5", "2005", "4005"}));
+  EXPECT_EQ(texts(steps("0", "1e-400", "2.5e-400")), (Texts{"0", "1e-400", "2e-400"}));
+  EXPECT_EQ(texts(steps("0", "1e400", "2e400")), (Texts{"0", "1e400", "2e400"}));
+  EXPECT_FALSE(of_one_scale(Decimal("1"), Decimal("1e-999999"), Decimal("2")));
+  EXPECT_TRUE(of_one_scale(Decimal("0"), Decimal("1e-999999"), Decimal("2e-999999")));
+}
+
+TEST(Decimal, Parts) {
+  const auto parts = [](const char* from, const char* to, std::uint64_t count, const char* until) {
+    return decimals_by_parts(Decimal(from), Decimal(to), count, Decimal(until), 17);
+  };
+  EXPECT_EQ(texts(parts("0", "1", 8, "0.3")), (Texts{"0", "0.125", "0.25"}));
+  EXPECT_EQ(texts(parts("-0.5", "1.5", 5, "2")), (Texts{"-0.5", "-0.1", "0.3", "0.7", "1.1", "1.5", "1.9"}));
+  const Texts thirds = texts(parts("-1", "1", 3, "1"));
+  EXPECT_EQ(thirds[1].substr(0, 20), "-0.33333333333333333");
+  EXPECT_EQ(thirds[3], "1");
+  // In the middle between two doubles, where the even one is the nearest, and very little above.
+  const std::string middle = "1.00000000000000011102230246251565404236316680908203125", above = middle + "0000000003";
+  const Texts near = texts(parts(middle.c_str(), above.c_str(), 7, above.c_str()));
+  EXPECT_EQ(Decimal(near[0]).value, 1);
+  EXPECT_EQ(Decimal(near[1]).value, 1 + 0x1p-52);
+  EXPECT_EQ(decimal_between(Decimal("1"), Decimal("3"), Decimal("1e-3")), Decimal("1.002"));
 }
 
 TEST(Decimal, NearestDouble) {

@@ -333,8 +333,8 @@ ListedParticles last_state(const std::string& file, Scene& scene) {
   if (ones) listed.m = {};
   if (other.initial.on_ring()) {
     const std::size_t first = first_row(result, snapshot);
-    for (DecimalColumn* column : {&listed.x, &listed.v, &listed.m, &listed.gap, &listed.closing_speed})
-      *column = rotated(*column, first);
+    for (DecimalColumn* numbers : {&listed.x, &listed.v, &listed.m, &listed.gap, &listed.closing_speed})
+      *numbers = rotated(*numbers, first);
     listed.x = {listed.x[0]};
   }
   if (other.initial.on_ring() && !scene.initial.on_ring()) scene.initial.length = other.initial.length;

@@ -31,24 +31,24 @@ std::string_view nearest_key(std::string_view key) {
 
 // What is called otherwise here, or is not there.
 struct OtherName {
-  std::string_view key, advice;
+  std::string_view table, name, advice;
 };
 constexpr std::string_view points =
     "particles are points; a rod of the length d is one whose distances to all that it meets are shorter by d";
 constexpr OtherName other_names[] = {
-    {"initial.temperature", "give initial.variance, the temperature over the mass: T for particles of mass 1"},
-    {"initial.diameter", points},
-    {"initial.diameters", points},
-    {"initial.radius", points},
-    {"initial.size", points},
-    {"law.epsilon", "did you mean law.restitution?"},
-    {"law.e", "did you mean law.restitution?"},
-    {"law.r", "did you mean law.restitution?"},
-    {"gravity.g", "did you mean gravity.acceleration?"},
-    {"initial.n", "did you mean initial.particles?"},
-    {"initial.N", "did you mean initial.particles?"},
-    {"run.time", "did you mean run.until?"},
-    {"run.end", "did you mean run.until?"},
+    {"initial", "temperature", "give initial.variance, the temperature over the mass: T for particles of mass 1"},
+    {"initial", "diameter", points},
+    {"initial", "diameters", points},
+    {"initial", "radius", points},
+    {"initial", "size", points},
+    {"law", "epsilon", "did you mean law.restitution?"},
+    {"law", "e", "did you mean law.restitution?"},
+    {"law", "r", "did you mean law.restitution?"},
+    {"gravity", "g", "did you mean gravity.acceleration?"},
+    {"initial", "n", "did you mean initial.particles?"},
+    {"initial", "N", "did you mean initial.particles?"},
+    {"run", "time", "did you mean run.until?"},
+    {"run", "end", "did you mean run.until?"},
 };
 
 void refuse_unknown_key(std::string_view key, const Value& value) {
@@ -63,7 +63,8 @@ void refuse_unknown_key(std::string_view key, const Value& value) {
     }
   }
   for (const OtherName& other : other_names)
-    if (key == other.key) throw Error(value.place, "unknown key", describe(value), other.advice);
+    if (key == fmt::format("{}.{}", other.table, other.name))
+      throw Error(value.place, "unknown key", describe(value), other.advice);
   const auto nearest = nearest_key(key);
   throw Error(value.place, "unknown key", describe(value),
               nearest.empty() ? "remove it; the manual lists all keys" : fmt::format("did you mean {}?", nearest));

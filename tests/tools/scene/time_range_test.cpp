@@ -55,7 +55,7 @@ TEST(Schedule, RoundsEveryTimeOnce) {
         .series;
   };
   EXPECT_EQ(schedule<double>(parse_scene(ring + "[output]\nseries.every = 0.1", "", {"run.until=0.3"})).series.values(),
-            (std::vector{0, 0.1, 0.2, 0.3}));
+            (std::vector<double>{0, 0.1, 0.2, 0.3}));
   const auto near = [](double time, const Rational& exact) {
     const double ulp = std::nextafter(time, 1e300) - time;
     EXPECT_LE(abs(Rational(Rational(time) - exact)), Rational(ulp) / 2) << time;

@@ -38,9 +38,13 @@ template <Real T> class Times {
     return all;
   }
   std::optional<Given<T>> find(const T& time) const {
+    if (!hold(time)) return {};
+    return Given<T>(time, decimal(time));
+  }
+  /// Of a time that is one of these.
+  std::string_view decimal(const T& time) const {
     const auto found = std::lower_bound(times_.begin(), times_.end(), time);
-    if (found == times_.end() || time < *found) return {};
-    return Given<T>(time, decimals_[static_cast<std::size_t>(found - times_.begin())]);
+    return decimals_[static_cast<std::size_t>(found - times_.begin())];
   }
 
  private:
@@ -140,19 +144,26 @@ template <Real T> Schedule<T> schedule(const Scene& scene) {
   return plan;
 }
 
-/// The decimal times that this stop of a run stands for.
-template <Real T> std::vector<RequestedTime> requested_times(const Schedule<T>& plan, const T& time) {
+/// The decimal times that this stop of a run stands for. Points between the ends of a series need not be decimals: they
+/// are the run's own times.
+template <Real T>
+std::vector<RequestedTime> requested_times(const Scene& scene, const Schedule<T>& plan, const T& time) {
   std::vector<RequestedTime> all;
-  const auto at = [&](const Given<T>& given) -> RequestedTime& {
-    const Decimal decimal(given.text);
+  const auto at = [&](const Decimal& decimal) -> RequestedTime& {
     for (RequestedTime& asked : all)
       if (asked.time == decimal) return asked;
     return all.emplace_back(decimal);
   };
-  if (const auto found = plan.series.find(time)) at(*found).of_series = true;
-  if (const auto found = plan.snapshots.find(time)) at(*found).of_snapshots = true;
-  if (const auto found = plan.end.find(time)) at(*found).last = true;
-  if (all.empty()) at(plan.meant(time));
+  const Series& series = scene.output.series;
+  if (const auto found = plan.series.find(time)) {
+    const Decimal decimal(plan.series.decimal(time));
+    const bool written = !series.points || decimal == scene.run.start || decimal == scene.run.until ||
+                         (series.over && decimal == *series.over);
+    at(written ? decimal : Decimal(found->text)).of_series = true;
+  }
+  if (plan.snapshots.hold(time)) at(Decimal(plan.snapshots.decimal(time))).of_snapshots = true;
+  if (time == plan.stops.back()) at(scene.run.until).last = true;
+  if (all.empty()) at(Decimal(plan.meant(time).text));
   return all;
 }
 

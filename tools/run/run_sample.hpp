@@ -30,8 +30,8 @@ template <Real T> SampledWall sampled(const WallTally<T>& wall) {
 
 /// `energy`: at the start; `at_collision`: the run ends at this time, with a collision.
 template <Real T>
-RunSample run_sample(const Schedule<T>& plan, const Engine<T>& engine, const T& energy, const T& time,
-                     bool at_collision) {
+RunSample run_sample(const Scene& scene, const Schedule<T>& plan, const Engine<T>& engine, const T& energy,
+                     const T& time, bool at_collision) {
   const Sample<T> now = sample(engine, energy, time);
   const Given<T> meant = at_collision ? Given<T>(time) : plan.meant(time);
   const auto text = [](const std::optional<T>& x) { return x ? to_text(*x) : std::string(); };
@@ -39,7 +39,7 @@ RunSample run_sample(const Schedule<T>& plan, const Engine<T>& engine, const T& 
                     .time_text = to_text(time),
                     .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
                     .requested = at_collision ? std::vector{RequestedTime{Decimal(to_text(time)), true, false, true}}
-                                              : requested_times(plan, time),
+                                              : requested_times(scene, plan, time),
                     .of_series = plan.series.hold(time),
                     .at_collision = at_collision,
                     .counts = now.counts,

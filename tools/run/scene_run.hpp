@@ -190,7 +190,7 @@ template <Real T> class SceneRun {
   Profile profile_at(const Configuration<T>& now, const T& time) const;
   void record_sample(const Given<T>& at);
   void notify_observer(const T& time, bool at_collision) {
-    options_.observer->sample(run_sample(plan_, engine_, energy_, time, at_collision));
+    options_.observer->sample(run_sample(scene_, plan_, engine_, energy_, time, at_collision));
   }
   static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
 

@@ -124,6 +124,47 @@ TEST_P(ExactIn, DecimalsHaveTheDigitsOfTheType) {
   near("exact/events", "closing_speed", 0, Rational(7, 10));
 }
 
+// Times of rows, attributes and lags: multiples of 0.1, as doubles and, in types that have more digits, as decimals.
+void expect_multiples_of_a_tenth(const Result& result) {
+  const auto multiple = [](std::size_t k) {
+    const std::string tenths = std::to_string(k % 10), whole = std::to_string(k / 10);
+    return tenths == "0" ? whole : whole + "." + tenths;
+  };
+  const auto times = numbers(result, "series", "time"), lags = numbers(result, "correlations", "lag");
+  ASSERT_EQ(times.size(), 51U);
+  for (std::size_t k = 0; k < times.size(); ++k) EXPECT_EQ(times[k], std::stod(multiple(k)));
+  for (const double lag : lags) EXPECT_EQ(lag, std::stod(multiple(static_cast<std::size_t>(std::lround(10 * lag)))));
+  if (const Group* exact = result.find("exact/series")) {
+    const auto& texts = std::get<Texts>(exact->columns.front().values);
+    for (std::size_t k = 0; k < times.size(); ++k) EXPECT_EQ(texts.at(k), multiple(k));
+  }
+  std::map<std::string, std::size_t> found;
+  for (const Group& group : result.groups)
+    for (const auto& [name, value] : group.attributes) {
+      if (name != "time") continue;
+      const std::string folder = group.name.substr(0, group.name.rfind('/'));
+      const std::string expected = multiple(++found[folder]);
+      if (folder.starts_with("exact")) {
+        EXPECT_EQ(std::get<std::string>(value), expected) << group.name;
+      } else {
+        EXPECT_EQ(std::get<double>(value), std::stod(expected)) << group.name;
+      }
+    }
+  for (const char* folder : {"snapshots", "profiles", "structure"}) EXPECT_EQ(found[folder], 49U) << folder;
+}
+const std::string tenths = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\ninitial = { type = 'rows', "
+                           "particles = 20, perturbation = 0.1 }\n[output]\nseries.every = 0.1\nsnapshots = { from = "
+                           "0.1, until = 4.9, every = 0.1 }\nprofiles.times = { from = 0.1, until = 4.9, every = 0.1 "
+                           "}\nstructure = { length = 20, times = { from = 0.1, until = 4.9, every = 0.1 } }\n"
+                           "correlations.every = 0.1\n";
+
+TEST_P(ExactIn, TimesAreTheDecimalsOfTheScene) {
+  for (const Result& result : run(tenths, GetParam())) expect_multiples_of_a_tenth(result);
+}
+TEST_F(Exact, TimesOfDoublesAreTheDecimalsOfTheScene) {
+  for (const Result& result : run(tenths, "double")) expect_multiples_of_a_tenth(result);
+}
+
 INSTANTIATE_TEST_SUITE_P(Types, ExactIn,
                          testing::Values("long double", "double-double", "float128", "cpp_bin_float", "mpfr"),
                          [](const auto& type) {

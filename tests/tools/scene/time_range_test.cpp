@@ -2,6 +2,7 @@
 // on the command line; every mistake has its own message with file, line and key.
 #include "cradle/tools/scene/time_range.hpp"
 
+#include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -9,6 +10,7 @@
 namespace cradle::tools::time_range_test {
 
 using Strings = std::vector<std::string>;
+using cradle::test::Rational;
 using tests::begins;
 using tests::refusal;
 
@@ -40,10 +42,35 @@ TEST(TimeRange, StepsAreTheDecimalsThatAUserWouldWrite) {
     const std::string digits = std::to_string(k);
     const std::string decimal =
         digits.size() == 1 ? "0." + digits : digits.substr(0, digits.size() - 1) + "." + digits.back();
-    EXPECT_EQ(plan[k], std::stod(decimal));
+    EXPECT_EQ(plan.values()[k], std::stod(decimal));
     EXPECT_EQ(scene.output.snapshots[k], Decimal(decimal));
   }
-  EXPECT_NE(plan[3], 3 * 0.1);
+  EXPECT_NE(plan.values()[3], 3 * 0.1);
+}
+
+// Of the series; 3 0.1 is above 0.3 if it is rounded, and was no sample.
+TEST(Schedule, RoundsEveryTimeOnce) {
+  const auto series = [](const std::string& keys) {
+    return schedule<double>(parse_scene(ring + "[output]\n" + keys, "ring.toml", {"run.start=0.1", "run.until=10.3"}))
+        .series;
+  };
+  EXPECT_EQ(schedule<double>(parse_scene(ring + "[output]\nseries.every = 0.1", "", {"run.until=0.3"})).series.values(),
+            (std::vector<double>{0, 0.1, 0.2, 0.3}));
+  const auto near = [](double time, const Rational& exact) {
+    const double ulp = std::nextafter(time, 1e300) - time;
+    EXPECT_LE(abs(Rational(Rational(time) - exact)), Rational(ulp) / 2) << time;
+  };
+  const Rational start(1, 10), until(103, 10);
+  const auto even = series("series = { points = 1000 }"), over = series("series = { points = 9, over = 3 }");
+  ASSERT_EQ(even.size(), 1000U);
+  for (std::size_t k = 0; k < 1000; ++k) near(even.values()[k], start + (until - start) * Rational(k) / 999);
+  EXPECT_EQ(over.size(), 30U);  // up to 29/8 of the range, and the end
+  near(over.values()[28], start + (3 - start) * Rational(28) / 8);
+  EXPECT_EQ(over.values().back(), 10.3);
+  const auto log = series("series = { points = 20, spacing = 'log' }");
+  ASSERT_EQ(log.size(), 20U);
+  EXPECT_EQ(log.values().back(), 10.3);
+  EXPECT_EQ(log.values()[1], 0.1000102);
 }
 
 TEST(TimeRange, PointsAreEvenOrOfEqualRatios) {

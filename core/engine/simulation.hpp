@@ -40,8 +40,9 @@ class Simulation {
       : law_(std::move(law)), chain_(std::move(chain)), policy_(std::move(policy)), least_queue_bits_(least_queue_bits),
         queue_(chain_.slots(), Chain::keys_are_exact, least_queue_bits),
         last_collision_(chain_.local_time(chain_.start())), pacing_(last_collision_, Chain::may_collapse),
-        standstill_(last_collision_, ends_at_a_size(), followed()), target_{chain_.start(), last_collision_,
-                                                                            last_collision_} {
+        standstill_(last_collision_, has_threshold(law_) || can_rest(), followed()), target_{chain_.start(),
+                                                                                             last_collision_,
+                                                                                             last_collision_} {
     const T least = smallest_gap(chain_);
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
     const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());
@@ -199,8 +200,6 @@ class Simulation {
     else
       return false;
   }
-  // Whether collisions that follow each other at one time end at a speed or at a gap.
-  bool ends_at_a_size() const { return has_threshold(law_) || can_rest() || policy_.follows_a_gap(); }
   // By what factor gaps shrink until the run stops at a given size.
   T followed() const {
     if (!policy_.follows_a_gap() || chain_.last() < chain_.first()) return T(1);
@@ -342,7 +341,8 @@ class Simulation {
       }
     const bool move = pacing_.origin_moves(notice, counts_.collisions, last_collision_, active());
     const bool stands_still = (move || !pacing_.in_epochs) &&
-                              standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, active());
+                              standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, active(),
+                                             policy_.follows_a_gap() && rebound(chain_, s).has_value());
     const bool moves = move && !stands_still, poll = moves || counts_.collisions >= pacing_.next_review;
     const T before = last_collision_;
     if (moves) move_origin(before);

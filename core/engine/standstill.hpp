@@ -21,8 +21,8 @@
 namespace cradle {
 
 template <Real T> struct Standstill {
-  // `threshold`: below one collisions lose less and less, or nothing, or the run stops. `followed`: by what factor gaps
-  // shrink until it stops, at least 1.
+  // `threshold`: the law has one, below which collisions lose less and less, or nothing. `followed`: by what factor
+  // gaps shrink until the run stops, at least 1.
   explicit Standstill(const T& start, bool threshold = false, const T& followed = T(1))
       : time(start), threshold_(threshold), times_(1 + binary_exponent(followed) / 16384) {}
 
@@ -34,12 +34,14 @@ template <Real T> struct Standstill {
     return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
-  // Called at a review with local time, time since the start, collisions made, active particles.
-  bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active) {
+  // Called at a review with local time, time since the start, collisions made, active particles. `shrinks`: the last
+  // collision was with a floor, and the run stops when a rebound from it is small enough; absolute times do not resolve
+  // rebounds, but their heights are known.
+  bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active, bool shrinks = false) {
     if (now > time) collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;
     const std::uint64_t long_ones = (1 << 20) + 4096 * active * active;
-    return collisions - collisions_then > (threshold_ ? long_ones : 64 + 4 * active * active) ||
+    return collisions - collisions_then > (threshold_ || shrinks ? long_ones : 64 + 4 * active * active) ||
            collisions - collisions_at_elapsed > times_ * long_ones;
   }
   // An epoch has ended; its local time is now called `now`.

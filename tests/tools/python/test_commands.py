@@ -46,7 +46,7 @@ class Runs(unittest.TestCase):
             cradle.run("no_such_scene")
         for call, message in ((lambda: cradle.run("fig2", set={"law.restitution": 2}), "law.restitution"),
                               (lambda: cradle.run({"law": {"type": "wet"}}), "law.loss"),
-                              (lambda: cradle.ensemble("fig2", 0), "--replicas")):
+                              (lambda: cradle.ensemble("fig2", 0), "replicas: not a whole number")):
             with self.assertRaises(cradle.Error) as raised:
                 call()
             self.assertEqual(raised.exception.status, 2)

@@ -195,22 +195,22 @@ std::optional<Entries> assigned(std::string_view text, const Place& place) {
 // One item of a list that the scene has: `initial.m[1]=50`.
 void replace_item(Entries& entries, const Place& place, std::string_view text) {
   const auto bracket = place.key.find('[');
-  const std::string list = place.key.substr(0, bracket);
-  const auto entry = entries.find(list);
+  const std::string array = place.key.substr(0, bracket);
+  const auto entry = entries.find(array);
   if (bracket == place.key.npos || entry == entries.end() || entry->second.kind != Value::Kind::array)
     throw Error(place, "not an item of a list in the scene",
-                entry == entries.end() ? "no " + list : describe(entry->second), "give the whole list, " + list);
+                entry == entries.end() ? "no " + array : describe(entry->second), "give the whole list, " + array);
   std::vector<Value>& items = entry->second.items;
   const std::string index = place.key.substr(bracket + 1, place.key.size() - bracket - 2);
   std::size_t k = 0;
   const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), k);
   if (error != std::errc() || end != index.data() + index.size() || k >= items.size())
     throw Error(place, "not an item of the list", describe(entry->second),
-                items.empty() ? "give the whole list, " + list
-                              : "give " + list + "[0] to " + list + "[" + std::to_string(items.size() - 1) + "]");
+                items.empty() ? "give the whole list, " + array
+                              : "give " + array + "[0] to " + array + "[" + std::to_string(items.size() - 1) + "]");
   auto given = assigned(text, place);
   items[k] = given ? std::move(given->begin()->second) : Value{Value::Kind::text, std::string(text), {}, place};
-  items[k].place = {place.source, 0, list};
+  items[k].place = {place.source, 0, array};
 }
 
 }  // namespace

@@ -45,9 +45,10 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
   put_tables(end, time);
   if (status == Status::collapsed) {
     const ReportedCollapse collapse = reported(*engine_.collapse());
-    const ParticleIndex at = collapse.particle;
     const std::string floor = collapsing_floor(scene_);
-    const bool on_floor = floor == "walls.left" ? at < 0 : floor == "walls.right" && at + 1 == particles_->count();
+    const bool on_floor = floor == "walls.left"
+                              ? collapse.particle < 0
+                              : floor == "walls.right" && collapse.particle + 1 == particles_->count();
     end.report = collapse_report(collapse, end.end, counts.collisions, on_floor ? floor : "");
     end.collapse_time = (collapse.settled ? collapse.time : collapse.last_collision).digits;
     end.result.groups.push_back(collapse_table(collapse));

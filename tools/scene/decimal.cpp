@@ -2,7 +2,6 @@
 #include "cradle/tools/scene/decimal.hpp"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <charconv>
 #include <limits>
 #include <map>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "cradle/precision/read_number.hpp"
+#include "cradle/tools/scene/rational.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -144,7 +144,7 @@ Decimal::Decimal(std::string_view literal) {
 
 namespace {
 
-using Integer = boost::multiprecision::cpp_int;
+using Integer = Whole;
 
 // Float128 has numbers from 1e-4966 to 1e4932.
 constexpr std::int64_t most_digits_of_sum = 20'000;
@@ -163,8 +163,6 @@ struct Exact {
     power = parts.exponent - static_cast<std::int64_t>(parts.digits.size());
   }
 };
-
-Integer power_of_ten(std::int64_t power) { return pow(Integer(10), static_cast<unsigned>(power)); }
 
 // The lowest and the highest power of ten.
 std::pair<std::int64_t, std::int64_t> powers(std::initializer_list<Exact*> numbers) {

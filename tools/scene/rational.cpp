@@ -7,9 +7,9 @@ namespace {
 
 constexpr long most_exponent = 5000;
 
-Whole power_of_ten(long exponent) { return pow(Whole(10), static_cast<unsigned>(exponent)); }
-
 }  // namespace
+
+Whole power_of_ten(long exponent) { return pow(Whole(10), static_cast<unsigned>(exponent)); }
 
 std::optional<Rational> rational(std::string_view decimal) {
   std::string text(decimal);

@@ -11,6 +11,9 @@ namespace cradle::tools {
 using Rational = boost::multiprecision::cpp_rational;
 using Whole = boost::multiprecision::cpp_int;
 
+/// For exponents of 0 and more.
+Whole power_of_ten(long exponent);
+
 /// The value of a canonical decimal. Nothing for a power of ten beyond 5000.
 std::optional<Rational> rational(std::string_view decimal);
 

@@ -1,19 +1,17 @@
 #include "cradle/tools/threshold/bracket.hpp"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "cradle/tools/scene/rational.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
 namespace {
-
-using Whole = boost::multiprecision::cpp_int;
 
 constexpr long most_digits = 5000;
 
@@ -44,8 +42,6 @@ Scaled scaled(const Decimal& number) {
                 fmt::format("give ends between 1e-{0} and 1e{0}", most_digits));
   return parts;
 }
-
-Whole power_of_ten(long exponent) { return pow(Whole(10), static_cast<unsigned>(exponent)); }
 
 // The largest power of ten that is not above a number, which is not 0.
 long magnitude(const Scaled& number) {

@@ -139,7 +139,8 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
   const double loss = scene.initial.meeting == scene::Meeting::energy ? scene.law.loss.value : 0;
   Recorder recorder;
   RunOutcome end;
-  for (const double time : series_times<double>(scene).values()) {
+  const Times<double> samples = series_times<double>(scene);
+  for (const double time : samples.values()) {
     end.time = time;
     motion.advance(time);
     recorder.add(time, motion, loss);

@@ -12,8 +12,11 @@
 #include <random>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/run/report.hpp"
 
 namespace cradle::tests::endings_test {
+
+using namespace tools;
 
 class Endings : public ProgramTest {
  protected:
@@ -107,6 +110,28 @@ TEST_F(Endings, NoBallFallsThroughAFloorInPositions) {
     }
     run("floor.toml", set + " --set run.coordinates=gaps --set walls.left.rest_speed=1e-6", 0);
   }
+}
+
+// Three light particles collapse on a shaken floor, and positions resolve it no more.
+TEST_F(Endings, NoMachineIsBlamedForWhatPositionsDoNotResolve) {
+  write("light.toml", "law = { type = 'inelastic', restitution = 0.5 }\ngravity.acceleration = -9.81\n"
+                      "walls.left = { position = 0, restitution = 0.9, motion = 'sawtooth', amplitude = 1.38, "
+                      "frequency = 1 }\nrun = { until = 5, coordinates = 'absolute' }\noutput.series.points = 2\n"
+                      "[initial]\ntype = 'list'\nx = [1.5917767517736003, 2.5121005053009196, 3.2588909230667196]\n"
+                      "v = [0.4039078223793515, 0.4791866190943306, 0.7572508058793073]\n"
+                      "m = [1.058586928910443e-5, 5.389717704708046e-5, 2.0298264508275672e-5]\n");
+  const Printed end = run("light.toml", "", 5);
+  EXPECT_FALSE(has(end.err, "at fault")) << end.err;
+  EXPECT_TRUE(has(end.err, "run.coordinates = \"gaps\"")) << end.err;
+  tools::Run positions;
+  positions.coordinates = Coordinates::absolute;
+  ReportedAccount unresolved;
+  unresolved.unresolved = 1;
+  const ReportedGuard energy{Guard::energy, 1, 0, -1, "0"}, wall{Guard::wall, -1, 0, 0, "0"};
+  EXPECT_FALSE(has(guard_message(energy, unresolved, positions), "at fault"));
+  EXPECT_FALSE(has(guard_message(wall, {}, positions), "at fault"));
+  EXPECT_TRUE(has(guard_message(energy, {}, positions), "at fault")) << "all was resolved";
+  EXPECT_TRUE(has(guard_message(wall, unresolved, tools::Run()), "at fault")) << "gaps resolve it";
 }
 
 // The phase at which a sine wall lets go of particles, without gravity and with next to none.

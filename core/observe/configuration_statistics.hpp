@@ -20,9 +20,9 @@ template <Real T> struct OfOthers {
   }
 };
 
-// Kinetic energy summed over all particles of the scene at a time since the start: the direct sum that is compared with
-// the ledger.
-template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed) {
+// Kinetic energy summed over all particles of the scene at a time since the start, which matters only where they fall:
+// the direct sum that is compared with the ledger.
+template <Real T> T kinetic_energy(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed = T(0)) {
   // Of the particles in the configuration, now and at the start; and what the others have gained.
   CompensatedSum<T> twice, twice_before, gained;
   for (std::size_t j = 0; j < c.x.size(); ++j) twice.add(c.m[j] * c.v[j] * c.v[j]);

@@ -206,7 +206,9 @@ TEST(TaggedParticles, FallWhetherAFrontHasReachedThemOrNot) {
   for (int t = 0; t <= 10; ++t) {
     run.advance(t);
     const Configuration<double> now = run.configuration(t);
-    if (t >= 2) ASSERT_LT(now.to, 4);
+    if (t >= 2) {
+      ASSERT_LT(now.to, 4);
+    }
     tagged.find(now, t);
     correlator.add(tagged.displacement(), tagged.velocity());
     EXPECT_DOUBLE_EQ(kinetic_energy(now, *particles, double(t)), run.kinetic_energy(t));

@@ -221,7 +221,9 @@ TEST(Agreement, SmallGapsFarFromTheOriginAreWhatIsProved) {
   ASSERT_TRUE(run.proved());
   const Group& snapshot = *run.outcome.result.find("snapshots/0000");
   for (const Column& column : snapshot.columns)
-    if (column.name == "gap") EXPECT_EQ(std::get<std::vector<double>>(column.values)[1], 1e-13);
+    if (column.name == "gap") {
+      EXPECT_EQ(std::get<std::vector<double>>(column.values)[1], 1e-13);
+    }
   EXPECT_EQ(run.attempts.size(), 1U);
 }
 

@@ -35,7 +35,9 @@ std::optional<CollapseReport<T>> collapse_of(const Scene<T>& particles, double r
   auto run = gap_run(particles, Inelastic<T>(T(restitution), T(0)), stop_below(T(0)));
   const Status status = run.advance(T(1000));
   EXPECT_EQ(run.chain().account().order_lost, 0U);
-  EXPECT_EQ(status, run.collapse().settled ? Status::collapsed : Status::exhausted);
+  // With more than 16 particles also without a proof, where a gap is very small.
+  const bool settled = run.collapse().settled, many = run.chain().particles().count() > 16;
+  EXPECT_TRUE(status == Status::collapsed ? settled || many : status == Status::exhausted && !settled);
   collisions = run.counts().collisions;
   return run.collapse().settled ? std::optional(run.collapse()) : std::nullopt;
 }

@@ -50,10 +50,14 @@ void store_all(const Entries& entries, const std::string& scene_file, Scene& sce
 // Replaces the gaps of a list by the places that they add up to.
 void place_particles(const Entries& entries, Scene& scene) {
   Initial& initial = scene.initial;
-  if (initial.gap.empty() || initial.file || initial.v.empty()) return;
+  const auto given = entries.find("initial.gap");
+  if (given == entries.end() || initial.file || initial.v.empty()) return;
+  if (initial.gap.empty() && initial.v.size() > 1)
+    throw Error(given->second.place, "no gaps", "an empty list",
+                "give one less than there are particles, or remove it");
   auto placed =
       tools::placed({std::move(initial.x), std::move(initial.v), std::move(initial.m), std::move(initial.gap), {}},
-                    initial.length, entries.at("initial.gap").place);
+                    initial.length, given->second.place);
   initial.x = std::move(placed.x), initial.v = std::move(placed.v), initial.m = std::move(placed.m);
   initial.gap = {};
 }

@@ -42,7 +42,7 @@ TEST(ListFile, RefusesWithTheLine) {
   EXPECT_TRUE(begins(message("x,v\n\n"), "b.csv: no particles (found only the names of the columns)"));
   const std::string begin = "begin the file with a line x,v or x,v,m or gap,v";
   EXPECT_EQ(message("0,1\n"), "b.csv:1: the columns are not named (found a line of numbers, 2 of them): " + begin);
-  EXPECT_EQ(message("x,v,x\n"), "b.csv:1: the columns are not named (found \"x\"): " + begin);
+  EXPECT_EQ(message("x,v,x\n"), "b.csv:1: the columns are not named (found \"x,v,x\"): " + begin);
   EXPECT_EQ(message("x,m\n"), "b.csv:1: a column is missing (found no v): " + begin);
   EXPECT_EQ(message("v,m\n"), "b.csv:1: a column is missing (found neither x nor gap): " + begin);
   EXPECT_EQ(message("x,v\n0,1,2\n"), "b.csv:2: wrong number of columns (found 3): give 2 as in the first line");

@@ -140,8 +140,9 @@ TEST(Scene, LiteralsAreKeptExactly) {
   EXPECT_EQ(scene.run.stop_gap->value, 0.0);
   EXPECT_GT(*scene.run.stop_gap, Decimal("0"));
   // Other characters of several bytes before a literal on its line.
-  const Scene list = parse("title = 'é 1e-999, 1e-999'\nlaw = { type = 'sticky' }\nrun = { until = 1 }\n"
-                           "initial = { 'type' = 'list', x = [-1e-500, 0, 1.5], v = [ 1 , '1e-7' , 0x10 ] }");
+  const Scene list =
+      parse("title = 'é 1e-999, 1e-999'\nlaw = { type = 'sticky' }\nrun = { until = 1, precision = 'float128' }\n"
+            "initial = { 'type' = 'list', x = [-1e-500, 0, 1.5], v = [ 1 , '1e-7' , 0x10 ] }");
   EXPECT_EQ(list.title, "é 1e-999, 1e-999");
   EXPECT_EQ(texts(list.initial.x), (Strings{"-1e-500", "0", "1.5"}));
   EXPECT_EQ(texts(list.initial.v), (Strings{"1", "1e-7", "16"}));
@@ -363,13 +364,15 @@ TEST(Scene, RingIsAsLongAsItHasParticles) {
 TEST(Scene, ParticlesInTheScene) {
   const std::string head = "law.type = 'sticky'\nrun.until = 9\n[initial]\ntype = 'list'\n";
   expect_refused({
-      {head, 0, "initial.file", "missing: name a CSV file of particles, or give initial.x and initial.v"},
+      {head, 0, "initial.file",
+       "missing: name a CSV file of particles, or give initial.x (or initial.gap) and initial.v"},
       {head + "file = 'b.csv'\nx = [1]", 5, "initial.file",
        "two lists of particles (found initial.file and initial.x): remove one of them"},
       {head + "x = [1, 2]\nv = [1]", 6, "initial.v", "not one per particle (found 1 for 2 positions): give 2 numbers"},
       {head + "x = [1, 2]", 0, "initial.v", "not one per particle (found 0 for 2 positions): give 2 numbers"},
-      {head + "x = [1,\n 1.0]\nv = [1, 2]", 6, "initial.x",
-       "coincident particles (found 1.0 after 1): give increasing positions"},
+      {head + "x = [1,\n 1.0]\nv = [2, 1]", 6, "initial.x",
+       "particles that touch and approach (found 1.0 after 1): ..."},
+      {head + "gap = []\nv = [2, 1]", 5, "initial.gap", "no gaps (found an empty list): ..."},
       {head + "x = [1, 2]\nv = [1, 2]\nm = [1, 0]", 7, "initial.m", "out of range (found 0..."},
       {head + "x = []\nv = []", 5, "initial.x", "no particles ..."},
       {head + "x = [1, 2]\nv = [1, 2]\nm = [1, 1e-400]", 7, "initial.m",

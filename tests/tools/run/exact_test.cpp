@@ -109,8 +109,10 @@ TEST_P(ExactIn, DecimalsHaveTheDigitsOfTheType) {
   if (results.empty()) return;
   const auto near = [&](const char* group, const char* name, std::size_t row, const Rational& expected) {
     const std::string text = numbers<std::string>(results[0], group, name).at(row);
-    EXPECT_LT(abs(Rational(decimal<Rational>(text) - expected)),
-              decimal<Rational>("1e-" + std::to_string(digits_of_types().at(GetParam()))))
+    // mpfr has no digits to spare: the closing speed 0.49 is 0.7 less 1.19, off by three roundings of 1.19, half an
+    // epsilon each, and the gap by 3.57 times as much, besides its own.
+    const int digits = digits_of_types().at(GetParam()) - (GetParam() == std::string("mpfr") ? 2 : 0);
+    EXPECT_LT(abs(Rational(decimal<Rational>(text) - expected)), decimal<Rational>("1e-" + std::to_string(digits)))
         << group << "/" << name << ": " << text;
   };
   const Rational left(-295, 1000), right(195, 1000), met(10, 7), place(3, 7);

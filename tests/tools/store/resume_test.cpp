@@ -61,7 +61,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.nam
 
 std::string outputs_and(const std::string& more) {
   return "output = { series.points = 20, snapshots = [40, 60], profiles = { times = [50], bins = 8 }, events = true, "
-         "averages = { every = 2.5, bins = 3, range = [-50, 50] }, histograms = ['free_flight', 'closing_speed', "
+         "averages = { every = 2.5, bins = 4, range = [-50, 50] }, histograms = ['free_flight', 'closing_speed', "
          "'dissipative_closing_speed', 'collisions_per_particle', 'gap', 'cluster'], " +
          more +
          "structure = { every = 7, times = [30, 80], waves = 20, length = 50 }, "

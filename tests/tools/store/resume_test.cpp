@@ -64,7 +64,7 @@ std::string outputs_and(const std::string& more) {
          "averages = { every = 2.5, bins = 4, range = [-50, 50] }, histograms = ['free_flight', 'closing_speed', "
          "'dissipative_closing_speed', 'collisions_per_particle', 'gap', 'cluster'], " +
          more +
-         "structure = { every = 7, times = [30, 80], waves = 20, length = 50 }, "
+         "structure = { every = 7, times = [30, 80], waves = 20, length = 15 }, "
          "counting = { from = 10, until = 90, every = 20, cluster_gap = 0.5, range = [1e-3, 10] } }\n";
 }
 const std::string outputs = outputs_and("");

@@ -12,7 +12,6 @@
 // becomes what it would be if the collision had come in time: the gain in closing speed has acted since then, g += gain
 // (t - local time) with t before the local time; and a late collision at the gap itself leaves it as open as it has
 // become since then. If the order was truly lost, the gap becomes negative and is counted.
-// opens in between. Where the order was truly lost, the gap falls below zero and is counted.
 // When the origin moves, a local time is rounded. The rounding error is kept (`lag`; the true local time is the sum of
 // both), so that a move changes no gap. A lag is nonzero only if the local time is negative, and is read only then.
 
@@ -265,7 +264,6 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   // distance. Each error acts on the gap at its speed before or after the collision. A negative gap stays negative and
   // collides late, which shifts its neighbours in proportion to their gains: only the first such gap shows a lost
   // order.
-  // late, which shifts its neighbours in proportion to what it hands them: only the first such gap shows a lost order.
   T below_zero(Slot s, const T& closing, const T& gain, const T& since, const T& struck, const T& time) const {
     const T& gap = cells_[s].gap;
     const T before = is_negative(since) ? T(gap - gain * since) : T(gap + (closing - gain) * since);

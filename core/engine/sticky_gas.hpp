@@ -13,7 +13,6 @@
 //
 // Of incoming rows only particles that have been hit are held, and one more on either side, which moves freely, as do
 // all particles beyond it. Particles are taken in at both ends until the outermost held cluster is a single particle.
-// particle.
 
 #include <algorithm>
 #include <deque>

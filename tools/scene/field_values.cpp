@@ -80,7 +80,8 @@ std::vector<std::string_view> choices_of(const Field& field) {
 
 // Shows numbers without quotation marks.
 [[noreturn]] void refuse(const Field& field, const Value& value, const Scene& scene, std::string_view wrong) {
-  throw Error(value.place, wrong, canonical_decimal(value.text) ? excerpt(value.text) : describe(value), advice(field, scene));
+  throw Error(value.place, wrong, canonical_decimal(value.text) ? excerpt(value.text) : describe(value),
+              advice(field, scene));
 }
 
 // The literal of a number within its range, quoted or not.

@@ -164,7 +164,8 @@ void RunFiles::resume(const std::optional<std::string>& until) {
   const auto read = [&](const JournalWriter::Put& put) {
     const auto there = end_of_records(path, records_, check_, put);
     if (!there || (state_ && check_ != found.check))
-      throw Error({path, 0, ""}, "damaged before its checkpoint", fmt::format("other records than the {} that were there", records_),
+      throw Error({path, 0, ""}, "damaged before its checkpoint",
+                  fmt::format("other records than the {} that were there", records_),
                   "take it from a copy, or remove it: the run then starts anew", Exit::io);
     end = *there;
   };

@@ -41,8 +41,8 @@ class Descriptor {
 /// a result cannot replace.
 std::string file_behind(const std::string& path);
 
-/// What there is at `path` in place of a file: "a folder of that name", "a FIFO", "a device", "a socket"; empty for a file and where
-/// there is nothing. To read one might wait for ever or never end.
+/// What there is at `path` in place of a file: "a folder of that name", "a FIFO", "a device", "a socket"; empty for a
+/// file and where there is nothing. To read one might wait for ever or never end.
 std::string_view instead_of_file(const std::string& path);
 
 /// Writes all parts at the descriptor's position. Throws Error (Exit::io) naming `path`.

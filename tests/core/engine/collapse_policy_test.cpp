@@ -196,7 +196,7 @@ TEST(CollapsePolicies, SqueezedParticlesAreNotTakenForACollapse) {
   EXPECT_EQ(run.advance(63.5), Status::reached);
 }
 
-// Rows of 200 have the particles for a collapse (N_c = 9 and 30), which without this end goes on for 1e4 and 8e7 more
+// Rows of 200 have the particles for a collapse (N_c = 9 and 30), which without this end continues for 1e4 and 8e7 more
 // collisions, to the end of the range. It is no proof: `settled` is false. The same, whatever the chain holds, and up
 // to there the same as with a gap that is given.
 TEST(ManyParticles, EndWithoutAProof) {

@@ -140,16 +140,24 @@ template <Enclosing N> class ProvedTables {
     columns_[column].push_back({row, std::move(proved), bound});
   }
 
-  std::optional<Disagreement> compare(const Result& result, const RunErrors& errors) const {
+  std::optional<Disagreement> compare(Result& result, const RunErrors& errors) const {
     Agreement<N> agreement(errors);
-    for (const auto& [path, rows] : columns_) {
-      const auto slash = path.rfind('/');
-      for (const std::string& folder : {std::string(), std::string("exact/")})
-        if (const Group* group = result.find(folder + path.substr(0, slash)))
-          for (const Column& column : group->columns)
-            if (column.name == path.substr(slash + 1)) compare(folder + path, column, rows, agreement);
-    }
+    for_each_column(result, [&](const std::string& path, Column& column, const std::vector<Row>& rows) {
+      compare(path, column, rows, agreement);
+    });
     return agreement.broken();
+  }
+  /// Writes what is proved in place of what the run has rounded, or chaos has made of that.
+  void put(Result& result) const {
+    for_each_column(result, [](const std::string&, Column& column, const std::vector<Row>& rows) {
+      for (const Row& row : rows) {
+        if (!row.proved || !is_finite(*row.proved) || row.number >= column.rows()) continue;
+        if (auto* texts = std::get_if<std::vector<std::string>>(&column.values))
+          (*texts)[row.number] = to_text(row.proved->middle());
+        else if (auto* doubles = std::get_if<std::vector<double>>(&column.values))
+          (*doubles)[row.number] = to_double(*row.proved);
+      }
+    });
   }
 
  private:
@@ -158,6 +166,17 @@ template <Enclosing N> class ProvedTables {
     std::optional<N> proved;
     long double bound;
   };
+  // Those of the result that have a row here, as doubles and below /exact.
+  template <class F> void for_each_column(Result& result, F f) const {
+    for (const auto& [path, rows] : columns_) {
+      const auto slash = path.rfind('/');
+      for (Group& group : result.groups)
+        for (const std::string& folder : {std::string(), std::string("exact/")})
+          if (group.name == folder + path.substr(0, slash))
+            for (Column& column : group.columns)
+              if (column.name == path.substr(slash + 1)) f(folder + path, column, rows);
+    }
+  }
   static void compare(const std::string& path, const Column& column, const std::vector<Row>& rows,
                       Agreement<N>& agreement) {
     for (const Row& row : rows) {

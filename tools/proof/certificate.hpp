@@ -87,8 +87,9 @@ class Certifier : public RunObserver {
   /// Checks all collisions that are not checked yet, as a sample does. Throws ProofEnds.
   virtual void check_all() {}
   virtual Certificate certificate() const = 0;
-  /// The first number of the run's tables that is not what is proved of it, within the run's rounding.
-  virtual std::optional<ReportedDoubt> disagreement(const Result&) const { return {}; }
+  /// The first number of the run's tables that is not what is proved of it, within the run's rounding. Without one the
+  /// tables have the proved numbers then.
+  virtual std::optional<ReportedDoubt> disagreement(Result&) const { return {}; }
 };
 
 /// In balls of so many digits: 31, or what MPFR is set to. Throws Error for what this build has not.

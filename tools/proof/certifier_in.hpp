@@ -98,7 +98,7 @@ template <class M> class CertifierIn final : public Certifier {
     return all;
   }
 
-  std::optional<ReportedDoubt> disagreement(const Result& result) const override {
+  std::optional<ReportedDoubt> disagreement(Result& result) const override {
     ProvedTables<N> tables = tables_;
     N before = start_;
     for (std::size_t k = 0; k < meetings_.size(); ++k) {
@@ -113,6 +113,9 @@ template <class M> class CertifierIn final : public Certifier {
     }
     if (const auto broken = tables.compare(result, errors_))
       return reported(*broken, certificate_.samples.empty() ? 0 : certificate_.samples.back().time);
+    for (std::size_t k = 0; k < meetings_.size(); ++k)
+      tables.add("events/time_low", k, meetings_[k].time - exactly<N>(to_double(meetings_[k].time)), 0);
+    tables.put(result);
     return {};
   }
 

@@ -36,6 +36,8 @@ option  | MPI launcher          | command mpirun               | openmpi-bin
 option  | pybind11              | header pybind11/pybind11.h   | pybind11-dev
 option  | Python headers        | python-header                | python3-dev
 look    | Chromium              | command chromium             | chromium
+look    | pandas                | plotting pandas              | python3-pandas
+look    | xarray                | plotting xarray              | python3-xarray
 look    | dpkg-shlibdeps        | command dpkg-shlibdeps       | dpkg-dev
 look    | pip                   | python pip                   | python3-pip
 look    | setuptools            | python setuptools            | python3-setuptools
@@ -90,17 +92,22 @@ has_python_module() {
   return 1
 }
 
-# Of the interpreter for plotting, for the module for live simulations.
-has_python_header() {
+# plotting_python CODE: whether the interpreter for plotting runs it without an error.
+plotting_python() {
   local python
   for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
     if [[ -n $python ]] && "$python" -c "import h5py, matplotlib" >/dev/null 2>&1; then
-      "$python" -c "import os, sysconfig, sys
-sys.exit(not os.path.isfile(os.path.join(sysconfig.get_path('include'), 'Python.h')))"
+      "$python" -c "$1" >/dev/null 2>&1
       return
     fi
   done
   return 1
+}
+
+# For the module for live simulations.
+has_python_header() {
+  plotting_python "import os, sysconfig, sys
+sys.exit(not os.path.isfile(os.path.join(sysconfig.get_path('include'), 'Python.h')))"
 }
 
 has() {
@@ -111,6 +118,7 @@ has() {
     header) has_header "$2" ;;
     command) command -v "$2" >/dev/null ;;
     python) has_python_module "$2" ;;
+    plotting) plotting_python "import $2" ;;
     python-header) has_python_header ;;
   esac
 }

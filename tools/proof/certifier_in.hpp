@@ -289,7 +289,7 @@ template <class M> class CertifierIn final : public Certifier {
       if (j + 1 == rows.size() && !on_ring) break;
       if (const auto& next = rows[j + 1 < rows.size() ? j + 1 : 0]) {
         N gap = next->x - row.x;
-        if (on_ring) gap = between_neighbours(gap);
+        if (j + 1 == rows.size()) gap = gap + particles_->circumference();  // the run folds places to 0 <= x < L
         between_.push_back({enclosed(gap), enclosed(row.v - next->v)});
         add("gap", j, gap, errors_.gap + errors_.of_gap * static_cast<long double>(gap.size()));
         add("closing_speed", j, row.v - next->v, 2 * errors_.speed);
@@ -297,11 +297,6 @@ template <class M> class CertifierIn final : public Certifier {
         between_.push_back({});
       }
     }
-  }
-  // On a ring: places are folded to one circumference, or not.
-  N between_neighbours(const N& gap) const {
-    const N length = particles_->circumference();
-    return gap - N(std::floor(to_double(N(gap / length)))) * length;
   }
   // On a ring: the run folds places to one circumference.
   N nearest_image(const N& x, const std::string& of_run) const {

@@ -207,7 +207,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadInput{"Infinity", "until = 10", "until = inf", good_particles, 2, "scene.toml:8: run.until: "},
                     BadInput{"NotToml", "[run]", "[run", good_particles, 2, "scene.toml:7: "},
                     BadInput{"ParticlesOutOfOrder", "", "", "x,v\n1,0\n0,1\n", 2, "particles.csv:3: "},
-                    BadInput{"ParticlesCoincident", "", "", "x,v\n0,1\n1,0\n1.0,0\n", 2, "particles.csv:4: "},
+                    BadInput{"ParticlesCoincident", "", "", "x,v\n0,1\n1,0\n1.0,-1\n", 2, "particles.csv:4: "},
                     BadInput{"ParticleBeyondTheType", "", "", "x,v\n0,1\n1,1e400\n", 2,
                              "particles.csv:3: v: too large for the precision (found 1e400 with \"double\"): "},
                     BadInput{"TooManySamples", "until = 10", "until = 10\n[output]\nseries = { every = 1e-9 }",

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs a file of Python tests, or a script, with the first Python that has h5py and matplotlib, in a temporary folder.
 # Status 77, with the reason, if there is no such Python or all cases were skipped.
-#   run.sh PROGRAM FILE
+#   run.sh PROGRAM FILE [OPTION...]
 set -euo pipefail
 CRADLE_PROGRAM=$(realpath "$1")
 file=$(realpath "$2")
@@ -13,7 +13,7 @@ for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT
     cd "$folder"
-    "$python" -W error::ResourceWarning "$here/run.py" "$file"
+    "$python" -W error::ResourceWarning "$here/run.py" "$file" "${@:3}"
     exit
   fi
 done

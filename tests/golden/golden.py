@@ -138,8 +138,9 @@ def main():
     wrong += [f"other bits on other threads: {row}" for row, sums in threads.items() if sums != sums[:1] * len(sums)]
     wrong += [f"in no row: {missing}" for missing in uncovered(program, [row for *_, row in rows.values()])]
     if wrong:
-        print("\n".join(wrong), f"\n{len(wrong)} mistakes. Bits that should have stayed: --against OTHER, a program that "
-              "has them, says what is different. Bits that change on purpose: --write, and the commit says which and why.")
+        print("\n".join(wrong))
+        print(f"{len(wrong)} mistakes. Bits that should have stayed: --against OTHER, a program that has them, says "
+              "what differs. Bits that change on purpose: --write, and the commit says which and why.")
     return bool(wrong)
 
 

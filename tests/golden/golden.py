@@ -41,7 +41,7 @@ def run(program, row, folder):
         if words[0] in WRITERS and "-o" not in words:
             words += ["-o", "out.h5"]
         done = call(program, folder, *words)
-        printed += done.stdout
+        printed += re.sub(r"\b[\d.]+ s\b", "", done.stdout)  # of computing
     return done, printed
 
 
@@ -139,8 +139,8 @@ def main():
     wrong += [f"in no row: {missing}" for missing in uncovered(program, [row for *_, row in rows.values()])]
     if wrong:
         print("\n".join(wrong))
-        print(f"{len(wrong)} mistakes. Bits that should have stayed: --against OTHER, a program that has them, says "
-              "what differs. Bits that change on purpose: --write, and the commit says which and why.")
+        print(f"{len(wrong)} mistakes. Bits that should have stayed: --against OTHER, a program that has them, says what "
+              "differs. Bits that change on purpose: --write, and the commit says which and why.")
     return bool(wrong)
 
 

@@ -1,4 +1,4 @@
-// A run of a scene in one scalar type. Compiled once per scalar type (instance.cpp.in); run.cpp chooses.
+// A run of a scene in one scalar type. Compiled once per scalar type (tools/CMakeLists.txt); run.cpp chooses.
 #pragma once
 
 #include <memory>

@@ -28,6 +28,7 @@
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace {
 

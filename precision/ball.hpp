@@ -29,7 +29,7 @@
 #include <string_view>
 
 #include "cradle/core/certify/enclosing.hpp"
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 #include "cradle/precision/double_double.hpp"
 #include "cradle/precision/text.hpp"
 #ifdef CRADLE_WITH_MPFR

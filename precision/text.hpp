@@ -20,7 +20,7 @@
 namespace cradle {
 
 template <class T> struct Text;
-template <class T> struct SavedNumber;  // exactly, as bytes (core/engine/state.hpp)
+template <class T> struct SavedNumber;  // exactly, as bytes (core/base/state.hpp)
 
 // The type's name in scenes.
 template <class T> inline constexpr std::string_view scalar_name = "";

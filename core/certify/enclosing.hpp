@@ -5,7 +5,7 @@
 
 #include <concepts>
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

@@ -4,7 +4,7 @@
 
 #include <tuple>
 
-#include "cradle/core/engine/clock.hpp"
+#include "cradle/core/queue/clock.hpp"
 #include "cradle/core/initial/particles.hpp"
 
 namespace cradle {

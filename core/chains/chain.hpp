@@ -14,8 +14,8 @@
 
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/engine/account.hpp"
-#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/queue/account.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/laws/law.hpp"
 
 namespace cradle {

@@ -24,8 +24,8 @@
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/held_range.hpp"
-#include "cradle/core/engine/relative_motion.hpp"
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/queue/relative_motion.hpp"
+#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

@@ -27,9 +27,9 @@
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/gap_line.hpp"
 #include "cradle/core/chains/held_range.hpp"
-#include "cradle/core/engine/account.hpp"
-#include "cradle/core/engine/relative_motion.hpp"
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/queue/account.hpp"
+#include "cradle/core/queue/relative_motion.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/laws/one_of.hpp"
 
 namespace cradle {

@@ -14,7 +14,7 @@
 #include "cradle/core/chains/masses.hpp"
 #include "cradle/core/chains/timed_gaps.hpp"
 #include "cradle/core/chains/watched_gap.hpp"
-#include "cradle/core/engine/certainty.hpp"
+#include "cradle/core/chains/certainty.hpp"
 
 namespace cradle {
 

@@ -15,7 +15,7 @@
 #include <tuple>
 #include <vector>
 
-#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/initial/particles.hpp"
 
 namespace cradle {

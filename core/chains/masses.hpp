@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/law.hpp"
 

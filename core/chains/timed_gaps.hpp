@@ -26,11 +26,11 @@
 
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/timed_gap.hpp"
-#include "cradle/core/engine/account.hpp"
-#include "cradle/core/engine/clock.hpp"
-#include "cradle/core/engine/event_queue.hpp"
-#include "cradle/core/engine/ledger.hpp"
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/queue/account.hpp"
+#include "cradle/core/queue/clock.hpp"
+#include "cradle/core/queue/event_queue.hpp"
+#include "cradle/core/queue/ledger.hpp"
+#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

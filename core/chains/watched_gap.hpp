@@ -41,7 +41,7 @@
 #include "cradle/core/chains/timed_gap.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall.hpp"
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

@@ -23,7 +23,7 @@
 #include <unordered_map>
 
 #include "cradle/core/chains/gravity.hpp"
-#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/engine/gap_errors.hpp"
 #include "cradle/core/engine/two_gaps.hpp"
 #include "cradle/core/initial/particles.hpp"

@@ -17,7 +17,7 @@
 #include <tuple>
 
 #include "cradle/core/chains/notice.hpp"
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

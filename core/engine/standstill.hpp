@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

@@ -20,11 +20,11 @@
 #include <utility>
 
 #include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/engine/account.hpp"
-#include "cradle/core/engine/ledger.hpp"
-#include "cradle/core/engine/relative_motion.hpp"
+#include "cradle/core/queue/account.hpp"
+#include "cradle/core/queue/ledger.hpp"
+#include "cradle/core/queue/relative_motion.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

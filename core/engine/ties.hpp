@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "cradle/core/chains/chain.hpp"
-#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

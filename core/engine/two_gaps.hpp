@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "cradle/core/engine/gap_errors.hpp"
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

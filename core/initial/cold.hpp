@@ -23,7 +23,7 @@
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/core/laws/elementary.hpp"
+#include "cradle/core/base/elementary.hpp"
 
 namespace cradle {
 

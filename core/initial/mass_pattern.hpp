@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/particles.hpp"
 
 namespace cradle {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cradle/core/laws/wall.hpp"
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

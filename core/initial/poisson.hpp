@@ -18,9 +18,9 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/core/laws/portable_log.hpp"
+#include "cradle/core/base/portable_log.hpp"
 
 namespace cradle {
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/mass_pattern.hpp"
 #include "cradle/core/initial/particles.hpp"
 

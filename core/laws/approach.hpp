@@ -19,7 +19,7 @@
 #include <limits>
 #include <optional>
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

@@ -19,8 +19,8 @@
 #include <concepts>
 #include <cstdint>
 
-#include "cradle/core/laws/elementary.hpp"
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/elementary.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

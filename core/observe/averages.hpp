@@ -24,7 +24,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/observe/profile.hpp"
 
 namespace cradle {

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

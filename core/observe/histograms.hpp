@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/engine/status.hpp"
 
 namespace cradle {

@@ -12,7 +12,7 @@
 // Units: lengths, times and masses of the scene. T needs +, -, *, /, comparison, T(int), and sqrt, log, atan by ADL.
 #pragma once
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 #include "cradle/core/theory/inelastic_shock.hpp"
 
 #include <cmath>

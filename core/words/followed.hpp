@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/words/word.hpp"
 
 namespace cradle::words {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 
 namespace cradle::words {
 

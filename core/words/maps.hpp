@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 #include "cradle/core/words/linear.hpp"
 #include "cradle/core/words/word.hpp"
 

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@ namespace architecture_test {
 
 namespace fs = std::filesystem;
 using cradle::test::has;
+using cradle::test::build_folder;
 using cradle::test::source_folder;
 
 struct Line {
@@ -34,7 +37,8 @@ bool is_comment(const std::string& text) {
 std::vector<fs::path> headers(const std::string& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_folder) / folder))
-    if (entry.path().extension() == ".hpp" || entry.path().extension() == ".cpp") files.push_back(entry.path());
+    if (entry.path().extension() == ".hpp" || entry.path().extension() == ".cpp" ||
+        entry.path().extension() == ".inl" || entry.path().extension() == ".in") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -80,6 +84,45 @@ TEST(Architecture, PrecisionDoesNotKnowTheTools) {
   for (const Line& line : code("precision")) EXPECT_FALSE(has(line.text, "#include \"cradle/tools/")) << place(line);
 }
 
+// The part of the tower that a path is in; empty: none.
+std::string part_of(const std::string& path, const std::map<std::string, std::vector<std::string>>& tower) {
+  for (std::string folder = path; folder.find('/') != folder.npos;) {
+    folder.erase(folder.rfind('/'));
+    if (tower.contains(folder)) return folder;
+  }
+  return "";
+}
+
+// tower.txt is the list that the build uses (tools/cmake/part.cmake).
+TEST(Architecture, FoldersUseOnlyThoseAboveThemInTheTower) {
+  std::map<std::string, std::vector<std::string>> tower;
+  std::ifstream list(fs::path(build_folder) / "tower.txt");
+  for (std::string line; std::getline(list, line);) {
+    std::istringstream words(line);
+    std::string folder;
+    words >> folder;
+    folder.pop_back();
+    std::vector<std::string> uses;
+    for (std::string used; words >> used; uses.push_back(used))
+      EXPECT_TRUE(tower.contains(used)) << folder << " uses " << used << ", which is not above it";
+    tower.emplace(folder, uses);
+  }
+  ASSERT_GT(tower.size(), 12U);
+  const std::regex include(R"x(^\s*#\s*include\s*"([^"]+)")x");
+  for (const std::string top : {"core", "precision", "tools"}) {
+    for (const Line& line : code(top)) {
+      std::smatch match;
+      if (line.file == "tools/cradle.cpp" || !std::regex_search(line.text, match, include)) continue;
+      const std::string name = match[1], folder = part_of(line.file, tower);
+      EXPECT_TRUE(name.starts_with("cradle/")) << place(line);
+      ASSERT_NE(folder, "") << place(line);
+      const std::string used = part_of(name.substr(name.find('/') + 1), tower);
+      const auto& uses = tower.at(folder);
+      EXPECT_TRUE(used == folder || std::ranges::find(uses, used) != uses.end()) << place(line);
+    }
+  }
+}
+
 // Theory says `using std::sqrt;` and then calls sqrt unqualified, as does the wet law; the rest needs none. What works
 // on double by declaration (mantissas, bins, displacements) is named here.
 TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
@@ -92,13 +135,13 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
                                            "core/certify/certain_walls.hpp",  // sizes
                                            "core/certify/inspection.hpp",     // radii
                                            "core/chains/configuration.hpp",
-                                           "core/initial/counter_rng.hpp",
-                                           "core/laws/elementary.hpp",  // exponents
-                                           "core/laws/portable_log.hpp",
+                                           "core/base/counter_rng.hpp",
+                                           "core/base/elementary.hpp",  // exponents
+                                           "core/base/portable_log.hpp",
                                            "core/laws/wall.hpp",  // random speeds
                                            "core/ensemble/histogram.hpp",
                                            "core/ensemble/moments.hpp",
-                                           "core/engine/event_queue.hpp",
+                                           "core/queue/event_queue.hpp",
                                            "core/observe/averages.hpp",
                                            "core/observe/batch_means.hpp",
                                            "core/observe/clusters.hpp",

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cradle/core/ensemble/tree.hpp"
-#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 
 namespace cradle::test {
 

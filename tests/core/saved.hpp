@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <stdexcept>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 
 namespace cradle::test {
 

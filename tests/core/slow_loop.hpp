@@ -8,7 +8,7 @@
 
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle::test {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/engine/event_queue.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle::test {
 

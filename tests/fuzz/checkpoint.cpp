@@ -6,7 +6,7 @@
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"

@@ -1,7 +1,9 @@
 // Contents of journals without their checksums, which a fuzzer would not guess: the header, records of a run and of an
 // ensemble.
 #include "cradle/tests/fuzz/fuzz.hpp"
-#include "cradle/tools/store/ensemble_store.hpp"
+#include "cradle/tools/ensemble/ensemble_store.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "cradle/tests/fuzz/fuzz.hpp"
-#include "cradle/tools/scene/list_file.hpp"
+#include "cradle/tools/setup/list_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cradle;

@@ -3,6 +3,7 @@
 
 #include "cradle/tests/fuzz/fuzz.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cradle;

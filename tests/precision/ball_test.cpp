@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/precision/ball.hpp"
 #include "cradle/precision/ball_text.hpp"
 #include "cradle/tests/core/rational.hpp"

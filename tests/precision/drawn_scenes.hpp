@@ -16,7 +16,7 @@
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/trace.hpp"

@@ -2,7 +2,7 @@
 // digits of the type, against MPFR with 4400 bits, down to arguments at which 1 - exp(-y) would cancel; exact
 // cases are exact; the law's loss is that of its restitution to all digits however elastic a collision is, its shares
 // are exactly what the pair loses, and its limits are the plain law's.
-#include "cradle/core/laws/elementary.hpp"
+#include "cradle/core/base/elementary.hpp"
 
 #include <cmath>
 

@@ -12,7 +12,7 @@
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/tests/core/slow_loop.hpp"

@@ -8,7 +8,7 @@
 #include <concepts>
 #include <ostream>
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 #include "cradle/precision/mpfr_text.hpp"
 #include "cradle/precision/scalars.hpp"
 

@@ -33,7 +33,12 @@ endif()
 
 if(Python_Development.Module_FOUND AND pybind11_FOUND)
   message(STATUS "Python module: for ${Python_EXECUTABLE}")
-  set_target_properties(cradle_texts cradle_tools cradle_steps
+  get_property(_parts GLOBAL PROPERTY CRADLE_PARTS)
+  list(FILTER _parts INCLUDE REGEX "^tools/")
+  list(REMOVE_ITEM _parts tools/python)
+  list(TRANSFORM _parts REPLACE "/" "_")
+  list(TRANSFORM _parts PREPEND cradle_)
+  set_target_properties(${_parts} cradle_steps
                         PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                                    VISIBILITY_INLINES_HIDDEN ON)
   pybind11_add_module(cradle_module MODULE NO_EXTRAS ${CMAKE_CURRENT_SOURCE_DIR}/python/module/module.cpp)
@@ -41,5 +46,5 @@ if(Python_Development.Module_FOUND AND pybind11_FOUND)
                                                  VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF
                                                  CRADLE_PYTHON_VERSION ${Python_VERSION})
   target_compile_options(cradle_module PRIVATE $<$<CONFIG:Release>:-O2>)
-  target_link_libraries(cradle_module PRIVATE cradle_tools cradle_build)
+  target_link_libraries(cradle_module PRIVATE cradle_tools_live cradle_build)
 endif()

@@ -1,5 +1,6 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/scene/overrides.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {

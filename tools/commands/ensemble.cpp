@@ -3,6 +3,7 @@
 
 #include "cradle/precision/read_number.hpp"
 #include "cradle/tools/commands/study.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
 

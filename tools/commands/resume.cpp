@@ -4,7 +4,7 @@
 
 #include "cradle/tools/commands/run_command.hpp"
 #include "cradle/tools/commands/study.hpp"
-#include "cradle/tools/store/ensemble_store.hpp"
+#include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/notify.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
 

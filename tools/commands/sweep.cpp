@@ -4,6 +4,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/commands/study.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
 

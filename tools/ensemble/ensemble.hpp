@@ -7,9 +7,9 @@
 #include <functional>
 #include <string>
 
-#include "cradle/tools/ranks/crew.hpp"
+#include "cradle/tools/ensemble/crew.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/store/ensemble_store.hpp"
+#include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {

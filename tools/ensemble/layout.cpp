@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/record/tables.hpp"
 
 namespace cradle::tools {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cradle/tools/store/ensemble_store.hpp"
+#include "cradle/tools/ensemble/ensemble_store.hpp"
 
 namespace cradle::tools {
 

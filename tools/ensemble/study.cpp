@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/support/checksum.hpp"
@@ -36,17 +35,6 @@ std::string same_replicas_warning(const Study& study, std::uint64_t replicas) {
   return fmt::format("nothing is random in {}: all {} replicas are the same run; give initial.perturbation, or "
                      "--replicas 1\n",
                      points, replicas);
-}
-
-std::string scene_difference(const Scene& found, const Scene& wanted) {
-  const auto of_found = values(found, true), of_wanted = values(wanted, true);
-  const std::map<std::string, std::string> old(of_found.begin(), of_found.end());
-  for (const auto& [key, value] : of_wanted) {
-    const auto at = old.find(key);
-    if (at == old.end()) return fmt::format("no {}, here {}", key, shortened(value));
-    if (at->second != value) return fmt::format("{} = {}, here {}", key, shortened(at->second), shortened(value));
-  }
-  return of_found.size() == of_wanted.size() ? "" : "keys that this one has not";
 }
 
 std::uint64_t Study::identity() const {

@@ -47,7 +47,4 @@ std::string study_kind(const Result& result, const std::string& file);
 /// The study of the one ensemble in a file, with the scene stored there.
 Study ensemble_in(const Result& result, const std::string& file);
 
-/// The first key in which two scenes differ, with both values; empty if there is none.
-std::string scene_difference(const Scene& found, const Scene& wanted);
-
 }  // namespace cradle::tools

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cradle/tools/ensemble/sweep_summary.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
 

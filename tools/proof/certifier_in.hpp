@@ -14,7 +14,7 @@
 
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/precision/ball_text.hpp"
-#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/proof/agreement.hpp"
 #include "cradle/tools/proof/certificate.hpp"
 

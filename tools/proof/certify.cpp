@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "cradle/precision/scalars.hpp"
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/support/threads.hpp"
 

@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "cradle/core/observe/trace.hpp"
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/precision/double_double.hpp"
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/proof/certify.hpp"
 
 namespace cradle::tools {

@@ -17,7 +17,7 @@
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/record/tables.hpp"
-#include "cradle/tools/run/engine.hpp"
+#include "cradle/tools/engines/engine.hpp"
 
 namespace cradle::tools {
 

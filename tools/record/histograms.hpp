@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cradle/core/observe/histograms.hpp"
-#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/record/tables.hpp"
 
 namespace cradle::tools {

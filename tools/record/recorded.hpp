@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "cradle/core/real.hpp"
+#include "cradle/core/base/real.hpp"
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/record/tables.hpp"
 

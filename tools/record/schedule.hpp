@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/record/recorded.hpp"
-#include "cradle/tools/run/run.hpp"
+#include "cradle/tools/record/times.hpp"
 
 namespace cradle::tools {
 

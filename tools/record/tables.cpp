@@ -9,7 +9,7 @@
 
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/record/columns.hpp"
 
 namespace cradle::tools {
@@ -293,15 +293,6 @@ Group histogram_result(std::string_view name, const OctaveHistogram& histogram, 
   table.columns.back().values = histogram.counts();
   table.attributes = {{"from", scene.output.counting.from.value}, {"until", scene.output.counting.until.value}};
   return table;
-}
-
-std::uint64_t longest_lag(const Scene& scene) {
-  const Correlations& wanted = scene.output.correlations;
-  const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
-  bin_float span = number(wanted.until) - number(wanted.from);
-  if (wanted.longest && number(*wanted.longest) < span) span = number(*wanted.longest);
-  // Rounding to a double makes a quotient of decimals whole that is so.
-  return static_cast<std::uint64_t>(static_cast<double>(bin_float(span / number(*wanted.every))));
 }
 
 Group correlations_result(const Correlator& correlator, std::size_t particles, const Scene& scene) {

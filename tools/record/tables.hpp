@@ -20,13 +20,6 @@
 
 namespace cradle::tools {
 
-/// The folder of decimals: numbers of types wider than double.
-inline constexpr std::string_view exact_folder = "exact/";
-/// The name of the table that a table of decimals belongs to; other names are returned unchanged.
-inline std::string_view rounded_name(std::string_view name) {
-  return name.starts_with(exact_folder) ? name.substr(exact_folder.size()) : name;
-}
-
 struct RunTables {
   std::vector<Group> series;      // "series" and the tables below it
   std::optional<Group> profile;   // for each profile, if the scene has any; with its bins if the range is given
@@ -79,8 +72,6 @@ Group averages_result(const TimeAverages& averages, const Scene& scene);
 OctaveBins histogram_bins(std::string_view name, const Scene& scene);
 Group histogram_result(std::string_view name, const OctaveHistogram& histogram, const Scene& scene);
 
-/// The longest lag of the correlations, in samples.
-std::uint64_t longest_lag(const Scene& scene);
 Group correlations_result(const Correlator& correlator, std::size_t particles, const Scene& scene);
 
 /// Throw Error if no length is known.

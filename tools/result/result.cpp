@@ -1,6 +1,6 @@
 #include "cradle/tools/result/result.hpp"
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {

@@ -57,4 +57,11 @@ struct Result {
 template <class T>
 const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where);
 
+/// The folder of decimals: numbers of types wider than double.
+inline constexpr std::string_view exact_folder = "exact/";
+/// The name of the table that a table of decimals belongs to; other names are returned unchanged.
+inline std::string_view rounded_name(std::string_view name) {
+  return name.starts_with(exact_folder) ? name.substr(exact_folder.size()) : name;
+}
+
 }  // namespace cradle::tools

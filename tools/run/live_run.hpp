@@ -1,5 +1,5 @@
-// A run that its caller holds: it advances when it is asked to, its state can be read between, and at its end it writes
-// the file that `cradle run` writes. The Python module binds it (tools/python/module).
+// A run that its caller holds: it advances when it is asked to, its state can be read between, and at its end it has
+// the result that `cradle run` writes. The Python module binds it (tools/python/module); its files are in tools/live.
 //
 // Collisions, rows and bytes are those of `cradle run`, since the calls of `advance` do not matter to an engine. One
 // scene is an exception: a sticky gas whose scene observes no collision is computed there directly at each output time.
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "cradle/core/base/state_stream.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/store/overwrite.hpp"
 
 namespace cradle::tools {
 
@@ -28,9 +28,6 @@ struct LiveOptions {
   std::function<double(double)> restitution;  // of the closing speed, instead of the scene's law; precision double only
   std::function<void(const Scene&)> begins;   // called before any number of the scene is made
 };
-
-/// The kind of its checkpoints (JournalHeader::kind).
-inline constexpr const char* live_kind = "simulation";
 
 /// After an exception from a function of the caller, the run is at its last collision and can continue. Callers with
 /// several runs see to it that MPFR has the digits of the one that they call (set_digits).
@@ -66,14 +63,16 @@ class LiveRun {
   virtual std::vector<std::string> column_text(Column which) = 0;
   virtual const std::vector<ParticleIndex>& index() = 0;
 
-  /// Writes a file from which `load_live_run` continues. Throws Error, also if the run is over.
-  virtual void save(const std::string& path) = 0;
-  /// Writes the result of a run that is over. It replaces only what `cradle run` would replace. Throws Error.
-  virtual void write(const std::string& path, Force force) = 0;
+  /// Saves all from which the run can continue. Throws Error, also if the run is over.
+  virtual void save(StateSink& to) = 0;
+  /// Throws Error unless the run is over and is that of its scene.
+  virtual void require_result() const = 0;
+  /// The result of a run that is over, as `cradle run` writes it. Throws Error as above.
+  virtual Result result() = 0;
 };
 
-/// Throws Error for scenes that cannot be run, or not in this way.
-std::unique_ptr<LiveRun> live_run(const Scene& scene, const LiveOptions& options);
-std::unique_ptr<LiveRun> load_live_run(const std::string& path, const LiveOptions& options);
+/// A run from the beginning, or from what another one has saved. Throws Error for scenes that cannot be run, or not in
+/// this way.
+std::unique_ptr<LiveRun> live_run(const Scene& scene, const LiveOptions& options, StateSource* from = nullptr);
 
 }  // namespace cradle::tools

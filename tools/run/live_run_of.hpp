@@ -11,22 +11,15 @@
 #include <vector>
 
 #include "cradle/tools/run/live_run.hpp"
+#include "cradle/tools/run/memory_store.hpp"
 #include "cradle/tools/run/run_in.hpp"
-#include "cradle/tools/store/memory_store.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 
-/// The engine for a restitution that is a function of the closing speed; it has no segments, since the function may be
-/// called from this thread only. Throws Error for scenes of other laws or chains.
-std::unique_ptr<Engine<double>> engine_with(const std::function<double(double)>& restitution, const Scene& scene,
-                                            const std::shared_ptr<const cradle::Particles<double>>& particles,
-                                            const Policy<double>& policy);
-
 template <Real T> class LiveRunOf final : public LiveRun {
  public:
-  LiveRunOf(const Scene& scene, const LiveOptions& options, StateReader* from)
+  LiveRunOf(const Scene& scene, const LiveOptions& options, StateSource* from)
       : scene_(scene), restitution_(options.restitution), threads_(thread_count(options.threads)),
         store_(options.poll), options_{Progress::Show::never, nullptr, nullptr, workers_of_calls(), &store_, false},
         progress_(Progress::Show::never, scene.run.start.value, scene.run.until.value, false),
@@ -97,32 +90,29 @@ template <Real T> class LiveRunOf final : public LiveRun {
   }
   const std::vector<ParticleIndex>& index() override { return now().index; }
 
-  void save(const std::string& path) override {
+  void save(StateSink& to) override {
     require_own_law("saved");
     require_in_progress();
-    const FileClaim claim(path);
     run_.put_rows();
-    const Counts& made = engine_->counts();
-    StateWriter to(path, {{live_kind, 0, effective_toml(scene_), scene_.name}, 0, 0, 0, time(), made.collisions});
     cradle::save(to, store_.tables());
     cradle::save(to, time_.value);
     cradle::save(to, time_.text);
     cradle::save(to, at_collision_);
     run_.save(to);
-    to.finish();
   }
-  void write(const std::string& path, Force force) override {
+  void require_result() const override {
     require_own_law("written");
     if (!over_)
       throw Error({scene_.name, 0, ""}, "not at its end", "t = " + time_.text,
                   "advance to run.until = " + scene_.run.until.text +
                       " first, stop the run here, or save a checkpoint");
-    const FileClaim claim(path);
-    check_overwrite(path, "run", &scene_, force);
-    if (over_->end == RunEnd::interrupted || !without_collisions(scene_)) return store_.write(over_->result, path);
+  }
+  Result result() override {
+    require_result();
+    if (over_->end == RunEnd::interrupted || !without_collisions(scene_)) return store_.result(over_->result);
     MemoryStore store({});
     const RunOutcome direct = run_scene(scene_, {Progress::Show::never, nullptr, nullptr, {}, &store, false});
-    store.write(direct.result, path);
+    return store.result(direct.result);
   }
 
  private:
@@ -227,7 +217,7 @@ template <Real T> class LiveRunOf final : public LiveRun {
   std::optional<Error> failed_;
 };
 
-template <class T> std::unique_ptr<LiveRun> live_in(const Scene& scene, const LiveOptions& options, StateReader* from) {
+template <class T> std::unique_ptr<LiveRun> live_in(const Scene& scene, const LiveOptions& options, StateSource* from) {
   return std::make_unique<LiveRunOf<T>>(scene, options, from);
 }
 

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <string>
 
-#include "cradle/core/engine/account.hpp"
+#include "cradle/core/queue/account.hpp"
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/precision/text.hpp"
-#include "cradle/tools/model/ends.hpp"
+#include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
 

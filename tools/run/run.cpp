@@ -4,9 +4,10 @@
 
 #include <type_traits>
 
-#include "cradle/tools/model/in_precision.hpp"
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/engines/in_precision.hpp"
 #include "cradle/tools/run/clusters.hpp"
+#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/version.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
@@ -38,16 +39,6 @@ RunEnd end_of(Status status, bool order_lost) {
   return order_lost ? RunEnd::order_lost : RunEnd::reached;
 }
 
-ScalarChoice scalar_choice(const Run& run) {
-  const ScalarRow& type = scalar_row(run.precision);
-  return {std::string(type.name), type.digits == 0 ? static_cast<unsigned>(run.digits) : 0};
-}
-
-std::string precision_name(const Run& run) {
-  const ScalarChoice choice = scalar_choice(run);
-  return choice.digits > 0 ? fmt::format("{}, {} digits", choice.name, choice.digits) : choice.name;
-}
-
 std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome) {
   return {{"format_version", format_version}, {"cradle_version", std::string(version)},
           {"scene", effective_toml(scene)},   {"name", scene.name},
@@ -60,10 +51,6 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
     if (name == "name")
       if (const auto* text = std::get_if<std::string>(&value)) scene.name = *text;
   return scene;
-}
-
-void set_digits(const Scene& scene) {
-  in_precision<void>(scene, [](auto) {});
 }
 
 void check_built(const Scene& scene) {

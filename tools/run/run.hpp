@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "cradle/core/parallel/workers.hpp"
-#include "cradle/tools/model/ends.hpp"
+#include "cradle/tools/engines/precision.hpp"
+#include "cradle/tools/record/times.hpp"
 #include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/run/run_observer.hpp"
+#include "cradle/tools/run/run_store.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/store/run_store.hpp"
 #include "cradle/tools/support/errors.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/progress.hpp"
@@ -42,28 +44,16 @@ struct RunOutcome {
   std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
 };
 
-/// "double", "mpfr, 50 digits", ...
-std::string precision_name(const Run& run);
-
 /// Where a result is from, for its attributes: versions, the effective scene, its name and precision, how it ended.
 std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome);
 
 /// The scene stored in a result. Throws Error (Exit::io) naming the file.
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file);
 
-/// Sets MPFR's number of digits, of which a process has one at a time, if the scene's numbers are of that type. Throws
-/// Error for a type that this build does not have.
-void set_digits(const Scene& scene);
-
 /// Throws Error, naming the key, for a scene that this build cannot run; sets the digits.
 void check_built(const Scene& scene);
 
-/// The times of the series and of tables at times, and the end, as results store them: rounded from the run's
-/// precision.
-struct PlannedTimes {
-  std::vector<double> series, profiles, structure, pair_distribution;
-  double until = 0;
-};
+/// The times of its tables. Throws Error for a scalar type that this build does not have.
 PlannedTimes planned_times(const Scene& scene);
 
 /// The scene without tables that are only written: it makes the same collisions, and its series is the same.

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "cradle/core/observe/guards.hpp"
-#include "cradle/tools/model/initial_state.hpp"
-#include "cradle/tools/run/engine.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
+#include "cradle/tools/engines/engine.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
 

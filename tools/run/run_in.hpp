@@ -1,21 +1,9 @@
-// Turns the names in a scene into the types of the hot loop: scalar, law, chain. Compiled once per scalar type (see
-// tools/CMakeLists.txt); run.cpp chooses.
+// A run of a scene in one scalar type. Compiled once per scalar type (tools/CMakeLists.txt); run.cpp chooses.
 #pragma once
 
-#include <limits>
 #include <memory>
-#include <type_traits>
 
-#include <fmt/format.h>
-
-#include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/laws/one_of.hpp"
-#include "cradle/tools/model/initial_state.hpp"
-#include "cradle/tools/model/laws.hpp"
-#include "cradle/tools/run/engine.hpp"
+#include "cradle/tools/engines/engine_of.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 
 namespace cradle::tools {
@@ -35,75 +23,6 @@ template <Real T> Policy<T> policy_of(const Scene& scene, const RunOptions& opti
     if (store != nullptr) store->count(counts.collisions);
   };
   return policy;
-}
-
-// MergingLaw: particles merge or pass through each other. BouncingLaw: they bounce.
-template <Real T> using MergingLaw = OneOf<Wet<T>, InelasticMerging<T>>;
-template <Real T> using BouncingLaw = OneOf<Inelastic<T>, SpeedDependent<T>, ContactTime<T>>;
-
-template <Real T> MergingLaw<T> merging_law(const Scene& scene) {
-  if (scene.law.type == LawType::wet) return Wet<T>(number<T>(scene.law.loss));
-  if (scene.law.type == LawType::sticky) return InelasticMerging<T>(Inelastic<T>(T(0)), std::numeric_limits<T>::max());
-  return InelasticMerging<T>(Inelastic<T>(number<T>(scene.law.restitution)), number<T>(scene.run.merge_speed));
-}
-
-template <Real T> BouncingLaw<T> bouncing_law(const Scene& scene) {
-  const T restitution = number<T>(scene.law.restitution), cutoff = number<T>(scene.law.cutoff);
-  if (scene.law.cutoff_exponent) return SpeedDependent<T>(restitution, cutoff, number<T>(*scene.law.cutoff_exponent));
-  const Inelastic<T> law(restitution, cutoff);
-  if (scene.run.collapse != scene::CollapsePolicy::contact_time) return law;
-  return ContactTime<T>(law, number<T>(scene.run.contact_time));
-}
-
-// Of particles under gravity or at shaken walls. Throws Error for masses that gaps cannot hold.
-template <Real T>
-std::unique_ptr<Engine<T>>
-falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
-                  const Policy<T>& policy, const Workers& workers, const BouncingLaw<T>& law) {
-  const T start = number<T>(scene.run.start);
-  const auto in = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& own) {
-    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, own, Chain(particles, start), policy);
-  };
-  if (scene.run.coordinates == Coordinates::absolute)
-    return in(std::type_identity<PositionChain<T, Gravity<T>>>{}, law);
-  // Closing speeds alone lose the digits of heavy particles' velocities, and nothing watches over them under gravity.
-  if (far_apart(*particles) && sums_can_be_exact<T>)
-    throw Error({scene.name, 0, scene.gravity.acts() ? "gravity.acceleration" : "walls"},
-                "masses too far apart for gaps under gravity or between shaken walls",
-                fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
-                            to_double(particles->greatest_mass())),
-                "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
-  // As without gravity (engine_of): the most used law, identical masses; the bits are the same.
-  if (const auto* inelastic = law.template as<Inelastic<T>>(); inelastic != nullptr && particles->identical_masses())
-    return in(std::type_identity<GapChain<T, IdenticalMasses<T>, Gravity<T>>>{}, *inelastic);
-  return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{}, law);
-}
-
-// Whether the choice of a law at every collision costs a run anything beside its arithmetic: not with larger numbers.
-template <Real T> inline constexpr bool chooses_at_a_cost = sizeof(T) <= 2 * sizeof(double);
-
-template <Real T>
-std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
-                                     const Policy<T>& policy, const Workers& workers, bool observed) {
-  const T start = number<T>(scene.run.start);
-  if (!law_row(scene).needs_events && !observed)  // without an observer no collisions are needed
-    return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, particles, start, policy);
-  const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
-    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
-  };
-  if (scene.gravity.acts() || scene.walls.shaken())
-    return falling_engine_of<T>(scene, particles, policy, workers, bouncing_law<T>(scene));
-  if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
-  const BouncingLaw<T> law = bouncing_law<T>(scene);
-  if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
-  if (to_be_watched(*particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
-  // Only the most used law has engines of its own, one for identical masses and one for others; the bits are the same.
-  const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};
-  const auto* inelastic = law.template as<Inelastic<T>>();
-  if (inelastic != nullptr && particles->identical_masses()) return on(std::type_identity<GapChain<T>>{}, *inelastic);
-  if constexpr (chooses_at_a_cost<T>)
-    if (inelastic != nullptr) return on(individual, *inelastic);
-  return on(individual, law);
 }
 
 template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options) {

@@ -8,16 +8,9 @@
 #include <vector>
 
 #include "cradle/core/engine/status.hpp"
-#include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/record/times.hpp"
 
 namespace cradle::tools {
-
-/// A time at which a run is recorded: the decimal in the scene, or the run's own time if the scene gives none.
-struct RequestedTime {
-  Decimal time;
-  bool of_series = false, of_snapshots = false;
-  bool last = false;  // the end of the run
-};
 
 /// The particles of a snapshot: `from` and `to` are the numbers of the outermost ones at the start. Decimals have all
 /// digits of the run's precision.

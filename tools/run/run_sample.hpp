@@ -9,7 +9,7 @@
 
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tools/record/schedule.hpp"
-#include "cradle/tools/run/engine.hpp"
+#include "cradle/tools/engines/engine.hpp"
 #include "cradle/tools/run/run_observer.hpp"
 
 namespace cradle::tools {

@@ -17,12 +17,12 @@
 #include "cradle/tools/record/recorder.hpp"
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/record/word.hpp"
-#include "cradle/tools/run/engine.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/engines/engine.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/run/run_guards.hpp"
 #include "cradle/tools/run/run_sample.hpp"
-#include "cradle/tools/store/run_journal.hpp"
 
 namespace cradle::tools {
 
@@ -111,12 +111,12 @@ template <Real T> class SceneRun {
     put(events_.take());
   }
   /// Saves all else from which the run can continue.
-  void save(StateWriter& to) const {
+  void save(StateSink& to) const {
     cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
     engine_.save(to);
     cradle::save(to, *this);
   }
-  void load(StateReader& from) {
+  void load(StateSource& from) {
     try {
       std::pair<std::string, std::string> kind;
       cradle::load(from, kind);
@@ -160,7 +160,7 @@ template <Real T> class SceneRun {
     now.time = plan_.meant(time).rounded;
     now.collisions = engine_.counts().collisions;
     options_.store->keep(
-        now, [this](StateWriter& to) { save(to); }, run_is);
+        now, [this](StateSink& to) { save(to); }, run_is);
   }
   // Decimals are made only for a store: ensembles and proofs do not use them.
   void put(Recorded<T>&& rows) {

@@ -2,7 +2,7 @@
 #include "cradle/tools/scene/fields.hpp"
 
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/laws.hpp"
 
 namespace cradle::tools {
 namespace {

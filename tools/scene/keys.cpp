@@ -33,14 +33,14 @@ std::string_view nearest_key(std::string_view key) {
 struct OtherName {
   std::string_view table, name, advice;
 };
-constexpr std::string_view points =
+constexpr std::string_view rods_as_points =
     "particles are points; a rod of the length d is one whose distances to all that it meets are shorter by d";
 constexpr OtherName other_names[] = {
     {"initial", "temperature", "give initial.variance, the temperature over the mass: T for particles of mass 1"},
-    {"initial", "diameter", points},
-    {"initial", "diameters", points},
-    {"initial", "radius", points},
-    {"initial", "size", points},
+    {"initial", "diameter", rods_as_points},
+    {"initial", "diameters", rods_as_points},
+    {"initial", "radius", rods_as_points},
+    {"initial", "size", rods_as_points},
     {"law", "epsilon", "did you mean law.restitution?"},
     {"law", "e", "did you mean law.restitution?"},
     {"law", "r", "did you mean law.restitution?"},

@@ -13,7 +13,4 @@ namespace cradle::tools {
 /// leaves out times of the scene, else nothing. Throws Error for anything else.
 std::string apply_overrides(Entries& entries, const std::vector<std::string>& overrides);
 
-/// That line for the scene that read_scene reads, with a line break. Throws Error as read_scene does.
-std::string times_left_out(const std::string& path_or_name, const std::vector<std::string>& overrides);
-
 }  // namespace cradle::tools

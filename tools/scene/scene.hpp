@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/tools/model/scalars.hpp"
+#include "cradle/tools/scene/scalars.hpp"
 #include "cradle/tools/scene/decimal.hpp"
 #include "cradle/tools/support/errors.hpp"
 
@@ -283,18 +283,11 @@ struct Scene {
 /// Whether masses differ or are not 1: formulas for particles of mass 1 do not apply then.
 bool unequal_masses(const Scene& scene);
 
+/// The longest lag of the correlations, in samples.
+std::uint64_t longest_lag(const Scene& scene);
+
 /// Whether the scenes are equal, wherever they were read from (names are not compared).
 bool operator==(const Scene& a, const Scene& b);
-
-/// Reads the scene file at this path or, if there is none, the bundled scene of this name. Each override is
-/// `table.key=value`, with the value in TOML syntax (bare words are strings), and replaces the value in the file; an
-/// empty value removes the key. Throws Error: Exit::io if nothing can be read, Exit::bad_input for wrong contents.
-Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides = {});
-
-/// The same from text. Messages name `source_name`; its stem is the scene's name, and its folder is searched for a list
-/// of particles.
-Scene parse_scene(std::string_view text, const std::string& source_name,
-                  const std::vector<std::string>& overrides = {});
 
 /// The whole scene with every default and the listed particles, without keys that cannot change a result. Equal scenes
 /// give the same text; reading the text gives an equal scene, on any machine.
@@ -309,6 +302,9 @@ std::string shortened(const std::string& value);
 
 /// The two ends of where all particles are, if the scene says it: a ring, or walls at rest.
 std::optional<std::pair<Decimal, Decimal>> extent(const Scene& scene);
+
+/// The first key in which two scenes differ, with both values; empty if there is none.
+std::string scene_difference(const Scene& found, const Scene& wanted);
 
 struct BundledScene {
   std::string_view name;

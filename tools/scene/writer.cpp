@@ -1,6 +1,8 @@
 // A scene as text, from the table of fields: the effective scene, the keys that differ from their defaults, the manual.
 #include <fmt/format.h>
 
+#include <map>
+
 #include <algorithm>
 
 #include "cradle/tools/scene/fields.hpp"
@@ -71,6 +73,17 @@ std::string describe_fields() {
     text += field.when->text.empty() ? std::string("\n") : fmt::format("; with {}\n", field.when->text);
   }
   return text;
+}
+
+std::string scene_difference(const Scene& found, const Scene& wanted) {
+  const auto of_found = values(found, true), of_wanted = values(wanted, true);
+  const std::map<std::string, std::string> old(of_found.begin(), of_found.end());
+  for (const auto& [key, value] : of_wanted) {
+    const auto at = old.find(key);
+    if (at == old.end()) return fmt::format("no {}, here {}", key, shortened(value));
+    if (at->second != value) return fmt::format("{} = {}, here {}", key, shortened(at->second), shortened(value));
+  }
+  return of_found.size() == of_wanted.size() ? "" : "keys that this one has not";
 }
 
 }  // namespace cradle::tools

@@ -1,3 +1,4 @@
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/overwrite.hpp"
 
 #include <fmt/format.h>
@@ -5,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run.hpp"
 

@@ -5,9 +5,11 @@
 #include <array>
 #include <filesystem>
 
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/record/tables.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/checksum.hpp"
 

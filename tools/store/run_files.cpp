@@ -1,3 +1,4 @@
+#include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/store/run_files.hpp"
 
 #include <fmt/format.h>
@@ -110,7 +111,7 @@ void RunFiles::check_clock() {
   due_ = now - reported_ > between_statuses || checkpoint_due(now);
 }
 
-void RunFiles::keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs run_is) {
+void RunFiles::keep(const RunStatus& status, const std::function<void(StateSink&)>& save, RunIs run_is) {
   state_.reset();  // the run has loaded it
   due_ = false;
   if (run_is == RunIs::over && !journal_ && seconds_before_ == 0) return;  // nothing to lose

@@ -20,11 +20,13 @@
 #include <optional>
 #include <string>
 
+#include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/store/checkpoint.hpp"
 #include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/store/run_journal.hpp"
-#include "cradle/tools/store/run_store.hpp"
+#include "cradle/tools/run/run_store.hpp"
 
 namespace cradle::tools {
 
@@ -58,8 +60,8 @@ class RunFiles final : public RunStore {
   void count(std::uint64_t collisions) override;
   void check_clock() override;
   bool due() const override { return due_; }
-  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs run_is) override;
-  StateReader* loaded_from() override { return state_.get(); }
+  void keep(const RunStatus& status, const std::function<void(StateSink&)>& save, RunIs run_is) override;
+  StateSource* loaded_from() override { return state_.get(); }
 
   /// Writes FILE from all that was recorded and what the run reports at its end; then removes the journal.
   void finish(Result&& end, RunEnd how);

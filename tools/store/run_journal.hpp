@@ -8,41 +8,14 @@
 #include <variant>
 #include <vector>
 
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/run/run_store.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/store/journal.hpp"
-#include "cradle/tools/store/run_store.hpp"
 
 namespace cradle::tools {
 
 using RunRecord = std::variant<std::vector<Group>, RunStatus>;
-
-/// Tables that grow by pieces of rows.
-class GrowingTables {
- public:
-  /// Keeps all rows of every table, or only the first and the last one and the number between them.
-  explicit GrowingTables(Reading reading = Reading::everything) : reading_(reading) {}
-
-  /// Throws Error (Exit::io) if the columns differ from those of the table.
-  void add(Group&& rows);
-  const std::vector<Group>& tables() const { return tables_; }
-  std::vector<Group>& tables() { return tables_; }
-  /// The number of numbers that were added.
-  std::uint64_t numbers() const { return numbers_; }
-  /// The tables in the order of results.
-  std::vector<Group> in_order() &&;
-
- private:
-  Reading reading_;
-  std::vector<Group> tables_;
-  std::uint64_t numbers_ = 0;
-  std::unordered_map<std::string, std::size_t> by_name_;
-};
-
-/// Whether a piece of a table has neither rows nor attributes.
-bool has_nothing(const Group& rows);
-/// The number of numbers in tables, including those that were not read.
-std::uint64_t numbers_in(const std::vector<Group>& tables);
 
 struct RunJournal {
   JournalHeader header;

@@ -1,11 +1,11 @@
-// Values as bytes, by their lists of fields (core/engine/state.hpp): records of journals, messages between ranks.
+// Values as bytes, by their lists of fields (core/base/state.hpp): records of journals, messages between ranks.
 #pragma once
 
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {

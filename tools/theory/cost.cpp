@@ -8,11 +8,11 @@
 #include <numbers>
 
 #include "cradle/core/engine/collapse.hpp"
+#include "cradle/core/observe/correlations.hpp"
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
-#include "cradle/tools/model/laws.hpp"
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {
@@ -190,7 +190,7 @@ void sticky_rows(const Scene& scene, Cost& cost) { cost.collisions = std::max(0.
 Cost expected_cost(const Scene& scene) {
   Cost cost;
   cost.particles = particles_at_end(scene);
-  if (const auto of_rows = law_row(scene).cost_of_rows; of_rows && equal_rows(scene)) of_rows(scene, cost);
+  if (const auto of_rows = law_theory(scene).cost_of_rows; of_rows && equal_rows(scene)) of_rows(scene, cost);
   if (scene.initial.type == InitialType::ring || scene.initial.type == InitialType::gas) gas(scene, cost);
   const ScalarRow& type = scalar_row(scene.run.precision);
   const std::uint64_t digits = scene.run.digits;

@@ -30,7 +30,7 @@ std::string expected_lines(const Scene& scene, const Cost& cost);
 /// These lines if the run ends at a collapse, goes past it or past clustering; else empty.
 std::string expected_warning(const Scene& scene);
 
-// Expected collisions of two equal rows, by law (tools/model/laws.hpp).
+// Expected collisions of two equal rows, by law (laws.cpp).
 void bouncing_rows(const Scene& scene, Cost& cost);
 void wet_rows(const Scene& scene, Cost& cost);
 void sticky_rows(const Scene& scene, Cost& cost);

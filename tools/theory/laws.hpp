@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,18 @@ class Predictions {
  private:
   std::vector<Prediction> rows_;
 };
+
+struct Cost;
+
+/// What is known of each law beforehand: a row for those of which anything is.
+struct LawTheory {
+  LawType type = LawType::inelastic;
+  void (*predict)(const Scene&, Predictions&) = nullptr;  // the paper's formulas; null if there are none
+  void (*cost_of_rows)(const Scene&, Cost&) = nullptr;    // expected collisions of two equal rows; null if not known
+  std::string_view misprints = {};                        // of the paper's formulas for this law
+};
+/// The row of the scene's law; an empty one if it has none.
+const LawTheory& law_theory(const Scene& scene);
 
 /// Points of a curve, from 0 to its end.
 inline constexpr int curve_points = 400;

@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "cradle/tools/model/laws.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {
@@ -12,12 +11,12 @@ namespace cradle::tools {
 std::vector<Prediction> predictions(const Scene& scene) {
   Predictions table;
   if (scene.walls.any() || scene.gravity.acts()) return {};  // the paper has none
-  if (const auto predict = law_row(scene).predict) predict(scene, table);
+  if (const auto predict = law_theory(scene).predict) predict(scene, table);
   if (scene.initial.type == InitialType::ring && !unequal_masses(scene)) predict_cooling(scene, table);
   return std::move(table).take();
 }
 
-std::string misprints(const Scene& scene) { return std::string(law_row(scene).misprints); }
+std::string misprints(const Scene& scene) { return std::string(law_theory(scene).misprints); }
 
 std::string predictions_csv(const std::vector<Prediction>& table) {
   std::string csv = "quantity,equation,form,t,value\n";

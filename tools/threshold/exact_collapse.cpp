@@ -7,7 +7,7 @@
 #include <compare>
 #include <string>
 
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/rational.hpp"
 
 namespace cradle::tools {

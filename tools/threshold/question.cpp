@@ -1,3 +1,4 @@
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/threshold/question.hpp"
 
 #include <fmt/format.h>
@@ -5,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cradle/tools/model/laws.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/spelling.hpp"

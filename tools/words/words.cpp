@@ -1,3 +1,4 @@
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/words/words.hpp"
 
 #include <fmt/format.h>

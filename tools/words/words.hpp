@@ -11,7 +11,7 @@
 
 #include "cradle/core/words/word.hpp"
 #include "cradle/tools/result/result.hpp"
-#include "cradle/tools/words/start.hpp"
+#include "cradle/tools/setup/word_start.hpp"
 
 namespace cradle::tools {
 

@@ -1,5 +1,5 @@
 // A restitution that depends on the closing speed (SpeedDependent, law.hpp), on vectors: a part of doubles.inl. The
-// operations are those of core/laws/elementary.hpp, one for one, where exponents are within those of normal numbers.
+// operations are those of core/base/elementary.hpp, one for one, where exponents are within those of normal numbers.
 
 namespace cradle {
 namespace HWY_NAMESPACE {

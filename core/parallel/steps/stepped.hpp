@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "cradle/core/chains/masses.hpp"
-#include "cradle/core/engine/ledger.hpp"
+#include "cradle/core/queue/ledger.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/one_of.hpp"

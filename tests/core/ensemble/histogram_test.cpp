@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "cradle/core/initial/counter_rng.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 
 namespace cradle::test {
 namespace histogram_test {

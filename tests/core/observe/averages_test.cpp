@@ -8,7 +8,7 @@
 #include <memory>
 #include <numeric>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/tests/core/saved.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "cradle/core/engine/state.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"

@@ -9,6 +9,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/proof/certify.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace agreement_test {
 

@@ -13,6 +13,7 @@
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/proof/certify.hpp"
 #include "cradle/tools/proof/replicas.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::references_test {
 

@@ -12,6 +12,7 @@
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::measured_test {
 

@@ -5,6 +5,7 @@
 
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools::tables_test {
 

@@ -3,7 +3,7 @@
 
 #include "cradle/tests/tools/result/result_files.hpp"
 #include "cradle/tools/result/csv.hpp"
-#include "cradle/tools/result/listing.hpp"
+#include "cradle/tools/commands/listing.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests::result_files_test {

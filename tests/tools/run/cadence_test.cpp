@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools::cadence_test {
 

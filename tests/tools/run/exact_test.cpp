@@ -9,6 +9,7 @@
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::exact_test {
 

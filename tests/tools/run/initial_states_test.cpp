@@ -4,6 +4,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::initial_states_test {
 

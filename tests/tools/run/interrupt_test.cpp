@@ -1,5 +1,6 @@
 // Signals: the first one ends a run, which keeps its results; a second one ends the program at once; nothing else
 // changes.
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
 #include <signal.h>

@@ -8,6 +8,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools::scene_test {
 

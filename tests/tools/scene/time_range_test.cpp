@@ -6,6 +6,7 @@
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools::time_range_test {
 

@@ -5,6 +5,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools::wrong_types_test {
 

@@ -11,6 +11,7 @@
 
 #include "cradle/tests/tools/mutator.hpp"
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/checksum.hpp"
@@ -65,10 +66,10 @@ class MalformedFiles : public ProgramTest {
         if (++checks_ == 5) interrupt_.note(SIGTERM);
       }
       bool due() const override { return false; }
-      void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs now) override {
+      void keep(const RunStatus& status, const std::function<void(cradle::StateSink&)>& save, RunIs now) override {
         files_.keep(status, save, now);
       }
-      StateReader* loaded_from() override { return nullptr; }
+      cradle::StateSource* loaded_from() override { return nullptr; }
 
      private:
       RunFiles& files_;

@@ -2,12 +2,13 @@
 // a picture, a page or a folder made from another file, anything that is no result. --force replaces it. What the same
 // command makes again is replaced without a word, by the same bytes.
 
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/overwrite.hpp"
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/store/ensemble_store.hpp"
+#include "cradle/tools/ensemble/ensemble_store.hpp"
 
 namespace cradle::tests::overwrite_test {
 

@@ -11,6 +11,7 @@
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
 
 namespace resume_test {
@@ -36,11 +37,11 @@ class Stopping final : public RunStore {
     if (++checks_ >= at_.checks) interrupt_.note(SIGTERM);
   }
   bool due() const override { return files_.due() || (checks_ == 1 && !begun_); }
-  void keep(const RunStatus& status, const std::function<void(StateWriter&)>& save, RunIs now) override {
+  void keep(const RunStatus& status, const std::function<void(cradle::StateSink&)>& save, RunIs now) override {
     begun_ = true;
     files_.keep(status, save, now);
   }
-  StateReader* loaded_from() override { return files_.loaded_from(); }
+  cradle::StateSource* loaded_from() override { return files_.loaded_from(); }
 
  private:
   RunFiles& files_;

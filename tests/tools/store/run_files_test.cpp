@@ -7,8 +7,10 @@
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tests/tools/result/small_files.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/version.hpp"

@@ -1,5 +1,6 @@
 // What `cradle check` expects of a scene, against runs of the same initial state: elastic gases, whose mean number of
 // collisions is exact, up to the spread of N velocities; and what it says where a gas clusters or a shock collapses.
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/tests/texts.hpp"
-#include "cradle/tools/model/initial_state.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 
 namespace cradle::tools::cost_test {
 

@@ -10,6 +10,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/threshold/bracket.hpp"
 #include "cradle/tools/threshold/exact_collapse.hpp"
 

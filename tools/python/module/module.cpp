@@ -17,7 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/tools/run/live_run.hpp"
+#include "cradle/tools/live/live_files.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace py = pybind11;
@@ -215,11 +216,11 @@ PYBIND11_MODULE(_live, module) {
            [](HeldRun& held, LiveRun::Column which) {
              return held.use([which](LiveRun& run) { return run.column_text(which); });
            })
-      .def("save", [](HeldRun& held, const std::string& path) { held.use([&](LiveRun& run) { run.save(path); }); })
+      .def("save", [](HeldRun& held, const std::string& path) { held.use([&](LiveRun& run) { save_live_run(run, path); }); })
       // With the lock: HDF5 may be the one of h5py.
       .def("write",
            [](HeldRun& held, const std::string& path, bool force) {
-             held.use([&](LiveRun& run) { run.write(path, force ? Force::yes : Force::no); });
+             held.use([&](LiveRun& run) { write_live_run(run, path, force ? Force::yes : Force::no); });
            })
       .def_property_readonly("index", &index_of)
       .def_property_readonly("name", reads([](LiveRun& run) { return run.scene().name; }))

@@ -1,0 +1,143 @@
+// Keyed random numbers. Proves: Philox4x32-10 gives the known answers of the Random123 distribution (kat_vectors;
+// Salmon et al., SC'11, doi 10.1145/2063384.2063405); uniform_integer is within its bounds and as equal as it says;
+// seeds, replicas and indices are unrelated; rows start from the same places in every scalar type and representation.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "cradle/core/base/counter_rng.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/rational.hpp"
+
+namespace counter_rng_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+using Words = std::array<std::uint32_t, 4>;
+
+TEST(CounterRng, KnownAnswers) {
+  constexpr std::uint32_t ones = 0xFFFFFFFF;
+  EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  EXPECT_EQ(philox4x32({ones, ones, ones, ones}, {ones, ones}),
+            (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(philox4x32({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
+            (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+TEST(CounterRng, KeyIsTheSeedAndCounterIsIndexAndReplica) {
+  constexpr std::uint64_t seed = 0x299f31d0a4093822, index = 0x85a308d3243f6a88, replica = 0x0370734413198a2e;
+  EXPECT_EQ(random_bits(seed, replica, index), 0x94fdccebd16cfe09U);
+  static_assert(random_bits(0, 0, 0) == 0xe169c58d6627e8d5, "known when compiling");
+}
+
+TEST(CounterRng, UniformIntegerReachesItsBoundsAndNoFurther) {
+  for (const std::int64_t bound : {std::int64_t{0}, std::int64_t{1}, std::int64_t{12345}, (std::int64_t{1} << 27) - 1,
+                                   (std::int64_t{1} << 31) - 1}) {
+    EXPECT_EQ(uniform_integer(0, bound), -bound);
+    EXPECT_EQ(uniform_integer(~std::uint64_t{0}, bound), bound);
+    for (std::uint64_t i = 0; i < 10000; ++i) {
+      ASSERT_GE(uniform_integer(random_bits(7, 0, i), bound), -bound);
+      ASSERT_LE(uniform_integer(random_bits(7, 0, i), bound), bound);
+    }
+  }
+}
+
+// Rising in its argument, so each value has one run of arguments: found by bisection, counted exactly.
+TEST(CounterRng, UniformIntegerIsAsEqualAsItSays) {
+  const auto first_argument = [](std::int64_t value, std::int64_t bound) {
+    std::uint64_t low = 0, high = ~std::uint64_t{0};
+    while (low < high) {
+      const std::uint64_t middle = low + (high - low) / 2;
+      if (uniform_integer(middle, bound) >= value)
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return low;
+  };
+  for (const std::int64_t bound : {std::int64_t{1}, std::int64_t{50}, std::int64_t{13421772}}) {
+    const double share = std::ldexp(1, 64) / static_cast<double>(2 * bound + 1);
+    const std::int64_t step = std::max<std::int64_t>(1, bound / 50);
+    for (std::int64_t value = -bound; value < bound; value += step) {
+      const std::uint64_t count = first_argument(value + 1, bound) - first_argument(value, bound);
+      // Unequal by 2^-32 of all arguments at most, which is the 2^32 of them that the low product rounds off.
+      ASSERT_NEAR(static_cast<double>(count), share, std::ldexp(1, 32)) << value << " of " << bound;
+    }
+  }
+}
+
+TEST(CounterRng, FrequenciesAreUniform) {
+  constexpr std::int64_t bound = 50, draws = 1000000;
+  std::vector<double> count(2 * bound + 1, 0);
+  for (std::uint64_t i = 0; i < draws; ++i)
+    ++count[static_cast<std::size_t>(uniform_integer(random_bits(1, 2, i), bound) + bound)];
+  double chi_squared = 0;
+  const double expected = static_cast<double>(draws) / static_cast<double>(count.size());
+  for (const double n : count) chi_squared += (n - expected) * (n - expected) / expected;
+  // 100 degrees of freedom: mean 100, standard deviation sqrt 200; within 5 of them on both sides.
+  EXPECT_NEAR(chi_squared, 100, 5 * std::sqrt(200));
+}
+
+// Two unrelated words differ in 32 +- 4 bits; the mean of n in 32 +- 4/sqrt n.
+TEST(CounterRng, NeighbouringKeysAreUnrelated) {
+  constexpr std::uint64_t n = 10000;
+  double by_seed = 0, by_replica = 0, by_index = 0, swapped = 0;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const std::uint64_t bits = random_bits(3, 5, i);
+    by_seed += std::popcount(bits ^ random_bits(4, 5, i));
+    by_replica += std::popcount(bits ^ random_bits(3, 6, i));
+    by_index += std::popcount(bits ^ random_bits(3, 5, i + 1));
+    swapped += std::popcount(bits ^ random_bits(5, 3, i));
+  }
+  for (const double differing : {by_seed, by_replica, by_index, swapped})
+    EXPECT_NEAR(differing / static_cast<double>(n), 32, 5 * 4 / std::sqrt(static_cast<double>(n)));
+}
+
+TEST(CounterRng, RowsStartFromTheSamePlacesInEveryType) {
+  const auto rows = [](auto one) {
+    using T = decltype(one);
+    return std::make_shared<Rows<T>>(Row<T>{30, T(1), T(1) / T(2)}, Row<T>{40, T(-1), T(3)},
+                                     CentralParticle<T>{T(5), T(0)}, uniform_displacement(0.05, 42, 7));
+  };
+  const auto rounded = rows(1.);
+  const auto exact = rows(Rational(1));
+  const PositionChain<double> positions(rounded, 0);
+  const GapChain<double, IndividualMasses<double>> streamed(rounded, 0), held(rounded, 0, true);
+  const auto all = held.configuration(0), placed = positions.configuration(0);
+  EXPECT_EQ(streamed.configuration(0).gap.size(), 2U) << "only the gaps next to the centre";
+  bool displaced = false;
+  for (ParticleIndex b = 0; b < rounded->count(); ++b) {
+    const auto j = static_cast<std::size_t>(b);
+    // Multiples of 2^-29 and 3/2^28 below 2^7: exact in double.
+    ASSERT_EQ(Rational(rounded->position(b)), exact->position(b)) << b;
+    ASSERT_EQ(placed.x[j], rounded->position(b)) << b;
+    if (b + 1 == rounded->count()) break;
+    ASSERT_EQ(Rational(rounded->gap(b)), exact->gap(b)) << b;
+    ASSERT_EQ(exact->gap(b), exact->position(b + 1) - exact->position(b)) << b;
+    ASSERT_EQ(all.gap[j], rounded->gap(b)) << b;
+    displaced = displaced || (b < 29 && rounded->gap(b) != 0.5);
+  }
+  EXPECT_TRUE(displaced);
+}
+
+TEST(CounterRng, DisplacementsStayWithinThePerturbation) {
+  const Displacement displacement = uniform_displacement(0.05, 1, 0);
+  std::int64_t least = 0, greatest = 0;
+  for (ParticleIndex b = 0; b < 100000; ++b) {
+    least = std::min(least, displacement(b));
+    greatest = std::max(greatest, displacement(b));
+  }
+  const auto bound = static_cast<std::int64_t>(0.05 * static_cast<double>(displacement_unit));
+  EXPECT_GE(least, -bound);
+  EXPECT_LE(greatest, bound);
+  // Of 1e5 the outermost is within 1e-3 of the bound but for a probability of e^-50.
+  EXPECT_LT(least, -bound + bound / 1000);
+  EXPECT_GT(greatest, bound - bound / 1000);
+  for (ParticleIndex b = 0; b < 100; ++b) EXPECT_EQ(uniform_displacement(0, 1, 0)(b), 0);
+  EXPECT_THROW(uniform_displacement(0.5, 1, 0), std::invalid_argument);
+  EXPECT_THROW(uniform_displacement(-0.1, 1, 0), std::invalid_argument);
+}
+
+}  // namespace counter_rng_test

@@ -1,0 +1,334 @@
+// Gaps and closing speeds at the start are the exact differences of a scene's decimals, rounded once, however far from
+// the origin the particles are: in every type, between particles and to walls. The collisions that follow are those of
+// rationals.
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cradle/precision/scalars.hpp"
+#include "cradle/tests/core/rational.hpp"
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
+#include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
+
+namespace cradle::tools::gaps_test {
+
+using test::Rational;
+using tests::refusal;
+
+Rational exact(const std::string& text) { return test::decimal<Rational>(text); }
+std::string list_of(const std::vector<std::string>& texts) { return fmt::format("[{}]", fmt::join(texts, ", ")); }
+
+// A decimal of `digits` random digits times ten to a random power from `lowest` to `highest`, and a random sign.
+std::string drawn(std::mt19937_64& random, int digits, int lowest, int highest, bool sign) {
+  std::string text = sign && random() % 2 == 0 ? "-" : "";
+  text += static_cast<char>('1' + random() % 9);
+  text += '.';
+  for (int i = 1; i < digits; ++i) text += static_cast<char>('0' + random() % 10);
+  return text + "e" + std::to_string(lowest + static_cast<int>(random() % static_cast<unsigned>(highest - lowest + 1)));
+}
+
+// Particles at gaps of 1e-30 to 1, at places of up to 1e12.
+struct Particles {
+  std::vector<std::string> x, v;
+  std::vector<Rational> gap, speed;  // of neighbours: exactly
+};
+
+std::string in_places(const Rational& number, int places) {
+  using boost::multiprecision::cpp_int;
+  const Rational scaled = number * Rational(pow(cpp_int(10), static_cast<unsigned>(places)));
+  return cpp_int(numerator(scaled) / denominator(scaled)).str() + "e-" + std::to_string(places);
+}
+
+Particles draw(std::mt19937_64& random, int count) {
+  Particles particles;
+  Rational x = exact(drawn(random, 20, -2, 12, true));
+  for (int i = 0; i < count; ++i) {
+    particles.x.push_back(in_places(x, 50));
+    particles.v.push_back(drawn(random, 18, -3, 0, true));
+    x += exact(drawn(random, 18, -30, -1, false));
+  }
+  for (std::size_t i = 1; i < particles.x.size(); ++i) {
+    particles.gap.push_back(exact(particles.x[i]) - exact(particles.x[i - 1]));
+    particles.speed.push_back(exact(particles.v[i - 1]) - exact(particles.v[i]));
+  }
+  return particles;
+}
+
+std::string list_scene(const Particles& particles, const std::string& more) {
+  return "law = { type = 'inelastic', restitution = 0.6 }\ninitial = { type = 'list', x = " + list_of(particles.x) +
+         ", v = " + list_of(particles.v) + " }\n" + more;
+}
+
+// Within half a unit in the last place; in types with which rationals cannot be made, once more so much for the text of
+// a number, which reads back as it.
+template <class T> testing::AssertionResult rounded_once(const T& number, const Rational& wanted) {
+  Rational value, bound = exact(to_text(T(std::numeric_limits<T>::epsilon()))) * abs(wanted);
+  if constexpr (std::floating_point<T>)
+    value = Rational(number), bound /= 2;
+  else
+    value = exact(to_text(number));
+  const Rational off = abs(Rational(value - wanted));
+  if (off <= bound) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << to_text(number) << " is off by " << static_cast<double>(off / abs(wanted));
+}
+
+template <class F> void in_every_type(const F& f) {
+  for (const auto& [precision, digits] : {std::pair("double", 0),
+                                          {"long double", 0},
+                                          {"double-double", 0},
+                                          {"float128", 0},
+                                          {"cpp_bin_float", 0},
+                                          {"mpfr", 20},
+                                          {"mpfr", 50},
+                                          {"mpfr", 150},
+                                          {"mpfr", 1000}}) {
+    std::string run = fmt::format("[run]\nuntil = 1\nprecision = '{}'\n", precision);
+    if (digits > 0) run += fmt::format("digits = {}\n", digits);
+    try {
+      with_scalar<void>({precision, static_cast<unsigned>(digits)}, [&](auto type) { f(type, run); });
+    } catch (const std::invalid_argument& error) {
+      EXPECT_TRUE(test::has(error.what(), "in this build"));
+    }
+  }
+}
+
+TEST(InitialGaps, OfListsAreDifferencesOfDecimalsInEveryType) {
+  in_every_type([](auto type, const std::string& run) {
+    using T = typename decltype(type)::type;
+    std::mt19937_64 random(4100);
+    for (int scene = 0; scene < 40; ++scene) {
+      const Particles particles = draw(random, 6);
+      const auto made = initial_particles<T>(parse_scene(list_scene(particles, run), "s.toml"));
+      for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_TRUE(rounded_once(made->gap(static_cast<ParticleIndex>(i)), particles.gap[i])) << run;
+        EXPECT_TRUE(rounded_once(made->closing_speed(static_cast<ParticleIndex>(i)), particles.speed[i])) << run;
+      }
+    }
+  });
+}
+
+TEST(InitialGaps, ToWallsAndAcrossTheSeamOfRingsAreDifferencesOfDecimals) {
+  in_every_type([](auto type, const std::string& run) {
+    using T = typename decltype(type)::type;
+    const auto gap = [&](const std::string& scene, ParticleIndex particle) {
+      return initial_particles<T>(
+                 parse_scene("law = { type = 'inelastic', restitution = 0.5 }\n" + scene + run, "s.toml"))
+          ->gap(particle);
+    };
+    const std::string list = "initial = { type = 'list', x = [1000000000.000001, 1000000007], v = [0, 0]",
+                      walls = "walls = { left = { position = 1e9 }, right = { position = 1000000007.0000000003 } }\n";
+    EXPECT_TRUE(rounded_once(gap(list + " }\n" + walls, -1), exact("1e-6")));
+    EXPECT_TRUE(rounded_once(gap(list + " }\n" + walls, 1), exact("3e-10")));
+    EXPECT_TRUE(rounded_once(gap(list + ", length = 7 }\n", 1), exact("1e-6")));
+    // Rows: the outermost particles are 999.5 spacings of 0.1, and 499.5 of 1/3, from the origin.
+    EXPECT_TRUE(rounded_once(gap("initial = { type = 'rows', particles = 2000, spacing = 0.1 }\n"
+                                 "walls = { left = { position = -99.9500000000003 } }\n",
+                                 -1),
+                             exact("3e-13")));
+    EXPECT_TRUE(rounded_once(gap("initial.left = { particles = 5, speed = 1, density = 7 }\n"
+                                 "initial.right = { particles = 500, speed = 0, density = 3 }\ninitial.type = 'rows'\n"
+                                 "walls.right.position = 166.50000000000000001\n",
+                                 504),
+                             exact("1e-17")));
+    // A cold gas begins at the hot particle; a gas has its first particle half a cell from its wall.
+    EXPECT_TRUE(rounded_once(gap("initial = { type = 'cold', particles = 1001, spacing = 0.1, place = 'left' }\n"
+                                 "walls.right.position = 100.0000000000007\n",
+                                 1000),
+                             exact("7e-13")));
+    EXPECT_TRUE(
+        rounded_once(gap("initial = { type = 'gas', particles = 8 }\nwalls = { left = { position = 1e12 }, right "
+                         "= { position = 1000000000000.000016 } }\n",
+                         -1),
+                     exact("1e-6")));
+  });
+}
+
+TEST(InitialGaps, AreThoseOfTheKey) {
+  in_every_type([](auto type, const std::string& run) {
+    using T = typename decltype(type)::type;
+    const Scene scene = parse_scene("law.type = 'sticky'\ninitial = { type = 'list', gap = [0.1, 1e-30, 1e-200], x = "
+                                    "[1e9], v = [1, 0, 0, 0], length = 1 }\n" +
+                                        run,
+                                    "s.toml");
+    const auto made = initial_particles<T>(scene);
+    EXPECT_TRUE(rounded_once(made->gap(0), exact("0.1")));
+    EXPECT_TRUE(rounded_once(made->gap(1), exact("1e-30")));
+    EXPECT_TRUE(rounded_once(made->gap(2), exact("1e-200")));
+    EXPECT_TRUE(rounded_once(made->gap(3), Rational(exact("0.9") - exact("1e-30") - exact("1e-200"))));
+    EXPECT_TRUE(rounded_once(made->position(1), exact("1000000000.1")));
+    EXPECT_TRUE(parse_scene(effective_toml(scene), "s.toml") == scene);
+  });
+}
+
+// Collisions of particles of mass 1 one after the other, in rationals.
+struct Exactly {
+  std::vector<std::uint64_t> left;
+  Rational energy;
+};
+
+Exactly reference(const Particles& particles, const Rational& until) {
+  std::vector<Rational> gap = particles.gap, v;
+  for (const std::string& text : particles.v) v.push_back(exact(text));
+  Exactly found;
+  for (Rational t = 0;;) {
+    std::size_t next = gap.size();
+    Rational soonest = until - t;
+    for (std::size_t i = 0; i < gap.size(); ++i)
+      if (v[i] > v[i + 1])
+        if (const Rational due = gap[i] / (v[i] - v[i + 1]); due < soonest) soonest = due, next = i;
+    for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= (v[i] - v[i + 1]) * soonest;
+    t += soonest;
+    if (next == gap.size()) break;
+    const Rational impulse = Rational(8, 10) * (v[next] - v[next + 1]);  // (1 + r)/2 with r = 0.6
+    v[next] -= impulse, v[next + 1] += impulse;
+    found.left.push_back(next);
+  }
+  for (const Rational& speed : v) found.energy += speed * speed / 2;
+  return found;
+}
+
+std::uint64_t attribute_of(const Result& result, const char* name) {
+  return attribute<std::uint64_t>(result.attributes, name, "");
+}
+
+// Six particles of this restitution do not collapse: tan^2(pi/6) = 1/3.
+TEST(InitialGaps, OrderOfCollisionsIsThatOfRationals) {
+  std::mt19937_64 random(4101);
+  int uncertain = 0;
+  for (int scene = 0; scene < 2000; ++scene) {
+    const Particles particles = draw(random, 3 + static_cast<int>(random() % 4));
+    const Exactly wanted = reference(particles, 1);
+    const std::string text = list_scene(particles, "run.until = 1\noutput = { events = true, series.points = 2 }\n");
+    const RunOutcome outcome = run_scene(parse_scene(text, "s.toml"), {.progress = Progress::Show::never});
+    if (attribute_of(outcome.result, "simultaneous_collisions") + attribute_of(outcome.result, "order_lost") > 0) {
+      ++uncertain;
+      continue;
+    }
+    const Group* events = outcome.result.find("events");
+    const auto left = events == nullptr ? std::vector<std::uint64_t>()
+                                        : std::get<std::vector<std::uint64_t>>(events->columns.at(0).values);
+    ASSERT_EQ(left, wanted.left) << scene << '\n' << text;
+    EXPECT_NEAR(outcome.energy, static_cast<double>(wanted.energy), 1e-12 * static_cast<double>(wanted.energy)) << text;
+  }
+  EXPECT_EQ(uncertain, 0);
+}
+
+const std::string touching = "law = { type = 'inelastic', restitution = 1 }\ninitial.type = 'list'\nrun.until = 5\n";
+
+TEST(TouchingParticles, ThatPartOrRestAreAccepted) {
+  const auto energy_after = [&](const std::string& particles) {
+    return run_scene(parse_scene(touching + particles, "s.toml"), {.progress = Progress::Show::never}).energy;
+  };
+  EXPECT_EQ(energy_after("initial.x = [0, 1, 1]\ninitial.v = [1, 0, 2]"), 2.5);
+  EXPECT_EQ(energy_after("initial.gap = [1, 0]\ninitial.v = [-1, 0, 0]"), 0.5);
+}
+
+TEST(TouchingParticles, ThatApproachAreRefusedWithAdviceThatWorks) {
+  const std::string advice =
+      "give them the velocities that they have after this collision, or a distance: initial.gap, or a column gap, with "
+      "1e-300 there";
+  EXPECT_EQ(refusal(Exit::bad_input,
+                    [&] { parse_scene(touching + "initial.x = [0, 1, 1]\ninitial.v = [0, 1, 0]", "s.toml"); }),
+            "s.toml:4: initial.x: particles that touch and approach (found 1 after 1): " + advice);
+  EXPECT_EQ(refusal(Exit::bad_input,
+                    [&] { parse_scene(touching + "initial.gap = [1, 0]\ninitial.v = [0, 1, 0]", "s.toml"); }),
+            "s.toml:4: initial.gap: particles that touch and approach (found 1 after 1): " + advice);
+  for (const char* gaps : {"[1, 1e-300]", "[1e-300, 1e-300]"}) {
+    const Scene scene = parse_scene(touching + "initial.gap = " + gaps + "\ninitial.v = [1, 0, 0]", "s.toml");
+    const RunOutcome cradle = run_scene(scene, {.progress = Progress::Show::never});
+    EXPECT_EQ(cradle.collisions, 2U);
+    EXPECT_EQ(cradle.warning, "");
+  }
+}
+
+TEST(TouchingParticles, HaveNoPlacesInAbsolutePositions) {
+  const Scene scene = parse_scene(
+      touching + "initial.x = [1, 1.00000000000000000001]\ninitial.v = [0, 0]\nrun.coordinates = 'absolute'", "s.toml");
+  EXPECT_TRUE(test::has(refusal(Exit::bad_input, [&] { run_scene(scene, {.progress = Progress::Show::never}); }),
+                        "have the same place in absolute positions"));
+}
+
+// A run that is continued nine times from a file of its last state: gaps and closing speeds are read, not differences
+// of positions, which do not resolve a collapse.
+class Continued : public tests::ProgramTest {
+ protected:
+  using Collisions = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
+
+  // `initial` begins with the table's other keys.
+  Collisions collisions(const std::string& common, const std::string& initial, const std::string& start,
+                        const std::string& until, const std::string& result, int status) {
+    write("scene.toml", common + "output = { events = true, series.points = 2, snapshots = [" + until +
+                            "] }\n[run]\nstart = " + start + "\nuntil = " + until + "\n[initial]\ntype = 'list'\n" +
+                            initial);
+    shell("cradle run scene.toml --quiet -o " + result, status);
+    const Result run = read(result);
+    Collisions pairs;
+    const Group* events = run.find("events");
+    for (std::size_t k = 0; events != nullptr && k < events->columns.at(0).rows(); ++k)
+      pairs.emplace_back(std::get<std::vector<std::uint64_t>>(events->columns.at(0).values)[k],
+                         std::get<std::vector<std::uint64_t>>(events->columns.at(1).values)[k]);
+    return pairs;
+  }
+
+  void has_the_collisions_of_one_run(const std::string& common, const std::string& initial,
+                                     const std::vector<std::string>& times, double collapse = 0) {
+    const Collisions whole = collisions(common, initial, "0", times.back(), "whole.h5", 0);
+    Collisions pieces;
+    std::string start = "0", from = initial;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const std::string result = fmt::format("{}.h5", k);
+      const Collisions piece = collisions(common, from, start, times[k], result, 0);
+      pieces.insert(pieces.end(), piece.begin(), piece.end());
+      start = times[k], from = "file = '" + result + "'\n";
+    }
+    EXPECT_EQ(pieces, whole);
+    EXPECT_GT(whole.size(), times.size());
+    const auto gaps = [&](const std::string& file) {
+      const Result run = read(file);
+      for (const Column& column : run.find("snapshots/0000")->columns)
+        if (column.name == "gap") return std::get<std::vector<double>>(column.values);
+      return std::vector<double>();
+    };
+    const auto at_end = gaps("whole.h5"), in_pieces = gaps(fmt::format("{}.h5", times.size() - 1));
+    ASSERT_EQ(at_end.size(), in_pieces.size());
+    // Each rounding moves a collapse by some units of the last place, and all gaps there are shorter by that. Elsewhere
+    // it is as tools/proof/agreement.hpp says, with speeds of at most 2 and a length of 5.
+    const double end = std::stod(times.back()), eps = std::numeric_limits<double>::epsilon(),
+                 roundings = 8 * eps * static_cast<double>(whole.size() + at_end.size() + 64);
+    for (std::size_t i = 0; i < at_end.size(); ++i)
+      if (!std::isnan(at_end[i])) {
+        EXPECT_NEAR(in_pieces[i], at_end[i],
+                    collapse > 0 ? roundings * collapse / (collapse - end) * at_end[i] : roundings * (5 + 2 * end))
+            << i;
+      }
+  }
+};
+
+// r = 0.05: the collapse is at 12/7 = 1.714285714...; a gap shrinks by 1/8 from one collision to the next.
+TEST_F(Continued, CollapseHasTheCollisionsOfOneRun) {
+  std::vector<std::string> times = {
+      "1",         "1.5",         "1.7",           "1.714",           "1.71428",
+      "1.7142857", "1.714285714", "1.71428571428", "1.7142857142857", "1.714285714285713"};
+  has_the_collisions_of_one_run("law = { type = 'inelastic', restitution = 0.05 }\n", "x = [0, 1, 3]\nv = [1, 0, -1]\n",
+                                times, 12. / 7);
+}
+
+TEST_F(Continued, RingHasTheCollisionsOfOneRun) {
+  std::vector<std::string> times;
+  for (int k = 1; k <= 10; ++k) times.push_back(fmt::format("{}", 12 * k));
+  has_the_collisions_of_one_run("law = { type = 'inelastic', restitution = 0.9 }\n",
+                                "x = [0, 0.9, 2.3, 3.1, 4.4]\nv = [1, -0.3, 0.8, -1.7, 0.2]\nlength = 5\n", times);
+}
+
+}  // namespace cradle::tools::gaps_test

@@ -1,0 +1,175 @@
+// What a run requires of its engine, for every law and chain: so all code beside the event loop is compiled once per
+// scalar type, not once per engine. It costs a virtual call per sample, none per collision.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/base/state.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/core/parallel/segments.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
+#include "cradle/tools/scene/laws.hpp"
+#include "cradle/core/base/state_stream.hpp"
+
+namespace cradle::tools {
+
+template <Real T> using Observer = std::function<void(const Collision<T>&)>;
+
+template <Real T> class Engine {
+ public:
+  using Scalar = T;
+
+  Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+  virtual ~Engine() = default;
+
+  /// `observer` may be empty.
+  virtual Status advance(const T& until, const Observer<T>& observer) = 0;
+  /// Makes the next `left` collisions, or those up to `until` if these are fewer, and subtracts them from `left`. If no
+  /// collisions are made, it only advances.
+  virtual Status step(std::uint64_t& left, const T& until, const Observer<T>& observer) = 0;
+
+  virtual const Counts& counts() const = 0;
+  virtual const Account<T>& account() const = 0;
+  virtual T energy_lost(const T& time) const = 0;
+  virtual T kinetic_energy(const T& time) const = 0;
+  virtual bool falls() const = 0;
+  virtual WallTallies<T> wall_tallies(const T& time) const = 0;
+  virtual T last_collision_time() const = 0;
+  virtual const CollapseReport<T>* collapse() const = 0;  // null if no collisions are made
+
+  /// The left particle of a collision up to `time` that rounding may add or remove (`time` is not before the last
+  /// collision). None if nothing is uncertain, or if this engine does not estimate it.
+  virtual std::optional<ParticleIndex> uncertain_at(const T& time) const = 0;
+
+  virtual bool on_ring() const = 0;
+  virtual ParticleIndex collided_particles() const = 0;
+  virtual std::optional<T> gap_to_wall(End end, const T& time) const = 0;
+  virtual T front_left(const T& time) const = 0;
+  virtual T front_right(const T& time) const = 0;
+  virtual Configuration<T> configuration(const T& time) const = 0;
+  virtual Configuration<T> configuration_at_last_collision() const = 0;
+
+  /// Saves the state (core/base/state.hpp); `shape` describes its fields.
+  virtual void save(StateSink& to) const = 0;
+  virtual void load(StateSource& from) = 0;
+  virtual std::string shape() const = 0;
+};
+
+// The type that advances a run in segments; NoSegments for runs that cannot be cut.
+struct NoSegments {
+  NoSegments(const Workers&, const Segmentation&) {}
+};
+template <class Run> struct SegmentsFor { using Type = NoSegments; };
+template <Real T, class Law, class Masses>
+requires(!LawWithMemory<Law, T> && !Watched<Masses>) struct SegmentsFor<Simulation<T, Law, GapChain<T, Masses>>> {
+  using Type = Segments<Law, GapChain<T, Masses>>;
+};
+template <Real T, class Law> struct SegmentsFor<Simulation<T, Law, ClusterChain<T>>> {
+  using Type = Segments<Law, ClusterChain<T>>;
+};
+
+template <Real T, class Run> class EngineOf final : public Engine<T> {
+ public:
+  template <class... Arguments>
+  explicit EngineOf(const Workers& workers, Arguments&&... arguments)
+      : run_(std::forward<Arguments>(arguments)...), segments_(workers, {.steps = fastest_steps()}) {}
+
+  Status advance(const T& until, const Observer<T>& observer) override {
+    if constexpr (!std::same_as<RunSegments, NoSegments>) {
+      return observer ? run_.advance(until, segments_, observer) : run_.advance(until, segments_);
+    } else {
+      if constexpr (has_chain)
+        if (observer) return run_.advance(until, observer);
+      return run_.advance(until);
+    }
+  }
+
+  Status step(std::uint64_t& left, const T& until, const Observer<T>& observer) override {
+    if constexpr (has_chain) {
+      struct Made {};
+      try {
+        return run_.advance(until, [&](const Collision<T>& c) {
+          if (left == 0) throw Made();  // the collision that is due is then not made
+          if (observer) observer(c);
+          --left;
+        });
+      } catch (const Made&) {
+        return Status::reached;
+      }
+    } else {
+      left = 0;
+      return run_.advance(until);
+    }
+  }
+
+  const Counts& counts() const override { return run_.counts(); }
+  const Account<T>& account() const override { return run_.account(); }
+  T energy_lost(const T& time) const override { return run_.energy_lost(time); }
+  T kinetic_energy(const T& time) const override { return run_.kinetic_energy(time); }
+  bool falls() const override { return Run::falls(); }
+  WallTallies<T> wall_tallies(const T& time) const override { return cradle::wall_tallies(run_, time); }
+  T last_collision_time() const override { return run_.last_collision_time(); }
+  const CollapseReport<T>* collapse() const override {
+    if constexpr (has_chain)
+      return &run_.collapse();
+    else
+      return nullptr;
+  }
+
+  std::optional<ParticleIndex> uncertain_at(const T& time) const override {
+    if constexpr (requires { run_.chain().uncertain_at(time); })
+      return run_.chain().uncertain_at(run_.chain().local_time(time));
+    else
+      return {};
+  }
+
+  bool on_ring() const override { return run_.on_ring(); }
+  std::optional<T> gap_to_wall(End end, const T& time) const override {
+    if constexpr (requires { run_.gap_to_wall(end, time); })
+      return run_.gap_to_wall(end, time);
+    else
+      return {};
+  }
+  ParticleIndex collided_particles() const override { return run_.collided_particles(); }
+  T front_left(const T& time) const override { return run_.front_left(time); }
+  T front_right(const T& time) const override { return run_.front_right(time); }
+  Configuration<T> configuration(const T& time) const override { return run_.configuration(time); }
+  Configuration<T> configuration_at_last_collision() const override { return run_.configuration_at_last_collision(); }
+
+  void save(StateSink& to) const override { cradle::save(to, run_); }
+  void load(StateSource& from) override { cradle::load(from, run_); }
+  std::string shape() const override { return state_shape<Run>(); }
+
+ private:
+  using RunSegments = typename SegmentsFor<Run>::Type;
+  static constexpr bool has_chain = requires(const Run& run) { run.chain(); };
+
+  Run run_;
+  RunSegments segments_;
+};
+
+/// About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
+/// together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
+/// relative to the present ones; if it holds velocities, to those at the start.
+template <Real T> double energy_digits(const Engine<T>& engine, const Scene& scene, double at_start, double at_end) {
+  const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
+  const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
+  const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene.run.digits);
+  double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
+  const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
+  if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
+  return std::max(0., held - std::log10(error));
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,56 @@
+#include "cradle/tools/ensemble/crew.hpp"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <bit>
+#include <mutex>
+
+namespace cradle::tools {
+
+unsigned processors() {
+#ifdef __linux__
+  cpu_set_t set;
+  if (::sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(CPU_COUNT(&set));
+#endif
+  return thread_count(0);  // for systems that do not bind processes, and machines with more than 1024 processors
+}
+
+std::optional<JobRange> JobQueue::take(std::uint64_t most) {
+  while (at_ < ranges_.size() && ranges_[at_].replicas.count == 0) ++at_;
+  if (at_ == ranges_.size() || most == 0) return std::nullopt;
+  auto& [point, replicas] = ranges_[at_];
+  std::uint64_t count = std::bit_floor(std::min(most, replicas.count));
+  if (replicas.first != 0) count = std::min(count, std::uint64_t{1} << std::countr_zero(replicas.first));
+  const JobRange piece{point, {replicas.first, count}};
+  replicas.first += count;
+  replicas.count -= count;
+  return piece;
+}
+
+std::uint64_t JobQueue::left() const {
+  std::uint64_t sum = 0;
+  for (std::size_t k = at_; k < ranges_.size(); ++k) sum += ranges_[k].replicas.count;
+  return sum;
+}
+
+Exit Alone::together(const std::function<void()>& step) {
+  step();
+  return Exit::done;
+}
+
+int Alone::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
+                 const std::function<void(std::uint64_t)>&) {
+  JobQueue queue(jobs);
+  std::mutex mutex;
+  work([&]() -> std::optional<Job> {
+    if (interrupt().signal() != 0) return std::nullopt;
+    const std::scoped_lock lock(mutex);
+    const auto piece = queue.take(1);
+    if (!piece) return std::nullopt;
+    return Job{piece->point, piece->replicas.first};
+  });
+  return interrupt().signal();
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,312 @@
+#include "cradle/tools/ensemble/ensemble_store.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/support/version.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+std::string plural(std::uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+}  // namespace
+
+Study study_in(const JournalHeader& journal, const std::string& path) {
+  Scene scene = parse_scene(journal.scene, path);
+  scene.name = journal.name;
+  const auto scene_at = [&](const std::string& group) {
+    const auto at = std::find_if(journal.points.begin(), journal.points.end(),
+                                 [&](const auto& point) { return point.first == group; });
+    if (at == journal.points.end())
+      throw Error({path, 0, ""}, "a sweep without one of its points", group, "remove it", Exit::io);
+    return parse_scene(at->second, path);
+  };
+  Study study = journal.kind == "sweep" ? sweep_at(scene, scene_at) : ensemble_of(scene, journal.spreads);
+  if (study.identity() != journal.identity)
+    throw Error({path, 0, ""}, "of other scenes than it names", "", "take it from a copy, or remove it", Exit::io);
+  return study;
+}
+
+EnsembleStore::EnsembleStore(Study study, std::string file)
+    : study_(std::move(study)), file_(std::move(file)), part_(file_ + ".part"), identity_(study_.identity()),
+      states_(empty_states()) {}
+
+EnsembleStates EnsembleStore::empty_states() const {
+  EnsembleStates states;
+  for (const auto& [group, scene] : study_.points)
+    states.push_back(std::make_unique<EnsembleState>(group, scene, study_.spreads));
+  return states;
+}
+
+// ---- reading the result and the journals of all ranks
+
+void EnsembleStore::check_identity(std::uint64_t identity, const std::vector<std::string>& scenes,
+                                   const std::string& path) const {
+  if (identity == identity_) return;
+  std::string found = scenes.size() == study_.points.size() ? "" : plural(scenes.size(), "ensemble");
+  for (std::size_t k = 0; k < scenes.size() && found.empty(); ++k)
+    found = scene_difference(parse_scene(scenes[k], path), study_.points[k].scene);
+  if (found.empty()) found = "another version of the program, other --spread bins or other listed particles";
+  throw Error({path, 0, ""}, "holds ensembles of something else", found,
+              "give another -o FILE, or --force to replace it");
+}
+
+void EnsembleStore::load_result() {
+  const Result result = read_result(file_);
+  const auto is = [&](const auto& attribute) { return attribute.first == "identity"; };
+  if (std::none_of(result.attributes.begin(), result.attributes.end(), is))
+    throw Error({file_, 0, ""}, "holds no ensemble", "a single run, or another command's result",
+                "give another -o FILE, or --force to replace it");
+  std::vector<std::string> scenes;
+  for (const Study::Point& point : study_.points) {
+    const bool alone = point.group.empty();
+    const Group* group = result.find(alone ? "ensemble" : point.group + "/ensemble");
+    if (group == nullptr) break;
+    scenes.push_back(attribute<std::string>(alone ? result.attributes : group->attributes, "scene", file_));
+  }
+  check_identity(attribute<std::uint64_t>(result.attributes, "identity", file_), scenes, file_);
+  for (const auto& state : states_) state->read(result, file_);
+  result_there_ = true;
+}
+
+void EnsembleStore::check_replaces(const std::string& file) const {
+  if (!std::filesystem::exists(file)) return;
+  EnsembleStore there(study_, file);
+  there.load_result();
+  for (std::size_t k = 0; k < states_.size(); ++k)
+    if (!states_[k]->holds_all_of(*there.states_[k]))
+      throw Error({file, 0, ""}, "holds replicas that none of the files has", "",
+                  "merge it too, give another -o FILE, or --force to replace it");
+}
+
+// Whether an interrupted study that was forced is to replace a result of something else: its journal says so.
+bool EnsembleStore::replaces_another() const {
+  const auto journal = std::filesystem::exists(part_) ? journal_header(part_) : std::nullopt;
+  if (!journal || journal->of_run() || journal->identity != identity_) return false;
+  try {
+    EnsembleStore(study_, file_).load_result();
+    return false;
+  } catch (const Error& error) {
+    return error.status == Exit::bad_input;
+  }
+}
+
+std::string EnsembleStore::load(Force force) {
+  claim_.emplace(file_);
+  if (force == Force::yes) {
+    drop_journals();
+    return "";
+  }
+  if (std::filesystem::exists(file_) && !replaces_another()) load_result();
+  std::string account;
+  std::uint64_t whole = 0;
+  if (std::filesystem::exists(part_)) {
+    account += read_journal(part_, whole);
+    journal_.emplace(part_, whole);
+  }
+  const std::vector<std::string> others = rank_journals();
+  for (const std::string& path : others) account += read_journal(path, whole);
+  if (!others.empty()) compact();
+  for (const std::string& path : others) ::unlink(path.c_str());
+  return account;
+}
+
+std::string EnsembleStore::read_journal(const std::string& path, std::uint64_t& whole_bytes) {
+  JournalReader reader(path);
+  const JournalHeader& header = reader.header();
+  if (header.of_run())
+    throw Error({path, 0, ""}, "the journal of a run", "", "continue it by `cradle resume`, or give another -o FILE",
+                Exit::io);
+  std::vector<std::string> scenes;
+  for (const auto& [group, scene] : header.points) scenes.push_back(scene);
+  check_identity(header.identity, scenes, path);
+  if (wanted_.count == 0) wanted_ = header.wanted;
+  EnsembleStates states = empty_states();
+  while (auto record = reader.next<EnsembleRecord>()) {
+    if (record->point >= states.size())
+      throw Error({path, 0, ""}, "a record of no ensemble", fmt::format("number {}", record->point), "remove the file",
+                  Exit::io);
+    states[record->point]->apply(std::move(*record));
+  }
+  whole_bytes = reader.whole_bytes();
+  std::string account = fmt::format("{}: {} taken from there", path, plural(replicas_in(states), "replica"));
+  if (reader.torn_bytes() > 0) account += fmt::format("; its end was damaged ({} bytes left out)", reader.torn_bytes());
+  take(states, path);
+  return account + "\n";
+}
+
+void EnsembleStore::take(EnsembleStates& others, const std::string& from) {
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (states_[k]->holds_all_of(*others[k])) continue;
+    result_there_ = false;
+    if (others[k]->holds_all_of(*states_[k]))
+      states_[k] = std::move(others[k]);
+    else if (!states_[k]->holds_any_of(*others[k]))
+      states_[k]->take(*others[k]);
+    else
+      throw Error({from, 0, ""}, "has some replicas in common with other files of this ensemble", "",
+                  "remove those files that do not belong to it", Exit::io);
+  }
+}
+
+std::vector<std::string> EnsembleStore::rank_journals() const {
+  const std::filesystem::path part(part_);
+  const std::string begin = part.filename().string() + ".";
+  const std::filesystem::path folder = part.has_parent_path() ? part.parent_path() : ".";
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() > begin.size() && name.starts_with(begin) &&
+        name.find_first_not_of("0123456789", begin.size()) == name.npos)
+      found.push_back(part_ + name.substr(begin.size() - 1));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// ---- while replicas are run
+
+JournalHeader EnsembleStore::header() const {
+  JournalHeader header{study_.kind, identity_, effective_toml(study_.scene), study_.scene.name};
+  header.wanted = wanted_;
+  header.spreads = study_.spreads;
+  for (const auto& [group, scene] : study_.points) header.points.emplace_back(group, effective_toml(scene));
+  return header;
+}
+
+void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest) {
+  wanted_ = wanted;
+  largest_ = std::max(largest, largest_);
+  if (rank > 0) part_ += fmt::format(".{}", rank);
+  journalling_ = true;
+  if (rank > 0) return;
+  if (journal_)
+    compact();  // so that a program that continues from it reads what is wanted now
+  else
+    journal_.emplace(part_, header());
+}
+
+void EnsembleStore::journal(const EnsembleRecord& record) {
+  if (!journalling_) return;
+  const std::string bytes = to_bytes(record);
+  const std::scoped_lock lock(appending_);
+  if (!journal_) journal_.emplace(part_, header());
+  journal_->append(bytes);
+}
+
+void EnsembleStore::add(std::size_t point, const ReplicaRow& row, std::vector<double> values, ReplicaTables kept) {
+  {
+    const std::shared_lock lock(changing_);
+    if (journalling_) journal({point, ReplicaRecord{row, values, kept}});
+    states_.at(point)->add(row, std::move(values), std::move(kept));
+  }
+  if (journalling_) keep_safe();
+}
+
+// Syncs the journal from time to time, and rewrites it as nodes of the tree when it has become large.
+void EnsembleStore::keep_safe() {
+  using namespace std::chrono_literals;
+  bool due = false, large = false;
+  {
+    const std::scoped_lock lock(appending_);
+    const auto now = std::chrono::steady_clock::now();
+    due = now - synced_ > 20s;
+    large = journal_->bytes() > largest_;
+    if (due) synced_ = now;
+  }
+  if (large) {
+    const std::unique_lock lock(changing_);
+    if (journal_->bytes() > largest_) compact();
+  } else if (due) {
+    const std::shared_lock lock(changing_);
+    journal_->sync();
+  }
+}
+
+void EnsembleStore::fail(std::size_t point, ReplicaIndex replica, const std::string& message) {
+  const std::shared_lock lock(changing_);
+  journal({point, FailureRecord{replica, message}});
+  states_.at(point)->fail(replica, message);
+}
+
+void EnsembleStore::sync() {
+  if (journal_) journal_->sync();
+}
+
+void EnsembleStore::compact() {
+  JournalWriter anew(part_, header(), [this](const JournalWriter::Put& put) { put_records(put); });
+  journal_ = std::move(anew);
+  largest_ = std::max(largest_, 4 * journal_->bytes());
+}
+
+void EnsembleStore::put_records(const JournalWriter::Put& put) const {
+  for (std::size_t k = 0; k < states_.size(); ++k) states_[k]->put_records(k, put);
+}
+
+void EnsembleStore::apply(std::string_view bytes) {
+  auto record = from_bytes<EnsembleRecord>(std::string(bytes));
+  states_.at(record.point)->apply(std::move(record));
+}
+
+// ---- the result
+
+std::uint64_t EnsembleStore::replicas() const { return replicas_in(states_); }
+
+std::string EnsembleStore::outcome() const {
+  EnsembleState::Outcomes outcomes{};
+  for (const auto& state : states_) {
+    const auto of_state = state->outcomes();
+    for (std::size_t k = 0; k < outcomes.size(); ++k) outcomes[k] += of_state[k];
+  }
+  std::string text;
+  for (std::size_t k = 0; k < outcomes.size(); ++k)
+    if (outcomes[k] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", outcomes[k], run_ends[k].text);
+  return text;
+}
+
+Result EnsembleStore::result() const {
+  Result result;
+  result.attributes = {{"format_version", format_version},
+                       {"cradle_version", std::string(version)},
+                       {"kind", study_.kind},
+                       {"scene", effective_toml(study_.scene)},
+                       {"name", study_.scene.name},
+                       {"precision", precision_name(study_.scene.run)},
+                       {"outcome", outcome()},
+                       {"replicas", replicas()},
+                       {"identity", identity_}};
+  result.attributes.insert(result.attributes.end(), study_.attributes.begin(), study_.attributes.end());
+  if (study_.summary) result.groups = study_.summary(states_);
+  for (const auto& state : states_)
+    for (Group& group : state->groups()) result.groups.push_back(std::move(group));
+  return result;
+}
+
+void EnsembleStore::finish() {
+  try {
+    write_result(result(), file_);
+  } catch (const Error& error) {
+    throw Error(std::string(error.what()) + "; finished replicas are in " + part_ +
+                    ", the same command continues from there",
+                error.status);
+  }
+  drop_journals();
+}
+
+void EnsembleStore::drop_journals() {
+  journal_.reset();
+  ::unlink(part_.c_str());
+  for (const std::string& path : rank_journals()) ::unlink(path.c_str());
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,275 @@
+#include "cradle/tools/ensemble/mpi_crew.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "cradle/tools/ensemble/workshop.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int to_leader = 1, from_leader = 2, records = 3;  // tags
+
+// What another rank reports to rank 0.
+enum class Wish : std::uint64_t { nothing, piece, leave };
+struct Report {
+  std::uint64_t taken = 0;  // jobs since the last report, finished or running
+  Wish wish = Wish::nothing;
+  std::uint64_t signal = 0;
+};
+
+// What rank 0 answers.
+enum class Order : std::uint64_t { work, no_more, stop, farewell };
+struct Reply {
+  Order order = Order::no_more;
+  std::uint64_t point = 0, first = 0, count = 0;  // work
+  std::uint64_t signal = 0;                       // stop
+};
+
+// Reports and Replies are sent as raw bytes.
+template <class Message> void send(const Message& message, int rank, int tag) {
+  static_assert(sizeof(Message) % 8 == 0);
+  MPI_Send(&message, sizeof message / 8, MPI_UINT64_T, rank, tag, MPI_COMM_WORLD);
+}
+template <class Message> Message receive(int rank, int tag) {
+  Message message;
+  MPI_Recv(&message, sizeof message / 8, MPI_UINT64_T, rank, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return message;
+}
+// The rank that has sent a message, or -1.
+int sender(int rank, int tag) {
+  int there = 0;
+  MPI_Status status;
+  MPI_Iprobe(rank, tag, MPI_COMM_WORLD, &there, &status);
+  return there != 0 ? status.MPI_SOURCE : -1;
+}
+
+// Waits by polling with pauses: MPI's own waiting uses a whole processor, which other ranks may need.
+template <class Condition> void wait(Condition condition) {
+  while (!condition()) std::this_thread::sleep_for(1ms);
+}
+
+int status_of(const std::exception_ptr& error, std::string& message) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const Error& known) {
+    message = known.what();
+    return known.exit_code();
+  } catch (const std::exception& other) {
+    message = other.what();
+  } catch (...) {
+    message = "an exception without a message";
+  }
+  return static_cast<int>(Exit::bad_input);
+}
+
+class MpiCrew : public Crew {
+ public:
+  MpiCrew(int processes_launched, Interrupt& interrupt);
+  ~MpiCrew() override { MPI_Finalize(); }
+
+  unsigned rank() const override { return static_cast<unsigned>(rank_); }
+  unsigned threads() const override { return threads_; }
+  Exit together(const std::function<void()>& step) override;
+  int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
+            const std::function<void(std::uint64_t)>& others_took) override;
+  void gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) override;
+
+ private:
+  void lead(Workshop& shop, const Workshop::More& piece, const std::function<void(std::uint64_t)>& others_took) const;
+  void follow(Workshop& shop) const;
+  [[noreturn]] void abandon(const std::exception_ptr& error) const;
+
+  int rank_ = 0, size_ = 1;
+  unsigned threads_ = 0;
+};
+
+MpiCrew::MpiCrew(int processes_launched, Interrupt& interrupt) : Crew(interrupt) {
+  int given = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  if (processes_launched > 1 && size_ == 1) {
+    MPI_Finalize();
+    throw Error({}, "the launched processes do not see each other", fmt::format("{} of them", processes_launched),
+                "use the launcher of the MPI that this program was built with");
+  }
+  // Ranks that are not bound to processors share all processors of their machine.
+  MPI_Comm machine = MPI_COMM_NULL;
+  int ranks_here = 1;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
+  MPI_Comm_size(machine, &ranks_here);
+  MPI_Comm_free(&machine);
+  const bool bound = static_cast<long>(processors()) < ::sysconf(_SC_NPROCESSORS_ONLN);
+  threads_ = bound ? processors() : std::max(1U, processors() / static_cast<unsigned>(ranks_here));
+}
+
+Exit MpiCrew::together(const std::function<void()>& step) {
+  std::exception_ptr error;
+  try {
+    step();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  const int mine = error ? rank_ : size_;
+  int first = size_;
+  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (first == size_) return Exit::done;
+  ignore_signals();  // launchers send all ranks a signal as soon as the first of them has ended
+  std::string message;
+  int status = rank_ == first ? status_of(error, message) : 0;
+  MPI_Bcast(&status, 1, MPI_INT, first, MPI_COMM_WORLD);
+  if (rank_ == first) std::rethrow_exception(error);
+  return static_cast<Exit>(status);
+}
+
+// Ends the job from one rank. The launcher ends the other ranks; their replicas are in their journals.
+void MpiCrew::abandon(const std::exception_ptr& error) const {
+  std::string message;
+  const int status = status_of(error, message);
+  fmt::print(stderr, "cradle: rank {}: {}\n", rank_, message);
+  std::fflush(stderr);
+  MPI_Abort(MPI_COMM_WORLD, status);
+  std::abort();
+}
+
+int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
+                   const std::function<void(std::uint64_t)>& others_took) {
+  if (rank_ == 0) {
+    JobQueue all(jobs);
+    std::mutex mutex;
+    // A piece is a third of an even share of the rest: few messages at first, and no long wait for the last rank.
+    const auto piece = [&] {
+      const std::scoped_lock lock(mutex);
+      return all.take(std::max<std::uint64_t>(1, all.left() / (3 * static_cast<std::uint64_t>(size_))));
+    };
+    Workshop shop(work, piece, interrupt());
+    lead(shop, piece, others_took);
+  } else {
+    Workshop shop(work, {}, interrupt());
+    follow(shop);
+  }
+  // Some ranks may have finished before a signal came: all return what rank 0 returns, which waits for all.
+  int signal = interrupt().signal();
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibcast(&signal, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
+  wait([&] {
+    int done = 0;
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    return done != 0;
+  });
+  return signal;
+}
+
+void MpiCrew::lead(Workshop& shop, const Workshop::More& piece,
+                   const std::function<void(std::uint64_t)>& others_took) const {
+  std::vector<bool> here(static_cast<std::size_t>(size_), true);
+  int others = size_ - 1;
+  bool stopped = false;
+  const auto stop = [this] { return Reply{Order::stop, 0, 0, 0, static_cast<std::uint64_t>(interrupt().signal())}; };
+  for (;;) {
+    const bool idle = shop.idle(false);
+    if (idle && shop.error()) abandon(shop.error());
+    if (interrupt().signal() != 0 && !std::exchange(stopped, true))
+      for (int rank = 1; rank < size_; ++rank)
+        if (here[static_cast<std::size_t>(rank)]) send(stop(), rank, from_leader);
+    for (int rank = sender(MPI_ANY_SOURCE, to_leader); rank >= 0; rank = sender(MPI_ANY_SOURCE, to_leader)) {
+      const auto report = receive<Report>(rank, to_leader);
+      others_took(report.taken);
+      if (report.signal != 0) interrupt().note(static_cast<int>(report.signal));
+      if (report.wish == Wish::leave) {
+        send(Reply{Order::farewell}, rank, from_leader);
+        here[static_cast<std::size_t>(rank)] = false;
+        --others;
+      } else if (report.wish == Wish::piece) {
+        const auto more = piece();
+        send(more ? Reply{Order::work, more->point, more->replicas.first, more->replicas.count} : Reply{Order::no_more},
+             rank, from_leader);
+      }
+    }
+    if (idle && others == 0) return;
+  }
+}
+
+void MpiCrew::follow(Workshop& shop) const {
+  bool requested = false, closed = false, notified = false;
+  std::uint64_t reported = 0;
+  auto last = std::chrono::steady_clock::now();
+  for (bool idle = false; !idle;) {
+    idle = shop.idle(!requested && !closed);
+    if (idle && shop.error()) abandon(shop.error());
+    Report report{shop.taken() - reported};
+    if (idle)
+      report.wish = Wish::leave;
+    else if (!requested && !closed && shop.empty())
+      report.wish = Wish::piece, requested = true;
+    if (interrupt().signal() != 0 && !std::exchange(notified, true))
+      report.signal = static_cast<std::uint64_t>(interrupt().signal());
+    const auto now = std::chrono::steady_clock::now();
+    if (report.wish != Wish::nothing || report.signal != 0 || (report.taken > 0 && now - last > 500ms)) {
+      send(report, 0, to_leader);
+      reported += report.taken;
+      last = now;
+    }
+    while (!idle && sender(0, from_leader) == 0) {
+      const auto reply = receive<Reply>(0, from_leader);
+      if (reply.order == Order::work) {
+        shop.put({reply.point, {reply.first, reply.count}});
+        requested = false;
+        continue;
+      }
+      if (reply.order == Order::stop) interrupt().note(static_cast<int>(reply.signal));
+      shop.close();
+      closed = true;
+    }
+  }
+  for (Reply reply; reply.order != Order::farewell; reply = receive<Reply>(0, from_leader))  // after earlier replies
+    wait([] { return sender(0, from_leader) == 0; });
+}
+
+void MpiCrew::gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) {
+  constexpr std::uint64_t end = ~std::uint64_t{0}, piece = std::uint64_t{1} << 30;  // MPI counts in int
+  if (rank_ != 0) {
+    put([&](std::string_view record) {
+      const std::uint64_t size = record.size();
+      MPI_Send(&size, 1, MPI_UINT64_T, 0, records, MPI_COMM_WORLD);
+      for (; !record.empty(); record.remove_prefix(std::min<std::size_t>(piece, record.size())))
+        MPI_Send(record.data(), static_cast<int>(std::min<std::size_t>(piece, record.size())), MPI_BYTE, 0, records,
+                 MPI_COMM_WORLD);
+    });
+    MPI_Send(&end, 1, MPI_UINT64_T, 0, records, MPI_COMM_WORLD);
+    return;
+  }
+  for (int rank = 1; rank < size_; ++rank)
+    for (;;) {
+      std::uint64_t size = 0;
+      MPI_Recv(&size, 1, MPI_UINT64_T, rank, records, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      if (size == end) break;
+      std::string record(size, '\0');
+      for (std::uint64_t at = 0; at < size; at += piece)
+        MPI_Recv(record.data() + at, static_cast<int>(std::min(piece, size - at)), MPI_BYTE, rank, records,
+                 MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      take(record);
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<Crew> make_mpi_crew(int processes_launched, Interrupt& interrupt) {
+  return std::make_unique<MpiCrew>(processes_launched, interrupt);
+}
+
+}  // namespace cradle::tools

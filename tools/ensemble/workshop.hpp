@@ -1,0 +1,103 @@
+// The work of one rank of a job. It runs on threads of its own, so that the main thread is free for messages; a queue
+// of jobs is refilled as it runs out.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "cradle/tools/ensemble/crew.hpp"
+
+namespace cradle::tools {
+
+class Workshop {
+ public:
+  using More = std::function<std::optional<JobRange>()>;
+
+  /// Begins work(next) at once. `more` gives the next jobs; without it `put` adds jobs until the workshop is closed. An
+  /// interrupt ends the work early.
+  Workshop(const std::function<void(const NextJob&)>& work, More more, const Interrupt& interrupt)
+      : more_(std::move(more)), interrupt_(interrupt), thread_([this, work] { run(work); }) {}
+  ~Workshop() { thread_.join(); }
+  Workshop(const Workshop&) = delete;
+  Workshop& operator=(const Workshop&) = delete;
+
+  void put(const JobRange& piece) {
+    const std::scoped_lock lock(mutex_);
+    jobs_.put(piece);
+    changed_.notify_all();
+  }
+  /// No more jobs will be put.
+  void close() {
+    const std::scoped_lock lock(mutex_);
+    closed_ = true;
+    changed_.notify_all();
+  }
+  bool empty() const {
+    const std::scoped_lock lock(mutex_);
+    return jobs_.left() == 0;
+  }
+  /// The number of jobs that threads have taken.
+  std::uint64_t taken() const {
+    const std::scoped_lock lock(mutex_);
+    return taken_;
+  }
+
+  /// True when the work has returned. Waits a moment for that or, if requested, until the last job is taken.
+  bool idle(bool or_empty) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return idle_ || (or_empty && jobs_.left() == 0); });
+    return idle_;
+  }
+  /// What the work threw, if anything; call it when idle.
+  const std::exception_ptr& error() const { return error_; }
+
+ private:
+  void run(const std::function<void(const NextJob&)>& work) {
+    try {
+      work([this] { return next(); });
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    const std::scoped_lock lock(mutex_);
+    idle_ = true;
+    changed_.notify_all();
+  }
+
+  std::optional<Job> next() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      if (interrupt_.signal() != 0) return std::nullopt;
+      if (const auto piece = jobs_.take(1)) {
+        ++taken_;
+        changed_.notify_all();
+        return Job{piece->point, piece->replicas.first};
+      }
+      if (more_) {
+        const auto piece = more_();
+        if (!piece) return std::nullopt;
+        jobs_.put(*piece);
+        continue;
+      }
+      if (closed_) return std::nullopt;
+      changed_.wait_for(lock, std::chrono::milliseconds(10));  // wakes for signals, which notify nobody
+    }
+  }
+
+  More more_;
+  const Interrupt& interrupt_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  JobQueue jobs_{{}};
+  bool closed_ = false, idle_ = false;
+  std::uint64_t taken_ = 0;
+  std::exception_ptr error_;
+  std::thread thread_;  // last, since it uses all of the above
+};
+
+}  // namespace cradle::tools

@@ -1,0 +1,27 @@
+#include "cradle/tools/scene/particle_order.hpp"
+
+#include <fmt/format.h>
+
+#include <compare>
+#include <string>
+
+namespace cradle::tools {
+
+void check_neighbours(const Listed& left, const Listed& right, const NumberRange& range, const Place& place) {
+  const auto order = compare_decimals(right.x, left.x);
+  if (std::is_gt(order)) return range.check_positive(difference(right.x, left.x), place);
+  const auto places = fmt::format("{} after {}", right.x, left.x);
+  if (std::is_lt(order)) throw Error(place, "not increasing", places, "give the particles in order of increasing x");
+  if (std::is_gt(compare_decimals(left.v, right.v)))
+    throw Error(place, "particles that touch and approach", places,
+                "give them the velocities that they have after this collision, or a distance: initial.gap, or a column "
+                "gap, with 1e-300 there");
+}
+
+void check_order(const ListedParticles& of, const Run& run, const std::function<Place(std::size_t)>& before) {
+  const NumberRange range(run);
+  for (std::size_t i = 1; i < of.x.size(); ++i)
+    check_neighbours({of.x[i - 1], of.v[i - 1]}, {of.x[i], of.v[i]}, range, before(i));
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,67 @@
+#include "cradle/tools/setup/at_walls.hpp"
+
+#include "cradle/precision/bin_float.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
+#include "cradle/tools/scene/rational.hpp"
+
+namespace cradle::tools {
+namespace {
+
+// The place of an end of rows or a cold gas in spacings: a whole number times 2^-29 or, where the density falls, a
+// double, and so exact in 100 digits.
+Rational in_spacings(const Initial& initial, End end, const Displacement& displacement) {
+  const auto last = [&](const auto& particles) {
+    return particles.position(end == End::left ? 0 : particles.count() - 1);
+  };
+  const bin_float one(1);
+  bin_float place;
+  if (initial.type == InitialType::cold) {
+    const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
+    HotParticles<bin_float> moving = kicked(first_hot(hot_place(initial), all, hot), one);
+    // Places are counted from the middle of all hot particles.
+    moving.pace.resize(initial.hot);
+    place = last(Cold<bin_float>(all, one, hot_place(initial), std::move(moving), displacement, {},
+                                 initial.density_exponent.value));
+  } else {
+    const auto row = [&](std::uint64_t particles, int speed) {
+      return cradle::Row<bin_float>{static_cast<ParticleIndex>(particles), bin_float(speed), one};
+    };
+    const bool general = initial.general_rows(), centre = general && initial.centre.mass > Decimal("0");
+    place = last(Rows<bin_float>(row(general ? initial.left.particles : initial.particles / 2, 1),
+                                 row(general ? initial.right.particles : initial.particles / 2, -1),
+                                 centre ? std::optional(CentralParticle<bin_float>{one, bin_float(0)}) : std::nullopt,
+                                 displacement));
+  }
+  using std::ldexp;
+  return Rational(ldexp(place, 200).convert_to<Whole>()) / Rational(Whole(1) << 200);
+}
+
+}  // namespace
+
+std::optional<AtWallText> at_wall(const Scene& scene, End end, const Displacement& displacement) {
+  const Initial& initial = scene.initial;
+  const bool left = end == End::left;
+  const WallAt& wall = left ? scene.walls.left : scene.walls.right;
+  if (!wall.position || initial.type == InitialType::gas) return {};
+  const auto closing = [&](std::string_view v) {
+    return left ? difference(wall.speed.text, v) : difference(v, wall.speed.text);
+  };
+  if (initial.type == InitialType::list) {
+    const std::string_view x = left ? initial.x[0] : initial.x.back(), v = left ? initial.v[0] : initial.v.back();
+    return AtWallText{left ? difference(x, wall.position->text) : difference(wall.position->text, x), closing(v)};
+  }
+  const scene::Row& row = left ? initial.left : initial.right;
+  const auto at = rational(wall.position->text),
+             spacing = rational(initial.general_rows() ? row.density.text : initial.spacing.text);
+  if (!at || !spacing) return {};
+  const Rational place = in_spacings(initial, end, displacement),
+                 x = initial.general_rows() ? Rational(place / *spacing) : Rational(place * *spacing);
+  AtWallText text{decimal_text(left ? Rational(x - *at) : Rational(*at - x), scene.run.decimal_digits() + 40), {}};
+  if (initial.type == InitialType::rows)
+    text.closing_speed = closing(initial.general_rows() ? row.speed.text
+                                 : left                 ? initial.speed.text
+                                                        : difference("0", initial.speed.text));
+  return text;
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,212 @@
+// The engine's particles for a scene, with every number read in the working precision.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "cradle/core/initial/cold.hpp"
+#include "cradle/core/initial/gas.hpp"
+#include "cradle/core/initial/list.hpp"
+#include "cradle/core/initial/poisson.hpp"
+#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/rows.hpp"
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/precision/text.hpp"
+#include "cradle/tools/setup/at_walls.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tools {
+
+template <Real T> T number(const Decimal& decimal) { return from_text<T>(decimal.text); }
+
+template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
+  std::vector<T> values;
+  values.reserve(column.size());
+  for (std::size_t i = 0; i < column.size(); ++i) values.push_back(from_text<T>(column[i]));
+  return values;
+}
+
+/// The exact differences of neighbours, right less left (sign 1) or left less right (-1), each rounded once.
+template <Real T> std::vector<T> neighbour_differences(const DecimalColumn& column, int sign) {
+  std::vector<T> values;
+  values.reserve(column.size());
+  for (std::size_t i = 1; i < column.size(); ++i)
+    values.push_back(from_text<T>(difference(column[sign > 0 ? i : i - 1], column[sign > 0 ? i - 1 : i])));
+  return values;
+}
+
+/// How many particles rows, a ring, a cold gas or a gas have.
+inline ParticleIndex particles_in_order(const Initial& initial) {
+  if (!initial.general_rows()) return static_cast<ParticleIndex>(initial.particles);
+  return static_cast<ParticleIndex>(initial.left.particles + initial.right.particles) +
+         (initial.centre.mass > Decimal("0") ? 1 : 0);
+}
+
+template <Real T> MassPattern<T> mass_pattern(const Initial& initial) {
+  if (!initial.random_masses.empty())
+    return MassPattern<T>(number<T>(initial.random_masses.front()), number<T>(initial.random_masses.back()),
+                          particles_in_order(initial), initial.seed, initial.replica);
+  std::vector<T> masses;
+  bool identical = true;
+  for (const Decimal& mass : initial.masses) {
+    masses.push_back(number<T>(mass));
+    identical = identical && mass == initial.masses.front();
+  }
+  return MassPattern<T>(std::move(masses), identical);
+}
+
+inline cradle::HotPlace hot_place(const Initial& initial) {
+  return initial.place == scene::HotPlace::left ? cradle::HotPlace::left : cradle::HotPlace::middle;
+}
+
+/// Where particles are, as displacements from equal distances; null for a list.
+inline Displacement displacement_of(const Initial& initial) {
+  if (initial.type == InitialType::list) return {};
+  if (initial.positions == Positions::lattice)
+    // The nearest double may be 1/2; the perturbation is smaller.
+    return uniform_displacement(std::min(initial.perturbation.value, std::nextafter(0.5, 0.)), initial.seed,
+                                initial.replica);
+  const ParticleIndex count = particles_in_order(initial);
+  if (initial.type == InitialType::ring || initial.type == InitialType::gas)
+    return uniform_places(count, initial.seed, initial.replica);
+  const auto from = [&](ParticleIndex origin, bool at_origin, auto half_steps) {
+    return poisson_displacement(count, origin, at_origin, half_steps, initial.seed, initial.replica);
+  };
+  if (initial.type == InitialType::cold) {
+    // The hot particle that is the first one, or in the middle of them, is at x = 0.
+    const auto hot = static_cast<ParticleIndex>(initial.hot);
+    const bool left = initial.place == scene::HotPlace::left;
+    const ParticleIndex first = first_hot(hot_place(initial), count, hot), origin = left ? 0 : first + (hot - 1) / 2;
+    return from(origin, true, [=](ParticleIndex p) { return left ? 2 * p : 2 * (p - first) + 1 - hot; });
+  }
+  const bool general = initial.general_rows(), centre = general && initial.centre.mass > Decimal("0");
+  const auto left = general ? static_cast<ParticleIndex>(initial.left.particles) : count / 2;
+  return from(left, centre, [=](ParticleIndex p) {
+    if (!centre || p < left) return 2 * (p - left) + 1;
+    return p == left ? 0 : 2 * (p - left) - 1;
+  });
+}
+
+template <Real T>
+std::shared_ptr<const cradle::Particles<T>> cold_particles(const Initial& initial, Displacement displacement) {
+  const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
+  const cradle::HotPlace place = hot_place(initial);
+  const ParticleIndex first = first_hot(place, all, hot);
+  MassPattern<T> masses = mass_pattern<T>(initial);
+  HotParticles<T> moving = hot == 1
+                               ? kicked(first, number<T>(initial.speed))
+                               : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
+  return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), place, std::move(moving), std::move(displacement),
+                                   std::move(masses), initial.density_exponent.value);
+}
+
+namespace detail {
+
+template <Real T>
+std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Scene& scene,
+                                                                    const Displacement& displacement) {
+  const Initial& initial = scene.initial;
+  if (initial.type == InitialType::list) {
+    const DecimalColumn &x = initial.x, &v = initial.v;
+    const auto momentum = sum_of_products(v, initial.m);
+    NeighbourDifferences<T> between{neighbour_differences<T>(x, 1), neighbour_differences<T>(v, -1)};
+    if (initial.on_ring()) {
+      between.gaps.push_back(from_text<T>(difference(initial.length.text, difference(x.back(), x[0]))));
+      between.closing_speeds.push_back(from_text<T>(difference(v.back(), v[0])));
+    }
+    return std::make_shared<List<T>>(numbers<T>(x), numbers<T>(v), numbers<T>(initial.m), number<T>(initial.length),
+                                     momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt,
+                                     std::move(between));
+  }
+  if (initial.type == InitialType::cold) return cold_particles<T>(initial, displacement);
+  if (initial.type == InitialType::ring || initial.type == InitialType::gas) {
+    using std::sqrt;
+    const auto count = static_cast<ParticleIndex>(initial.particles);
+    const T deviation = sqrt(number<T>(initial.variance));
+    const VelocityDraw draw = initial.velocities == Velocities::gaussian
+                                  ? gaussian_velocity(initial.seed, initial.replica)
+                                  : uniform_velocity(initial.seed, initial.replica);
+    if (initial.type == InitialType::ring)
+      return std::make_shared<Ring<T>>(count, number<T>(initial.length), deviation, draw, displacement,
+                                       mass_pattern<T>(initial));
+    const Decimal &left = *scene.walls.left.position, &right = *scene.walls.right.position;
+    return std::make_shared<Gas<T>>(count, number<T>(left), from_text<T>(difference(right.text, left.text)), deviation,
+                                    draw, displacement, mass_pattern<T>(initial));
+  }
+  if (!initial.general_rows())
+    return std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<ParticleIndex>(initial.particles),
+                                                       number<T>(initial.speed), number<T>(initial.spacing),
+                                                       displacement, mass_pattern<T>(initial)));
+  const auto row = [](const scene::Row& r) {
+    return cradle::Row<T>{static_cast<ParticleIndex>(r.particles), number<T>(r.speed), T(1) / number<T>(r.density)};
+  };
+  std::optional<CentralParticle<T>> centre;
+  if (initial.centre.mass > Decimal("0"))
+    centre = CentralParticle<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
+  return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement,
+                                   mass_pattern<T>(initial));
+}
+
+template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initial& initial) {
+  if (!wall.position) return {};
+  Wall<T> made{number<T>(*wall.position),
+               number<T>(wall.speed),
+               wall.temperature ? T(1) : number<T>(wall.restitution),
+               wall.temperature ? wall.temperature->value : 0,
+               initial.seed,
+               initial.replica};
+  if (wall.shaken()) {
+    const Shape shape = wall.motion == scene::Motion::sawtooth   ? Shape::sawtooth
+                        : wall.motion == scene::Motion::parabola ? Shape::parabola
+                                                                 : Shape::sine;
+    made.motion = std::make_shared<const WallMotion<T>>(shape, number<T>(wall.amplitude), number<T>(wall.frequency),
+                                                        number<T>(wall.phase));
+  }
+  if (wall.rest_speed) made.rest_speed = number<T>(*wall.rest_speed);
+  return made;
+}
+
+// Not of balls: they enclose differences of their own numbers.
+template <Real T>
+std::optional<AtWall<T>> at_wall_in(const Scene& scene, End end, const Displacement& displacement,
+                                    const cradle::Particles<T>& particles, const std::optional<Wall<T>>& wall) {
+  if constexpr (requires(const T& x) { x.radius(); }) return {};
+  if (!wall) return {};
+  const T v = particles.velocity(end == End::left ? 0 : particles.count() - 1);
+  AtWall<T> at{T(0), end == End::left ? T(wall->speed - v) : T(v - wall->speed)};
+  if (const auto* gas = dynamic_cast<const Gas<T>*>(&particles)) {
+    at.gap = gas->gap_to(end);
+    return at;
+  }
+  const auto text = at_wall(scene, end, displacement);
+  if (!text) return {};
+  at.gap = from_text<T>(text->gap);
+  if (text->closing_speed) at.closing_speed = from_text<T>(*text->closing_speed);
+  return at;
+}
+
+}  // namespace detail
+
+/// Throws Error if this precision cannot represent the scene's particles, or if its walls do not fit beside them.
+template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
+  try {
+    const Displacement displacement = displacement_of(scene.initial);
+    auto particles = detail::particles_without_walls<T>(scene, displacement);
+    require_sums(*particles);
+    if (!scene.walls.any() && !scene.gravity.acts()) return particles;
+    auto left = detail::wall_of<T>(scene.walls.left, scene.initial),
+         right = detail::wall_of<T>(scene.walls.right, scene.initial);
+    auto at_left = detail::at_wall_in<T>(scene, End::left, displacement, *particles, left),
+         at_right = detail::at_wall_in<T>(scene, End::right, displacement, *particles, right);
+    return std::make_shared<Walled<T>>(std::move(particles), std::move(left), std::move(right),
+                                       scene.gravity.acts() ? number<T>(*scene.gravity.acceleration) : T(0),
+                                       std::move(at_left), std::move(at_right));
+  } catch (const std::invalid_argument& error) {
+    throw Error({scene.name, 0, scene.walls.any() ? "initial, walls" : "initial"}, "the particles cannot be set up",
+                error.what(), "change the scene");
+  }
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,103 @@
+#include "cradle/tools/setup/word_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cradle/precision/scalars.hpp"
+
+namespace cradle::tools {
+
+bool WordParticles::symmetric() const {
+  return left_wall == right_wall && std::equal(masses.begin(), masses.end(), masses.rbegin());
+}
+
+std::string WordParticles::text() const {
+  std::string text = fmt::format("{} particles", particles);
+  if (masses.empty()) {
+    text += " of equal masses";
+  } else {
+    text += " of masses ";
+    for (std::size_t i = 0; i < masses.size(); ++i) text += (i > 0 ? ", " : "") + masses[i].text;
+  }
+  if (left_wall && right_wall) return text + " between two walls";
+  return text + (left_wall ? " right of a wall" : right_wall ? " left of a wall" : "");
+}
+
+std::string cut_off(std::string number, unsigned digits) {
+  const auto e = number.find('e');
+  const int exponent = e == number.npos ? 0 : std::stoi(number.substr(e + 1));
+  std::string mantissa = number.substr(0, e);
+  const bool negative = mantissa.starts_with('-');
+  if (negative) mantissa.erase(0, 1);
+  auto point = static_cast<int>(std::min(mantissa.find('.'), mantissa.size()));
+  std::erase(mantissa, '.');
+  point += exponent;
+  if (point <= 0) mantissa.insert(0, static_cast<std::size_t>(1 - point), '0'), point = 1;
+  const auto whole = static_cast<std::size_t>(point);
+  mantissa.resize(whole + digits, '0');
+  return (negative ? "-" : "") + mantissa.substr(0, whole) + '.' + mantissa.substr(whole);
+}
+
+namespace {
+
+template <class T> WordStart start_in(const WordParticles& particles, const words::Word& word, const Decimal& r) {
+  constexpr long double tolerance = 1e-11L;
+  words::System<long double> quick(word, shares_in<long double>(particles));
+  quick = words::in_order_of_time(quick, from_text<long double>(r.text), tolerance, words::Begin::first);
+  const words::System<T> system(quick.word, shares_in<T>(particles));
+  const T restitution = from_text<T>(r.text);
+  const auto found = words::find(system, restitution, T(0));
+  if (found.verdict != words::Verdict::exists) return {};
+  return start_text(particles, system, restitution, words::followed(system, restitution, found.pairs),
+                    particles.digits);
+}
+
+// In a type with many more digits: eigenvalues are far apart.
+WordStart start_with(const WordParticles& particles, const words::Word& word, const Decimal& r) {
+#ifdef CRADLE_WITH_MPFR
+  const unsigned working = std::min(particles.digits + particles.digits / 4 + 40, 1070U);
+  MpfrPrecision::set_bits(MpfrPrecision::bits_for(working));
+  if (Mpfr<8>::holds(working)) return start_in<Mpfr<8>>(particles, word, r);
+  return start_in<Mpfr<56>>(particles, word, r);
+#else
+  if (particles.digits > 80)
+    throw Error({"", 0, "run.digits"}, "no words of so many digits in this build", fmt::format("{}", particles.digits),
+                "install libmpfr-dev (Debian's name) and build again");
+  return start_in<bin_float>(particles, word, r);
+#endif
+}
+
+}  // namespace
+
+void start_from_word(const Place& place, Scene& scene) {
+  const std::string text = *scene.initial.file;
+  WordParticles particles;
+  particles.left_wall = scene.walls.left.position.has_value();
+  particles.right_wall = scene.walls.right.position.has_value();
+  particles.digits = std::max(scene.run.decimal_digits(), 20U) + 10;
+  for (std::size_t i = 0; i < scene.initial.m.size(); ++i) particles.masses.emplace_back(scene.initial.m[i]);
+  // Every gap closes in a word, so its last letter says how many there are.
+  const char last = text.empty() ? 'a' : *std::max_element(text.begin(), text.end());
+  const std::size_t gaps = last >= 'b' && last <= 'f' ? static_cast<std::size_t>(last - 'a') + 1 : 2;
+  particles.particles = gaps + 1 - particles.left_wall - particles.right_wall;
+  if (!particles.masses.empty() && particles.masses.size() != particles.particles)
+    throw Error({place.source, place.line, "initial.m"}, "not one mass per particle of the word",
+                fmt::format("{} for {}", particles.masses.size(), particles.particles), "give as many");
+  try {
+    const words::Word word = words::read_word(text, gaps);
+    const WordStart start = start_with(particles, word, scene.law.restitution);
+    if (start.x.empty())
+      throw Error(place, "a word without a self-similar state at this restitution",
+                  fmt::format("{} at {}", text, scene.law.restitution.text),
+                  fmt::format("see `cradle words {} {}`", particles.particles, text));
+    scene.initial.x = {}, scene.initial.v = {};
+    for (const std::string& x : start.x) scene.initial.x.push_back(x);
+    for (const std::string& v : start.v) scene.initial.v.push_back(v);
+  } catch (const words::BadWord& bad) {
+    throw Error(place, bad.what(), bad.found, bad.advice);
+  }
+  scene.initial.file.reset();
+}
+
+}  // namespace cradle::tools

@@ -1,0 +1,37 @@
+#include "cradle/tools/theory/laws.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "cradle/tools/theory/cost.hpp"
+
+namespace cradle::tools {
+
+namespace {
+
+constexpr LawTheory laws[] = {
+    {.type = LawType::inelastic,
+     .predict = predict_inelastic,
+     .cost_of_rows = bouncing_rows,
+     .misprints = "(6), first line, lacks a factor u0; (7) must carry a plus sign."},
+    {.type = LawType::wet,
+     .predict = predict_wet,
+     .cost_of_rows = wet_rows,
+     .misprints =
+         "particles stick below sqrt(2 E_loss/mu), not sqrt(2 E_loss)/mu;\n"
+         "  before (13) the speed lost is E_loss/(m u0), not E_loss/(m u0^2);\n"
+         "  before (14) the momentum lacks a factor m;\n"
+         "  (15): F_+ is 0 for x >= L and the force of a whole row, about n0 E_loss, for x <= -L; F_- mirrors it;\n"
+         "  (17) is right for M x'', not for d(M x')/dt."},
+    {.type = LawType::sticky, .predict = predict_sticky, .cost_of_rows = sticky_rows, .misprints = ""},
+};
+
+}  // namespace
+
+const LawTheory& law_theory(const Scene& scene) {
+  static constexpr LawTheory none{};
+  const auto* const row = std::ranges::find(laws, scene.law.type, &LawTheory::type);
+  return row == std::end(laws) ? none : *row;
+}
+
+}  // namespace cradle::tools

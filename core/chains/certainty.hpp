@@ -11,58 +11,103 @@
 #include <utility>
 
 #include "cradle/core/chains/watched_gap.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/wall.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 
-// Gaps: TimedGaps of WatchedGap.
+// How a gap moves at a time: since its local time, its size, its closing speed and the rate at which this grows.
+template <Real T> struct GapMotion { T since, gap, closing, acceleration{0}; };
+
+// Gaps: TimedGaps of WatchedGap. A Motion gives the GapMotion of a slot at a time, motion(s, time); `motion.curved`:
+// some closing speeds change between collisions.
 template <Real T, class Gaps> class Certainty {
   using N = DeviationNumber<T>;
   using Off = Deviation<N>;
 
  public:
-  // Computes the deviations after the next collision, which is at the gap s between p and n. Called before the gaps
-  // change.
-  template <class Masses>
-  void collision(Gaps& gaps, Slot p, Slot s, Slot n, ParticleIndex particle, const T& time, const Outcome<T>& outcome,
-                 const Masses& masses, bool exact_sums) {
-    const N w = number(gaps[s].closing);
+  // Which neighbours a collision moves: one that comes to rest on others does not move these.
+  struct Moved {
+    bool left = true, right = true;
+  };
+
+  // Computes the deviations after the next collision, which is at the gap s between p and n and closes at the speed w.
+  // Called before the gaps change.
+  template <class Motion, class Masses>
+  void collision(Gaps& gaps, const Motion& motion, Slot p, Slot s, Slot n, ParticleIndex particle, const T& time,
+                 const T& speed, const Outcome<T>& outcome, const Masses& masses, bool exact_sums,
+                 const Moved& moved = {}) {
+    const N w = number(speed);
     const N slope = std::exchange(slope_, N(0));
     if (gaps.account().uncertain > 0) return;
-    const N since = number(gaps.flown(s, time));
+    const GapMotion<T> own_motion = motion(s, time);
+    const N since = number(own_motion.since), acceleration = number(own_motion.acceleration);
     Off here = gaps[s].off.after(since);
     for (N& off : here.gap) off += w * (magnitude(number(time)) + magnitude(since)) * roundings_.next();
-    if (exceeds(Off::largest(here.closing), w) || doubtful(gaps, p, s, time, here, w) ||
-        doubtful(gaps, n, s, time, here, w))
+    if constexpr (Motion::curved) meet(here, own_motion, w);
+    if (exceeds(Off::largest(here.closing), w) || doubtful(gaps, motion, p, s, time, here, w) ||
+        doubtful(gaps, motion, n, s, time, here, w))
       return doubt(gaps, particle, time, Off::largest(here.gap));
-    bring(gaps, p, time);
-    if (n != p) bring(gaps, n, time);
+    if constexpr (Motion::curved)
+      if (!is_positive(w)) {  // it touches the wall, at rest, and nothing changes
+        gaps[s].off = {};
+        return;
+      }
+    bring(gaps, motion, p, time);
+    if (n != p) bring(gaps, motion, n, time);
     const N back = number(outcome.closing) / w, own = slope == N(0) ? back : slope;
     const N change = (N(1) - own) / (N(1) - back);  // of the impulse, relative to that of a constant restitution
     const auto hand = [&](Slot to, const N& share) {
       gaps[to].off.add(seen_from(gaps, to, time, here), share, share * change);
     };
-    hand(p, number(outcome.to_left) / w);
-    hand(n, number(outcome.to_right) / w);
+    if (moved.left) hand(p, number(outcome.to_left) / w);
+    if (moved.right) hand(n, number(outcome.to_right) / w);
     gaps[s].off = {};
     gaps[s].off.add(here, back, own);
-    for (std::size_t k = 0; k < Off::samples; ++k) last_[k] = here.gap[k] / w;
+    for (std::size_t k = 0; k < Off::samples; ++k) {
+      last_[k] = here.gap[k] / w;
+      if constexpr (Motion::curved) gaps[s].off.closing[k] -= acceleration * last_[k];
+    }
     round(gaps, p, s, n, outcome, masses);
     if (!exact_sums)
       for (const Slot beside : {p, n})
         for (N& off : gaps[beside].off.closing)
-          off += (magnitude(number(gaps[beside].closing)) + w) * roundings_.next();
+          off += (magnitude(number(motion(beside, time).closing)) + w) * roundings_.next();
     if (is_negative(since)) gaps[s].off = gaps[s].off.after(-since);
+    if constexpr (Motion::curved)
+      if (outcome.closing == T(0) && is_positive(acceleration)) gaps[s].off = {};  // it rests on the wall
   }
 
-  // Checks a threshold of the law in the next collision, at the gap s.
-  void threshold(Gaps& gaps, Slot s, ParticleIndex particle, const T& time, const T& speed) const {
+  // Checks a threshold of the law in the next collision, at the gap s, which closes at the speed w.
+  template <class Motion>
+  void threshold(Gaps& gaps, const Motion& motion, Slot s, ParticleIndex particle, const T& time, const T& w,
+                 const T& speed) const {
     if (gaps.account().uncertain > 0 || !is_positive(speed)) return;
-    const Off here = gaps[s].off.after(number(gaps.flown(s, time)));
-    if (exceeds(Off::largest(here.closing), number(T(magnitude(T(gaps[s].closing - speed))))))
+    const GapMotion<T> own = motion(s, time);
+    Off here = gaps[s].off.after(number(own.since));
+    if constexpr (Motion::curved) meet(here, own, number(w));
+    if (exceeds(Off::largest(here.closing), number(T(magnitude(T(w - speed))))))
       doubt(gaps, particle, time, Off::largest(here.gap));
+  }
+
+  // Checks whether a wall is met, at a gap that has just changed: `meets` gives the time until then of a gap that is so
+  // much smaller and closes so much faster, or nothing.
+  template <class Meets>
+  void meeting(Gaps& gaps, Slot s, ParticleIndex particle, const T& time, const Meets& meets) const {
+    if (gaps.account().uncertain > 0) return;
+    const Off& off = gaps[s].off;
+    const T unit = T(Off::certain_by) * T(std::numeric_limits<T>::epsilon());
+    const T gap = T(unit * scalar(Off::largest(off.gap))), closing = T(unit * scalar(Off::largest(off.closing)));
+    if (gap == T(0) && closing == T(0)) return;
+    const auto met = meets(T(0), T(0)), before = meets(gap, closing), after = meets(T(-gap), T(-closing));
+    const auto apart = [&](const auto& other) {
+      if (other.has_value() != met.has_value()) return true;
+      if (!met) return false;
+      const T later = magnitude(T(other->in - met->in)), allowed = T(gap + closing * met->in);
+      return T(T(4) * allowed) < later * met->speed;
+    };
+    if (apart(before) || apart(after)) doubt(gaps, particle, time, Off::largest(off.gap));
   }
 
   // dw'/dw at the next collision, for a law whose restitution depends on the speed.
@@ -73,16 +118,26 @@ template <Real T, class Gaps> class Certainty {
   }
 
   // Counts the deviations of all held gaps from a new time (watched_gap.hpp).
-  void begin_anew(Gaps& gaps, Slot first, Slot last) {
-    for (Slot s = first; s <= last; ++s) gaps[s].off.shift(last_, number(gaps[s].closing));
+  template <class Motion> void begin_anew(Gaps& gaps, const Motion& motion, Slot first, Slot last) {
+    for (Slot s = first; s <= last; ++s) {
+      N acceleration(0);
+      if constexpr (Motion::curved) acceleration = number(motion.at_local_time(s).acceleration);
+      gaps[s].off.shift(last_, number(gaps[s].closing), acceleration);
+    }
     for (std::size_t k = 0; k < Off::samples; ++k) delay_[k] += std::exchange(last_[k], N(0));
   }
 
+  // Advances the deviation of a gap to a time at which nothing else happens to it.
+  template <class Motion> void renew(Gaps& gaps, const Motion& motion, Slot s, const T& time) {
+    if (gaps.account().uncertain == 0) bring(gaps, motion, s, time);
+  }
+
   // Whether a collision at the gap s may come before or after this time, which is the end of the run.
-  bool open(const Gaps& gaps, Slot s, const T& time) const {
-    Off off = gaps[s].off.after(number(gaps.flown(s, time)));
-    off.shift(delay_, -number(gaps[s].closing));
-    return exceeds(Off::largest(off.gap), number(gaps.gap_at(s, gaps[s].closing, time)));
+  template <class Motion> bool open(const Gaps& gaps, const Motion& motion, Slot s, const T& time) const {
+    const GapMotion<T> now = motion(s, time);
+    Off off = gaps[s].off.after(number(now.since));
+    off.shift(delay_, -number(now.closing), -number(now.acceleration));
+    return exceeds(Off::largest(off.gap), number(now.gap));
   }
 
   static auto state(auto& self) {
@@ -100,29 +155,47 @@ template <Real T, class Gaps> class Certainty {
   static bool exceeds(const N& off, const N& what) {
     return N(Off::certain_by) * number(std::numeric_limits<T>::epsilon()) * off > what;
   }
+  // The deviation of the speed at which a gap meets a wall, instead of that at a given time.
+  static void meet(Off& here, const GapMotion<T>& motion, const N& w) {
+    if (motion.acceleration == T(0) || !is_positive(w)) return;
+    for (std::size_t k = 0; k < Off::samples; ++k) here.closing[k] += number(motion.acceleration) * here.gap[k] / w;
+  }
   // Whether the gap beside the collision at s may have closed earlier.
-  static bool doubtful(const Gaps& gaps, Slot beside, Slot s, const T& time, const Off& here, const N& w) {
-    const T since = gaps.flown(beside, time);
-    if (beside == s || is_negative(since)) return false;  // late collisions commute with earlier ones
-    const auto& cell = gaps[beside];
-    const T gap = gaps.gap_at(beside, cell.closing, time);
-    const Off there = cell.off.after(number(since));
-    const N ratio = number(cell.closing) / w;
+  template <class Motion>
+  static bool doubtful(const Gaps& gaps, const Motion& motion, Slot beside, Slot s, const T& time, const Off& here,
+                       const N& w) {
+    const GapMotion<T> now = motion(beside, time);
+    if (beside == s || is_negative(now.since)) return false;  // late collisions commute with earlier ones
+    if constexpr (Motion::curved)                             // in a pile, or has opened just now
+      if (now.gap == T(0) && !is_positive(now.closing)) return false;
+    const Off there = gaps[beside].off.after(number(now.since));
     N off(0);
-    for (std::size_t k = 0; k < Off::samples; ++k)
-      off = std::max<N>(off, magnitude(N(there.gap[k] - ratio * here.gap[k])));
-    return exceeds(off, number(gap));
+    if (is_positive(w)) {
+      const N ratio = number(now.closing) / w;
+      for (std::size_t k = 0; k < Off::samples; ++k)
+        off = std::max<N>(off, magnitude(N(there.gap[k] - ratio * here.gap[k])));
+    }
+    return exceeds(off, number(now.gap));
   }
   static void doubt(Gaps& gaps, ParticleIndex particle, const T& time, const N& off) {
     gaps.doubt({gaps.clock().time(time), particle, T(scalar(off) * T(std::numeric_limits<T>::epsilon()))});
   }
   // Advances the deviation to the time of a neighbouring collision; g - w t is rounded.
-  void bring(Gaps& gaps, Slot s, const T& time) {
-    const N since = number(gaps.flown(s, time));
+  template <class Motion> void bring(Gaps& gaps, const Motion& motion, Slot s, const T& time) {
+    const GapMotion<T> now = motion(s, time);
+    const N since = number(now.since);
     auto& cell = gaps[s];
     if (is_negative(since)) return;
     cell.off = cell.off.after(since);
-    const N size = magnitude(number(cell.gap)) + magnitude(N(number(cell.closing) * since));
+    const N own_way = magnitude(N(number(cell.closing) * since));
+    if constexpr (Motion::curved)
+      if (const N gained = magnitude(N(number(T(now.closing - cell.closing)))); gained > N(0)) {
+        const N fastest = magnitude(number(cell.closing)) + gained;
+        for (N& off : cell.off.gap) off += (magnitude(number(cell.gap)) + fastest * since) * roundings_.next();
+        for (N& off : cell.off.closing) off += fastest * roundings_.next();
+        return;
+      }
+    const N size = magnitude(number(cell.gap)) + own_way;
     for (N& off : cell.off.gap) off += size * roundings_.next();
   }
   // The deviation of a collision for a neighbouring gap, at that gap's local time if it is later.

@@ -21,16 +21,16 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/collision_memory.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/gap_line.hpp"
 #include "cradle/core/chains/held_range.hpp"
+#include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/relative_motion.hpp"
-#include "cradle/core/base/state.hpp"
-#include "cradle/core/laws/one_of.hpp"
 
 namespace cradle {
 
@@ -118,7 +118,8 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
 
   // Moves the origin of time to the given local time and returns its new local time. Gaps do not change.
   T move_origin(const T& local) {
-    if constexpr (Line::watched) line_.certainty.begin_anew(line_.gaps, first(), last());
+    if constexpr (Line::watched)
+      if (!shaken()) line_.certainty.begin_anew(line_.gaps, line_.motion(field_), first(), last());
     line_.gaps.move_origin(local, [this](auto&& each) {
       for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
     });
@@ -157,7 +158,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // before the last collision.
   std::optional<ParticleIndex> uncertain_at(const T& time) const requires(Line::watched) {
     for (Slot s = first(); s <= last(); ++s)
-      if (line_.certainty.open(line_.gaps, s, time)) return particle(s);
+      if (line_.certainty.open(line_.gaps, line_.motion(field_), s, time)) return particle(s);
     return {};
   }
   // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.
@@ -294,7 +295,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   }
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time, const T& w) {
     if constexpr (Line::watched && requires { law.cutoff(); })
-      line_.certainty.threshold(line_.gaps, s, particle(s), time, law.cutoff());
+      line_.certainty.threshold(line_.gaps, line_.motion(field_), s, particle(s), time, w, law.cutoff());
     if constexpr (LawWithMemory<Law, T>)
       if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots()))
         return law.elastic(w, line_.masses.of_pair(s));
@@ -323,6 +324,13 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // Whether the next particle at the wall or the pile there comes to rest on it.
   bool stays(Slot s, const T& time) const {
     return field_.holds(particle(s), closing_when_due(s), clock().since_start(time));
+  }
+
+  bool shaken() const {
+    if constexpr (falls)
+      return field_.shaken();
+    else
+      return false;
   }
 
   // What a wall has given, until a local time, to a particle that rests on it, at this gap or with this gap below it in

@@ -27,6 +27,13 @@ inline Outcome<T> GapChain<T, Masses, Field>::outcome_at_wall(const Law& law, Sl
     const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
     const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
     const Pair<T> elapsed = clock().since_start(time);
+    if constexpr (Line::watched) {
+      const auto at = [&](const T& speed) {
+        line_.certainty.threshold(line_.gaps, line_.motion(field_), s, particle(s), time, w, speed);
+      };
+      at(field_.rest_speed(particle(s)));
+      if constexpr (requires { law.cutoff(); }) at(law.cutoff());
+    }
     const bool stays = field_.holds(particle(s), w, elapsed), elastic = !stays && (!rested || below_cutoff(law, w));
     const T restitution = stays ? T(0) : elastic ? T(1) : walls_.wall(wall).restitution;
     Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));

@@ -9,12 +9,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "cradle/core/chains/certainty.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/chains/masses.hpp"
 #include "cradle/core/chains/timed_gaps.hpp"
 #include "cradle/core/chains/watched_gap.hpp"
-#include "cradle/core/chains/certainty.hpp"
 
 namespace cradle {
 
@@ -93,7 +93,9 @@ template <Real T, class MassesOf> class GapLine {
                                                    Notice notice) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
-    if constexpr (watched) certainty.collision(gaps, p, s, n, particle(s), time, outcome, masses.of_pair(s), exact_);
+    if constexpr (watched)
+      certainty.collision(gaps, Straight{gaps}, p, s, n, particle(s), time, closing(s), outcome, masses.of_pair(s),
+                          exact_);
     const auto handed = this->handed(s, outcome);
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;
@@ -104,14 +106,52 @@ template <Real T, class MassesOf> class GapLine {
     return {outcome, gaps.predict(p, closing(p)), EventQueue::never, gaps.predict(n, closing(n)), notice, p, n};
   }
 
+  // How gaps move (certainty.hpp): uniformly.
+  struct Straight {
+    static constexpr bool curved = false;
+    const Gaps& gaps;
+    [[gnu::always_inline]] GapMotion<T> operator()(Slot s, const T& time) const {
+      const T since = gaps.flown(s, time);
+      return {since, T(gaps[s].gap - gaps[s].closing * since), gaps[s].closing};
+    }
+  };
+  // The same with those that are pulled.
+  template <class Field> struct Curved {
+    static constexpr bool curved = true;
+    const GapLine& line;
+    const Field& field;
+    GapMotion<T> operator()(Slot s, const T& time) const {
+      if (!field.pulls(line.particle(s))) return Straight{line.gaps}(s, time);
+      const WallApproach<T> open = line.approach(field, s);
+      const T since = line.gaps.flown(s, time);
+      const Pair<T> now = line.gaps.clock().since_start(time);
+      return {since, open.gap_after(since, now), open.closing_after(since, now), open.acceleration_after(since, now)};
+    }
+    GapMotion<T> at_local_time(Slot s) const {
+      const auto& own = line.gaps[s];
+      if (!field.pulls(line.particle(s))) return {T(0), own.gap, own.closing};
+      return {T(0), own.gap, own.closing, line.approach(field, s).acceleration_after(T(0), line.gaps.since_start(s))};
+    }
+  };
+  template <class Field> auto motion(const Field& field) const {
+    if constexpr (Field::acts)
+      return Curved<Field>{*this, field};
+    else
+      return Straight{gaps};
+  }
+
   // ---- under gravity, or to shaken walls: the gaps to walls, and that above a pile
   template <class Field> WallApproach<T> approach(const Field& field, Slot s) const {
+    return approach(field, s, gaps[s].gap, closing(s));
+  }
+  // If it had this size and this closing speed.
+  template <class Field> WallApproach<T> approach(const Field& field, Slot s, const T& gap, const T& closing) const {
     if (field.above_pile(particle(s))) {
       const std::optional<T> free = pile_let_go(field, s);
-      return field.approach_pile(gaps[s].gap, closing(s), gaps.since_start(s),
+      return field.approach_pile(gap, closing, gaps.since_start(s),
                                  free ? std::optional<T>(gaps.flown(s, *free)) : std::nullopt);
     }
-    return field.approach(particle(s), gaps[s].gap, closing(s), gaps.since_start(s));
+    return field.approach(particle(s), gap, closing, gaps.since_start(s));
   }
   // The local time at which the wall lets go of a pile, which has the gap s above it or in it; nothing: never.
   template <class Field> std::optional<T> pile_let_go(const Field& field, Slot s) const {
@@ -145,12 +185,18 @@ template <Real T, class MassesOf> class GapLine {
   // after it; one that comes to rest on others does not move them. `renew` is called while the pile is as it was.
   template <class Field, class Renew>
   CollisionResult<T> strike(Field& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
-                            Notice notice, ParticleIndex resting, const Renew& renew) requires(!watched) {
+                            Notice notice, ParticleIndex resting, const Renew& renew) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
     const bool at_wall = field.at_wall(particle(s)), lands = resting > field.resting() && field.resting() > 0;
-    if (!lands || field.pile_end() == End::right) notice |= kick(field, p, outcome.to_left, since, time);
-    if (!lands || field.pile_end() == End::left) notice |= kick(field, n, outcome.to_right, since, time);
+    const bool to_left = !lands || field.pile_end() == End::right, to_right = !lands || field.pile_end() == End::left;
+    if constexpr (watched) {
+      const T w = field.pulls(particle(s)) ? approach(field, s).meeting_speed().value_or(closing(s)) : closing(s);
+      certainty.collision(gaps, motion(field), p, s, n, particle(s), time, w, outcome, masses.of_pair(s), exact_,
+                          {to_left, to_right});
+    }
+    if (to_left) notice |= kick(field, p, outcome.to_left, since, time);
+    if (to_right) notice |= kick(field, n, outcome.to_right, since, time);
     notice |= renew();
     gaps.close(s, outcome.closing, since, time);
     gaps[s].closing = outcome.closing;
@@ -162,13 +208,18 @@ template <Real T, class MassesOf> class GapLine {
       gaps[s].closing = open.closing_after(T(-since), gaps.since_start(s));
     }
     const auto predict = [&](Slot beside) {
-      return field.pulls(particle(beside)) ? foresee(field, beside) : gaps.predict(beside, closing(beside));
+      if (!field.pulls(particle(beside))) return gaps.predict(beside, closing(beside));
+      if constexpr (watched) watch_meeting(field, beside, time);
+      return foresee(field, beside);
     };
+    if constexpr (watched)
+      if (at_wall) watch_meeting(field, s, time);
     return {outcome, predict(p), at_wall ? foresee(field, s) : EventQueue::never, predict(n), notice, p, n};
   }
 
   // Brings a gap that is pulled to a time at which nothing happens to it.
-  template <class Field> Notice renew(const Field& field, Slot s, const T& time) requires(!watched) {
+  template <class Field> Notice renew(const Field& field, Slot s, const T& time) {
+    if constexpr (watched) certainty.renew(gaps, motion(field), s, time);
     return kick(field, s, T(0), T(0), time);
   }
 
@@ -238,9 +289,13 @@ template <Real T, class MassesOf> class GapLine {
   }
 
   // The same under gravity.
-  template <class Field>
-  Notice kick(const Field& field, Slot s, const T& gain, const T& struck, const T& time) requires(!watched) {
-    if (!field.pulls(particle(s))) return kick(s, gain, struck, time);
+  template <class Field> Notice kick(const Field& field, Slot s, const T& gain, const T& struck, const T& time) {
+    if (!field.pulls(particle(s))) {
+      if constexpr (watched)
+        return kick(s, Pair<T>{gain, T(0)}, struck, time);
+      else
+        return kick(s, gain, struck, time);
+    }
     const T flown = gaps.flown(s, time);
     const WallApproach<T> open = approach(field, s);
     const Pair<T> at = gaps.clock().since_start(time);
@@ -252,6 +307,19 @@ template <Real T, class MassesOf> class GapLine {
     gaps[s].closing = now + gain;
     if (gaps.below_floor(s)) return gaps.note(s, T(mean + gain), gain, since, struck, particle(s), time);
     return Notice::none;
+  }
+
+  // Whether rounding decides that a pulled gap meets its wall, or at which of two times. A floor at rest is always met.
+  template <class Field> void watch_meeting(const Field& field, Slot s, const T& time) {
+    if (!field.may_miss(particle(s))) return;
+    struct Meeting {
+      T in, speed;
+    };
+    certainty.meeting(gaps, s, particle(s), time, [&](const T& less, const T& faster) -> std::optional<Meeting> {
+      const WallApproach<T> open = approach(field, s, T(gaps[s].gap - less), T(closing(s) + faster));
+      const std::optional<T> in = open.meeting_in();
+      return in ? std::optional<Meeting>({*in, open.meeting_speed().value_or(T(0))}) : std::nullopt;
+    });
   }
 
   bool exact_;

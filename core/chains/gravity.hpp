@@ -33,6 +33,23 @@ template <Real T> class Gravity {
   bool pulls(ParticleIndex gap) const { return at_wall(gap) || gap == above_pile_; }
   bool at_wall(ParticleIndex gap) const { return gap == left_.gap || gap == right_.gap; }
 
+  // Whether a wall is shaken, and whether a particle may miss the wall at a gap, or one of its jumps.
+  bool shaken() const { return left_.wall.motion != nullptr || right_.wall.motion != nullptr; }
+  bool may_miss(ParticleIndex gap) const {
+    return shaken() ||
+           !is_positive(pull(gap == above_pile_ ? pile_end_
+                             : gap == left_.gap ? End::left
+                                                : End::right)) ||
+           gap == other_wall_;
+  }
+  // The speed below which particles stay at the wall of a gap, or on the pile there; 0 if none do.
+  T rest_speed(ParticleIndex gap) const {
+    const AtEnd& at = gap == above_pile_ ? (pile_end_ == End::left ? left_ : right_)
+                      : gap == left_.gap ? left_
+                                         : right_;
+    return at.wall.holds ? at.rest_speed : T(0);
+  }
+
   // Whether several particles can rest, at which end, and how many do; a gap there, counted from the wall.
   bool piles() const { return piles_; }
   End pile_end() const { return pile_end_; }

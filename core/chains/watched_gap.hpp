@@ -24,6 +24,14 @@
 // whenever the origin of time moves, deviations are counted from the time of the last collision, which is then exact by
 // definition; the sum of these delays is kept.
 //
+// A gap to a wall under gravity, or to a shaken wall, closes at a speed that grows at a rate a
+// (laws/wall_approach.hpp). With w the speed at which it meets the wall, D_s/w is how much later the exact system has
+// this collision, so
+//
+//   collision at the wall   dw = d_s + a D_s/w,   d_s -> (dw'/dw) dw - a D_s/w,   d_n += (J/m_r w) dw, ...
+//
+// and a delay tau adds a tau to d. A shaken wall moves with the time itself: where there is one, no delay is taken out.
+//
 // A collision is certain if `certain_by` times the larger sample changes neither that it happens (its closing speed
 // stays positive) nor its place in the sequence: the gaps g beside it stay positive at its time, which is itself off by
 // D_s/w, so |D_g - (w_g/w) D_s| < g. At the end of a run every gap must be positive with the same certainty. Then the
@@ -38,10 +46,10 @@
 #include <cstdint>
 #include <tuple>
 
+#include "cradle/core/base/real.hpp"
 #include "cradle/core/chains/timed_gap.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall.hpp"
-#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 
@@ -78,9 +86,13 @@ template <Real N> struct Deviation {
       closing[k] += share_of_speed * other.closing[k];
     }
   }
-  // Counts it from a later time: every gap changes by the distance that it closes in the meantime.
-  void shift(const Samples& later, const N& closing_speed) {
-    for (std::size_t k = 0; k < samples; ++k) gap[k] -= closing_speed * later[k];
+  // Counts it from a later time: every gap changes by the distance that it closes in the meantime, and its closing
+  // speed by what it gains.
+  void shift(const Samples& later, const N& closing_speed, const N& acceleration) {
+    for (std::size_t k = 0; k < samples; ++k) {
+      gap[k] -= closing_speed * later[k];
+      closing[k] += acceleration * later[k];
+    }
   }
   static N largest(const Samples& of) { return std::max<N>(magnitude(of[0]), magnitude(of[1])); }
   static auto state(auto& self) { return std::tie(self.gap[0], self.gap[1], self.closing[0], self.closing[1]); }

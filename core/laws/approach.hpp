@@ -59,6 +59,7 @@ template <Real T> class Approach {
   T closing_after(const T& time) const { return closing_ + pull_ * time; }
   T mean_closing(const T& time) const { return closing_ + pull_ * time / T(2); }
   T gap_after(const T& time) const { return gap_ - mean_closing(time) * time; }
+  const T& pull() const { return pull_; }
 
   // The speed at which the particle meets the wall; nothing if it does not. A gap that rounding has left below zero is
   // met in the past if it closes, and at a floor also where it will have the same size again.

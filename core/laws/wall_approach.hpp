@@ -67,6 +67,12 @@ template <Real T> class WallApproach {
     if (!shaken_ && !rests_ && !freed_) return straight_.mean_closing(time);
     return time == T(0) ? closing_after(time, now) : T((straight_.gap_after(T(0)) - gap_after(time, now)) / time);
   }
+  // The rate at which the closing speed grows then.
+  T acceleration_after(const T& time, const Pair<T>& now) const {
+    if (freed_ && freed_->at < time) return freed_->approach.pull();
+    if (rests(time, now)) return T(0);
+    return motion_ != nullptr ? T(straight_.pull() + motion_->acceleration(motion_->at(now).rest)) : straight_.pull();
+  }
   // The next collision, as in approach.hpp.
   std::optional<T> meeting_in() const {
     std::optional<T> in = held_meeting_in();

@@ -35,6 +35,9 @@ struct System {
   bool left_wall = false, right_wall = false;
   double wall_restitution = 1, restitution = 1, cutoff = 0, until = 1;
   Bounce law = Bounce::elastic;
+  double acceleration = 0, rest_speed = 0;  // of the wall at which particles may rest: the left one
+  std::optional<Shape> shaken;              // so is the left wall
+  double amplitude = 0, frequency = 1;
 };
 
 class Drawing {
@@ -63,6 +66,19 @@ class Drawing {
     s.until = std::pow(10., from_to(-1, longest));
     return s;
   }
+  // Particles that fall on a wall, from one, or between two, which may be shaken; some may come to rest.
+  System falling(double decades, double longest, bool shaken) {
+    System s = (*this)(decades, longest);
+    s.circumference = 0;
+    s.acceleration = below(8) == 0 ? 0 : from_to(0.1, 2) * (below(3) == 0 ? 1 : -1);
+    s.left_wall = shaken || s.acceleration < 0 || below(2) == 0, s.right_wall = s.acceleration >= 0 || below(2) == 0;
+    if (s.law == Bounce::elastic && below(2) == 0) s.law = Bounce::cutoff, s.restitution = from_to(0.3, 1);
+    if (below(3) == 0 && s.left_wall && (shaken || s.acceleration < 0)) s.rest_speed = std::pow(10., from_to(-4, -1));
+    if (!shaken) return s;
+    s.shaken = static_cast<Shape>(below(3));
+    s.amplitude = from_to(0.01, 0.9), s.frequency = from_to(0.5, 10);
+    return s;
+  }
 
  private:
   std::mt19937_64 bits_;
@@ -80,7 +96,12 @@ template <class T> std::shared_ptr<const Particles<T>> particles_of(const System
     if (!there) return {};
     return Wall<T>{exactly<T>(position), T(0), exactly<T>(s.wall_restitution)};
   };
-  return std::make_shared<Walled<T>>(list, wall(s.left_wall, -1), wall(s.right_wall, s.x.back() + 1));
+  auto left = wall(s.left_wall, -1);
+  if (left) left->rest_speed = exactly<T>(s.rest_speed);
+  if (left && s.shaken)
+    left->motion =
+        std::make_shared<WallMotion<T>>(*s.shaken, exactly<T>(s.amplitude), exactly<T>(s.frequency), exactly<T>(0.));
+  return std::make_shared<Walled<T>>(list, left, wall(s.right_wall, s.x.back() + 1), exactly<T>(s.acceleration));
 }
 
 // f(law) with the law of the system.
@@ -151,6 +172,7 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
 }
 
 template <class T> using Watching = GapChain<T, WatchedMasses<T>>;
+template <class T> using Falling = GapChain<T, WatchedMasses<T>, Gravity<T>>;
 template <class T> using Plain = GapChain<T, IndividualMasses<T>>;
 
 template <class T> int expect_right_or_warned(std::uint64_t seed, int systems, double decades, double longest) {
@@ -188,6 +210,46 @@ TEST(UnequalMasses, AreRightOrWarnedOfInWiderTypes) {
   expect_right_or_warned<long double>(3, 60, 8, 1.5);
   expect_right_or_warned<double_double>(4, 60, 8, 2);
 }
+#ifdef CRADLE_WITH_MPFR
+// The same under gravity and at shaken walls: how many are wrong and not warned of, of how many.
+template <class T>
+void expect_falls_right_or_warned(std::uint64_t seed, int systems, double decades, double longest, bool shaken) {
+  MpfrPrecision::set_bits(MpfrPrecision::bits_for(100));
+  Drawing draw(seed);
+  int compared = 0, warned = 0;
+  for (int k = 0; k < systems; ++k) {
+    const System s = draw.falling(decades, longest, shaken);
+    if (far_apart(*particles_of<double>(s))) continue;
+    const Made right = make<Falling<Mpfr<8>>>(s, 3000), made = make<Falling<T>>(s, 3000);
+    if (right.status != Status::reached || right.warned || made.status != Status::reached) continue;
+    ++compared;
+    warned += made.warned;
+    if (!made.warned) {
+      EXPECT_EQ(made.collisions, right.collisions) << "seed " << seed << ", system " << k;
+    }
+  }
+  EXPECT_GT(compared, systems / 3);
+  std::printf("%d systems, seed %d: %d compared, %d of them warned of\n", systems, static_cast<int>(seed), compared,
+              warned);
+}
+TEST(UnequalMasses, FallRightOrWarnedOf) {
+  expect_falls_right_or_warned<double>(21, 100, 1.5, 2, false);
+  expect_falls_right_or_warned<double_double>(22, 30, 1.5, 2, false);
+  expect_falls_right_or_warned<double>(27, 100, 0, 2.5, false);  // identical masses
+}
+TEST(UnequalMasses, AtShakenWallsAreRightOrWarnedOf) {
+  expect_falls_right_or_warned<double>(23, 40, 1.5, 2, true);
+  expect_falls_right_or_warned<double>(28, 30, 0, 2, true);
+}
+TEST(SlowUnequalMasses, FallRightOrWarnedOf) {
+  expect_falls_right_or_warned<double>(24, 1000, 1.5, 2.3, false);
+  expect_falls_right_or_warned<double>(25, 300, 1.5, 2.3, true);
+  expect_falls_right_or_warned<long double>(26, 200, 1.5, 2.3, false);
+  expect_falls_right_or_warned<double>(29, 500, 0, 2.5, true);
+  expect_falls_right_or_warned<double>(30, 500, 0, 3, false);
+}
+#endif
+
 // Down to intervals of 1e-1045 and back, which ranges wider than double's have. Exact: 16753 collisions (140 digits).
 TEST(UnequalMasses, AreWarnedOfBelowTheRangeOfDouble) {
   Drawing draw(9003);

@@ -48,7 +48,7 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
   };
   if (scene.run.coordinates == Coordinates::absolute)
     return in(std::type_identity<PositionChain<T, Gravity<T>>>{}, law);
-  // Closing speeds alone lose the digits of heavy particles' velocities, and nothing watches over them under gravity.
+  // Closing speeds alone lose the digits of heavy particles' velocities, and sums are not exact under gravity.
   if (far_apart(*particles) && sums_can_be_exact<T>)
     throw Error({scene.name, 0, scene.gravity.acts() ? "gravity.acceleration" : "walls"},
                 "masses too far apart for gaps under gravity or between shaken walls",
@@ -56,6 +56,7 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
                             to_double(particles->greatest_mass())),
                 "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
   // As without gravity (engine_of): the most used law, identical masses; the bits are the same.
+  if (to_be_watched(*particles)) return in(std::type_identity<GapChain<T, WatchedMasses<T>, Gravity<T>>>{}, law);
   if (const auto* inelastic = law.template as<Inelastic<T>>(); inelastic != nullptr && particles->identical_masses())
     return in(std::type_identity<GapChain<T, IdenticalMasses<T>, Gravity<T>>>{}, *inelastic);
   return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{}, law);

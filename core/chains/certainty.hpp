@@ -140,6 +140,15 @@ template <Real T, class Gaps> class Certainty {
     return exceeds(Off::largest(off.gap), number(now.gap));
   }
 
+  // A sample of how far the closing speed of a gap is off at a time, in which nothing else happens.
+  template <class Motion>
+  T closing_off(const Gaps& gaps, const Motion& motion, Slot s, const T& time, std::size_t sample) const {
+    const GapMotion<T> now = motion(s, time);
+    Off off = gaps[s].off.after(number(now.since));
+    off.shift(delay_, -number(now.closing), -number(now.acceleration));
+    return T(std::numeric_limits<T>::epsilon()) * scalar(off.closing[sample]);
+  }
+
   static auto state(auto& self) {
     return std::tie(self.roundings_, self.last_[0], self.last_[1], self.delay_[0], self.delay_[1]);
   }

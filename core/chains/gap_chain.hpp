@@ -161,6 +161,8 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
       if (line_.certainty.open(line_.gaps, line_.motion(field_), s, time)) return particle(s);
     return {};
   }
+  // About how far rounding has moved the kinetic energy by this time, from the larger sample.
+  T energy_deviation(const T& time) const requires(Line::watched);
   // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.
   template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
     if (walls_.beside(particle(s)))
@@ -182,7 +184,9 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // (gap_chain_walls.hpp)
   Walls<T> walls_at(const T& time) const requires(falls);
   // Of all particles of the scene; reads all held gaps. (gap_chain_configuration.hpp)
-  T kinetic_energy(const T& time) const;
+  T kinetic_energy(const T& time) const {
+    return kinetic_energy(time, [&](Slot s) { return closing_at(s, time); });
+  }
 
   static auto state(auto& self) {
     const auto all = std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_);
@@ -233,6 +237,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     centre_ = particles_->centre_of_mass();
   }
 
+  template <class Closing> T kinetic_energy(const T& time, const Closing& closing_at) const;
   Configuration<T> line_configuration(const T& time) const;
   Configuration<T> ring_configuration(const T& time) const;
   Flight<T> flight(const Anchor<T>& anchor, const T& time) const {

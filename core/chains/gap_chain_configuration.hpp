@@ -21,7 +21,9 @@ template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::front
 
 // Particles that are not held move like the outermost held one. If there is a wall, velocities are relative to it,
 // since its velocity is known. On a ring the last gap follows from the others.
-template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::kinetic_energy(const T& time) const {
+template <Real T, class Masses, class Field>
+template <class Closing>
+T GapChain<T, Masses, Field>::kinetic_energy(const T& time, const Closing& closing_at) const {
   const T total = particles_->total_mass();
   T drift = particles_->conserved_momentum() / total;
   if constexpr (falls) drift += field_.acceleration() * clock().elapsed(time);
@@ -38,7 +40,7 @@ template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::kinet
     EnergySum<T> slowing;
     add(left, T(-c));
     for (Slot s = first(); s < end; ++s) {
-      slowing.add(closing_at(s, time));
+      slowing.add(closing_at(s));
       add(s + 1 < end ? line_.masses[s + 1] : right, less(slowing, c));
     }
     at_end = slowing.value();
@@ -48,6 +50,19 @@ template <Real T, class Masses, class Field> T GapChain<T, Masses, Field>::kinet
                   : to_wall ? T(at_wall(*particles_, count, elapsed).v.value() + (at_end - moving.mean))
                             : drift;
   return total * speed * speed / T(2) + moving.energy;
+}
+
+template <Real T, class Masses, class Field>
+T GapChain<T, Masses, Field>::energy_deviation(const T& time) const requires(Line::watched) {
+  T largest(0);
+  const T energy = kinetic_energy(time);
+  for (std::size_t sample = 0; sample < 2; ++sample) {
+    const T off = kinetic_energy(time, [&](Slot s) {
+      return T(closing_at(s, time) + line_.certainty.closing_off(line_.gaps, line_.motion(field_), s, time, sample));
+    });
+    largest = std::max(largest, magnitude(T(off - energy)));
+  }
+  return largest;
 }
 
 template <Real T, class Masses, class Field>

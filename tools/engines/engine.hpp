@@ -12,13 +12,13 @@
 #include <string>
 #include <utility>
 
-#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/base/state.hpp"
+#include "cradle/core/base/state_stream.hpp"
+#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
 #include "cradle/tools/scene/laws.hpp"
-#include "cradle/core/base/state_stream.hpp"
 
 namespace cradle::tools {
 
@@ -51,6 +51,9 @@ template <Real T> class Engine {
   /// The left particle of a collision up to `time` that rounding may add or remove (`time` is not before the last
   /// collision). None if nothing is uncertain, or if this engine does not estimate it.
   virtual std::optional<ParticleIndex> uncertain_at(const T& time) const = 0;
+
+  /// About how far rounding has moved the kinetic energy by this time; none if this engine does not estimate it.
+  virtual std::optional<T> energy_deviation(const T& time) const = 0;
 
   virtual bool on_ring() const = 0;
   virtual ParticleIndex collided_particles() const = 0;
@@ -134,6 +137,13 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
       return {};
   }
 
+  std::optional<T> energy_deviation(const T& time) const override {
+    if constexpr (requires { run_.chain().energy_deviation(time); })
+      return run_.chain().energy_deviation(run_.chain().local_time(time));
+    else
+      return {};
+  }
+
   bool on_ring() const override { return run_.on_ring(); }
   std::optional<T> gap_to_wall(End end, const T& time) const override {
     if constexpr (requires { run_.gap_to_wall(end, time); })
@@ -161,15 +171,20 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
 
 /// About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
 /// together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
-/// relative to the present ones; if it holds velocities, to those at the start.
-template <Real T> double energy_digits(const Engine<T>& engine, const Scene& scene, double at_start, double at_end) {
+/// relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, only
+/// an engine that watches them knows by how much.
+template <Real T>
+double energy_digits(const Engine<T>& engine, const Scene& scene, double at_start, double at_end, const T& time) {
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
   const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
   const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene.run.digits);
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
   const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
   if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
-  return std::max(0., held - std::log10(error));
+  const double digits = held - std::log10(error);
+  const std::optional<T> off = engine.energy_deviation(time);
+  if (!off || !is_positive(*off) || !(at_end > 0)) return std::max(0., digits);
+  return std::max(0., std::min(digits, -std::log10(to_double(T(*off / exactly<T>(at_end))))));
 }
 
 }  // namespace cradle::tools

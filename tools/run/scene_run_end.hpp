@@ -26,7 +26,7 @@ template <Real T> inline RunOutcome SceneRun<T>::finish(Status status, const T& 
   const Given<T> at = status == Status::reached ? plan_.meant(time) : Given<T>(time);
   end.time = at.rounded;
   end.energy = to_double(energy_now(engine_, energy_, time));
-  end.energy_digits = energy_digits(engine_, scene_, to_double(energy_), end.energy);
+  end.energy_digits = energy_digits(engine_, scene_, to_double(energy_), end.energy, time);
   ReportedAccount account = reported(engine_.account());
   if (const auto particle = engine_.uncertain_at(time); particle && !account.uncertain && status == Status::reached) {
     account.uncertain_end = true;

@@ -147,20 +147,28 @@ template <Enclosing N> class ProvedTables {
     });
     return agreement.broken();
   }
-  /// Writes what is proved in place of what the run has rounded, or chaos has made of that.
+  /// Writes what is proved in place of what the run has rounded, or chaos has made of that. A number of the run that
+  /// lies in its enclosure stays: it may have more digits than the enclosure, gaps and short times above all.
   void put(Result& result) const {
     for_each_column(result, [](const std::string&, Column& column, const std::vector<Row>& rows) {
       for (const Row& row : rows) {
         if (!row.proved || !is_finite(*row.proved) || row.number >= column.rows()) continue;
-        if (auto* texts = std::get_if<std::vector<std::string>>(&column.values))
-          (*texts)[row.number] = to_text(row.proved->middle());
-        else if (auto* doubles = std::get_if<std::vector<double>>(&column.values))
-          (*doubles)[row.number] = to_double(*row.proved);
+        if (auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
+          std::string& text = (*texts)[row.number];
+          if (text.find('n') != text.npos || !holds(*row.proved, from_text<N>(text)))
+            text = to_text(row.proved->middle());
+        } else if (auto* doubles = std::get_if<std::vector<double>>(&column.values)) {
+          double& number = (*doubles)[row.number];
+          if (!std::isfinite(number) || !holds(*row.proved, exactly<N>(number))) number = to_double(*row.proved);
+        }
       }
     });
   }
 
  private:
+  static bool holds(const N& proved, const N& of_run) {
+    return !(static_cast<long double>((of_run - proved).least_size()) > 0);
+  }
   struct Row {
     std::size_t number;
     std::optional<N> proved;

@@ -53,6 +53,14 @@ std::string shown(const Enclosed& x) {
                      x.radius);
 }
 
+// That of the last collision has all digits of the proof.
+std::string shown_time(const std::string& time) {
+  constexpr std::size_t most = 40;
+  if (time.size() <= most) return time;
+  const auto end = std::min(time.find('e'), time.size());
+  return time.substr(0, std::min(end, most)) + "..." + time.substr(end);
+}
+
 // Tables of a run that no proof encloses: they are sums over what is proved, but rounded by the run alone.
 std::vector<std::string> of_run_alone(const Result& result) {
   std::vector<std::string> names;
@@ -85,7 +93,7 @@ std::string Certified::undecided() const {
   if (certificate.doubt) return doubt_text(*certificate.doubt);
   if (outcome.end != RunEnd::exhausted) return "";
   return fmt::format("from t = {} on, after {} collisions: the run ended there, before t = {} ({})",
-                     certificate.samples.back().time_text, certificate.collisions, scene.run.until.text,
+                     shown_time(certificate.samples.back().time_text), certificate.collisions, scene.run.until.text,
                      end_row(outcome.end).text);
 }
 
@@ -101,7 +109,7 @@ std::string certificate_text(const Certified& run) {
   std::string text;
   if (run.proved())
     text = fmt::format("proved: {} collisions up to t = {} are those of the exact system, all of them and no other\n",
-                       c.collisions, c.samples.back().time_text);
+                       c.collisions, shown_time(c.samples.back().time_text));
   else
     text = fmt::format("undecided {}\nproved up to there: {} collisions\n", run.undecided(), c.collisions);
   if (const std::string beyond = run.not_proved(); !beyond.empty()) text += fmt::format("not proved: {}\n", beyond);
@@ -110,7 +118,7 @@ std::string certificate_text(const Certified& run) {
                       precision_name(run.scene.run), c.digits_text, 100 * share);
   if (!c.samples.empty()) {
     const CertainSample& last = c.samples.back();
-    text += fmt::format("  energy    {} at t = {}\n", shown(last.energy), last.time_text);
+    text += fmt::format("  energy    {} at t = {}\n", shown(last.energy), shown_time(last.time_text));
     if (last.front_left) text += fmt::format("  fronts    {}\n", shown(*last.front_left));
     if (last.front_right) text += fmt::format("            {}\n", shown(*last.front_right));
     text += fmt::format("  margins   places known to 1e{:.1f}", last.widest);

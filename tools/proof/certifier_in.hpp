@@ -14,9 +14,9 @@
 
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/precision/ball_text.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/proof/agreement.hpp"
 #include "cradle/tools/proof/certificate.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 
 namespace cradle::tools {
 
@@ -113,9 +113,16 @@ template <class M> class CertifierIn final : public Certifier {
     }
     if (const auto broken = tables.compare(result, errors_))
       return reported(*broken, certificate_.samples.empty() ? 0 : certificate_.samples.back().time);
-    for (std::size_t k = 0; k < meetings_.size(); ++k)
-      tables.add("events/time_low", k, meetings_[k].time - exactly<N>(to_double(meetings_[k].time)), 0);
     tables.put(result);
+    ProvedTables<N> rests;  // of the times that the file has now
+    if (const Group* events = result.find("events"))
+      for (const Column& column : events->columns) {
+        const auto* times = std::get_if<std::vector<double>>(&column.values);
+        if (column.name != "time" || times == nullptr) continue;
+        for (std::size_t k = 0; k < meetings_.size() && k < times->size(); ++k)
+          rests.add("events/time_low", k, meetings_[k].time - exactly<N>((*times)[k]), 0);
+      }
+    rests.put(result);
     return {};
   }
 
@@ -306,8 +313,10 @@ template <class M> class CertifierIn final : public Certifier {
   }
 
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
-    CertainSample proved_sample{sample.time,
-                                asked.time.text,
+    // That of a collision is the exact system's, which has made it by then.
+    const N last = start_ + state.time;
+    CertainSample proved_sample{sample.at_collision ? to_double(last) : sample.time,
+                                sample.at_collision ? in_decimals(last).high : asked.time.text,
                                 asked.of_series,
                                 checker_.proved().collisions,
                                 enclosed(state.energy),

@@ -236,6 +236,33 @@ TEST_F(Certified, TheEndIsThatOfTheSceneWithAllItsDigits) {
             (std::vector<std::string>{"0", "0.3", "0.6", "0.9"}));
 }
 
+// The time at which a run in double has made a collision of a collapse is not when the exact system makes it: here it
+// is off in the tenth digit (in 220 digits the twelfth collision is at 9.4791802662302e-18).
+TEST_F(Certified, ACollapseIsProvedUntilTheExactTimeOfItsLastCollision) {
+  const Printed printed = certify_list(
+      "type = \"inelastic\", restitution = 2.43e-02",
+      "0.649354, 0.6493540000014112574, \"0.649354000001411257400007523388161819791\", "
+      "\"0.649354000001411257400007523531245709791\", \"0.669354000001411257400007523531245709791\", "
+      "\"0.6693540000014112574000075244424153992052319\", \"0.6693540000014112634000075244424153992052319\", "
+      "\"0.6693540000014112635170967085063276992052319\"], m = [2.2202e+02, 3e+01, 1e-01, 6.2177e+00, 5.0853e-01, "
+      "5.7013e-02, 1e-03, 2.3e-01",
+      "\"-999999.2793722995710334372027\", \"-1000000.4901902934209605381171\", \"-999999.1238110696242868336671\", "
+      "\"-999999.2709463878423401892167\", \"-999999.3312042298491810080550\", \"-999999.0904222501232596794812\", "
+      "\"-999999.6388902679735954006348\", \"-999999.7361544802161529412000\"",
+      "1.299e-17");
+  EXPECT_TRUE(has(printed.out, "proved: 12 collisions up to t = 9.47918026623018"));
+  EXPECT_TRUE(of_certificate<std::string>(result(), "proved_until").starts_with("9.47918026623018"));
+}
+// The proof in double-double knows the first collision to 1e-32, which is 1e-4 of its time; the run knows it better.
+TEST_F(Certified, TheRunsNumberStaysWhereTheProofEnclosesIt) {
+  certify_list("type = \"inelastic\", restitution = 1",
+               "0.478246, 0.4782460000219, \"0.4782460000219001942913860766875\", "
+               "\"0.4782460000219001942914919863775\", \"0.4782460000219001942914919863975\"",
+               "0.937093867552, 0.868580934935, -0.143444253136, -0.259643840894, -0.563198376465",
+               "3.516e-9\noutput.events = true");
+  EXPECT_EQ(numbers(result(), "events", "time").front(), 2e-29 / 0.303554535571);
+}
+
 TEST_F(Certified, AMassTooSmallForADoubleIsThere) {
   write("rows.toml", "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\nrun.until = 0.47\n"
                      "initial = {type = \"rows\", left = {particles = 3, speed = 1, density = 1}, right = "

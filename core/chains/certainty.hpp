@@ -56,13 +56,14 @@ template <Real T, class Gaps> class Certainty {
       }
     bring(gaps, motion, p, time);
     if (n != p) bring(gaps, motion, n, time);
+    const Off left = gaps[p].off, right = gaps[n].off;
     const N back = number(outcome.closing) / w, own = slope == N(0) ? back : slope;
     const N change = (N(1) - own) / (N(1) - back);  // of the impulse, relative to that of a constant restitution
     const auto hand = [&](Slot to, const N& share) {
       gaps[to].off.add(seen_from(gaps, to, time, here), share, share * change);
     };
-    if (moved.left) hand(p, number(outcome.to_left) / w);
-    if (moved.right) hand(n, number(outcome.to_right) / w);
+    hand(p, number(outcome.to_left) / w);
+    hand(n, number(outcome.to_right) / w);
     gaps[s].off = {};
     gaps[s].off.add(here, back, own);
     for (std::size_t k = 0; k < Off::samples; ++k) {
@@ -75,8 +76,11 @@ template <Real T, class Gaps> class Certainty {
         for (N& off : gaps[beside].off.closing)
           off += (magnitude(number(motion(beside, time).closing)) + w) * roundings_.next();
     if (is_negative(since)) gaps[s].off = gaps[s].off.after(-since);
-    if constexpr (Motion::curved)
+    if constexpr (Motion::curved) {
+      if (!moved.left) gaps[p].off = left;
+      if (!moved.right) gaps[n].off = right;
       if (outcome.closing == T(0) && is_positive(acceleration)) gaps[s].off = {};  // it rests on the wall
+    }
   }
 
   // Checks a threshold of the law in the next collision, at the gap s, which closes at the speed w.
@@ -175,8 +179,8 @@ template <Real T, class Gaps> class Certainty {
                        const N& w) {
     const GapMotion<T> now = motion(beside, time);
     if (beside == s || is_negative(now.since)) return false;  // late collisions commute with earlier ones
-    if constexpr (Motion::curved)                             // in a pile, or has opened just now
-      if (now.gap == T(0) && !is_positive(now.closing)) return false;
+    // Particles that touch, since a collision at this time or in a pile, collide by a rule, not by their times.
+    if (now.gap == T(0) && now.since == T(0)) return false;
     const Off there = gaps[beside].off.after(number(now.since));
     N off(0);
     if (is_positive(w)) {

@@ -172,12 +172,12 @@ template <Real T> Polynomial<T> scaled(Polynomial<T> p, const T& scale) {
   return p;
 }
 
-// The largest modulus of a root, to a relative error of 2^-steps.
-template <Real T> T largest_modulus(const Polynomial<T>& p, int steps = 40) {
+// The largest modulus of a root, rounded up, to a relative error of 2^-60; 2^-400 of the bound below if it is smaller.
+template <Real T> T largest_modulus(const Polynomial<T>& p) {
   if (p.size() < 2) return T(0);
   T low(0), high(0);
   for (const T& coefficient : p) high += magnitude(T(coefficient / p.back()));
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < 400 && high < (high - low) * T(std::int64_t{1} << 60); ++i) {
     const T middle = (low + high) / T(2);
     (roots_within_unit_circle(scaled(p, middle)) == Within::yes ? high : low) = middle;
   }

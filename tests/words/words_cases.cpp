@@ -50,6 +50,13 @@ struct Known {
   Real end;
 };
 
+// However small the roots are, which the bound that the search begins with is not.
+TEST_F(Words, TheLargestModulusHasAllDigitsOfADouble) {
+  const Real small = number("3e-9"), smaller = number("-1e-9");
+  EXPECT_EQ(to_double(largest_modulus(Polynomial<Real>{small * smaller, -(small + smaller), Real(1)})), 3e-9);
+  EXPECT_EQ(to_double(largest_modulus(Polynomial<Real>{small * small, Real(0), Real(1)})), 3e-9) << "+-3e-9 i";
+}
+
 TEST_F(Words, HaveTheEndsThatAreKnownProvedTo30Digits) {
   for (const Known& known : {Known{"ab", 3, Real(7) - Real(4) * root(3)}, Known{"acb", 4, Real(3) - Real(2) * root(2)},
                              Known{"ababcb", 4, Real(5) - Real(2) * root(6)}}) {

@@ -30,6 +30,7 @@ using Wide =
 inline std::string decimal_beside(const Wide& x, int digits, bool below) {
   const auto text = [&](const Wide& number) { return number.str(digits - 1, std::ios_base::scientific); };
   std::string nearest = text(x);
+  if (x == 0) return nearest;
   const Wide read(nearest);
   if (below ? read < x : read > x) return nearest;
   const Wide unit = pow(Wide(10), std::stoi(nearest.substr(nearest.find('e') + 1)) - digits + 1);

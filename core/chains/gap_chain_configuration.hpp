@@ -52,6 +52,22 @@ T GapChain<T, Masses, Field>::kinetic_energy(const T& time, const Closing& closi
   return total * speed * speed / T(2) + moving.energy;
 }
 
+template <Real T, class Masses, class Field> void GapChain<T, Masses, Field>::find_lost_digits(const T& time) {
+  if (!closed() || line_.exact_sums() || line_.gaps.account().uncertain > 0) return;
+  const Wall<T>*left = particles_->wall(End::left), *right = particles_->wall(End::right);
+  CompensatedSum<T> missing;
+  if (left != nullptr) missing.add(right->speed), missing.add(T(-left->speed));
+  T fastest(0);
+  for (Slot s = first(); s <= last(); ++s) {
+    missing.add(closing(s));
+    fastest = std::max(fastest, magnitude(closing(s)));
+  }
+  constexpr int certain_by = 64;  // as in Deviation
+  const T off =
+      T(certain_by) * std::max(magnitude(missing.value()), T(T(std::numeric_limits<T>::epsilon()) * fastest_));
+  if (fastest < off) line_.gaps.doubt({clock().time(time), particle(first()), T(off * clock().elapsed(time))});
+}
+
 template <Real T, class Masses, class Field>
 T GapChain<T, Masses, Field>::energy_deviation(const T& time) const requires(Line::watched) {
   T largest(0);

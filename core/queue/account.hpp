@@ -26,8 +26,8 @@ template <Real T> struct Account {
   // Positions only: gaps next to a collision below 1e6 units in the last place of the position.
   std::uint64_t unresolved = 0;
   Incident<T> first_unresolved;
-  // Watched masses only: 1 from the first collision on that rounding may have decided (watched_gap.hpp); `gap` is the
-  // possible error of that collision's gap.
+  // In watched chains (watched_gap.hpp) and closed systems: 1 from the first collision on that rounding may have
+  // decided; `gap` is the possible error of that collision's gap.
   std::uint64_t uncertain = 0;
   Incident<T> first_uncertain;
 

@@ -264,6 +264,20 @@ TEST(SlowUnequalMasses, FallRightOrWarnedOf) {
 }
 #endif
 
+// Closing speeds on a ring keep the rounding of the first ones: cooled to it, the run makes other collisions (31
+// instead of 58, in 220 digits).
+TEST(UnequalMasses, ClosedSystemsThatHaveCooledToTheirRoundingAreWarnedOf) {
+  System s;
+  s.x = {0.125, 0.4375}, s.v = {0.9131, -0.21}, s.m = {1, 1}, s.circumference = 1;
+  s.law = Bounce::cutoff, s.restitution = 0.3, s.until = 1e10;
+  EXPECT_FALSE(make<GapChain<double>>(s, 1000).warned);
+  s.until = 1e30;
+  EXPECT_TRUE(make<GapChain<double>>(s, 1000).warned);
+  s.circumference = 0, s.left_wall = s.right_wall = true;
+  s.x = {0.125}, s.v = {0.9131}, s.m = {1}, s.wall_restitution = 0.3;
+  EXPECT_TRUE(make<GapChain<double>>(s, 1000).warned);
+}
+
 // Down to intervals of 1e-1045 and back, which ranges wider than double's have. Exact: 16753 collisions (140 digits).
 TEST(UnequalMasses, AreWarnedOfBelowTheRangeOfDouble) {
   Drawing draw(9003);

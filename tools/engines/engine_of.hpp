@@ -14,6 +14,7 @@
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/tools/engines/engine.hpp"
+#include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
 
@@ -65,9 +66,21 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
 // Whether the choice of a law at every collision costs a run anything beside its arithmetic: not with larger numbers.
 template <Real T> inline constexpr bool chooses_at_a_cost = sizeof(T) <= 2 * sizeof(double);
 
+/// Throws Error for a run so short, at times so large, that its end is not resolved to a thousandth of it.
+template <Real T> void require_resolved(const Scene& scene) {
+  const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
+  const T resolved = T(std::numeric_limits<T>::epsilon()) * std::max(magnitude(start), magnitude(until));
+  if (!(scene.run.start < scene.run.until) || !(until - start < T(1000) * resolved)) return;
+  throw Error({scene.name, 0, "run.until"}, "too close to run.start for this precision",
+              fmt::format("{} after {}, where {} resolves {:.1g}", scene.run.until.text, scene.run.start.text,
+                          precision_name(scene.run), to_double(resolved)),
+              "count times from 0 (run.start = 0), or give more digits (run.precision)");
+}
+
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
+  require_resolved<T>(scene);
   const T start = number<T>(scene.run.start);
   if (!law_row(scene).needs_events && !observed)  // without an observer no collisions are needed
     return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, particles, start, policy);

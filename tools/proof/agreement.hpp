@@ -200,7 +200,8 @@ template <Enclosing N> class ProvedTables {
       } else {
         const double number = std::get<std::vector<double>>(column.values)[row.number];
         compare(std::isnan(number) ? "" : fmt::format("{}", number),
-                std::abs(number) * static_cast<long double>(std::numeric_limits<double>::epsilon()));
+                std::abs(number) * static_cast<long double>(std::numeric_limits<double>::epsilon()) +
+                    static_cast<long double>(std::numeric_limits<double>::denorm_min()));
       }
     }
   }

@@ -30,6 +30,8 @@ template <Real T> struct Given {
     rounded = from_text<double>(decimal);
     if (decimal.size() < text.size() && Decimal(decimal) != Decimal(text)) text = decimal;
   }
+
+  static auto state(auto& self) { return std::tie(self.value, self.rounded, self.text); }
 };
 
 /// Columns of a table, or some of them: numbers of the run's type, those that the scene gives, and others that a double

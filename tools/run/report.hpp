@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <string>
 
-#include "cradle/core/queue/account.hpp"
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/observe/guards.hpp"
+#include "cradle/core/queue/account.hpp"
 #include "cradle/precision/text.hpp"
-#include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {

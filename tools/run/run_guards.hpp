@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "cradle/core/observe/guards.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/engines/engine.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 
 namespace cradle::tools {
 

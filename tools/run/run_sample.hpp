@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cradle/core/observe/sample.hpp"
-#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/engines/engine.hpp"
+#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/run_observer.hpp"
 
 namespace cradle::tools {

@@ -5,10 +5,10 @@
 #include <array>
 #include <filesystem>
 
-#include "cradle/tools/result/growing_tables.hpp"
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/checksum.hpp"
@@ -128,7 +128,8 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
 
 }  // namespace
 
-RunFiles::RunFiles(std::string file, const std::optional<std::string>& until) : file_(std::move(file)) {
+RunFiles::RunFiles(std::string file, const std::optional<std::string>& until)
+    : Sink(Tables::for_file), file_(std::move(file)) {
   if (exists(journal_of(file_)))
     resume(until);
   else

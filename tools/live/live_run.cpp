@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "cradle/core/base/state.hpp"
+#include "cradle/core/parallel/workers.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -87,7 +89,8 @@ void LiveRun::save(const std::string& path) {
   require_own_law("saved");
   const FileClaim claim(path);
   StateWriter to(
-      path, {{live_kind, 0, effective_toml(scene_), scene_.name}, 0, 0, 0, run_->time(), run_->counts().collisions});
+      path,
+      {{live_kind, 0, effective_toml(scene_), scene_.name}, 0, 0, 0, run_->time().value, run_->counts().collisions});
   run_->put_rows();
   cradle::save(to, sink_.tables());
   run_->save(to);
@@ -104,7 +107,7 @@ Result LiveRun::result() const {
 void LiveRun::write(const std::string& path, Force force) const {
   require_own_law("written");
   if (run_->over() == nullptr)
-    throw Error({scene_.name, 0, ""}, "not at its end", "t = " + run_->time_text(),
+    throw Error({scene_.name, 0, ""}, "not at its end", "t = " + run_->time().text,
                 "advance to run.until = " + scene_.run.until.text + " first, stop the run here, or save a checkpoint");
   const FileClaim claim(path);
   check_overwrite(path, "run", &scene_, force);

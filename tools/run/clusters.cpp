@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "cradle/core/theory/wet_clusters.hpp"
-#include "cradle/tools/record/schedule.hpp"
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/record/series.hpp"
 
 namespace cradle::tools {
 
@@ -141,7 +140,7 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options, Sink& sin
   const double loss = scene.initial.meeting == scene::Meeting::energy ? scene.law.loss.value : 0;
   Recorder recorder;
   RunOutcome end;
-  const Times<double> samples = series_times<double>(scene);
+  const Times<double> samples = times_of<double>(series_times(scene));
   for (const double time : samples.values()) {
     end.time = time;
     motion.advance(time);

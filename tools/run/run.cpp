@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "cradle/tools/engines/in_precision.hpp"
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/scene/laws.hpp"
@@ -68,18 +69,16 @@ PlannedTimes planned_times(const Scene& scene) {
 }
 
 Scene without_tables(Scene scene) {
-  Output& output = scene.output;
-  output.events = false;
-  output.word.reset();
-  output.snapshots.clear();
-  output.profiles.times.clear();
-  output.masses.clear();
-  output.averages = {};
-  output.histograms.clear();
-  output.correlations = {};
-  output.structure = {};
-  output.pair_distribution = {};
+  for (const MeasurementRow* row : measurement_rows())
+    if (row->leave_out) row->leave_out(scene.output);
   return scene;
+}
+
+void SceneRun::require_in_progress() const {
+  if (over_)
+    throw Error({scene_.name, 0, ""}, "the run is over",
+                std::string(end_row(over_->end).text) + " at t = " + time().text,
+                "write its result, or begin another one");
 }
 
 std::unique_ptr<SceneRun> begin_run(const Scene& scene, const RunOptions& options, Sink& sink) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,12 @@ class SceneRun {
  public:
   enum class Column { x, v, m, gap, closing_speed };  // of the particles, as in snapshots
 
-  SceneRun() = default;
+  explicit SceneRun(const Scene& scene) : scene_(scene) {}
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;
   virtual ~SceneRun() = default;
 
-  virtual const Scene& scene() const = 0;
+  const Scene& scene() const { return scene_; }
   /// Throws Error for a time in the past or after the end, and if the run is over.
   virtual void advance(const Decimal& until) = 0;
   /// Makes the next `n` collisions, or those up to `until` if these are fewer: then the run is at that time. Returns
@@ -42,13 +43,11 @@ class SceneRun {
   virtual void observe(std::function<void(const HeldCollision&)> observer) = 0;
 
   /// Null while the run is in progress.
-  virtual const RunOutcome* over() const = 0;
+  const RunOutcome* over() const { return over_ ? &*over_ : nullptr; }
   virtual const Counts& counts() const = 0;
-  /// The decimals of these have all digits of the run's precision.
-  virtual double time() const = 0;
-  virtual std::string time_text() const = 0;
-  virtual double energy() const = 0;  // kinetic, of all particles of the scene
-  virtual std::string energy_text() const = 0;
+  /// The texts of these have all digits of the run's precision.
+  virtual Number time() const = 0;
+  virtual Number energy() const = 0;  // kinetic, of all particles of the scene
   virtual std::vector<double> column(Column which) = 0;
   virtual std::vector<std::string> column_text(Column which) = 0;
   virtual const std::vector<ParticleIndex>& index() = 0;
@@ -59,6 +58,12 @@ class SceneRun {
   virtual void save(StateSink& to) = 0;
   /// Continues from there, with the rows that were saved beside it. Throws Error for the state of another run.
   virtual void load(StateSource& from) = 0;
+
+ protected:
+  void require_in_progress() const;
+
+  const Scene& scene_;
+  std::optional<RunOutcome> over_;
 };
 
 /// A run from the beginning, or from what the sink continues. Scene and sink must outlive it. Throws Error for scenes

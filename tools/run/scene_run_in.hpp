@@ -1,28 +1,19 @@
 // A run of a scene in one scalar type (scene_run.hpp): the engine, which advances from one output time to the next, and
-// what is recorded there. At the end the records become tables and texts. Compiled once per scalar type
-// (tools/CMakeLists.txt); run.cpp chooses.
+// what is measured there. Compiled once per scalar type (tools/CMakeLists.txt); run.cpp chooses.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
-#include <concepts>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "cradle/tools/engines/engine_of.hpp"
-#include "cradle/tools/record/columns.hpp"
-#include "cradle/tools/record/correlations.hpp"
-#include "cradle/tools/record/histograms.hpp"
-#include "cradle/tools/record/recorder.hpp"
+#include "cradle/tools/record/measurements.hpp"
 #include "cradle/tools/record/schedule.hpp"
-#include "cradle/tools/record/word.hpp"
-#include "cradle/tools/run/report.hpp"
+#include "cradle/tools/run/run_ending.hpp"
 #include "cradle/tools/run/run_guards.hpp"
 #include "cradle/tools/run/run_sample.hpp"
 #include "cradle/tools/run/scene_run.hpp"
@@ -31,27 +22,19 @@
 namespace cradle::tools {
 
 template <Real T> class SceneRunIn final : public SceneRun {
-  static constexpr std::size_t most_rows = 1 << 14;  // rows that wait for the sink
-
  public:
   SceneRunIn(const Scene& scene, const RunOptions& options, Sink& sink)
-      : scene_(scene), options_(options), sink_(sink), particles_(initial_particles<T>(scene)),
+      : SceneRun(scene), options_(options), sink_(sink), particles_(initial_particles<T>(scene)),
         energy_(particles_->kinetic_energy()),
         progress_(options.progress, scene.run.start.value, scene.run.until.value,
                   options.progress != Progress::Show::never && expected_cost(scene).predictable()),
-        engine_(engine()), plan_(schedule<T>(scene)), series_(scene), guards_(scene, *particles_, *engine_),
-        time_(number<T>(scene.run.start), scene.run.start.text), end_(number<T>(scene.run.until)) {
-    if (scene.output.zone.from) zone_.emplace(zone_average(scene));
-    if (!plan_.averages.empty()) averages_.emplace(time_averages(scene, plan_.averages.size()));
-    if (!scene.output.histograms.empty()) histograms_.emplace(scene, particles_->count());
-    if (CorrelationRecorder<T>::wanted(scene.output)) correlations_.emplace(scene, *particles_, plan_);
-    if (scene.output.word) word_.emplace(scene);
+        engine_(engine()), plan_(schedule<T>(scene)), measurements_(scene, *particles_, plan_),
+        guards_(scene, *particles_, *engine_), time_(number<T>(scene.run.start), scene.run.start.text),
+        end_(number<T>(scene.run.until)) {
     if (options_.interrupt != nullptr) options_.interrupt->heed();
     observe({});
     if (StateSource* from = sink.loaded_from()) load(*from);
   }
-
-  const Scene& scene() const override { return scene_; }
 
   void advance(const Decimal& until) override {
     const Given<T> time = checked(until);
@@ -65,7 +48,8 @@ template <Real T> class SceneRunIn final : public SceneRun {
           const Status made = engine_->step(n, to, observer_);
           return made == Status::reached && n == 0 ? Status::interrupted : made;
         });
-        status == Status::interrupted&& n == 0 ? stand_at_last_collision() : stand(status, time);
+        const bool made = status == Status::interrupted && n == 0;
+        made ? stand_at_last_collision() : stand(status, time);
       });
     return n;
   }
@@ -75,14 +59,25 @@ template <Real T> class SceneRunIn final : public SceneRun {
     end_with(Status::interrupted);
   }
   /// The observer comes before what records collisions, so that nothing of a collision is recorded if it throws.
-  void observe(std::function<void(const HeldCollision&)> observer) override;
+  void observe(std::function<void(const HeldCollision&)> observer) override {
+    observer_ = {};
+    const auto also = [this](const Observer<T>& added) {
+      observer_ = observer_ ? [before = observer_, added](const Collision<T>& c) { before(c), added(c); } : added;
+    };
+    if (observer)
+      also([observer = std::move(observer)](const Collision<T>& c) {
+        observer({c.left, c.right, to_double(T(c.time.value())), to_double(c.interval), to_double(c.closing_speed)});
+      });
+    measurements_.observe(engine_->counts(), sink_, also);
+    if (options_.observer != nullptr)
+      also([this](const Collision<T>& c) {
+        options_.observer->collision(c.left, c.right, to_double(T(c.time.value())));
+      });
+  }
 
-  const RunOutcome* over() const override { return over_ ? &*over_ : nullptr; }
   const Counts& counts() const override { return engine_->counts(); }
-  double time() const override { return time_.rounded; }
-  std::string time_text() const override { return time_.text; }
-  double energy() const override { return to_double(energy_now(*engine_, energy_, time_.value)); }
-  std::string energy_text() const override { return to_text(energy_now(*engine_, energy_, time_.value)); }
+  Number time() const override { return time_.number(); }
+  Number energy() const override { return number_of(energy_now(*engine_, energy_, time_.value)); }
   std::vector<double> column(Column which) override {
     return made_of<double>(which, [](const T& number) { return to_double(number); });
   }
@@ -91,14 +86,7 @@ template <Real T> class SceneRunIn final : public SceneRun {
   }
   const std::vector<ParticleIndex>& index() override { return now().index; }
 
-  void put_rows() override {
-    if (histograms_) histograms_->made(engine_->counts());
-    put(series_.take());
-    if (has_clouds(scene_)) put(heaviest_.take());
-    if (!scene_.output.events) return;
-    events_.made(engine_->counts());
-    put(events_.take());
-  }
+  void put_rows() override { measurements_.put_rows(engine_->counts(), sink_); }
   void save(StateSink& to) override {
     require_in_progress();
     save_state(to);
@@ -123,29 +111,13 @@ template <Real T> class SceneRunIn final : public SceneRun {
 
   // What is saved besides the engine's state: how much of the plan is done, and what observers have collected.
   static auto state(auto& self) {
-    return std::tie(self.time_, self.at_collision_, self.inspected_, self.snapshots_, self.profiles_, self.masses_,
-                    self.zone_, self.scenario_, self.averages_, self.histograms_, self.correlations_, self.word_,
-                    self.guards_);
-  }
-
-  void loaded() const {
-    require_state(zone_.has_value() == scene_.output.zone.from.has_value(), "zone");
-    require_state(averages_.has_value() == !plan_.averages.empty(), "averages");
-    require_state(histograms_.has_value() == !scene_.output.histograms.empty(), "histograms");
-    require_state(correlations_.has_value() == CorrelationRecorder<T>::wanted(scene_.output), "correlations");
-    require_state(word_.has_value() == scene_.output.word.has_value(), "word");
+    return std::tie(self.time_, self.at_collision_, self.inspected_, self.measurements_, self.guards_);
   }
 
  private:
   // ---- how it advances
-
   std::unique_ptr<Engine<T>> engine() {
-    Policy<T> policy;
-    // Elastic particles collapse only against a wall that loses energy; particles that stick do not collapse.
-    if (stops_at_collapse(scene_) &&
-        (scene_.law.restitution < Decimal("1") || scene_.walls.left.dissipates() || scene_.walls.right.dissipates()))
-      policy.collapse = cradle::CollapsePolicy::stop;
-    if (scene_.run.stop_gap) policy.stop_gap = number<T>(*scene_.run.stop_gap);
+    Policy<T> policy = policy_of<T>(scene_);
     policy.interrupt = [this] { return stopped() || sink_.due(); };
     policy.progress = [this](const T& time, const Counts& counts) {
       progress_.report(to_double(time), counts.collisions);
@@ -215,19 +187,13 @@ template <Real T> class SceneRunIn final : public SceneRun {
   Given<T> checked(const Decimal& until) const {
     require_in_progress();
     const Given<T> time(number<T>(until), until.text);
-    const auto refuse = [&](const char* wrong, const std::string& advice) {
-      throw Error({scene_.name, 0, ""}, wrong, until.text, advice);
-    };
     if (time.value < time_.value)
-      refuse("a time in the past", "the run is at t = " + time_.text + " and goes forward only");
-    if (end_ < time.value) refuse("a time after the end", "the end is run.until = " + scene_.run.until.text);
+      throw Error({scene_.name, 0, ""}, "a time in the past", until.text,
+                  "the run is at t = " + time_.text + " and goes forward only");
+    if (end_ < time.value)
+      throw Error({scene_.name, 0, ""}, "a time after the end", until.text,
+                  "the end is run.until = " + scene_.run.until.text);
     return time;
-  }
-  void require_in_progress() const {
-    if (over_)
-      throw Error({scene_.name, 0, ""}, "the run is over",
-                  std::string(end_row(over_->end).text) + " at t = " + time_.text,
-                  "write its result, or begin another one");
   }
 
   const Configuration<T>& now() {
@@ -243,7 +209,6 @@ template <Real T> class SceneRunIn final : public SceneRun {
   }
 
   // ---- what goes to the sink
-
   std::string shape() const { return engine_->shape() + state_shape<SceneRunIn>() + std::string(exact_part<T>); }
   void save_state(StateSink& to) const {
     cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
@@ -253,36 +218,61 @@ template <Real T> class SceneRunIn final : public SceneRun {
   // Gives it the recorded rows and, from time to time, the state.
   void keep(const T& time, RunIs run_is = RunIs::in_progress) {
     put_rows();
-    RunStatus now = guards_.status();
-    now.time = plan_.meant(time).rounded;
-    now.collisions = engine_->counts().collisions;
+    const RunStatus now = guards_.status(plan_.meant(time).rounded);
     sink_.keep(
         now, [this](StateSink& to) { save_state(to); }, run_is);
   }
-  void put(Recorded<T>&& rows) {
-    for (Group& table : tables(std::move(rows), sink_.for_file()))
-      if (!has_nothing(table)) sink_.add(std::move(table));
-  }
 
   // ---- what is recorded
-  // (scene_run_samples.hpp)
-  bool sample_at(const T& time);
-  void record_collision(const Collision<T>& c);
-  Profile profile_at(const Configuration<T>& now, const T& time) const;
-  void record_sample(const Given<T>& at);
+  MomentIn<T> moment(const Given<T>& at) const { return {*engine_, particles_, number<T>(scene_.run.start), at}; }
+  // Returns false if a signal has stopped a loop over rows, which can be very long; then nothing of this time is
+  // recorded yet.
+  bool sample_at(const T& time) {
+    const MomentIn<T> now = moment(plan_.meant(time));
+    if (measurements_.need_particles(time)) guards_.require_held(now.configuration());
+    try {
+      measurements_.find(now, [this] { return stopped(); });
+    } catch (const WalkStopped&) {
+      return false;
+    }
+    if (plan_.series().hold(time)) guards_.require_held(now.state());
+    measurements_.record(now, sink_);
+    guards_.check(time, !(time < plan_.stops.back()));
+    inspected_ = time;
+    if (options_.observer != nullptr) notify_observer(time, false);
+    sink_.check_clock();
+    if (sink_.due())
+      keep(time);
+    else if (measurements_.many_rows())
+      put_rows();
+    return true;
+  }
   void notify_observer(const T& time, bool at_collision) {
     options_.observer->sample(run_sample(scene_, plan_, *engine_, energy_, time, at_collision));
   }
-  static std::string numbered(const char* folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
+  // The last state of a run that ends early.
+  void record_last(const MomentIn<T>& now) {
+    guards_.require_between_walls(now.time.value);
+    if (options_.observer != nullptr) notify_observer(now.time.value, true);
+    guards_.require_held(now.state());
+    measurements_.record_last(now, sink_);
+  }
 
-  // ---- how it ends (scene_run_end.hpp)
-  void end_with(Status status);
-  void record_end(const T& time);
-  RunOutcome outcome(Status status, const T& time, std::vector<Attribute>& attributes);
-  T ledger_error(const T& time) const;
-  void put_tables(RunOutcome& end, const T& time);
+  void end_with(Status status) {
+    const bool reached = status == Status::reached, interrupted = status == Status::interrupted;
+    const T end = reached ? plan_.stops.back() : engine_->last_collision_time();
+    if (reached || interrupted) keep(end, reached ? RunIs::over : RunIs::interrupted);
+    const MomentIn<T> now = moment(reached ? plan_.meant(end) : Given<T>(end));
+    if (!reached && !(interrupted && sink_.for_file())) record_last(now);
+    RunEnding<T> ending(scene_, now, status);
+    put_rows();
+    ending.outcome.summary = measurements_.finish(now, sink_);
+    if (ending.collapse) sink_.add(std::move(*ending.collapse));
+    ending.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+    sink_.end(std::move(ending.attributes), ending.outcome.end);
+    over_ = std::move(ending.outcome);
+  }
 
-  const Scene& scene_;
   RunOptions options_;
   Sink& sink_;
   std::shared_ptr<const cradle::Particles<T>> particles_;
@@ -290,17 +280,8 @@ template <Real T> class SceneRunIn final : public SceneRun {
   Progress progress_;
   std::unique_ptr<Engine<T>> engine_;
   Schedule<T> plan_;
-  std::optional<T> inspected_;                               // the last time inspected
-  std::uint64_t snapshots_ = 0, profiles_ = 0, masses_ = 0;  // tables written
-  SeriesRecorder<T> series_;
-  HeaviestRecorder<T> heaviest_;
-  std::optional<ZoneAverage> zone_;
-  std::optional<TimeAverages> averages_;
-  std::optional<HistogramRecorder<T>> histograms_;
-  std::optional<CorrelationRecorder<T>> correlations_;
-  std::optional<WordRecorder> word_;
-  ScenarioWatch scenario_;
-  EventRecorder<T> events_;
+  std::optional<T> inspected_;  // the last time inspected
+  Measurements<T> measurements_;
   Observer<T> observer_;
   RunGuards<T> guards_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
@@ -309,7 +290,6 @@ template <Real T> class SceneRunIn final : public SceneRun {
   T end_;
   bool at_collision_ = false;  // the state is the one right after the last collision
   std::optional<Configuration<T>> now_;
-  std::optional<RunOutcome> over_;
   std::optional<Error> failed_;
 };
 
@@ -318,6 +298,3 @@ template <class T> std::unique_ptr<SceneRun> begin_in(const Scene& scene, const 
 }
 
 }  // namespace cradle::tools
-
-#include "cradle/tools/run/scene_run_end.hpp"
-#include "cradle/tools/run/scene_run_samples.hpp"

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "cradle/core/base/state_stream.hpp"
-#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/record/recorded.hpp"
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/ends.hpp"
 
 namespace cradle::tools {
@@ -32,22 +33,11 @@ struct RunStatus {
 /// The situation in which the state is to be kept.
 enum class RunIs { in_progress, interrupted, over };
 
-/// What the tables are for. A file has the decimals of types wider than a double, and averages that do not cover their
-/// whole time; what ends by an interruption is continued later. In numbers for statistics and proofs an interrupted run
-/// has its last state instead.
-enum class Tables { for_numbers, for_file };
-
-class Sink {
+class Sink : public TableSink {
  public:
-  explicit Sink(Tables tables) : tables_(tables) {}
-  Sink(const Sink&) = delete;
-  Sink& operator=(const Sink&) = delete;
-  virtual ~Sink() = default;
+  using TableSink::add;
+  using TableSink::TableSink;
 
-  bool for_file() const { return tables_ == Tables::for_file; }
-
-  /// Appends rows to the table of that name; the columns are those of the table.
-  virtual void add(Group&& rows) = 0;
   /// The run is over, and has added all its tables. `attributes` are those of the result.
   virtual void end(std::vector<Attribute>&& attributes, RunEnd how) = 0;
 
@@ -68,7 +58,6 @@ class Sink {
  private:
   static constexpr std::uint64_t collisions_between_checks = 1 << 13;  // of the clock
 
-  Tables tables_;
   std::uint64_t next_check_ = 0;
 };
 
@@ -76,19 +65,16 @@ class MemorySink : public Sink {
  public:
   explicit MemorySink(Tables tables = Tables::for_numbers) : Sink(tables) {}
 
+  using Sink::add;
   void add(Group&& rows) override { tables_.add(std::move(rows)); }
   void end(std::vector<Attribute>&& attributes, RunEnd) override { attributes_ = std::move(attributes); }
 
   std::vector<Group>& tables() { return tables_.tables(); }
   /// Of a run that is over.
-  Result result() const& { return MemorySink::result(GrowingTables(tables_), std::vector(attributes_)); }
-  Result result() && { return MemorySink::result(std::move(tables_), std::move(attributes_)); }
+  Result result() const& { return {attributes_, in_order(GrowingTables(tables_))}; }
+  Result result() && { return {std::move(attributes_), in_order(std::move(tables_))}; }
 
  private:
-  static Result result(GrowingTables&& tables, std::vector<Attribute>&& attributes) {
-    return {std::move(attributes), std::move(tables).in_order()};
-  }
-
   GrowingTables tables_;
   std::vector<Attribute> attributes_;
 };

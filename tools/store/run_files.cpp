@@ -146,7 +146,7 @@ void RunFiles::end(std::vector<Attribute>&& attributes, RunEnd how) {
   const auto gathered = [&](Reading reading) {
     GrowingTables tables(reading);
     pieces(reading == Reading::everything, [&](Group&& rows) { tables.add(std::move(rows)); });
-    return Result{attributes, std::move(tables).in_order()};
+    return Result{attributes, in_order(std::move(tables))};
   };
   // A number takes at least eight bytes in the journal, so few journals must be read twice.
   const std::uint64_t most = (journal_ ? journal_->bytes() / 8 : 0) + numbers_in(waiting_.tables());

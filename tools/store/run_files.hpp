@@ -20,7 +20,7 @@
 #include <optional>
 #include <string>
 
-#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/store/checkpoint.hpp"

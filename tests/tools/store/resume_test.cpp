@@ -332,6 +332,19 @@ TEST_F(Resuming, ARunThatHasNothingToLoseWritesItsFileAlone) {
   EXPECT_TRUE(contents(file("a0.h5")) == contents(file("a1e-9.h5"))) << "other bytes";
 }
 
+// What is tabled at the end is of the whole run: of a longer one it is made anew.
+TEST_F(Resuming, TheWordOfALongerRunIsWrittenOnce) {
+  const Scene scene = parse_scene("law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\nrun.until = 50\n"
+                                  "initial = { type = 'list', x = [0, 1, 2.3], v = [1, 0, -1.1] }\n"
+                                  "walls = { left = { position = -1 }, right = { position = 4 } }\n"
+                                  "output = { series.every = 10, word = 'any', events = true }\n",
+                                  "scene.toml", {from_the_start});
+  begin("a.h5", scene, {}, 1);
+  ASSERT_EQ(resume("a.h5", "80", {}, 1).end, RunEnd::reached);
+  begin("alone.h5", scene_in(read_result(file("a.h5")).attributes, ""), {}, 1);
+  EXPECT_TRUE(contents(file("alone.h5")) == contents(file("a.h5"))) << "other bytes";
+}
+
 // A run whose result could not be written is finished before it is extended: its last sample belongs to its end.
 TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
   const Scene scene = parse_scene(dry(rows, ""), "scene.toml", {from_the_start});

@@ -230,10 +230,10 @@ PYBIND11_MODULE(_live, module) {
       .def_property_readonly("precision", reads([](SceneRun& run) { return precision_name(run.scene().run); }))
       .def_property_readonly("collisions", reads([](SceneRun& run) { return run.counts().collisions; }))
       .def_property_readonly("merges", reads([](SceneRun& run) { return run.counts().merges; }))
-      .def_property_readonly("time", reads([](SceneRun& run) { return run.time(); }))
-      .def_property_readonly("time_text", reads([](SceneRun& run) { return run.time_text(); }))
-      .def_property_readonly("energy", reads([](SceneRun& run) { return run.energy(); }))
-      .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.energy_text(); }))
+      .def_property_readonly("time", reads([](SceneRun& run) { return run.time().value; }))
+      .def_property_readonly("time_text", reads([](SceneRun& run) { return run.time().text; }))
+      .def_property_readonly("energy", reads([](SceneRun& run) { return run.energy().value; }))
+      .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.energy().text; }))
       // None while the run is in progress, then how it ended: the outcome, the exit status of `cradle run`, what that
       // prints, and its warning.
       .def_property_readonly("over", reads([](SceneRun& run) -> py::object {

@@ -41,12 +41,12 @@ class ZoneAverage {
       throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 16 samples at least");
   }
 
-  // If the loop is stopped, nothing is added (WalkStopped, see for_each_particle).
+  // Finds the particles of a sample, which add_found() then adds. If the loop is stopped, it throws WalkStopped (see
+  // for_each_particle).
   template <Real T>
-  void add(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
-           const std::function<bool()>& stopped = {}) {
-    const std::size_t at = taken_ * parts / samples_;
-    Part part = part_.at(at);
+  void find(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
+            const std::function<bool()>& stopped = {}) {
+    Part& part = found_ = part_.at(taken_ * parts / samples_);
     const auto count = [&](double x, double v, double m) {
       const std::size_t bin = detail::bin_at((x + reach_) / (2 * reach_) * static_cast<double>(bins_), bins_);
       part.mass[bin] += m;
@@ -56,7 +56,9 @@ class ZoneAverage {
     };
     for_each_particle(c, particles, elapsed, {-reach_, reach_}, count, stopped);
     ++part.samples;
-    part_[at] = std::move(part);
+  }
+  void add_found() {
+    part_[taken_ * parts / samples_] = std::move(found_);
     ++taken_;
   }
 
@@ -151,6 +153,7 @@ class ZoneAverage {
   std::size_t bins_, samples_, taken_ = 0;
   double row_mass_;
   std::vector<Part> part_;
+  Part found_;  // the part of a sample that has been found, with it
 };
 
 }  // namespace cradle

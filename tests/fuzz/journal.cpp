@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       auto record = tools::from_bytes<tools::RunRecord>(rest);
       if (auto* pieces = std::get_if<std::vector<tools::Group>>(&record))
         for (tools::Group& rows : *pieces) tables.add(std::move(rows));
-      std::move(tables).in_order();
+      tools::in_order(std::move(tables));
       break;
     }
     default: {

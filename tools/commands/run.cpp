@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 #include "cradle/tools/commands/run_command.hpp"
@@ -19,22 +18,20 @@ namespace {
 
 struct RunArguments : CommonOptions, OutputOptions {};
 
-std::string summary(const RunOutcome& run, std::uint64_t collisions_before, double seconds) {
+std::string summary(const RunOutcome& run, std::uint64_t collisions_before) {
   const int digits = std::clamp(static_cast<int>(run.energy_digits), 1, 10);
   return fmt::format("{}: t = {}, {} collisions, energy {:.{}g}{}, {:.2f} s, {:.1f} million collisions/s\n",
                      end_row(run.end).text, run.time, run.collisions, run.energy, digits,
-                     run.energy_digits < 1 ? " (rounding)" : "", seconds,
-                     static_cast<double>(run.collisions - collisions_before) / seconds * 1e-6);
+                     run.energy_digits < 1 ? " (rounding)" : "", run.seconds,
+                     static_cast<double>(run.collisions - collisions_before) / run.seconds * 1e-6);
 }
 
 }  // namespace
 
 Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt) {
-  const auto started = std::chrono::steady_clock::now();
   const Threads threads(options.threads);
-  RunOutcome end = run_scene(files.scene(), {options.show(), nullptr, &interrupt, workers(threads), &files});
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  const std::string text = summary(end, files.collisions_before(), seconds);
+  const RunOutcome end = run_scene(files.scene(), {options.show(), nullptr, &interrupt, workers(threads)}, files);
+  const std::string text = summary(end, files.collisions_before());
   if (end.end == RunEnd::interrupted) {
     tools::notify(end.warning);
     tools::notify(
@@ -46,7 +43,6 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
     if (!options.quiet) fmt::print("{}", text);
     return status_of_signal(interrupt.signal());
   }
-  files.finish(std::move(end.result), end.end);
   fmt::print("{}", end.report);
   notify(end.warning);
   if (!options.quiet) fmt::print("{}wrote {}\n", text, output);

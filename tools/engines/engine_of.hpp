@@ -20,6 +20,17 @@
 
 namespace cradle::tools {
 
+/// When a run of the scene stops by itself.
+template <Real T> Policy<T> policy_of(const Scene& scene) {
+  Policy<T> policy;
+  // Elastic particles collapse only against a wall that loses energy; particles that stick do not collapse.
+  if (stops_at_collapse(scene) &&
+      (scene.law.restitution < Decimal("1") || scene.walls.left.dissipates() || scene.walls.right.dissipates()))
+    policy.collapse = cradle::CollapsePolicy::stop;
+  if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
+  return policy;
+}
+
 // MergingLaw: particles merge or pass through each other. BouncingLaw: they bounce.
 template <Real T> using MergingLaw = OneOf<Wet<T>, InelasticMerging<T>>;
 template <Real T> using BouncingLaw = OneOf<Inelastic<T>, SpeedDependent<T>, ContactTime<T>>;

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "cradle/tools/ensemble/crew.hpp"
-#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
@@ -21,7 +21,9 @@ struct EnsembleOptions {
   Force force = Force::no;                               // begin anew, and replace what is there
   std::uint64_t journal_bytes = std::uint64_t{1} << 26;  // a larger journal is rewritten as statistics
   /// Runs the scene of one replica. If it throws, that replica has failed.
-  std::function<RunOutcome(const Scene&, const RunOptions&)> runner = run_scene;
+  std::function<RunOutcome(const Scene&, const RunOptions&)> runner = [](const Scene& scene, const RunOptions& how) {
+    return run_scene(scene, how);
+  };
 };
 
 struct EnsembleOutcome {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
@@ -10,6 +11,13 @@ namespace cradle::tools {
 namespace {
 
 constexpr const char* below = "replicas/";
+
+bool is_kept(std::string_view table) {
+  const auto rows = measurement_rows();
+  return std::any_of(rows.begin(), rows.end(), [&](const MeasurementRow* row) {
+    return row->kept && table.starts_with(std::string(row->name) + "/");
+  });
+}
 
 using Rows = std::vector<std::uint64_t>;
 
@@ -36,7 +44,7 @@ Group emptied(const Group& table, std::string name) {
 ReplicaTables kept_tables(ReplicaIndex replica, const Result& run) {
   ReplicaTables kept;
   for (const Group& group : run.groups) {
-    if (!group.name.starts_with("snapshots/") && !group.name.starts_with("profiles/")) continue;
+    if (!is_kept(group.name)) continue;
     const std::size_t rows = group.columns.front().rows();
     Group table{below + group.name, {}, {{"replica", "1", "initial.replica of the run", Rows(rows, replica)}}};
     for (const Attribute& attribute : group.attributes)
@@ -67,8 +75,7 @@ std::vector<Group> joined_tables(const KeptReplicas& kept, const std::string& fo
 KeptReplicas separated_tables(const Result& result, const std::string& folder, const std::string& file) {
   KeptReplicas kept;
   for (const Group& table : result.groups) {
-    if (!table.name.starts_with(folder + below + "snapshots/") && !table.name.starts_with(folder + below + "profiles/"))
-      continue;
+    if (!table.name.starts_with(folder + below) || !is_kept(table.name.substr((folder + below).size()))) continue;
     const Rows* replica = table.columns.empty() ? nullptr : std::get_if<Rows>(&table.columns.front().values);
     const bool whole =
         replica != nullptr && std::all_of(table.columns.begin(), table.columns.end(),

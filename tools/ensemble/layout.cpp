@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/scene/laws.hpp"
-#include "cradle/tools/record/tables.hpp"
 
 namespace cradle::tools {
 
@@ -40,6 +40,14 @@ std::size_t samples_taken(const Column& time, const std::vector<double>& planned
 
 bool ended_early(RunEnd outcome) { return end_row(outcome).status == Exit::collapse || outcome == RunEnd::exhausted; }
 
+// The measurements that ensembles of a scene average, with their numbers.
+std::vector<std::pair<std::size_t, const MeasurementRow*>> measured(const Scene& scene) {
+  std::vector<std::pair<std::size_t, const MeasurementRow*>> rows;
+  for (const MeasurementRow* row : measurement_rows())
+    if (row->averaged && row->wanted(scene)) rows.emplace_back(row_number(row->name), row);
+  return rows;
+}
+
 constexpr const char* collapse_time = "collapse_time";
 
 }  // namespace
@@ -47,10 +55,8 @@ constexpr const char* collapse_time = "collapse_time";
 Scene replica_scene(const Scene& scene, std::uint64_t index) {
   Scene replica = scene;
   replica.initial.replica = index;
-  if (!scene.output.every_replica) replica.output.snapshots.clear();
-  replica.output.masses.clear();
-  replica.output.events = false;
-  replica.output.word.reset();
+  for (const MeasurementRow* row : measurement_rows())
+    if (!row->averaged && !(row->kept && scene.output.every_replica)) row->leave_out(replica.output);
   return replica;
 }
 
@@ -67,19 +73,20 @@ void check_ensemble(const Scene& scene) {
 ReplicaLayout replica_layout(const Scene& scene) {
   check_ensemble(scene);
   const PlannedTimes times = planned_times(scene);
-  const RunTables tables = run_tables(scene);
   ReplicaLayout layout;
   const auto add = [&](const Column& column, const std::string& group, std::size_t rows) {
     layout.quantities.push_back(
         {group, column.name, column.unit, column.description, layout.entries, rows, column.width});
     layout.entries += layout.quantities.back().size();
   };
-  for (const Group& group : tables.series)
-    for (const Column& column : group.columns)
-      if (column.name == "time")
-        layout.time = column;
-      else if (!column.names)
-        add(column, group.name, times.series.size());
+  const auto rows = measured(scene);
+  for (const auto& [number, row] : rows)
+    for (const Group& group : row->growing ? row->growing(scene) : std::vector<Group>())
+      for (const Column& column : group.columns)
+        if (column.name == "time")
+          layout.time = column;
+        else if (!column.names)
+          add(column, group.name, times.series.size());
   layout.time.values = times.series;
   const auto add_binned = [&](const Group& table, const std::string& group, std::vector<Attribute> attributes) {
     layout.binned.push_back({group, std::move(attributes), {}});
@@ -90,29 +97,19 @@ ReplicaLayout replica_layout(const Scene& scene) {
       else if (!column.name.ends_with("_sem"))  // of one run; the replicas have one of their own
         add(column, group, bins.front().rows());
   };
-  const auto add_at = [&](const std::optional<Group>& table, const char* folder, const std::vector<double>& at) {
-    for (std::size_t k = 0; k < at.size(); ++k)
-      add_binned(table.value(), fmt::format("{}/{:04}", folder, k), {{"time", at[k]}});
-  };
-  add_at(tables.profile, "profiles", times.profiles);
-  add_at(tables.structure, "structure", times.structure);
-  add_at(tables.pair_distribution, "pair_distribution", times.pair_distribution);
-  if (tables.zone)
-    add_binned(*tables.zone, "zone", {{"from", scene.output.zone.from->value}, {"until", scene.run.until.value}});
-  const Output& output = scene.output;
-  const auto add_mean = [&](const std::optional<Group>& table, const auto& wanted) {
-    if (table) add_binned(*table, table->name, {{"from", wanted.from.value}, {"until", wanted.until.value}});
-  };
-  add_mean(tables.averages, output.averages);
-  for (const Group& table : tables.histograms)
-    add_binned(table, table.name, {{"from", output.counting.from.value}, {"until", output.counting.until.value}});
-  add_mean(tables.correlations, output.correlations);
-  add_mean(tables.structure_average, output.structure);
-  add_mean(tables.pair_distribution_average, output.pair_distribution);
+  for (const auto& [number, row] : rows)
+    if (row->table_at)
+      for (std::size_t k = 0; k < times.tables[number].size(); ++k)
+        add_binned(row->table_at(scene), fmt::format("{}/{:04}", row->name, k), {{"time", times.tables[number][k]}});
+  for (const auto& [number, row] : rows)
+    if (row->tables_at_end)
+      for (const Group& table : row->tables_at_end(scene)) add_binned(table, table.name, table.attributes);
   layout.numbers.push_back({"energy", "m l^2/t^2", "kinetic energy at the end", {}});
   if (stops_at_collapse(scene))
     layout.numbers.push_back({collapse_time, "t", "time of inelastic collapse; NaN: there was none", {}});
-  for (const std::string& name : tables.summary) layout.numbers.push_back({name, "", "of the whole run", {}});
+  for (const auto& [number, row] : rows)
+    if (row->summary)
+      for (const std::string& name : row->summary(scene)) layout.numbers.push_back({name, "", "of the whole run", {}});
   return layout;
 }
 

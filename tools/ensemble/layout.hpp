@@ -1,7 +1,7 @@
 // What the numbers of a replica mean. A replica is one vector of doubles: the columns that a run of the scene records
 // in its series, profiles, zone, averages, histograms and correlations, one after the other. Ensembles keep statistics
 // of this vector. Times and bins are the same in all replicas, so they are stored here. The tables of a run
-// (record/tables.hpp) say which columns there are.
+// (record/rows.hpp) say which columns there are.
 #pragma once
 
 #include <cstddef>

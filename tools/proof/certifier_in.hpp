@@ -163,13 +163,13 @@ template <class M> class CertifierIn final : public Certifier {
     if (state.doubt) {
       // A collision just at the time of a sample leaves that open, not what comes after.
       if (!asked.last) return;
-      certificate_.doubt = reported(*state.doubt, sample.time);
+      certificate_.doubt = reported(*state.doubt, sample.time.value);
     } else {
       compare(sample, asked, time, state, of_series);
     }
     if (certificate_.doubt) throw ProofEnds();
     add_sample(sample, asked, state);
-    if (asked.of_snapshots) add_snapshot(time, sample.time);
+    if (asked.of_snapshots) add_snapshot(time, sample.time.value);
   }
 
   // All that the run has of what is proved of it. A collision on the wrong side of a threshold need not change their
@@ -191,10 +191,10 @@ template <class M> class CertifierIn final : public Certifier {
     if (!law_.elastic || particles_->fall())
       run.count("collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
     if (sample.at_collision)
-      run.number("time of the last collision", sample.time_text, start_ + state.time,
+      run.number("time of the last collision", sample.time.text, start_ + state.time,
                  time_error(errors, since, static_cast<long double>(state.closing.least_size())));
     else
-      run.number("time of the sample", sample.time_text, number<N>(asked.time), 8 * sample.epsilon * since);
+      run.number("time of the sample", sample.time.text, number<N>(asked.time), 8 * sample.epsilon * since);
     run.number("energy", sample.energy, state.energy, errors.energy);
     run.place("front_left", sample.front_left, state.front_left);
     run.place("front_right", sample.front_right, state.front_right);
@@ -202,7 +202,7 @@ template <class M> class CertifierIn final : public Certifier {
     compare_wall(sample.walls[1], state.walls[1], "right", run);
     if (asked.of_snapshots) compare_particles(sample.particles, time, run);
     if (of_series) add_series(sample, asked, state);
-    if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time);
+    if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time.value);
   }
 
   // The rows of the file's tables that are proved at this time.
@@ -315,7 +315,7 @@ template <class M> class CertifierIn final : public Certifier {
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
     // That of a collision is the exact system's, which has made it by then.
     const N last = start_ + state.time;
-    CertainSample proved_sample{sample.at_collision ? to_double(last) : sample.time,
+    CertainSample proved_sample{sample.at_collision ? to_double(last) : sample.time.value,
                                 sample.at_collision ? in_decimals(last).high : asked.time.text,
                                 asked.of_series,
                                 checker_.proved().collisions,

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include "cradle/core/observe/trace.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/observe/trace.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/precision/double_double.hpp"
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/proof/certify.hpp"
+#include "cradle/tools/scene/laws.hpp"
 
 namespace cradle::tools {
 
@@ -39,8 +39,8 @@ class TraceObserver final : public RunObserver {
   void collision(ParticleIndex left, ParticleIndex right, double) override { trace_.collision(left, right); }
   void sample(const RunSample& sample) override {
     if (sample.of_series || sample.at_collision)
-      samples.push_back({sample.time, trace_.digest(), sample.counts.collisions, sample.counts.merges, sample.energy,
-                         sample.front_right});
+      samples.push_back({sample.time.value, trace_.digest(), sample.counts.collisions, sample.counts.merges,
+                         sample.energy, sample.front_right});
   }
   std::vector<TraceSample> samples;
 

@@ -1,49 +1,94 @@
-// Collects what the histograms of a scene count (core/observe/histograms.hpp), and puts it into their tables.
+// Histograms of collisions, gaps and clusters (core/observe/histograms.hpp).
 #pragma once
 
-#include <memory>
-#include <optional>
+#include <array>
+#include <limits>
 #include <string_view>
-#include <vector>
 
 #include "cradle/core/observe/histograms.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {
 
-template <Real T> class HistogramRecorder {
- public:
-  HistogramRecorder(const Scene& scene, ParticleIndex particles)
-      : scene_(scene), collisions_(number<T>(scene.output.counting.from), number<T>(scene.output.counting.until),
-                                   histogram_bins("closing_speed", scene), particles,
-                                   wanted("free_flight") || wanted("pair_flight") || wanted("collisions_per_particle")),
-        gaps_(histogram_bins("gap", scene)), clusters_(histogram_bins("cluster", scene)) {}
+struct HistogramRow {
+  std::string_view name;
+  const char *unit, *text;
+  bool of_numbers = true;  // else it counts whole numbers
+};
+inline constexpr std::array<HistogramRow, 7> histogram_rows{
+    {{"free_flight", "t", "times between two collisions of a particle"},
+     {"pair_flight", "t", "times between two collisions of a pair"},
+     {"closing_speed", "l/t", "closing speeds before collisions of two particles"},
+     {"dissipative_closing_speed", "l/t",
+      "those of collisions by the law, neither below the cut-off nor within the contact time"},
+     {"collisions_per_particle", "1", "particles, by their number of collisions", false},
+     {"gap", "l", "gaps between neighbours"},
+     {"cluster", "1", "clusters, by their number of particles; single ones included", false}}};
 
-  /// Call it before the next collision, and before anything is saved or taken.
+inline OctaveBins histogram_bins(bool of_numbers, const Scene& scene) {
+  const auto& range = scene.output.counting.range;
+  return of_numbers ? OctaveBins::of_numbers(range[0].value, range[1].value) : OctaveBins::of_counts();
+}
+
+inline std::vector<Group> histogram_tables(const Scene& scene) {
+  std::vector<Group> tables;
+  for (const HistogramRow& row : histogram_rows) {
+    if (!scene.output.has_histogram(row.name)) continue;
+    std::vector<double> low = histogram_bins(row.of_numbers, scene).low(), high(low.begin() + 1, low.end());
+    high.push_back(std::numeric_limits<double>::infinity());
+    tables.push_back({"histograms/" + std::string(row.name),
+                      span_of(scene.output.counting),
+                      {{"low", row.unit, "where the bin begins", std::move(low)},
+                       {"high", row.unit, "where it ends", std::move(high)},
+                       {"count", "1", row.text, {}}}});
+  }
+  return tables;
+}
+
+template <Real T> class HistogramMeasurement {
+ public:
+  static constexpr MeasurementRow row{
+      .name = "histograms",
+      .at_end = "histograms",
+      .wanted = [](const Scene& scene) { return !scene.output.histograms.empty(); },
+      .leave_out = [](Output& output) { output.histograms.clear(); },
+      .samples = [](const Scene& scene) { return samples_of(scene.output.counting); },
+      .observes = [](const Scene& scene) { return scene.output.observes_collisions(); },
+      .tables_at_end = histogram_tables,
+      .of_many_collisions = true,
+  };
+
+  explicit HistogramMeasurement(const Measured& of)
+      : scene_(of.scene), until_(number<T>(of.scene.output.counting.until)),
+        collisions_(number<T>(of.scene.output.counting.from), until_, histogram_bins(true, of.scene), of.particles,
+                    wanted("free_flight") || wanted("pair_flight") || wanted("collisions_per_particle")),
+        gaps_(histogram_bins(true, of.scene)), clusters_(histogram_bins(false, of.scene)) {}
+
   void made(const Counts& now) { collisions_.made(now); }
-  void operator()(const Collision<T>& c) { collisions_(c); }
-  /// At a time of counting.
-  void add(const Configuration<T>& now) {
-    for (const T& gap : now.gap) gaps_.add(to_double(gap));
+  void collision(const Collision<T>& c) { collisions_(c); }
+  void record(const MomentIn<T>& now, const Due&, TableSink&) {
+    for (const T& gap : now.configuration().gap) gaps_.add(to_double(gap));
     if (wanted("cluster"))
-      for_each_cluster(now, number<T>(*scene_.output.counting.cluster_gap),
+      for_each_cluster(now.configuration(), number<T>(*scene_.output.counting.cluster_gap),
                        [&](std::size_t particles) { clusters_.add(static_cast<double>(particles)); });
   }
-
-  std::vector<Group> tables() const {
-    std::vector<Group> all;
-    const auto put = [&](std::string_view name, const OctaveHistogram& histogram) {
-      if (wanted(name)) all.push_back(histogram_result(name, histogram, scene_));
-    };
-    put("free_flight", collisions_.free_flights);
-    put("pair_flight", collisions_.pair_flights);
-    put("closing_speed", collisions_.closing_speeds);
-    put("dissipative_closing_speed", collisions_.dissipative_speeds);
-    put("collisions_per_particle", collisions_.collisions_per_particle());
-    put("gap", gaps_);
-    put("cluster", clusters_);
-    return all;
+  void finish(const MomentIn<T>& now, TableSink& put) {
+    if (!put.for_file() && now.time.value < until_) return;
+    const OctaveHistogram per_particle = collisions_.collisions_per_particle();
+    const std::array<const OctaveHistogram*, histogram_rows.size()> all{&collisions_.free_flights,
+                                                                        &collisions_.pair_flights,
+                                                                        &collisions_.closing_speeds,
+                                                                        &collisions_.dissipative_speeds,
+                                                                        &per_particle,
+                                                                        &gaps_,
+                                                                        &clusters_};
+    std::vector<Group> tables = histogram_tables(scene_);
+    auto table = tables.begin();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (!wanted(histogram_rows[k].name)) continue;
+      table->columns.back().values = all[k]->counts();
+      put.add(std::move(*table++));
+    }
   }
 
   static auto state(auto& self) { return std::tie(self.collisions_, self.gaps_, self.clusters_); }
@@ -52,6 +97,7 @@ template <Real T> class HistogramRecorder {
   bool wanted(std::string_view name) const { return scene_.output.has_histogram(name); }
 
   const Scene& scene_;
+  T until_;
   CollisionHistograms<T> collisions_;
   OctaveHistogram gaps_, clusters_;
 };

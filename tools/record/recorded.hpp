@@ -13,11 +13,27 @@
 
 #include "cradle/core/base/real.hpp"
 #include "cradle/precision/text.hpp"
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/result/result.hpp"
+#include "cradle/tools/scene/decimal.hpp"
 
 namespace cradle::tools {
 
+/// Puts the numbers into the columns of a table, in order. Throws std::logic_error if their number differs.
+Group filled(Group table, std::vector<Numbers> columns);
+template <class... Values> Group filled(Group table, Values&&... values) {
+  std::vector<Numbers> columns;
+  (columns.push_back(Numbers(std::forward<Values>(values))), ...);
+  return filled(std::move(table), std::move(columns));
+}
+
 template <Real T> T none() { return std::numeric_limits<T>::quiet_NaN(); }
+
+/// A number of any type, for code that is the same for all: the nearest double, and all digits.
+struct Number {
+  double value = 0;
+  std::string text = "0";
+};
+template <Real T> Number number_of(const T& x) { return {to_double(x), to_text(x)}; }
 
 /// A number that the scene gives, rounded once to the run's type and once to a double.
 template <Real T> struct Given {
@@ -30,6 +46,9 @@ template <Real T> struct Given {
     rounded = from_text<double>(decimal);
     if (decimal.size() < text.size() && Decimal(decimal) != Decimal(text)) text = decimal;
   }
+
+  Number number() const { return {rounded, text}; }
+  static auto state(auto& self) { return std::tie(self.value, self.rounded, self.text); }
 };
 
 /// Columns of a table, or some of them: numbers of the run's type, those that the scene gives, and others that a double
@@ -47,6 +66,11 @@ template <class Item> void append(std::vector<Item>& all, std::vector<Item>&& mo
 
 /// The folder for numbers that a double does not hold completely; doubles have none.
 template <Real T> inline constexpr std::string_view exact_part = std::same_as<T, double> ? "" : exact_folder;
+
+/// What the tables are for. A file has the decimals of types wider than a double, and averages that do not cover their
+/// whole time; what ends by an interruption is continued later. In numbers for statistics and proofs an interrupted run
+/// has its last state instead.
+enum class Tables { for_numbers, for_file };
 
 /// Rows of a table in the run's type.
 template <Real T> struct Recorded {
@@ -97,13 +121,25 @@ template <Real T> Group as_doubles(Recorded<T>&& rows) {
   return filled(std::move(rows.table), std::move(all));
 }
 
-/// The tables for a result. `exact`: also the decimals, if the type has more digits than a double.
-template <Real T> std::vector<Group> tables(Recorded<T>&& rows, bool exact) {
-  std::vector<Group> all;
-  if (!exact_part<T>.empty() && exact) all.push_back(as_decimals(rows));
-  all.push_back(as_doubles(std::move(rows)));
-  return all;
-}
+/// Takes the tables of a run.
+class TableSink {
+ public:
+  explicit TableSink(Tables tables) : tables_(tables) {}
+  TableSink(const TableSink&) = delete;
+  TableSink& operator=(const TableSink&) = delete;
+  virtual ~TableSink() = default;
+
+  bool for_file() const { return tables_ == Tables::for_file; }
+  /// Appends rows to the table of that name; the columns are those of the table.
+  virtual void add(Group&& rows) = 0;
+  template <Real T> void add(Recorded<T>&& rows) {
+    if (!exact_part<T>.empty() && for_file()) add(as_decimals(rows));
+    add(as_doubles(std::move(rows)));
+  }
+
+ private:
+  Tables tables_;
+};
 
 /// Returns the contents and leaves the container empty.
 template <class Numbers> Numbers taken(Numbers& numbers) { return std::exchange(numbers, Numbers()); }

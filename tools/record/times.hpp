@@ -17,7 +17,8 @@ struct RequestedTime {
 /// The times of the series and of tables at times, and the end, as results store them: rounded from the run's
 /// precision.
 struct PlannedTimes {
-  std::vector<double> series, profiles, structure, pair_distribution;
+  std::vector<double> series;
+  std::vector<std::vector<double>> tables;  // of each measurement, as measurement_rows() has them
   double until = 0;
 };
 

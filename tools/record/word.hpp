@@ -10,19 +10,26 @@
 
 #include "cradle/core/observe/collision_word.hpp"
 #include "cradle/core/words/followed.hpp"
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {
 
-class WordRecorder {
+class WordMeasurement {
  public:
-  explicit WordRecorder(const Scene& scene)
-      : word_(*scene.output.word), wall_(scene.walls.left.position ? 1 : 0), gaps_(scene.gaps()) {
+  static constexpr MeasurementRow row{
+      .name = "word",
+      .at_end = "sequence",
+      .wanted = [](const Scene& scene) { return scene.output.word.has_value(); },
+      .leave_out = [](Output& output) { output.word.reset(); },
+      .averaged = false,
+  };
+
+  explicit WordMeasurement(const Measured& of)
+      : word_(*of.scene.output.word), wall_(of.scene.walls.left.position ? 1 : 0), gaps_(of.scene.gaps()) {
     if (word_ != any_word) followed_.emplace(words::read_word(word_, gaps_), gaps_);
   }
 
-  /// `left` is the left particle of the collision, or -1 for a wall on the left.
-  void add(ParticleIndex left, double time) {
+  void collision(ParticleIndex left, ParticleIndex, double time) {
     const auto gap = static_cast<std::size_t>(left + wall_);
     made_.add(gap, time);
     if (!followed_ || !followed_->follows()) return;
@@ -30,6 +37,11 @@ class WordRecorder {
     if (!followed_->follows()) left_at_ = time;
   }
 
+  void finish(const Moment&, TableSink& put) { put.add(table()); }
+
+  static auto state(auto& self) { return std::tie(self.made_, self.followed_, self.left_at_); }
+
+ private:
   Group table() const {
     std::vector<std::string> letters;
     std::vector<std::uint64_t> repeats, first;
@@ -38,8 +50,12 @@ class WordRecorder {
       letters.push_back(std::move(block.letters)), repeats.push_back(block.repeats);
       first.push_back(block.first), time.push_back(block.time);
     }
-    Group table = filled(sequence_table(), std::move(letters), std::move(repeats), std::move(first), std::move(time));
-    table.attributes = {{"gaps", std::uint64_t{gaps_}}};
+    Group table{"sequence",
+                {{"gaps", std::uint64_t{gaps_}}},
+                {{"letters", "1", "gaps from the left that close one after the other", std::move(letters)},
+                 {"repeats", "1", "how often these letters follow each other", std::move(repeats)},
+                 {"first", "1", "number of the first of these collisions, from 0", std::move(first)},
+                 {"time", "t", "time of that collision, rounded", std::move(time)}}};
     if (!followed_) return table;
     for (const Attribute& attribute :
          {Attribute("word", word_), Attribute("kept", followed_->kept()), Attribute("periods", followed_->periods()),
@@ -48,9 +64,6 @@ class WordRecorder {
     return table;
   }
 
-  static auto state(auto& self) { return std::tie(self.made_, self.followed_, self.left_at_); }
-
- private:
   std::string word_;
   ParticleIndex wall_;
   std::size_t gaps_;

@@ -1,7 +1,6 @@
 #include "cradle/tools/result/growing_tables.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <type_traits>
 
@@ -60,36 +59,6 @@ std::uint64_t numbers_in(const std::vector<Group>& tables) {
   for (const Group& table : tables)
     for (const Column& column : table.columns) numbers += column.rows() * column.width;
   return numbers;
-}
-
-std::vector<Group> GrowingTables::in_order() && {
-  const auto rank = [](const Group& table) -> std::ptrdiff_t {
-    static const std::array<std::string, 16> order{"series",
-                                                   "series/heaviest",
-                                                   "snapshots/",
-                                                   "profiles/",
-                                                   "masses/",
-                                                   "structure/",
-                                                   "pair_distribution/",
-                                                   "zone",
-                                                   "averages",
-                                                   "histograms/",
-                                                   "correlations",
-                                                   "structure_average",
-                                                   "pair_distribution_average",
-                                                   "scenario",
-                                                   "events",
-                                                   "collapse"};
-    const std::string_view of = rounded_name(table.name);
-    const bool exact = of != table.name;
-    const auto place =
-        std::find_if(order.begin(), order.end(),
-                     [&](const std::string& name) { return name.ends_with('/') ? of.starts_with(name) : of == name; }) -
-        order.begin();
-    return place + (exact ? std::ptrdiff_t{order.size()} + 1 : 0);
-  };
-  std::stable_sort(tables_.begin(), tables_.end(), [&](const Group& a, const Group& b) { return rank(a) < rank(b); });
-  return std::move(tables_);
 }
 
 }  // namespace cradle::tools

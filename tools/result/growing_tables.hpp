@@ -22,8 +22,6 @@ class GrowingTables {
   std::vector<Group>& tables() { return tables_; }
   /// The number of numbers that were added.
   std::uint64_t numbers() const { return numbers_; }
-  /// The tables in the order of results.
-  std::vector<Group> in_order() &&;
 
  private:
   Reading reading_;

@@ -3,13 +3,13 @@
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
+#include <chrono>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/theory/wet_clusters.hpp"
-#include "cradle/tools/record/schedule.hpp"
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/record/series.hpp"
 
 namespace cradle::tools {
 
@@ -69,11 +69,11 @@ class Recorder {
   double energy() const { return energy_.back(); }
   std::uint64_t merges() const { return total_merges_; }
 
-  void tables(std::vector<Group>& groups) && {
+  void put_tables(Sink& sink) && {
     auto tables = cluster_series_tables();
-    groups.push_back(filled(std::move(tables[0]), std::move(time_), std::move(energy_), std::move(lost_),
-                            std::move(collisions_), std::move(merges_)));
-    groups.push_back(filled(std::move(tables[1]), std::move(mass_), std::move(x_), std::move(v_), std::move(index_)));
+    sink.add(filled(std::move(tables[0]), std::move(time_), std::move(energy_), std::move(lost_),
+                    std::move(collisions_), std::move(merges_)));
+    sink.add(filled(std::move(tables[1]), std::move(mass_), std::move(x_), std::move(v_), std::move(index_)));
   }
 
  private:
@@ -131,7 +131,8 @@ Group meetings_table(const std::vector<theory::ClusterMeeting>& meetings) {
 
 }  // namespace
 
-RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
+RunOutcome run_clusters(const Scene& scene, const RunOptions& options, Sink& sink) {
+  const auto started = std::chrono::steady_clock::now();
   if (options.observer != nullptr)
     throw Error({"", 0, "initial.type"}, "no collisions to compare", "clusters, a model", "give a scene of particles");
   const auto zone = zone_of(scene);
@@ -139,7 +140,7 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
   const double loss = scene.initial.meeting == scene::Meeting::energy ? scene.law.loss.value : 0;
   Recorder recorder;
   RunOutcome end;
-  const Times<double> samples = series_times<double>(scene);
+  const Times<double> samples = times_of<double>(series_times(scene));
   for (const double time : samples.values()) {
     end.time = time;
     motion.advance(time);
@@ -157,14 +158,16 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options) {
   end.collisions = motion.meetings().size();
   end.merges = recorder.merges();
   end.energy = recorder.energy();
-  end.result.attributes = provenance(scene, precision_name(scene.run), end_row(end.end).text);
+  std::vector<Attribute> attributes = provenance(scene, precision_name(scene.run), end_row(end.end).text);
   for (const Attribute& attribute :
        {Attribute("integrator", std::string("Dormand-Prince 5(4), steps end where the force jumps")),
         Attribute("relative_tolerance", tolerance), Attribute("absolute_tolerance", tolerance)})  // x in L, v in u0
-    end.result.attributes.push_back(attribute);
-  std::move(recorder).tables(end.result.groups);
-  end.result.groups.push_back(meetings_table(motion.meetings()));
-  end.result.groups.push_back(force_table(zone));
+    attributes.push_back(attribute);
+  std::move(recorder).put_tables(sink);
+  sink.add(meetings_table(motion.meetings()));
+  sink.add(force_table(zone));
+  end.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  sink.end(std::move(attributes), end.end);
   return end;
 }
 

@@ -8,6 +8,6 @@ namespace cradle::tools {
 
 /// The result has the layout of any run (series, series/heaviest), and also the force (14) over twice the width of the
 /// zone and a table of the meetings of the clusters. Throws Error if collisions are requested (trust): there are none.
-RunOutcome run_clusters(const Scene& scene, const RunOptions& options);
+RunOutcome run_clusters(const Scene& scene, const RunOptions& options, Sink& sink);
 
 }  // namespace cradle::tools

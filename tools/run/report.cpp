@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
@@ -18,36 +19,39 @@ std::string place(ParticleIndex left) {
   return fmt::format("between particles {} and {}", left, left + 1);
 }
 
-// Seven digits of a number that may be far below the range of double.
-std::string brief(const Figure& x) {
-  if (x.value != 0 || x.zero) return fmt::format("{:.6e}", x.value);
-  const auto exponent = x.digits.find_first_of("eE");
-  return x.digits.substr(0, std::min<std::size_t>(exponent, 8)) + x.digits.substr(exponent);
-}
-
-// Two digits, rounded up, plus 20 % for the digits that are cut off from the number beside it.
-std::string error_text(const Figure& error) {
-  const double more = error.value * 1.2;
-  return more > 0 ? fmt::format("{:.1e}", more) : brief(error);
-}
-
 // The decimal exponent of a number's first digit; none for 0.
-std::optional<int> first_digit(const Figure& x) {
-  const auto exponent = x.digits.find_first_of("eE");
-  const std::string mantissa = x.digits.substr(0, exponent);
+std::optional<int> first_digit(const Number& x) {
+  const auto exponent = x.text.find_first_of("eE");
+  const std::string mantissa = x.text.substr(0, exponent);
   const auto first = mantissa.find_first_of("123456789");
   if (first == std::string::npos) return {};
   const auto point = std::min(mantissa.find('.'), mantissa.size());
   const int place = static_cast<int>(point) - static_cast<int>(first) - (first < point ? 1 : 0);
-  return place + (exponent == std::string::npos ? 0 : std::stoi(x.digits.substr(exponent + 1)));
+  return place + (exponent == std::string::npos ? 0 : std::stoi(x.text.substr(exponent + 1)));
+}
+
+// A double may be 0 where the number is not.
+bool is_zero(const Number& x) { return x.value == 0 && !first_digit(x); }
+
+// Seven digits of a number that may be far below the range of double.
+std::string brief(const Number& x) {
+  if (x.value != 0 || is_zero(x)) return fmt::format("{:.6e}", x.value);
+  const auto exponent = x.text.find_first_of("eE");
+  return x.text.substr(0, std::min<std::size_t>(exponent, 8)) + x.text.substr(exponent);
+}
+
+// Two digits, rounded up, plus 20 % for the digits that are cut off from the number beside it.
+std::string error_text(const Number& error) {
+  const double more = error.value * 1.2;
+  return more > 0 ? fmt::format("{:.1e}", more) : brief(error);
 }
 
 // "1.71428571428571428 +- 3.8e-15": the number down to a tenth of the error's first digit, if it has so many digits.
-std::string within(const Figure& x, const Figure& error) {
+std::string within(const Number& x, const Number& error) {
   const auto of_number = first_digit(x), of_error = first_digit(error);
-  if (!of_number || !of_error) return x.digits;
-  const auto exponent = x.digits.find_first_of("eE");
-  std::string mantissa = x.digits.substr(0, exponent);
+  if (!of_number || !of_error) return x.text;
+  const auto exponent = x.text.find_first_of("eE");
+  std::string mantissa = x.text.substr(0, exponent);
   const auto first = mantissa.find_first_of("123456789");
   auto wanted = std::max(*of_number - *of_error + 2, 1);
   std::size_t end = first;
@@ -55,7 +59,7 @@ std::string within(const Figure& x, const Figure& error) {
   if (const auto point = mantissa.find('.'); point != std::string::npos) end = std::max(end, point);
   mantissa.resize(std::min(end, mantissa.size()));
   // The cut-off part is less than a tenth of the error; error_text adds more than that.
-  return mantissa + (exponent == std::string::npos ? "" : x.digits.substr(exponent)) + " +- " + error_text(error);
+  return mantissa + (exponent == std::string::npos ? "" : x.text.substr(exponent)) + " +- " + error_text(error);
 }
 
 }  // namespace
@@ -74,15 +78,14 @@ std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t
   std::string text =
       r.settled ? fmt::format("inelastic collapse at t_c = {}\n", within(r.time, r.uncertainty))
       : end == RunEnd::small_gap
-          ? std::string("a gap fell below run.stop_gap: the run stops there as requested; that this is "
-                        "an inelastic collapse is not proved, and no time of it is known\n")
+          ? std::string("a gap fell below run.stop_gap: the run stops there as requested; that this is an inelastic "
+                        "collapse is not proved, and no time of it is known\n")
           : std::string("many particles collapse: a gap fell below 2^-100 of what the gap beside it was at the start, "
                         "where a run of more than 16 particles stops without run.stop_gap; that this is an inelastic "
                         "collapse is not proved, and no time of it is known\n");
-  text +=
-      fmt::format("  last collision t = {}, number {}, {}\n", r.last_collision.digits, collisions, place(r.particle));
+  text += fmt::format("  last collision t = {}, number {}, {}\n", r.last_collision.text, collisions, place(r.particle));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));
-  if (r.interval.value != 0 || !r.interval.zero)
+  if (!is_zero(r.interval))
     text += fmt::format("  interval       {} since the collision there before\n", brief(r.interval));
   if (r.settled)
     text += fmt::format("  ratio          {} of successive intervals there\n", within(r.ratio, r.ratio_uncertainty));
@@ -109,9 +112,11 @@ Group collapse_table(const ReportedCollapse& r) {
 namespace {
 
 // Whether the scene asks for averages over many collisions, to which the order of single ones does not matter.
-bool measures_averages(const Output& output) {
-  return output.averages.every || !output.histograms.empty() || output.correlations.every || output.structure.every ||
-         output.pair_distribution.every;
+bool measures_averages(const Scene& scene) {
+  const auto rows = measurement_rows();
+  return std::any_of(rows.begin(), rows.end(), [&](const MeasurementRow* row) {
+    return row->of_many_collisions && !row->tables_at_end(scene).empty();
+  });
 }
 
 // What keeps three particles from meeting at one time.
@@ -131,13 +136,13 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
   if (account.order_lost > 0)
     text += fmt::format(
         "order of collisions lost ({} times, first at t = {} {}, gap {:.3e}): use more digits (run.precision){}\n",
-        account.order_lost, account.first_order_lost.time, place(account.first_order_lost.particle),
+        account.order_lost, account.first_order_lost.time.text, place(account.first_order_lost.particle),
         account.first_order_lost.gap, run.coordinates == Coordinates::absolute ? " or run.coordinates = \"gaps\"" : "");
   if (account.unresolved > 0)
     text += fmt::format(
         "gaps below 1e6 units in the last place of x ({} collisions, first at t = {} {}, gap {:.3e}): results that "
         "depend on such gaps cannot be trusted; use run.coordinates = \"gaps\" or more digits\n",
-        account.unresolved, account.first_unresolved.time, place(account.first_unresolved.particle),
+        account.unresolved, account.first_unresolved.time.text, place(account.first_unresolved.particle),
         account.first_unresolved.gap);
   if (account.simultaneous > 0)
     text += fmt::format(
@@ -149,15 +154,14 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
         "collisions are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided "
         "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
         "system that starts a rounding away. {} more digits (run.precision), and `cradle trust` to see how many\n",
-        account.first_uncertain.time, account.first_uncertain.gap, place(account.first_uncertain.particle),
+        account.first_uncertain.time.text, account.first_uncertain.gap, place(account.first_uncertain.particle),
         std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run),
-        measures_averages(scene.output) ? "Averages over many collisions are as good from it; to follow one motion use"
-                                        : "Use");
+        measures_averages(scene) ? "Averages over many collisions are as good from it; to follow one motion use"
+                                 : "Use");
   if (account.uncertain_end)
-    text += fmt::format(
-        "rounding may decide whether there is one more collision before the end (t = {}, {}): use more digits "
-        "(run.precision), or another run.until\n",
-        account.first_uncertain.time, place(account.first_uncertain.particle));
+    text += fmt::format("rounding may decide whether there is one more collision before the end (t = {}, {}): use more "
+                        "digits (run.precision), or another run.until\n",
+                        account.first_uncertain.time.text, place(account.first_uncertain.particle));
   return text;
 }
 
@@ -184,16 +188,15 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
     break;
   }
   const std::string broken = fmt::format("stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): ", what,
-                                         g.found, g.bound, g.time,
+                                         g.found, g.bound, g.time.text,
                                          g.guard == Guard::wall ? fmt::format(", particle {}", g.particle)
                                          : g.particle < 0       ? ""
                                                                 : ", " + place(g.particle));
   // A gap to a wall that has just closed is not in the account.
   if (run.coordinates == Coordinates::absolute &&
       (account.order_lost + account.unresolved > 0 || g.guard == Guard::wall))
-    return broken +
-           "positions do not resolve what decides the next collisions. Use run.coordinates = \"gaps\", or more "
-           "digits (run.precision)";
+    return broken + "positions do not resolve what decides the next collisions. Use run.coordinates = \"gaps\", or "
+                    "more digits (run.precision)";
   return broken + "the machine or the program is at fault. `cradle resume` continues from the last checkpoint, made "
                   "before; if it stops here again, please report the scene";
 }

@@ -1,43 +1,35 @@
-// What a run prints at its end: the collapse that stopped it, and what it could not resolve. Numbers of any precision
-// are passed as texts with all their digits and as the nearest double.
+// What a run prints at its end: the collapse that stopped it, and what it could not resolve.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
-#include "cradle/core/queue/account.hpp"
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/observe/guards.hpp"
-#include "cradle/precision/text.hpp"
-#include "cradle/tools/run/ends.hpp"
+#include "cradle/core/queue/account.hpp"
+#include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/result/result.hpp"
+#include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 
-struct Figure {
-  double value = 0;
-  std::string digits;
-  bool zero = true;  // whether the number is exactly 0; the double may be 0 for others
-};
-template <Real T> Figure figure(const T& x) { return {to_double(x), to_text(x), x == T(0)}; }
-
 struct ReportedCollapse {
-  Figure last_collision, interval, gap;
+  Number last_collision, interval, gap;
   ParticleIndex particle = -1;
   bool settled = false;
-  Figure time, uncertainty, ratio, ratio_uncertainty;  // where it is
+  Number time, uncertainty, ratio, ratio_uncertainty;  // where it is
 };
 template <Real T> ReportedCollapse reported(const CollapseReport<T>& r) {
-  return {figure(r.last_collision),
-          figure(r.interval),
-          figure(r.gap),
+  return {number_of(r.last_collision),
+          number_of(r.interval),
+          number_of(r.gap),
           r.particle,
           r.settled,
-          figure(T(r.time.value())),
-          figure(r.uncertainty),
-          figure(r.ratio),
-          figure(r.ratio_uncertainty)};
+          number_of(T(r.time.value())),
+          number_of(r.uncertainty),
+          number_of(r.ratio),
+          number_of(r.ratio_uncertainty)};
 }
 /// The text for standard output; times have all digits that are known.
 /// `at_wall`: the wall on which it was, if it can hold particles.
@@ -49,8 +41,7 @@ std::string collapsing_floor(const Scene& scene);
 Group collapse_table(const ReportedCollapse& collapse);
 
 struct ReportedIncident {
-  std::string time;
-  double value = 0;  // of the time
+  Number time;
   double gap = 0;
   ParticleIndex particle = -1;
 };
@@ -62,7 +53,7 @@ struct ReportedAccount {
 };
 template <Real T> ReportedAccount reported(const Account<T>& account) {
   const auto incident = [](const Incident<T>& i) {
-    return ReportedIncident{to_text(i.time), to_double(i.time), to_double(i.gap), i.particle};
+    return ReportedIncident{number_of(i.time), to_double(i.gap), i.particle};
   };
   return {account.simultaneous,
           account.order_lost,
@@ -77,10 +68,10 @@ struct ReportedGuard {
   Guard guard = Guard::order;
   double found = 0, bound = 0;
   ParticleIndex particle = -1;
-  std::string time;
+  Number time;
 };
 template <Real T> ReportedGuard reported(const GuardReport<T>& r, const T& time) {
-  return {r.guard, to_double(r.found), to_double(r.bound), r.particle, to_text(time)};
+  return {r.guard, to_double(r.found), to_double(r.bound), r.particle, number_of(time)};
 }
 /// The message of a guard that stops a run. What positions may not have resolved is not the machine's fault.
 std::string guard_message(const ReportedGuard& guard, const ReportedAccount& account, const Run& run);

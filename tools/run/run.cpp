@@ -5,16 +5,17 @@
 #include <type_traits>
 
 #include "cradle/tools/engines/in_precision.hpp"
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/clusters.hpp"
+#include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/version.hpp"
-#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
 // Compiled once per scalar type, in a separate source in instances/ of the build tree.
-template <class T> RunOutcome run_in(const Scene& scene, const RunOptions& options);
+template <class T> std::unique_ptr<SceneRun> begin_in(const Scene& scene, const RunOptions& options, Sink& sink);
 template <class T> PlannedTimes planned_in(const Scene& scene);
 
 namespace {
@@ -68,26 +69,38 @@ PlannedTimes planned_times(const Scene& scene) {
 }
 
 Scene without_tables(Scene scene) {
-  Output& output = scene.output;
-  output.events = false;
-  output.word.reset();
-  output.snapshots.clear();
-  output.profiles.times.clear();
-  output.masses.clear();
-  output.averages = {};
-  output.histograms.clear();
-  output.correlations = {};
-  output.structure = {};
-  output.pair_distribution = {};
+  for (const MeasurementRow* row : measurement_rows())
+    if (row->leave_out) row->leave_out(scene.output);
   return scene;
 }
 
-RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
+void SceneRun::require_in_progress() const {
+  if (over_)
+    throw Error({scene_.name, 0, ""}, "the run is over",
+                std::string(end_row(over_->end).text) + " at t = " + time().text,
+                "write its result, or begin another one");
+}
+
+std::unique_ptr<SceneRun> begin_run(const Scene& scene, const RunOptions& options, Sink& sink) {
   check_built(scene);
-  if (scene.initial.type == InitialType::clusters) return run_clusters(scene, options);
-  RunOptions how = options;
-  if (how.progress != Progress::Show::never) how.predictable = expected_cost(scene).predictable();
-  return in_precision<RunOutcome>(scene, [&]<class T>(std::type_identity<T>) { return run_in<T>(scene, how); });
+  if (scene.initial.type == InitialType::clusters)
+    throw Error({scene.name, 0, "initial.type"}, "a model without particles", "clusters", "use `cradle run`");
+  return in_precision<std::unique_ptr<SceneRun>>(
+      scene, [&]<class T>(std::type_identity<T>) { return begin_in<T>(scene, options, sink); });
+}
+
+RunOutcome run_scene(const Scene& scene, const RunOptions& options, Sink& sink) {
+  if (scene.initial.type == InitialType::clusters) return check_built(scene), run_clusters(scene, options, sink);
+  const std::unique_ptr<SceneRun> run = begin_run(scene, options, sink);
+  run->advance(scene.run.until);
+  return *run->over();
+}
+
+RunOutcome run_scene(const Scene& scene, const RunOptions& options) {
+  MemorySink sink;
+  RunOutcome end = run_scene(scene, options, sink);
+  end.result = std::move(sink).result();
+  return end;
 }
 
 }  // namespace cradle::tools

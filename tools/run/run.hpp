@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +13,7 @@
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/run/run_observer.hpp"
-#include "cradle/tools/run/run_store.hpp"
+#include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/errors.hpp"
 #include "cradle/tools/support/interrupt.hpp"
@@ -28,12 +29,12 @@ struct RunOptions {
   RunObserver* observer = nullptr;  // is notified of every collision
   Interrupt* interrupt = nullptr;   // says whether to stop; heeded once there is something to keep
   Workers workers = {};             // for a run that is cut into segments
-  RunStore* store = nullptr;        // stores the rows safely; without one the result has them
-  bool predictable = true;          // whether the pace so far says how long the rest takes; run_scene decides
+  bool held = false;                // by a caller who may observe collisions, or ask for a number of them
+  std::function<double(double)> restitution = {};  // of the closing speed, instead of the scene's law; in double only
 };
 
 struct RunOutcome {
-  Result result;  // without the rows that the store has
+  Result result;  // of a run into memory
   RunEnd end = RunEnd::reached;
   std::string report;                        // of a collapse, for standard output; else empty
   std::string warning;                       // what was not resolved, for standard error; else empty
@@ -41,6 +42,7 @@ struct RunOutcome {
   std::uint64_t collisions = 0, merges = 0;  // at the end, like time and energy
   double time = 0, energy = 0;
   double energy_digits = 10;                            // digits of the energy that rounding leaves right
+  double seconds = 0;                                   // of computing
   std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
 };
 
@@ -59,7 +61,9 @@ PlannedTimes planned_times(const Scene& scene);
 /// The scene without tables that are only written: it makes the same collisions, and its series is the same.
 Scene without_tables(Scene scene);
 
-/// Runs the scene in its precision, coordinates and law. Throws Error for what this build cannot do.
+/// Runs the scene in its precision, coordinates and law, into a sink. Throws Error for what this build cannot do.
+RunOutcome run_scene(const Scene& scene, const RunOptions& options, Sink& sink);
+/// The same into memory: the outcome has the result.
 RunOutcome run_scene(const Scene& scene, const RunOptions& options);
 
 }  // namespace cradle::tools

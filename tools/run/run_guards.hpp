@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "cradle/core/observe/guards.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/engines/engine.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 
 namespace cradle::tools {
 
@@ -61,8 +61,18 @@ template <Real T> class RunGuards {
     for (const T& v : now.v) require_held(v, "a velocity", now.time);
   }
 
+  void require_held(const Sample<T>& now) const {
+    require_held(now.energy, "the energy", now.time);
+    for (const auto& front : {now.front_left, now.front_right})
+      if (front) require_held(*front, "a front", now.time);
+  }
+
   /// Has the smallest gap and the closure errors of the last check.
-  const RunStatus& status() const { return status_; }
+  RunStatus status(double time) const {
+    RunStatus now = status_;
+    now.time = time, now.collisions = engine_.counts().collisions;
+    return now;
+  }
 
   static auto state(auto& self) { return std::tie(self.checked_at_, self.last_before_); }
 

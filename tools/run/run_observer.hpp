@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cradle/core/engine/status.hpp"
+#include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/record/times.hpp"
 
 namespace cradle::tools {
@@ -27,8 +28,7 @@ struct SampledWall {
 };
 
 struct RunSample {
-  double time = 0;
-  std::string time_text;                 // this and the decimals below have all digits of the run's precision
+  Number time;                           // its text and the decimals below have all digits of the run's precision
   long double epsilon = 0;               // of that precision
   std::vector<RequestedTime> requested;  // all requested times that the run's precision cannot distinguish from `time`
   bool of_series = false;

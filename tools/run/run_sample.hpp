@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cradle/core/observe/sample.hpp"
-#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/engines/engine.hpp"
+#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/run_observer.hpp"
 
 namespace cradle::tools {
@@ -35,12 +35,11 @@ RunSample run_sample(const Scene& scene, const Schedule<T>& plan, const Engine<T
   const Sample<T> now = sample(engine, energy, time);
   const Given<T> meant = at_collision ? Given<T>(time) : plan.meant(time);
   const auto text = [](const std::optional<T>& x) { return x ? to_text(*x) : std::string(); };
-  RunSample at_time{.time = meant.rounded,
-                    .time_text = to_text(time),
+  RunSample at_time{.time = {meant.rounded, to_text(time)},
                     .epsilon = from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))),
                     .requested = at_collision ? std::vector{RequestedTime{Decimal(to_text(time)), true, false, true}}
                                               : requested_times(scene, plan, time),
-                    .of_series = plan.series.hold(time),
+                    .of_series = plan.series().hold(time),
                     .at_collision = at_collision,
                     .counts = now.counts,
                     .energy = to_text(now.energy),
@@ -48,7 +47,7 @@ RunSample run_sample(const Scene& scene, const Schedule<T>& plan, const Engine<T
                     .front_right = text(now.front_right),
                     .particles = {},
                     .walls = {sampled(now.walls[0]), sampled(now.walls[1])}};
-  if (!at_collision && plan.snapshots.hold(time)) at_time.particles = sampled(engine.configuration(time));
+  if (!at_collision && plan.snapshots().hold(time)) at_time.particles = sampled(engine.configuration(time));
   return at_time;
 }
 

@@ -5,10 +5,10 @@
 #include <array>
 #include <filesystem>
 
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
-#include "cradle/tools/scene/laws.hpp"
-#include "cradle/tools/record/tables.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/checksum.hpp"
@@ -42,15 +42,17 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
   if (later < scene.run.until)
     throw Error({"--until", 0, ""}, "before the end of the run that is there", until,
                 fmt::format("give a time after {}", scene.run.until.text));
-  if (scene.output.zone.from)
-    throw Error({file, 0, "output.zone.from"}, "an average up to run.until cannot be extended", scene.run.until.text,
-                "run the scene anew with a later run.until");
+  for (const MeasurementRow* row : measurement_rows())
+    if (row->until_end != nullptr && row->wanted(scene))
+      throw Error({file, 0, row->until_end}, "an average up to run.until cannot be extended", scene.run.until.text,
+                  "run the scene anew with a later run.until");
   Series& series = scene.output.series;
   if (series.points && !series.over && scene.run.start < scene.run.until) series.over = scene.run.until;
   scene.run.until = later;
   try {
-    return parse_scene(effective_toml(scene), file);  // as a scene with that end is read
-  } catch (const Error&) {                            // which was valid with its own end
+    return parse_scene(effective_toml(scene),
+                       file);  // as a scene with that end is read
+  } catch (const Error&) {     // which was valid with its own end
     throw Error({"--until", 0, ""}, "too late for this run, whose precision and spacing of samples stay", until,
                 "give an earlier time, or run the scene anew with this run.until");
   }
@@ -75,19 +77,15 @@ std::string lists_not_extended(const Scene& scene, const Decimal& later) {
   };
   const std::vector<Decimal>& snapshots = scene.output.snapshots;
   if (original) {
-    check("output.snapshots", lost(original->output.snapshots));
-    check("output.profiles.times", lost(original->output.profiles.times));
-    check("output.masses", lost(original->output.masses));
-    check("output.structure.times", lost(original->output.structure.times));
-    check("output.pair_distribution.times", lost(original->output.pair_distribution.times));
+    for (const MeasurementRow* row : measurement_rows())
+      if (row->times) check(row->key, lost(row->times(original->output)));
   } else {
     check("output.snapshots", snapshots.empty() || snapshots.back() < scene.run.until);
   }
   if (keys.empty()) return "";
-  return fmt::format(
-      "lists of times are not extended beyond t = {} ({}): to have later times of the scene, run it with "
-      "--set run.until={}\n",
-      scene.run.until.text, keys, later.text);
+  return fmt::format("lists of times are not extended beyond t = {} ({}): to have later times of the scene, run it "
+                     "with --set run.until={}\n",
+                     scene.run.until.text, keys, later.text);
 }
 
 // Without an observer of collisions the sticky gas is computed directly at each time, and its rounding depends on these
@@ -97,11 +95,10 @@ bool begins_again(const Scene& scene) { return without_collisions(scene); }
 // The rows in a result file, without the tables that summarise the whole run.
 std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   std::erase_if(groups, [](const Group& g) {
-    const std::string_view name = rounded_name(g.name);
-    constexpr std::array<std::string_view, 8> of_all{
-        "zone",     "averages", "correlations", "structure_average", "pair_distribution_average",
-        "scenario", "collapse", "initial"};
-    return std::find(of_all.begin(), of_all.end(), name) != of_all.end() || name.starts_with("histograms/");
+    const std::string_view name = rounded_name(g.name), folder = name.substr(0, name.find('/'));
+    const auto rows = measurement_rows();
+    return name == "collapse" ||
+           std::any_of(rows.begin(), rows.end(), [&](auto* row) { return row->at_end == folder; });
   });
   // The file returns attributes in another order than they were written.
   const auto rank = [](const Attribute& attribute) {
@@ -128,7 +125,8 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
 
 }  // namespace
 
-RunFiles::RunFiles(std::string file, const std::optional<std::string>& until) : file_(std::move(file)) {
+RunFiles::RunFiles(std::string file, const std::optional<std::string>& until)
+    : Sink(Tables::for_file), file_(std::move(file)) {
   if (exists(journal_of(file_)))
     resume(until);
   else

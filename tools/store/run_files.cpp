@@ -1,5 +1,5 @@
-#include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/store/run_files.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,7 +16,6 @@ namespace cradle::tools {
 
 namespace {
 
-constexpr std::uint64_t collisions_between_checks = 1 << 13;  // of the clock
 constexpr std::chrono::seconds between_statuses(2);
 constexpr double worth_keeping = 60;  // seconds of computing that a new run must not overwrite
 constexpr double soon_repeated = 10;  // seconds of computing for which no checkpoint stays
@@ -30,7 +29,8 @@ std::uint64_t RunFiles::drawn_number() {
   return std::uint64_t{source()} << 32 | source();
 }
 
-RunFiles::RunFiles(std::string file, const Scene& scene, Force force) : file_(std::move(file)), scene_(scene) {
+RunFiles::RunFiles(std::string file, const Scene& scene, Force force)
+    : Sink(Tables::for_file), file_(std::move(file)), scene_(scene) {
   const std::string path = journal_of(file_);
   const auto refuse = [&](const char* what, const std::string& found) {
     throw Error({path, 0, ""}, what, found,
@@ -85,16 +85,9 @@ void RunFiles::write_waiting() {
 }
 
 void RunFiles::add(Group&& rows) {
-  if (has_nothing(rows)) return;
   waiting_.add(std::move(rows));
   const std::uint64_t most = journal_ ? most_waiting : most_in_memory;
   if (!complained_ && waiting_.numbers() > most) saved([this] { write_waiting(); });
-}
-
-void RunFiles::count(std::uint64_t collisions) {
-  if (collisions < next_check_) return;
-  next_check_ = collisions + collisions_between_checks;
-  check_clock();
 }
 
 bool RunFiles::checkpoint_due(Clock::time_point now) const {
@@ -140,27 +133,23 @@ void RunFiles::keep(const RunStatus& status, const std::function<void(StateSink&
 
 // ---- the end
 
-void RunFiles::finish(Result&& end, RunEnd how) {
+void RunFiles::end(std::vector<Attribute>&& attributes, RunEnd how) {
+  if (how == RunEnd::interrupted) return;  // what is to be continued is in the journal
   const std::string path = journal_of(file_);
   // Rows in memory are gone after the last time.
   const auto pieces = [&](bool last_time, const std::function<void(Group &&)>& each) {
     if (journal_ && for_each_piece(path, each) != records_)
       throw Error({path, 0, ""}, "not what was written", "records are missing",
                   "check the disk; `cradle resume` continues from the last checkpoint", Exit::io);
-    const auto all = [&](std::vector<Group>& groups) {
-      for (Group& rows : groups) last_time ? each(std::move(rows)) : each(Group(rows));
-    };
-    all(waiting_.tables());
-    all(end.groups);
+    for (Group& rows : waiting_.tables()) last_time ? each(std::move(rows)) : each(Group(rows));
   };
   const auto gathered = [&](Reading reading) {
     GrowingTables tables(reading);
     pieces(reading == Reading::everything, [&](Group&& rows) { tables.add(std::move(rows)); });
-    return Result{end.attributes, std::move(tables).in_order()};
+    return Result{attributes, in_order(std::move(tables))};
   };
   // A number takes at least eight bytes in the journal, so few journals must be read twice.
-  const std::uint64_t most =
-      (journal_ ? journal_->bytes() / 8 : 0) + numbers_in(waiting_.tables()) + numbers_in(end.groups);
+  const std::uint64_t most = (journal_ ? journal_->bytes() / 8 : 0) + numbers_in(waiting_.tables());
   Result whole = gathered(most > most_in_memory ? Reading::ends : Reading::everything);
   if (numbers_in(whole.groups) > most_in_memory) {
     write_in_pieces(

@@ -20,20 +20,19 @@
 #include <optional>
 #include <string>
 
-#include "cradle/tools/result/growing_tables.hpp"
-#include "cradle/tools/run/run.hpp"
+#include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/store/checkpoint.hpp"
 #include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/store/run_journal.hpp"
-#include "cradle/tools/run/run_store.hpp"
 
 namespace cradle::tools {
 
 /// A result with more numbers than this is not held in memory as a whole.
 inline constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;
 
-class RunFiles final : public RunStore {
+class RunFiles final : public Sink {
  public:
   static std::string journal_of(const std::string& file) { return file + ".part"; }
   static std::string checkpoint_of(const std::string& file) { return file + ".checkpoint"; }
@@ -57,14 +56,12 @@ class RunFiles final : public RunStore {
   bool up_to_date() const { return up_to_date_; }
 
   void add(Group&& rows) override;
-  void count(std::uint64_t collisions) override;
+  /// Writes FILE from all that was recorded, unless the run was interrupted; then removes the journal.
+  void end(std::vector<Attribute>&& attributes, RunEnd how) override;
   void check_clock() override;
   bool due() const override { return due_; }
   void keep(const RunStatus& status, const std::function<void(StateSink&)>& save, RunIs run_is) override;
   StateSource* loaded_from() override { return state_.get(); }
-
-  /// Writes FILE from all that was recorded and what the run reports at its end; then removes the journal.
-  void finish(Result&& end, RunEnd how);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -91,9 +88,8 @@ class RunFiles final : public RunStore {
   std::uint64_t collisions_before_ = 0;  // made in earlier calls
 
   bool due_ = false, saved_here_ = false, complained_ = false;
-  bool up_to_date_ = false;       // the checkpoint, since the last call of `keep` that was to write one
-  std::uint64_t next_check_ = 0;  // number of collisions at which the clock is checked again
-  double seconds_before_ = 0;     // of computing, in earlier calls
+  bool up_to_date_ = false;    // the checkpoint, since the last call of `keep` that was to write one
+  double seconds_before_ = 0;  // of computing, in earlier calls
   Clock::time_point started_ = Clock::now(), reported_ = started_, saved_ = started_;
 };
 

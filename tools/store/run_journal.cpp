@@ -1,6 +1,6 @@
+#include "cradle/tools/store/run_journal.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/store/run_journal.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <type_traits>
 
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
@@ -39,7 +39,7 @@ RunJournal read_run_journal(const std::string& path, Reading reading) {
     }
   }
   journal.torn_bytes = records.torn_bytes();
-  journal.tables = std::move(tables).in_order();
+  journal.tables = in_order(std::move(tables));
   return journal;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cradle/tools/result/growing_tables.hpp"
-#include "cradle/tools/run/run_store.hpp"
+#include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/store/journal.hpp"
 

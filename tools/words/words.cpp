@@ -149,8 +149,8 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
                                  fmt::format("mpfr, {} digits", 4 * particles.digits), "words of collapse");
   result.attributes.emplace_back("kind", std::string("words"));
   const auto of_range = [&](const char* name, const std::string& description, auto value) {
-    using Number = std::decay_t<std::invoke_result_t<decltype(value), const WordRange&>>;
-    std::vector<std::conditional_t<std::same_as<Number, bool>, std::uint64_t, Number>> values;
+    using Value = std::decay_t<std::invoke_result_t<decltype(value), const WordRange&>>;
+    std::vector<std::conditional_t<std::same_as<Value, bool>, std::uint64_t, Value>> values;
     for (const WordReport& report : reports)
       for (const WordRange& range : report.ranges) values.push_back(std::invoke(value, range));
     return Column{name, "1", description, std::move(values)};

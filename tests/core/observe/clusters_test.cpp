@@ -85,7 +85,8 @@ TEST(Zone, WidthOfALinearFall) {
       if (mirrored > 0) c.x.push_back(x), c.v.push_back(-mirrored), c.m.push_back(1);
       c.x.push_back(x), c.v.push_back(0.01), c.m.push_back(50);  // a cluster is none of them
     }
-    zone.add(c, nobody, 0.0);
+    zone.find(c, nobody, 0.0);
+    zone.add_found();
   }
   EXPECT_NEAR(zone.width(0.5, 0).width, 4, 1e-12);
   EXPECT_NEAR(zone.width(0.5, 0).error, 0, 1e-12);
@@ -105,7 +106,8 @@ TEST(Zone, ParticleJustBelowTheEndIsInTheLastBin) {
       c.v = {1, 1};
       c.m = {1, 1};
       ZoneAverage zone(reach, bins, 16, 1);
-      zone.add(c, nobody, 0.0);
+      zone.find(c, nobody, 0.0);
+      zone.add_found();
       ASSERT_GT(zone.mass_density().front(), 0) << reach << " in " << bins;
       ASSERT_GT(zone.mass_density().back(), 0) << reach << " in " << bins;
     }
@@ -119,7 +121,8 @@ TEST(Zone, NoWidthWithoutAFall) {
   ZoneAverage zone(10, 20, 16, 1);
   for (int k = 1; k <= 16; ++k) {
     ASSERT_EQ(run.advance(5.0 + k / 2.0), Status::reached);
-    zone.add(run.chain().configuration(run.chain().local_time(5.0 + k / 2.0)), *rows, 5.0 + k / 2.0);
+    zone.find(run.chain().configuration(run.chain().local_time(5.0 + k / 2.0)), *rows, 5.0 + k / 2.0);
+    zone.add_found();
   }
   EXPECT_TRUE(std::isnan(zone.width(0.5, 0).width));
   EXPECT_NEAR(zone.velocity_right()[0], 0.5, 1e-12);

@@ -166,7 +166,7 @@ TEST(Profile, OfRowsThatNobodyCanWalk) {
     EXPECT_EQ(calls, 5);
     ZoneAverage zone(4e11, 4, 16, 1.);
     const SavedState before = SavedState::of(zone);
-    EXPECT_THROW(zone.add(now, *rows, 0., [&] { return ++calls == 10; }), WalkStopped);
+    EXPECT_THROW(zone.find(now, *rows, 0., [&] { return ++calls == 10; }), WalkStopped);
     EXPECT_EQ(SavedState::of(zone), before);
   }
 }

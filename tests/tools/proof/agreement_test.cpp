@@ -92,27 +92,27 @@ TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
        }},
       {"front_right",
        [](RunSample& at) {
-         if (at.time > 11) at.front_right = moved(at.front_right, -1e-9);
+         if (at.time.value > 11) at.front_right = moved(at.front_right, -1e-9);
        }},
       {"front_left",
        [](RunSample& at) {
-         if (at.time > 11) at.front_left.clear();
+         if (at.time.value > 11) at.front_left.clear();
        }},
       {"front_right",
        [](RunSample& at) {
-         if (at.time == 0) at.front_right = "1";
+         if (at.time.value == 0) at.front_right = "1";
        }},
       {"energy", [](RunSample& at) { at.energy = moved(at.energy, 1e-10); }},
       {"energy",
        [](RunSample& at) {
-         if (at.time > 3) at.energy = "nan";
+         if (at.time.value > 3) at.energy = "nan";
        }},
-      {"collisions", [](RunSample& at) { at.counts.collisions += at.time > 11; }},
-      {"collisions_below_cutoff", [](RunSample& at) { at.counts.below_cutoff += at.time > 11; }},
+      {"collisions", [](RunSample& at) { at.counts.collisions += at.time.value > 11; }},
+      {"collisions_below_cutoff", [](RunSample& at) { at.counts.below_cutoff += at.time.value > 11; }},
       {"merges", [](RunSample& at) { at.counts.merges += 1; }},
       {"time of the sample",
        [](RunSample& at) {
-         if (at.time > 3) at.time_text = moved(at.time_text, 1e-12);
+         if (at.time.value > 3) at.time.text = moved(at.time.text, 1e-12);
        }},
       {"x of particle 7 in the snapshot",
        [](RunSample& at) {
@@ -122,7 +122,7 @@ TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
       {"v of particle 12 in the snapshot",
        [](RunSample& at) {
          for (std::size_t j = 0; j < at.particles.v.size(); ++j)
-           if (at.time > 9 && at.particles.index[j] == 12) at.particles.v[j] = moved(at.particles.v[j], 1e-10);
+           if (at.time.value > 9 && at.particles.index[j] == 12) at.particles.v[j] = moved(at.particles.v[j], 1e-10);
        }},
       {"m of particle 9 in the snapshot",
        [](RunSample& at) {
@@ -147,7 +147,7 @@ TEST(Agreement, WhateverIsPlantedInTheAccountsOfWallsIsFoundAndNamed) {
   EXPECT_TRUE(certified(between_walls, [](RunSample&) {}).proved());
   const auto of_wall = [](std::size_t side, std::string SampledWall::*which, double by) {
     return [=](RunSample& at) {
-      if (at.time > 19) at.walls[side].*which = moved(at.walls[side].*which, by);
+      if (at.time.value > 19) at.walls[side].*which = moved(at.walls[side].*which, by);
     };
   };
   const std::pair<const char*, Plant> plants[] = {
@@ -157,7 +157,7 @@ TEST(Agreement, WhateverIsPlantedInTheAccountsOfWallsIsFoundAndNamed) {
       {"momentum given by the right wall", of_wall(1, &SampledWall::momentum, 1e-9)},
       {"energy lost in the right wall", of_wall(1, &SampledWall::dissipated, 1e-9)},
       {"energy lost in the left wall", of_wall(0, &SampledWall::dissipated, 1e-9)},
-      {"collisions with the right wall", [](RunSample& at) { at.walls[1].collisions += at.time > 19; }}};
+      {"collisions with the right wall", [](RunSample& at) { at.walls[1].collisions += at.time.value > 19; }}};
   for (const auto& [quantity, plant] : plants) {
     const std::string message =
         cradle::tests::refusal(Exit::lost, [&plant = plant] { certified(between_walls, plant); });

@@ -1,9 +1,13 @@
 // The tables of a scene are known before it runs, and a run writes exactly these.
-#include "cradle/tools/record/tables.hpp"
+#include "cradle/tools/record/rows.hpp"
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "cradle/tools/ensemble/layout.hpp"
+#include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
@@ -53,29 +57,32 @@ TEST(RunTables, AreWhatARunWrites) {
   for (const auto& [name, text] : scenes) {
     SCOPED_TRACE(name);
     const Scene scene = parse_scene(text, std::string(name) + ".toml");
-    const RunTables tables = run_tables(scene);
     const RunOutcome run = run_scene(scene, {Progress::Show::never});
     EXPECT_EQ(run.end, RunEnd::reached);
-    for (const Group& table : tables.series) expect_columns(table, run.result.find(table.name));
-    if (tables.profile) expect_columns(*tables.profile, run.result.find("profiles/0000"));
-    if (tables.zone) expect_columns(*tables.zone, run.result.find("zone"));
-    if (tables.averages) expect_columns(*tables.averages, run.result.find("averages"));
-    EXPECT_EQ(tables.averages.has_value(), std::string(name) == "gas");
-    EXPECT_EQ(tables.histograms.size(), std::string(name) == "gas" ? 7U : 0U);
-    for (const Group& table : tables.histograms) expect_columns(table, run.result.find(table.name));
-    for (const auto& [table, group] : {std::pair(&tables.correlations, "correlations"),
-                                       {&tables.structure_average, "structure_average"},
-                                       {&tables.structure, "structure/0000"},
-                                       {&tables.pair_distribution_average, "pair_distribution_average"},
-                                       {&tables.pair_distribution, "pair_distribution/0000"}}) {
-      EXPECT_EQ(table->has_value(), std::string(name) == "gas");
-      if (*table) expect_columns(**table, run.result.find(group));
-    }
-    EXPECT_EQ(tables.profile.has_value(), run.result.find("profiles/0000") != nullptr);
-    EXPECT_EQ(tables.zone.has_value(), run.result.find("zone") != nullptr);
     std::vector<std::string> summary;
-    for (const auto& [number, value] : run.summary) summary.push_back(number);
-    EXPECT_EQ(tables.summary, summary);
+    std::size_t at_times = 0, at_end = 0;
+    for (const MeasurementRow* row : measurement_rows()) {
+      SCOPED_TRACE(row->name);
+      const auto tables = [&](auto* of) { return of == nullptr ? std::vector<Group>() : of(scene); };
+      if (!row->wanted(scene)) {
+        EXPECT_TRUE(tables(row->tables_at_end).empty());
+        for (const Group& group : run.result.groups)
+          EXPECT_TRUE(group.name != row->at_end && !group.name.starts_with(std::string(row->name) + "/")) << group.name;
+        continue;
+      }
+      for (const Group& table : tables(row->growing)) expect_columns(table, run.result.find(table.name));
+      for (const Group& table : tables(row->tables_at_end))
+        expect_columns(table, run.result.find(table.name)), ++at_end;
+      if (row->table_at != nullptr && !row->times(scene.output).empty())
+        expect_columns(row->table_at(scene), run.result.find(std::string(row->name) + "/0000")), ++at_times;
+      if (row->summary != nullptr)
+        for (const std::string& number : row->summary(scene)) summary.push_back(number);
+    }
+    EXPECT_EQ(at_times, (std::string(name) == "gas" ? 2U : 0U) + (scene.output.profiles.times.empty() ? 0U : 1U));
+    EXPECT_EQ(at_end, std::string(name) == "gas" ? 11U : std::string(name) == "wet" ? 1U : 0U);
+    std::vector<std::string> written;
+    for (const auto& [number, value] : run.summary) written.push_back(number);
+    EXPECT_EQ(summary, written);
   }
 }
 
@@ -89,9 +96,31 @@ TEST(RunTables, OfEnsemblesAreKnownWithoutSettingUpAnything) {
 }
 
 TEST(RunTables, AreFilledWithAsManyNumbersAsTheyHave) {
-  EXPECT_THROW(filled(masses_table("masses/0000"), std::vector<double>{1}), std::logic_error);
-  const Group table = filled(masses_table("masses/0000"), std::vector<double>{1}, std::vector<std::uint64_t>{2});
+  const Group empty{"masses/0000", {}, {{"mass", "m", "", {}}, {"clusters", "1", "", {}}}};
+  EXPECT_THROW(filled(empty, std::vector<double>{1}), std::logic_error);
+  const Group table = filled(empty, std::vector<double>{1}, std::vector<std::uint64_t>{2});
   EXPECT_EQ(table.columns[1].values, Numbers(std::vector<std::uint64_t>{2}));
+}
+
+// Every table of a scene with all of them is in a row: else it would be written twice when a run is extended, or stand
+// anywhere in the file.
+TEST(RunTables, HaveAnOrder) {
+  GrowingTables tables;
+  const std::vector<std::string> order{"series",
+                                       "snapshots/0000",
+                                       "pair_distribution/0001",
+                                       "events",
+                                       "averages",
+                                       "histograms/gap",
+                                       "pair_distribution_average",
+                                       "sequence",
+                                       "collapse",
+                                       "exact/series",
+                                       "exact/events"};
+  for (auto name = order.rbegin(); name != order.rend(); ++name) tables.add({*name, {}, {}});
+  std::vector<std::string> found;
+  for (const Group& table : in_order(std::move(tables))) found.push_back(table.name);
+  EXPECT_EQ(found, order);
 }
 
 }  // namespace cradle::tools::tables_test

@@ -127,7 +127,7 @@ TEST_F(Endings, NoMachineIsBlamedForWhatPositionsDoNotResolve) {
   positions.coordinates = Coordinates::absolute;
   ReportedAccount unresolved;
   unresolved.unresolved = 1;
-  const ReportedGuard energy{Guard::energy, 1, 0, -1, "0"}, wall{Guard::wall, -1, 0, 0, "0"};
+  const ReportedGuard energy{Guard::energy, 1, 0, -1, {}}, wall{Guard::wall, -1, 0, 0, {}};
   EXPECT_FALSE(has(guard_message(energy, unresolved, positions), "at fault"));
   EXPECT_FALSE(has(guard_message(wall, {}, positions), "at fault"));
   EXPECT_TRUE(has(guard_message(energy, {}, positions), "at fault")) << "all was resolved";

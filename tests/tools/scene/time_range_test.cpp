@@ -37,7 +37,7 @@ TEST(TimeRange, StepsAreTheDecimalsThatAUserWouldWrite) {
   EXPECT_EQ(snapshots("{ from = '0.1', until = 0.3, every = 1e-1 }"), (Strings{"0.1", "0.2", "0.3"}));
   // Every double is the one nearest to its decimal, which sums and products of 0.1 are not.
   const Scene scene = parse("snapshots = { from = 0, until = 100, every = 0.1 }");
-  const auto plan = schedule<double>(scene).snapshots;
+  const auto plan = schedule<double>(scene).snapshots();
   ASSERT_EQ(plan.size(), 1001U);
   for (std::size_t k = 0; k <= 1000; ++k) {
     const std::string digits = std::to_string(k);
@@ -53,10 +53,11 @@ TEST(TimeRange, StepsAreTheDecimalsThatAUserWouldWrite) {
 TEST(Schedule, RoundsEveryTimeOnce) {
   const auto series = [](const std::string& keys) {
     return schedule<double>(parse_scene(ring + "[output]\n" + keys, "ring.toml", {"run.start=0.1", "run.until=10.3"}))
-        .series;
+        .series();
   };
-  EXPECT_EQ(schedule<double>(parse_scene(ring + "[output]\nseries.every = 0.1", "", {"run.until=0.3"})).series.values(),
-            (std::vector<double>{0, 0.1, 0.2, 0.3}));
+  EXPECT_EQ(
+      schedule<double>(parse_scene(ring + "[output]\nseries.every = 0.1", "", {"run.until=0.3"})).series().values(),
+      (std::vector<double>{0, 0.1, 0.2, 0.3}));
   const auto near = [](double time, const Rational& exact) {
     const double ulp = std::nextafter(time, 1e300) - time;
     EXPECT_LE(abs(Rational(Rational(time) - exact)), Rational(ulp) / 2) << time;

@@ -57,10 +57,11 @@ class MalformedFiles : public ProgramTest {
     const std::string name = "run" + std::to_string(runs_++) + ".h5";
     Interrupt interrupt;
     RunFiles files(path(name), scene);
-    class Stopping final : public RunStore {
+    class Stopping final : public Sink {
      public:
-      Stopping(RunFiles& files, Interrupt& interrupt) : files_(files), interrupt_(interrupt) {}
+      Stopping(RunFiles& files, Interrupt& interrupt) : Sink(Tables::for_file), files_(files), interrupt_(interrupt) {}
       void add(Group&& rows) override { files_.add(std::move(rows)); }
+      void end(std::vector<Attribute>&&, RunEnd) override {}
       void count(std::uint64_t collisions) override { files_.count(collisions); }
       void check_clock() override {
         if (++checks_ == 5) interrupt_.note(SIGTERM);
@@ -76,7 +77,7 @@ class MalformedFiles : public ProgramTest {
       Interrupt& interrupt_;
       int checks_ = 0;
     } store(files, interrupt);
-    ASSERT_EQ(run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &store}).end, RunEnd::interrupted);
+    ASSERT_EQ(run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, store).end, RunEnd::interrupted);
   }
   static constexpr int resumed = 0, refusal = 1;
   // How `work` ends there, within two seconds of processor time; another number where it crashes.
@@ -101,8 +102,7 @@ class MalformedFiles : public ProgramTest {
   static void resume(const std::string& file) {
     RunFiles files(file, std::nullopt);
     Interrupt interrupt;
-    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, {}, &files});
-    files.finish(std::move(end.result), end.end);
+    run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt}, files);
   }
 
   std::size_t runs_ = 0;

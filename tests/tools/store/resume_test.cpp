@@ -20,14 +20,16 @@ using namespace cradle::tools;
 using cradle::tests::contents;
 
 // Passes all to the files, begins their journal at the first sample, and stops the run at a given point.
-class Stopping final : public RunStore {
+class Stopping : public Sink {
  public:
   struct At {
     std::uint64_t collisions = ~std::uint64_t{0}, checks = ~std::uint64_t{0};
   };
-  Stopping(RunFiles& files, Interrupt& interrupt, At at) : files_(files), interrupt_(interrupt), at_(at) {}
+  Stopping(RunFiles& files, Interrupt& interrupt, At at)
+      : Sink(Tables::for_file), files_(files), interrupt_(interrupt), at_(at) {}
 
   void add(Group&& rows) override { files_.add(std::move(rows)); }
+  void end(std::vector<Attribute>&& attributes, RunEnd how) override { files_.end(std::move(attributes), how); }
   void count(std::uint64_t collisions) override {
     files_.count(collisions);
     if (collisions >= at_.collisions) interrupt_.note(SIGTERM);
@@ -49,6 +51,17 @@ class Stopping final : public RunStore {
   At at_;
   std::uint64_t checks_ = 0;
   bool begun_ = false;
+};
+
+// Keeps back how the run ended, so that its file is not written.
+class Unwritten final : public Stopping {
+ public:
+  using Stopping::Stopping;
+  void end(std::vector<Attribute>&& attributes, RunEnd) override { attributes_ = std::move(attributes); }
+  void write(RunFiles& files) { files.end(std::move(attributes_), RunEnd::reached); }
+
+ private:
+  std::vector<Attribute> attributes_;
 };
 
 struct Case {
@@ -162,9 +175,7 @@ class Resuming : public cradle::tests::ProgramTest {
     Stopping store(files, interrupt, at);
     cradle::Workers workers;  // one after the other, as many as required
     workers.count = threads;
-    RunOutcome end = run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, workers, &store});
-    if (end.end != RunEnd::interrupted) files.finish(std::move(end.result), end.end);
-    return end;
+    return run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, workers}, store);
   }
 
   RunOutcome begin(const char* name, const Scene& scene, Stopping::At at, std::size_t threads) const {
@@ -309,15 +320,29 @@ TEST_F(Resuming, ARunThatHasNothingToLoseWritesItsFileAlone) {
     const std::string name = std::string("a") + every + ".h5";
     RunFiles files(file(name.c_str()), scene);
     Interrupt interrupt;
-    RunOutcome end = run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &files});
+    Unwritten sink(files, interrupt, {});
+    run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, sink);
     EXPECT_EQ(std::filesystem::exists(file((name + ".part").c_str())), files.up_to_date());
     if (*every == '1') {
       EXPECT_TRUE(files.up_to_date());
     }
-    files.finish(std::move(end.result), end.end);
+    sink.write(files);
     EXPECT_FALSE(std::filesystem::exists(file((name + ".part").c_str())));
   }
   EXPECT_TRUE(contents(file("a0.h5")) == contents(file("a1e-9.h5"))) << "other bytes";
+}
+
+// What is tabled at the end is of the whole run: of a longer one it is made anew.
+TEST_F(Resuming, TheWordOfALongerRunIsWrittenOnce) {
+  const Scene scene = parse_scene("law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\nrun.until = 50\n"
+                                  "initial = { type = 'list', x = [0, 1, 2.3], v = [1, 0, -1.1] }\n"
+                                  "walls = { left = { position = -1 }, right = { position = 4 } }\n"
+                                  "output = { series.every = 10, word = 'any', events = true }\n",
+                                  "scene.toml", {from_the_start});
+  begin("a.h5", scene, {}, 1);
+  ASSERT_EQ(resume("a.h5", "80", {}, 1).end, RunEnd::reached);
+  begin("alone.h5", scene_in(read_result(file("a.h5")).attributes, ""), {}, 1);
+  EXPECT_TRUE(contents(file("alone.h5")) == contents(file("a.h5"))) << "other bytes";
 }
 
 // A run whose result could not be written is finished before it is extended: its last sample belongs to its end.
@@ -326,7 +351,8 @@ TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
   {
     RunFiles files(file("a.h5"), scene);
     Interrupt interrupt;
-    run_scene(scene, {Progress::Show::never, nullptr, &interrupt, {}, &files});  // and then the machine stops
+    Unwritten sink(files, interrupt, {});
+    run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, sink);  // and then the machine stops
   }
   EXPECT_THROW(RunFiles(file("a.h5"), "200"), Error);
   EXPECT_EQ(resume("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);

@@ -236,8 +236,8 @@ TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   pieces.push_back({"snapshots/0000", {{"time", 3.}}, {{"x", "l", "none", std::vector<double>()}}});
   GrowingTables all, ends(Reading::ends);
   for (const Group& piece : pieces) all.add(Group(piece)), ends.add(Group(piece));
-  const Result outline{whole.attributes, std::move(ends).in_order()};
-  whole.groups = std::move(all).in_order();
+  const Result outline{whole.attributes, in_order(std::move(ends))};
+  whole.groups = in_order(std::move(all));
   EXPECT_EQ(std::get<std::vector<double>>(outline.find("series")->columns[0].values), (std::vector<double>{0, 4949}));
   const auto write = [&](const char* name) {
     write_in_pieces(

@@ -1,4 +1,4 @@
-// The Python module cradle._live: a run that Python holds (tools/run/live_run.hpp). cradle/simulation.py makes the
+// The Python module cradle._live: a run that Python holds (tools/live/live_run.hpp). cradle/simulation.py makes the
 // class of it that users see.
 //
 // Functions of the caller come as arguments of `advance` and `step` and are only borrowed, so that Python's garbage
@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/tools/live/live_files.hpp"
+#include "cradle/tools/live/live_run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/version.hpp"
 
@@ -37,7 +37,7 @@ py::object called(py::handle function, py::object argument) {
   return py::reinterpret_steal<py::object>(result);
 }
 
-void observe(py::handle function, const LiveCollision& c) {
+void observe(py::handle function, const HeldCollision& c) {
   const std::array values{PyLong_FromLongLong(c.left), PyLong_FromLongLong(c.right), PyFloat_FromDouble(c.time),
                           PyFloat_FromDouble(c.interval), PyFloat_FromDouble(c.closing_speed)};
   // As tuple.__new__ makes it, without arguments: one is made for every collision that is observed.
@@ -91,11 +91,12 @@ class HeldRun {
   HeldRun(const std::string& source, bool is_text, const std::string& name, const std::vector<std::string>& set,
           unsigned threads, bool of_function) {
     begin(threads, of_function, [&](const LiveOptions& options) {
-      return live_run(is_text ? parse_scene(source, name + ".toml", set) : read_scene(source, set), options);
+      return std::make_unique<LiveRun>(is_text ? parse_scene(source, name + ".toml", set) : read_scene(source, set),
+                                       options);
     });
   }
   HeldRun(const std::string& checkpoint, unsigned threads) {
-    begin(threads, false, [&](const LiveOptions& options) { return load_live_run(checkpoint, options); });
+    begin(threads, false, [&](const LiveOptions& options) { return std::make_unique<LiveRun>(checkpoint, options); });
   }
 
   void advance(const std::string& until, py::handle observer, py::handle law) {
@@ -137,8 +138,8 @@ class HeldRun {
   template <class F> void compute(py::handle observer, py::handle law, const F& f) {
     const Use use(*this);
     if (const bool wanted = !observer.is_none(); wanted != std::exchange(observed_, wanted))
-      run_->observe(wanted ? [this](const LiveCollision& c) { tools::observe(observer_, c); }
-                           : std::function<void(const LiveCollision&)>());
+      run_->run().observe(wanted ? [this](const HeldCollision& c) { tools::observe(observer_, c); }
+                                 : std::function<void(const HeldCollision&)>());
     observer_ = observer, law_ = law;
     if (observed_ || !law.is_none()) return f();
     const py::gil_scoped_release released;
@@ -150,14 +151,14 @@ class HeldRun {
   bool observed_ = false, in_use_ = false;
 };
 
-py::array_t<double> column_of(HeldRun& held, LiveRun::Column which) {
-  const std::vector<double> numbers = held.use([&](LiveRun& run) { return run.column(which); });
+py::array_t<double> column_of(HeldRun& held, SceneRun::Column which) {
+  const std::vector<double> numbers = held.use([&](LiveRun& live) { return live.run().column(which); });
   py::array_t<double> array(static_cast<py::ssize_t>(numbers.size()), numbers.data());
   array.attr("setflags")(py::arg("write") = false);
   return array;
 }
 py::array_t<ParticleIndex> index_of(HeldRun& held) {
-  const std::vector<ParticleIndex> numbers = held.use([](LiveRun& run) { return run.index(); });
+  const std::vector<ParticleIndex> numbers = held.use([](LiveRun& live) { return live.run().index(); });
   py::array_t<ParticleIndex> array(static_cast<py::ssize_t>(numbers.size()), numbers.data());
   array.attr("setflags")(py::arg("write") = false);
   return array;
@@ -165,7 +166,7 @@ py::array_t<ParticleIndex> index_of(HeldRun& held) {
 
 // A property that reads the run.
 template <class F> auto reads(const F& f) {
-  return [f](HeldRun& held) { return held.use(f); };
+  return [f](HeldRun& held) { return held.use([&](LiveRun& live) { return f(live.run()); }); };
 }
 
 // Raises cradle.Error with the message and the status.
@@ -199,43 +200,43 @@ PYBIND11_MODULE(_live, module) {
   const py::object collision = py::module_::import("cradle.simulation").attr("Collision");
   collision_type = reinterpret_cast<PyTypeObject*>(py::object(collision).release().ptr());
   py::register_local_exception_translator(translate);
-  py::enum_<LiveRun::Column>(module, "Column")
-      .value("x", LiveRun::Column::x)
-      .value("v", LiveRun::Column::v)
-      .value("m", LiveRun::Column::m)
-      .value("gap", LiveRun::Column::gap)
-      .value("closing_speed", LiveRun::Column::closing_speed);
+  py::enum_<SceneRun::Column>(module, "Column")
+      .value("x", SceneRun::Column::x)
+      .value("v", SceneRun::Column::v)
+      .value("m", SceneRun::Column::m)
+      .value("gap", SceneRun::Column::gap)
+      .value("closing_speed", SceneRun::Column::closing_speed);
   py::class_<HeldRun>(module, "Run")
       .def(py::init<const std::string&, bool, const std::string&, const std::vector<std::string>&, unsigned, bool>())
       .def(py::init<const std::string&, unsigned>())
       .def("advance", &HeldRun::advance)
       .def("step", &HeldRun::step)
-      .def("stop", [](HeldRun& held) { held.use([](LiveRun& run) { run.stop(); }); })
+      .def("stop", [](HeldRun& held) { held.use([](LiveRun& live) { live.run().stop(); }); })
       .def("column", &column_of)
       .def("decimals",
-           [](HeldRun& held, LiveRun::Column which) {
-             return held.use([which](LiveRun& run) { return run.column_text(which); });
+           [](HeldRun& held, SceneRun::Column which) {
+             return held.use([which](LiveRun& live) { return live.run().column_text(which); });
            })
-      .def("save", [](HeldRun& held, const std::string& path) { held.use([&](LiveRun& run) { save_live_run(run, path); }); })
+      .def("save", [](HeldRun& held, const std::string& path) { held.use([&](LiveRun& run) { run.save(path); }); })
       // With the lock: HDF5 may be the one of h5py.
       .def("write",
            [](HeldRun& held, const std::string& path, bool force) {
-             held.use([&](LiveRun& run) { write_live_run(run, path, force ? Force::yes : Force::no); });
+             held.use([&](LiveRun& run) { run.write(path, force ? Force::yes : Force::no); });
            })
       .def_property_readonly("index", &index_of)
-      .def_property_readonly("name", reads([](LiveRun& run) { return run.scene().name; }))
-      .def_property_readonly("scene", reads([](LiveRun& run) { return effective_toml(run.scene()); }))
-      .def_property_readonly("until", reads([](LiveRun& run) { return run.scene().run.until.text; }))
-      .def_property_readonly("precision", reads([](LiveRun& run) { return precision_name(run.scene().run); }))
-      .def_property_readonly("collisions", reads([](LiveRun& run) { return run.counts().collisions; }))
-      .def_property_readonly("merges", reads([](LiveRun& run) { return run.counts().merges; }))
-      .def_property_readonly("time", reads([](LiveRun& run) { return run.time(); }))
-      .def_property_readonly("time_text", reads([](LiveRun& run) { return run.time_text(); }))
-      .def_property_readonly("energy", reads([](LiveRun& run) { return run.energy(); }))
-      .def_property_readonly("energy_text", reads([](LiveRun& run) { return run.energy_text(); }))
+      .def_property_readonly("name", reads([](SceneRun& run) { return run.scene().name; }))
+      .def_property_readonly("scene", reads([](SceneRun& run) { return effective_toml(run.scene()); }))
+      .def_property_readonly("until", reads([](SceneRun& run) { return run.scene().run.until.text; }))
+      .def_property_readonly("precision", reads([](SceneRun& run) { return precision_name(run.scene().run); }))
+      .def_property_readonly("collisions", reads([](SceneRun& run) { return run.counts().collisions; }))
+      .def_property_readonly("merges", reads([](SceneRun& run) { return run.counts().merges; }))
+      .def_property_readonly("time", reads([](SceneRun& run) { return run.time().value; }))
+      .def_property_readonly("time_text", reads([](SceneRun& run) { return run.time().text; }))
+      .def_property_readonly("energy", reads([](SceneRun& run) { return run.energy().value; }))
+      .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.energy().text; }))
       // None while the run is in progress, then how it ended: the outcome, the exit status of `cradle run`, what that
       // prints, and its warning.
-      .def_property_readonly("over", reads([](LiveRun& run) -> py::object {
+      .def_property_readonly("over", reads([](SceneRun& run) -> py::object {
                                const RunOutcome* over = run.over();
                                if (over == nullptr) return py::none();
                                const EndRow& end = end_row(over->end);

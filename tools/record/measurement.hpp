@@ -1,0 +1,64 @@
+// A measurement: what a run can be asked to record beside its collisions. Each has a file here, with a row (what others
+// must know of it: its times and tables) and a class that finds, records and at the end tables its numbers.
+// measurements.hpp has the list of all; runs, files, ensembles and comparisons follow from it.
+//
+// The class has, of these, the members that it needs. `now` is a Moment (moment.hpp), `put` takes tables. What is the
+// same for every scalar type takes a Moment, the rest MomentIn<T>.
+//
+//   explicit X(measured)       begins; or X(measured, particles)
+//   finder()                   the object whose `find(configuration, particles, elapsed, stopped)` is called at a time
+//                              that is due: it changes nothing yet, and throws WalkStopped where `stopped` stops a loop
+//   find(now, stopped)         or this
+//   record(now, due, put)      then: keeps or puts what was found
+//   record_last(now, put)      where a run ends early, with a collision
+//   made(counts)               before the next collision, before rows are put and at the end
+//   collision(c), collision(left, right, time)           every collision, before it is made
+//   rows(), put_rows(put)      of a table that grows during the run: how many wait, and puts these
+//   finish(now, put)           the end
+//   summary()                  numbers of the whole run, by name
+//   state(self), loaded()      what a checkpoint holds (core/base/state.hpp)
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cradle/tools/record/moment.hpp"
+#include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/record/schedule.hpp"
+
+namespace cradle::tools {
+
+/// What a measurement is made for.
+struct Measured {
+  const Scene& scene;
+  ParticleIndex particles;
+  std::size_t samples;
+};
+
+using Stopped = std::function<bool()>;
+using Summary = std::vector<std::pair<std::string, double>>;
+
+// ---- what several of them need
+
+/// The times of samples from, by and up to what the scene gives.
+template <class Wanted> DecimalColumn samples_of(const Wanted& wanted) {
+  return wanted.every ? decimals_by_step(wanted.from, *wanted.every, wanted.until) : DecimalColumn();
+}
+
+/// The attributes of a table of a span of time.
+template <class Wanted> std::vector<Attribute> span_of(const Wanted& wanted) {
+  return {{"from", wanted.from.value}, {"until", wanted.until.value}};
+}
+
+/// Appends attributes to those of a table.
+inline void add_attributes(Group& table, std::vector<Attribute>&& more) { append(table.attributes, std::move(more)); }
+
+/// The name of the next table of a folder.
+inline std::string numbered(std::string_view folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }
+
+}  // namespace cradle::tools

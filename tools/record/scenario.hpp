@@ -1,0 +1,63 @@
+// Which of the two scenarios of Fig. 9 a wet row follows (core/observe/scenario.hpp).
+#pragma once
+
+#include "cradle/core/observe/scenario.hpp"
+#include "cradle/tools/record/measurement.hpp"
+#include "cradle/tools/record/series.hpp"
+
+namespace cradle::tools {
+
+/// Named numbers; NaN for those that the run does not have.
+inline Summary scenario_numbers(const Scenario& s) {
+  const bool met = s.passes + s.sticks > 0;
+  return {{"pair_established", s.established},
+          {"first_meeting", s.first_meeting},
+          {"first_passed", met ? double(s.first_passed) : none<double>()},
+          {"passes", static_cast<double>(s.passes)},
+          {"sticks", static_cast<double>(s.sticks)},
+          {"role_changes", static_cast<double>(s.role_changes)},
+          {"regime", static_cast<double>(s.regime)},
+          {"separation_exponent", s.separation_exponent},
+          {"speed_exponent", s.speed_exponent}};
+}
+
+class ScenarioMeasurement {
+ public:
+  static constexpr MeasurementRow row{
+      .name = "scenario",
+      .at_end = "scenario",
+      .wanted = [](const Scene& scene) { return scene.output.scenario; },
+      .samples = series_times,
+      .summary =
+          [](const Scene&) {
+            std::vector<std::string> names;
+            for (auto& [name, value] : scenario_numbers({})) names.push_back(name);
+            return names;
+          },
+      .of_particles = false,
+  };
+
+  explicit ScenarioMeasurement(const Measured& of) : clouds_(has_clouds(of.scene)) {}
+
+  void made(const Counts& now) { merges_ = now.merges; }
+  void collision(ParticleIndex left, ParticleIndex right, double time) { watch_.collision(left, right, time, merges_); }
+  template <Real T> void record(const MomentIn<T>& now, const Due&, TableSink& put) { record_last(now, put); }
+  template <Real T> void record_last(const MomentIn<T>& now, TableSink&) {
+    if (clouds_) watch_.sample(now.cloud(), to_double(now.elapsed), now.state().counts.merges);
+  }
+  void finish(const Moment&, TableSink& put) {
+    found_ = scenario_numbers(watch_.result(merges_));
+    put.add({"scenario", {found_.begin(), found_.end()}, {}});
+  }
+  Summary summary() const { return found_; }
+
+  static auto state(auto& self) { return std::tie(self.watch_); }
+
+ private:
+  bool clouds_;
+  ScenarioWatch watch_;
+  std::uint64_t merges_ = 0;
+  Summary found_;
+};
+
+}  // namespace cradle::tools

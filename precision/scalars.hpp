@@ -29,7 +29,7 @@ using Scalars = std::tuple<double, long double, double_double, bin_float
 #ifdef CRADLE_WITH_MPFR
                            // smallest first: the first type with enough digits is used
                            ,
-                           Mpfr<4>, Mpfr<8>, Mpfr<16>, Mpfr<56>
+                           Mpfr<4>, Mpfr<16>, Mpfr<56>
 #endif
                            >;
 

@@ -42,7 +42,7 @@ template <class P> class Allocations : public InPrecision<P> {
 };
 
 #ifdef CRADLE_WITH_MPFR
-using LongMpfr = testing::Types<Precision<Mpfr<8>, 100>, Precision<Mpfr<56>, 1000>>;
+using LongMpfr = testing::Types<Precision<Mpfr<16>, 100>, Precision<Mpfr<56>, 1000>>;
 #else
 using LongMpfr = testing::Types<>;
 #endif

@@ -55,8 +55,8 @@ TEST(ScalarNames, MpfrIsTheSmallestThatHoldsTheDigits) {
   EXPECT_TRUE(leads_to<Mpfr<4>>("mpfr", 20));
   EXPECT_TRUE(leads_to<Mpfr<4>>("mpfr", 50));
   EXPECT_TRUE(leads_to<Mpfr<4>>("mpfr", 76));
-  EXPECT_TRUE(leads_to<Mpfr<8>>("mpfr", 77));
-  EXPECT_TRUE(leads_to<Mpfr<8>>("mpfr", 153));
+  EXPECT_TRUE(leads_to<Mpfr<16>>("mpfr", 77));
+  EXPECT_TRUE(leads_to<Mpfr<16>>("mpfr", 153));
   EXPECT_TRUE(leads_to<Mpfr<16>>("mpfr", 154));
   EXPECT_TRUE(leads_to<Mpfr<16>>("mpfr", 307));
   EXPECT_TRUE(leads_to<Mpfr<56>>("mpfr", 308));

@@ -49,6 +49,9 @@ template <Real T> BouncingLaw<T> bouncing_law(const Scene& scene) {
   return ContactTime<T>(law, number<T>(scene.run.contact_time));
 }
 
+// Whether the choice of a law at every collision costs a run anything beside its arithmetic: not with larger numbers.
+template <Real T> inline constexpr bool chooses_at_a_cost = sizeof(T) <= 2 * sizeof(double);
+
 // Of particles under gravity or at shaken walls. Throws Error for masses that gaps cannot hold.
 template <Real T>
 std::unique_ptr<Engine<T>>
@@ -67,15 +70,13 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
                 fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
                             to_double(particles->greatest_mass())),
                 "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
-  // As without gravity (engine_of): the most used law, identical masses; the bits are the same.
   if (to_be_watched(*particles)) return in(std::type_identity<GapChain<T, WatchedMasses<T>, Gravity<T>>>{}, law);
-  if (const auto* inelastic = law.template as<Inelastic<T>>(); inelastic != nullptr && particles->identical_masses())
-    return in(std::type_identity<GapChain<T, IdenticalMasses<T>, Gravity<T>>>{}, *inelastic);
+  // As without gravity (engine_of): the most used law, identical masses; the bits are the same.
+  if constexpr (chooses_at_a_cost<T>)
+    if (const auto* inelastic = law.template as<Inelastic<T>>(); inelastic != nullptr && particles->identical_masses())
+      return in(std::type_identity<GapChain<T, IdenticalMasses<T>, Gravity<T>>>{}, *inelastic);
   return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{}, law);
 }
-
-// Whether the choice of a law at every collision costs a run anything beside its arithmetic: not with larger numbers.
-template <Real T> inline constexpr bool chooses_at_a_cost = sizeof(T) <= 2 * sizeof(double);
 
 /// Throws Error for a run so short, at times so large, that its end is not resolved to a thousandth of it.
 template <Real T> void require_resolved(const Scene& scene) {

@@ -51,17 +51,17 @@ template <Real T, class... Each> class Measurements<T, MeasurementList<Each...>>
   }
   void find(const MomentIn<T>& now, const Stopped& stopped) {
     each([&](auto& m, std::size_t row) {
-      if (!plan_.due(row, now.time.value)) return;
-      if constexpr (requires { m.finder(); })
-        m.finder().find(now.configuration(), now.particles(), now.elapsed, stopped);
-      else if constexpr (requires { m.find(now, stopped); })
-        m.find(now, stopped);
+      if constexpr (requires { m.finder(); }) {
+        if (plan_.due(row, now.time.value)) m.finder().find(now.configuration(), now.particles(), now.elapsed, stopped);
+      } else if constexpr (requires { m.find(now, stopped); }) {
+        if (plan_.due(row, now.time.value)) m.find(now, stopped);
+      }
     });
   }
   void record(const MomentIn<T>& now, TableSink& put) {
     each([&](auto& m, std::size_t row) {
-      if (const Due due = plan_.due(row, now.time.value))
-        if constexpr (requires { m.record(now, due, put); }) m.record(now, due, put);
+      if constexpr (requires(const Due& due) { m.record(now, due, put); })
+        if (const Due due = plan_.due(row, now.time.value)) m.record(now, due, put);
     });
   }
   void record_last(const MomentIn<T>& now, TableSink& put) {

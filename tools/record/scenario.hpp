@@ -27,7 +27,7 @@ class ScenarioMeasurement {
       .name = "scenario",
       .at_end = "scenario",
       .wanted = [](const Scene& scene) { return scene.output.scenario; },
-      .samples = series_times,
+      .samples = [](const Scene& scene) { return scene.output.scenario ? series_times(scene) : DecimalColumn(); },
       .summary =
           [](const Scene&) {
             std::vector<std::string> names;

@@ -48,12 +48,6 @@ void GrowingTables::add(Group&& rows) {
   if (reading_ == Reading::ends) std::for_each(columns.begin(), columns.end(), keep_ends);
 }
 
-bool has_nothing(const Group& rows) {
-  const auto empty = [](const Column& column) { return column.rows() == 0; };
-  return rows.attributes.empty() && !rows.columns.empty() &&
-         std::all_of(rows.columns.begin(), rows.columns.end(), empty);
-}
-
 std::uint64_t numbers_in(const std::vector<Group>& tables) {
   std::uint64_t numbers = 0;
   for (const Group& table : tables)

@@ -30,8 +30,6 @@ class GrowingTables {
   std::unordered_map<std::string, std::size_t> by_name_;
 };
 
-/// Whether a piece of a table has neither rows nor attributes.
-bool has_nothing(const Group& rows);
 /// The number of numbers in tables, including those that were not read.
 std::uint64_t numbers_in(const std::vector<Group>& tables);
 

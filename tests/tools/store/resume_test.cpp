@@ -45,8 +45,10 @@ class Stopping : public Sink {
   }
   cradle::StateSource* loaded_from() override { return files_.loaded_from(); }
 
- private:
+ protected:
   RunFiles& files_;
+
+ private:
   Interrupt& interrupt_;
   At at_;
   std::uint64_t checks_ = 0;
@@ -57,6 +59,7 @@ class Stopping : public Sink {
 class Unwritten final : public Stopping {
  public:
   using Stopping::Stopping;
+  bool due() const override { return files_.due(); }
   void end(std::vector<Attribute>&& attributes, RunEnd) override { attributes_ = std::move(attributes); }
   void write(RunFiles& files) { files.end(std::move(attributes_), RunEnd::reached); }
 

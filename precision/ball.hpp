@@ -28,8 +28,8 @@
 #include <limits>
 #include <string_view>
 
-#include "cradle/core/certify/enclosing.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/certify/enclosing.hpp"
 #include "cradle/precision/double_double.hpp"
 #include "cradle/precision/text.hpp"
 #ifdef CRADLE_WITH_MPFR

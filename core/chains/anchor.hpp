@@ -4,8 +4,8 @@
 
 #include <tuple>
 
-#include "cradle/core/queue/clock.hpp"
 #include "cradle/core/initial/particles.hpp"
+#include "cradle/core/queue/clock.hpp"
 
 namespace cradle {
 

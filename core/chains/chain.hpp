@@ -14,9 +14,9 @@
 
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/laws/law.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/event_queue.hpp"
-#include "cradle/core/laws/law.hpp"
 
 namespace cradle {
 

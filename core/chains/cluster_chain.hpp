@@ -19,13 +19,13 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/cluster_line.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/held_range.hpp"
 #include "cradle/core/queue/relative_motion.hpp"
-#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

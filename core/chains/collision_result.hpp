@@ -2,8 +2,8 @@
 // What a chain reports of a collision to the event loop.
 
 #include "cradle/core/chains/notice.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/laws/law.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

@@ -15,8 +15,8 @@
 #include <tuple>
 #include <vector>
 
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/initial/particles.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

@@ -10,9 +10,9 @@
 #include <tuple>
 #include <vector>
 
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/law.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

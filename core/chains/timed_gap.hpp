@@ -3,9 +3,9 @@
 
 #include <tuple>
 
+#include "cradle/core/base/real.hpp"
 #include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/queue/ledger.hpp"
-#include "cradle/core/base/real.hpp"
 
 namespace cradle {
 

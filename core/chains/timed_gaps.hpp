@@ -24,13 +24,13 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/timed_gap.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/clock.hpp"
 #include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/queue/ledger.hpp"
-#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

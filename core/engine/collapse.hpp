@@ -23,10 +23,10 @@
 #include <unordered_map>
 
 #include "cradle/core/chains/gravity.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/engine/gap_errors.hpp"
 #include "cradle/core/engine/two_gaps.hpp"
 #include "cradle/core/initial/particles.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

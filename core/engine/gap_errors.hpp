@@ -10,11 +10,11 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "cradle/core/base/real.hpp"
 #include "cradle/core/chains/masses.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/law.hpp"
-#include "cradle/core/base/real.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

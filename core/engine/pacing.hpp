@@ -16,8 +16,8 @@
 #include <cstdint>
 #include <tuple>
 
-#include "cradle/core/chains/notice.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/chains/notice.hpp"
 
 namespace cradle {
 

@@ -14,18 +14,18 @@
 #include <optional>
 #include <utility>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/engine/collapse.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/engine/pacing.hpp"
 #include "cradle/core/engine/standstill.hpp"
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/engine/ties.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/one_of.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

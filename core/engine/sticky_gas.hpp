@@ -19,12 +19,12 @@
 #include <memory>
 #include <utility>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/ledger.hpp"
 #include "cradle/core/queue/relative_motion.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

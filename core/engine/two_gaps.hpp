@@ -12,8 +12,8 @@
 #include <cmath>
 #include <optional>
 
-#include "cradle/core/engine/gap_errors.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/engine/gap_errors.hpp"
 
 namespace cradle {
 

@@ -19,11 +19,11 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/elementary.hpp"
 #include "cradle/core/initial/mass_pattern.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/core/base/elementary.hpp"
 
 namespace cradle {
 

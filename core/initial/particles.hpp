@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "cradle/core/laws/wall.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/laws/wall.hpp"
 
 namespace cradle {
 

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/base/portable_log.hpp"
+#include "cradle/core/initial/rows.hpp"
 
 namespace cradle {
 

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
+#include "cradle/core/base/portable_log.hpp"
 #include "cradle/core/initial/mass_pattern.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/core/base/portable_log.hpp"
 
 namespace cradle {
 

@@ -23,10 +23,10 @@
 #include <optional>
 #include <tuple>
 
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/core/laws/law.hpp"
 #include "cradle/core/base/portable_log.hpp"
+#include "cradle/core/base/state.hpp"
+#include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/wall_motion.hpp"
 
 namespace cradle {

@@ -20,8 +20,8 @@
 #include <optional>
 #include <vector>
 
-#include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/base/state.hpp"
+#include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/engine/status.hpp"
 
 namespace cradle {

@@ -3,8 +3,8 @@
 // less apart. So the engine computes with offsets from a moving origin; the origin is stored as an unevaluated sum,
 // with a relative error of the square of the type's precision. All times are in units of the scene.
 
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/base/state.hpp"
 
 namespace cradle {
 

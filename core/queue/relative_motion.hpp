@@ -15,8 +15,8 @@
 
 #include <type_traits>
 
-#include "cradle/core/queue/ledger.hpp"
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/queue/ledger.hpp"
 
 namespace cradle {
 

@@ -19,8 +19,8 @@
 namespace architecture_test {
 
 namespace fs = std::filesystem;
-using cradle::test::has;
 using cradle::test::build_folder;
+using cradle::test::has;
 using cradle::test::source_folder;
 
 struct Line {
@@ -38,7 +38,8 @@ std::vector<fs::path> headers(const std::string& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_folder) / folder))
     if (entry.path().extension() == ".hpp" || entry.path().extension() == ".cpp" ||
-        entry.path().extension() == ".inl" || entry.path().extension() == ".in") files.push_back(entry.path());
+        entry.path().extension() == ".inl" || entry.path().extension() == ".in")
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }

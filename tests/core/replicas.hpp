@@ -6,8 +6,8 @@
 #include <numeric>
 #include <vector>
 
-#include "cradle/core/ensemble/tree.hpp"
 #include "cradle/core/base/counter_rng.hpp"
+#include "cradle/core/ensemble/tree.hpp"
 
 namespace cradle::test {
 

@@ -2,11 +2,11 @@
 #include <memory>
 #include <stdexcept>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"

@@ -3,16 +3,16 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/trace.hpp"

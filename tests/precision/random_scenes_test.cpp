@@ -8,11 +8,11 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/tests/core/slow_loop.hpp"

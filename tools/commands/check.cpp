@@ -4,8 +4,8 @@
 
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {

@@ -6,8 +6,8 @@
 #include <chrono>
 
 #include "cradle/precision/scalars.hpp"
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {

@@ -14,8 +14,8 @@
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/core/words/word.hpp"
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/number_range.hpp"
 #include "cradle/tools/scene/particle_order.hpp"
 

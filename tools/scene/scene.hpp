@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/tools/scene/scalars.hpp"
 #include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/scene/scalars.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {

@@ -1,8 +1,8 @@
 #include "cradle/tools/setup/at_walls.hpp"
 
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/scene/rational.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 
 namespace cradle::tools {
 namespace {

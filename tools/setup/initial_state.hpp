@@ -14,8 +14,8 @@
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/precision/text.hpp"
-#include "cradle/tools/setup/at_walls.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/setup/at_walls.hpp"
 
 namespace cradle::tools {
 

@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/scene/number_range.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 

@@ -10,12 +10,12 @@
 #include "cradle/tools/scene/checks.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/keys.hpp"
-#include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/scene/overrides.hpp"
 #include "cradle/tools/scene/source.hpp"
+#include "cradle/tools/setup/list_file.hpp"
+#include "cradle/tools/setup/word_start.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/spelling.hpp"
-#include "cradle/tools/setup/word_start.hpp"
 
 namespace cradle::tools {
 namespace {

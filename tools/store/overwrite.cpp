@@ -1,5 +1,5 @@
-#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/overwrite.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
-#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/threshold/question.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/version.hpp"

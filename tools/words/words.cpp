@@ -1,5 +1,5 @@
-#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/words/words.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 #include <fmt/format.h>
 

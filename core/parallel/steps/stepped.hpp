@@ -10,12 +10,12 @@
 #include <cstdint>
 
 #include "cradle/core/chains/masses.hpp"
-#include "cradle/core/queue/ledger.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
+#include "cradle/core/queue/ledger.hpp"
 
 namespace cradle {
 

@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"

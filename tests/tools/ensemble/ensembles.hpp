@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
+#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests {

@@ -10,9 +10,9 @@
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/mutator.hpp"
+#include "cradle/tools/commands/listing.hpp"
 #include "cradle/tools/ensemble/merge.hpp"
 #include "cradle/tools/result/csv.hpp"
-#include "cradle/tools/commands/listing.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/errors.hpp"
 

@@ -17,8 +17,8 @@
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools::gaps_test {

@@ -6,9 +6,9 @@
 #include "cradle/tools/store/overwrite.hpp"
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/ensemble/ensemble_store.hpp"
 
 namespace cradle::tests::overwrite_test {
 

@@ -53,10 +53,16 @@ template <Real T> void leave_out_walls(Configuration<T>& c, ParticleIndex count)
 // smallest first. Positions so many turns away that they have no digits within one turn are not changed.
 template <Real T> void fold(Configuration<T>& c, const T& circumference) {
   if (c.x.empty()) return;
-  const double whole = std::floor(to_double(T(c.x.front() / circumference)));
+  const auto turns = [&] { return std::floor(to_double(T(c.x.front() / circumference))); };
+  double whole = turns();
   if (!(std::abs(whole) < 0x1p62)) return;
-  const T turns = T(static_cast<std::int64_t>(whole));
-  for (T& x : c.x) x -= turns * circumference;
+  const auto turn_back = [&] {
+    const T all = T(static_cast<std::int64_t>(whole));
+    for (T& x : c.x) x -= all * circumference;
+  };
+  turn_back();
+  if (std::abs(whole) >= 0x1p52)  // a double has not all digits of the number of turns
+    for (whole = turns(); whole != 0 && std::abs(whole) < 0x1p52; whole = turns()) turn_back();
   std::size_t first = 0;
   const auto rotate = [&](auto& values) {
     std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values.end());

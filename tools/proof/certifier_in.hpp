@@ -272,14 +272,21 @@ template <class M> class CertifierIn final : public Certifier {
       number("m", particles.m, m, run.errors().mass);
       number("x", particles.x, place, run.errors().place);
       number("v", particles.v, v, run.errors().speed);
-      if (there) rows[found->second] = ProvedParticle{m, place, v};
+      if (there) rows[found->second] = ProvedParticle{m, place, v, x};
     });
     add_particles(rows);
   }
   // The rows of a snapshot in the file, from left to right.
   struct ProvedParticle {
-    N m, x, v;
+    N m, x, v, unfolded;
   };
+  // The way round a ring from a particle to the next one, wherever the run has folded them to.
+  N way(const ProvedParticle& from, const ProvedParticle& to, bool single) const {
+    const N length = particles_->circumference();
+    N way = to.unfolded - from.unfolded;
+    for (int pass = 0; pass < 2; ++pass) way = way - N(std::round(to_double(N(way / length)))) * length;
+    return single || way < N(0) ? N(way + length) : way;
+  }
   void add_particles(const std::vector<std::optional<ProvedParticle>>& rows) {
     const std::string table = fmt::format("snapshots/{:04}/", snapshots_ - 1);
     const auto add = [&](const char* column, std::size_t j, std::optional<N> proved, long double bound) {
@@ -295,8 +302,7 @@ template <class M> class CertifierIn final : public Certifier {
       add("v", j, row.v, errors_.speed);
       if (j + 1 == rows.size() && !on_ring) break;
       if (const auto& next = rows[j + 1 < rows.size() ? j + 1 : 0]) {
-        N gap = next->x - row.x;
-        if (j + 1 == rows.size()) gap = gap + particles_->circumference();  // the run folds places to 0 <= x < L
+        const N gap = on_ring ? way(row, *next, rows.size() == 1) : N(next->x - row.x);
         between_.push_back({enclosed(gap), enclosed(row.v - next->v)});
         add("gap", j, gap, errors_.gap + errors_.of_gap * static_cast<long double>(gap.size()));
         add("closing_speed", j, row.v - next->v, 2 * errors_.speed);
@@ -309,7 +315,10 @@ template <class M> class CertifierIn final : public Certifier {
   N nearest_image(const N& x, const std::string& of_run) const {
     if (!particles_->on_ring() || of_run.find('n') != of_run.npos) return x;
     const N length = particles_->circumference();
-    return x + N(std::round(to_double(N((from_text<N>(of_run) - x) / length)))) * length;
+    N image = x;  // a double has not all digits of many turns
+    for (int pass = 0; pass < 2; ++pass)
+      image = image + N(std::round(to_double(N((from_text<N>(of_run) - image) / length)))) * length;
+    return image;
   }
 
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {

@@ -93,6 +93,8 @@ template <Real T> class ClusterLine {
       const bool pass = outcome.event == Event::pass;
       l.velocity = pass ? sped : slowed;
       r.velocity = pass ? slowed : sped;
+      if (outcome.closing == T(0) && !pass) [[unlikely]]  // they move together, which rounding must not undo
+        l.velocity = r.velocity = l.mass < r.mass ? sped : slowed;
       if (pass) {
         std::swap(l.mass, r.mass);
         std::swap(l.particle, r.particle);

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
@@ -276,6 +277,23 @@ TEST(UnequalMasses, ClosedSystemsThatHaveCooledToTheirRoundingAreWarnedOf) {
   s.circumference = 0, s.left_wall = s.right_wall = true;
   s.x = {0.125}, s.v = {0.9131}, s.m = {1}, s.wall_restitution = 0.3;
   EXPECT_TRUE(make<GapChain<double>>(s, 1000).warned);
+}
+
+// After a collision of restitution 0 two particles move together: they collide once, whatever their masses.
+template <class T> void expect_one_collision_of_restitution_0() {
+  Drawing draw(31);
+  for (int k = 0; k < 100; ++k) {
+    System s;
+    s.x = {0, 1}, s.v = {draw.from_to(1, 2), draw.from_to(-1, 1)}, s.m = {draw.from_to(0.1, 1), draw.from_to(1, 9)};
+    Simulation run(InelasticMerging<T>(Inelastic<T>(T(0)), exactly<T>(1e-9)),
+                   ClusterChain<T>(particles_of<T>(s), T(0)));
+    run.advance(T(1000));
+    EXPECT_EQ(run.counts().collisions, 1U) << k;
+  }
+}
+TEST(UnequalMasses, OfRestitutionZeroCollideOnce) {
+  expect_one_collision_of_restitution_0<double>();
+  expect_one_collision_of_restitution_0<double_double>();
 }
 
 // Down to intervals of 1e-1045 and back, which ranges wider than double's have. Exact: 16753 collisions (140 digits).

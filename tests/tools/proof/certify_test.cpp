@@ -263,6 +263,36 @@ TEST_F(Certified, TheRunsNumberStaysWhereTheProofEnclosesIt) {
   EXPECT_EQ(numbers(result(), "events", "time").front(), 2e-29 / 0.303554535571);
 }
 
+// After 8e15 turns a place has no digits in double, and the run's particles are anywhere; a proof knows their gaps.
+TEST_F(Certified, GapsOnARingAreTheWayRoundWhereverTheRunHasItsParticles) {
+  write(
+      "ring.toml",
+      "law = {type = \"inelastic\", restitution = 0.68845428}\n"
+      "initial = {type = \"list\", x = [0], gap = [6.1998253e-24, 2e-25], length = 1.9690000000000000000000063998253, "
+      "v = [-1000000.490132653717308138479501174693, -1000000.497795655363910974387868526078, "
+      "-1000000.919075993546211256539722001038]}\nrun.until = 37070000000\noutput.snapshots = [15940100000]\n");
+  certify("ring.toml");
+  const Result r = result();
+  double sum = 0;
+  for (const double gap : numbers(r, "certificate/snapshots/0000", "gap_low")) {
+    EXPECT_GE(gap, 0);
+    sum += gap;
+  }
+  EXPECT_NEAR(sum, 1.969, 1e-6);
+}
+// A double does not count 2e17 turns.
+TEST_F(Certified, PlacesOnARingAreFoldedAfterAnyNumberOfTurns) {
+  write("ring.toml",
+        "law = {type = \"inelastic\", restitution = 0.3}\ninitial = {type = \"list\", x = [0, 1, 5], length = 8.5, v = "
+        "[12345.6773, 12345.6779, 12345.6781]}\nrun = {until = 1.455e14, precision = \"double-double\"}\n"
+        "output.snapshots = [1.455e14]\n");
+  certify("ring.toml");
+  for (const double x : numbers(result(), "snapshots/0000", "x")) {
+    EXPECT_GE(x, 0);
+    EXPECT_LT(x, 8.5);
+  }
+}
+
 TEST_F(Certified, AMassTooSmallForADoubleIsThere) {
   write("rows.toml", "law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\nrun.until = 0.47\n"
                      "initial = {type = \"rows\", left = {particles = 3, speed = 1, density = 1}, right = "

@@ -55,7 +55,7 @@ T GapChain<T, Masses, Field>::kinetic_energy(const T& time, const Closing& closi
 template <Real T, class Masses, class Field> void GapChain<T, Masses, Field>::find_lost_digits(const T& time) {
   if (!closed() || line_.exact_sums() || line_.gaps.account().uncertain > 0) return;
   const Wall<T>*left = particles_->wall(End::left), *right = particles_->wall(End::right);
-  CompensatedSum<T> missing;
+  EnergySum<T> missing;
   if (left != nullptr) missing.add(right->speed), missing.add(T(-left->speed));
   T fastest(0);
   for (Slot s = first(); s <= last(); ++s) {

@@ -15,7 +15,6 @@
 #include "cradle/core/words/word.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/scene/fields.hpp"
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/number_range.hpp"
 #include "cradle/tools/scene/particle_order.hpp"
 
@@ -242,7 +241,7 @@ class Checks {
   void gas_between_walls() const {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::gas) return;
-    if (scene_.law.type != LawType::inelastic)
+    if (law_row(scene_).merges)
       throw Error(place("initial.type"), "a gas between walls needs a law that bounces", said("law.type"),
                   "give law.type = \"inelastic\" or another initial state");
     const Decimal &left = *scene_.walls.left.position, &right = *scene_.walls.right.position;

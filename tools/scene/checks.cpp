@@ -121,13 +121,16 @@ class Checks {
     } catch (const std::domain_error& error) {
       throw Error(place("law.loss"), error.what(), scene_.law.loss.text, "give another loss or initial.speed");
     }
-    for (const char* key :
-         {"output.snapshots", "output.profiles.times", "output.masses", "output.averages.every", "output.histograms",
-          "output.correlations.every", "output.structure.times", "output.structure.every",
-          "output.pair_distribution.times", "output.pair_distribution.every", "output.events"})
-      if (const auto text = value_text(*find_field(key, scene_), scene_); text && *text != "[]" && *text != "false")
+    for (const Field& field : scene_fields()) {
+      const std::string_view key = field.key;
+      if (!key.starts_with("output.") || key.starts_with("output.series.") || key.starts_with("output.checkpoint.") ||
+          key == "output.profiles.bins" || key == "output.profiles.range" || key == "output.every_replica")
+        continue;
+      if (!field.when->holds(scene_)) continue;
+      if (const auto text = value_text(field, scene_); text && *text != "[]" && *text != "false")
         throw Error(place(key), "nothing to write", "two clusters in the force of particles that are not there",
                     "remove it");
+    }
   }
 
   // If particles are displaced at random, each replica is checked when it is set up (core/initial/walled.hpp).

@@ -1,6 +1,6 @@
 #pragma once
-// The list of scalar types, and the conversion of a name to a type. A new type needs a header and a place in the list,
-// here and in precision/CMakeLists.txt; the engine is compiled once per type.
+// The list of scalar types, and the conversion of a name to a type. A new type needs a header and a line in the list:
+// the build reads the lines, each a type and its header, and compiles the engine once per type.
 
 #include <cstddef>
 #include <stdexcept>
@@ -21,15 +21,20 @@
 
 namespace cradle {
 
-using Scalars = std::tuple<double, long double, double_double, bin_float
+using Scalars = std::tuple<double,         // text.hpp
+                           long double,    // text.hpp
+                           double_double,  // double_double.hpp
+                           bin_float       // bin_float.hpp
 #ifdef CRADLE_WITH_FLOAT128
                            ,
-                           float128
+                           float128  // float128.hpp
 #endif
 #ifdef CRADLE_WITH_MPFR
                            // smallest first: the first type with enough digits is used
                            ,
-                           Mpfr<4>, Mpfr<16>, Mpfr<56>
+                           Mpfr<4>,   // mpfr.hpp
+                           Mpfr<16>,  // mpfr.hpp
+                           Mpfr<56>   // mpfr.hpp
 #endif
                            >;
 

@@ -53,10 +53,7 @@ int main(int argc, char** argv) {
         "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
         "5 resolution or order lost, 6 processor too old for this build, 130/143 interrupted.");
     program.begin_with(first_steps);
-    for (const auto add : {add_run,      add_resume, add_check, add_info,       add_export, add_diff,  add_theory,
-                           add_scenes,   add_new,    add_plot,  add_report,     add_cite,   add_trust, add_certify,
-                           add_ensemble, add_sweep,  add_merge, add_completion, add_manual, add_words, add_threshold})
-      add(program);
+    for (AddCommand* const add : all_commands) add(program);
     return finish(program.read(argc, argv)());
   } catch (const Error& error) {
     return fail(error.what(), error.status);

@@ -1,5 +1,5 @@
-// The commands of the program, one file each. Each adds itself to the command line. When chosen, it does its work and
-// returns an exit status; it throws Error for everything a user can put right.
+// The commands of the program, one file each, and their list. Each adds itself to the command line. When chosen, it
+// does its work and returns an exit status; it throws Error for everything a user can put right.
 #pragma once
 
 #include <optional>
@@ -50,26 +50,14 @@ struct CommonOptions : RunningOptions {
 };
 void add_common_options(Command& command, CommonOptions& options);
 
-void add_run(CommandLine& program);
-void add_resume(CommandLine& program);
-void add_check(CommandLine& program);
-void add_info(CommandLine& program);
-void add_export(CommandLine& program);
-void add_diff(CommandLine& program);
-void add_theory(CommandLine& program);
-void add_scenes(CommandLine& program);
-void add_new(CommandLine& program);
-void add_plot(CommandLine& program);
-void add_report(CommandLine& program);
-void add_cite(CommandLine& program);
-void add_trust(CommandLine& program);
-void add_certify(CommandLine& program);
-void add_ensemble(CommandLine& program);
-void add_sweep(CommandLine& program);
-void add_merge(CommandLine& program);
-void add_completion(CommandLine& program);
-void add_manual(CommandLine& program);
-void add_words(CommandLine& program);
-void add_threshold(CommandLine& program);
+/// The commands: each adds itself. Help lists them in this order.
+using AddCommand = void(CommandLine& program);
+AddCommand add_run, add_resume, add_check, add_info, add_export, add_diff, add_theory, add_scenes, add_new, add_plot,
+    add_report, add_cite, add_trust, add_certify, add_ensemble, add_sweep, add_merge, add_completion, add_manual,
+    add_words, add_threshold;
+inline constexpr AddCommand* all_commands[] = {
+    add_run,      add_resume, add_check, add_info,       add_export, add_diff,  add_theory,
+    add_scenes,   add_new,    add_plot,  add_report,     add_cite,   add_trust, add_certify,
+    add_ensemble, add_sweep,  add_merge, add_completion, add_manual, add_words, add_threshold};
 
 }  // namespace cradle::tools

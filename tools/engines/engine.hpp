@@ -18,7 +18,7 @@
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

@@ -15,7 +15,7 @@
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/tools/engines/engine.hpp"
 #include "cradle/tools/engines/precision.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
 
 namespace cradle::tools {

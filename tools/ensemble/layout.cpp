@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

@@ -12,15 +12,12 @@ namespace cradle::tools {
 
 namespace {
 
-// Whether replicas differ: by displacements (whole multiples of a unit, core/initial/rows.hpp), velocities, masses or
-// walls.
+// Whether replicas differ: by velocities, displacements (whole multiples of a unit, core/initial/rows.hpp), masses or
+// walls. What an initial state does not have is 0 in its scenes.
 bool is_random(const Scene& scene) {
   const Initial& initial = scene.initial;
-  const bool displaced = initial.type == InitialType::rows || initial.type == InitialType::cold;
-  return initial.type == InitialType::ring || initial.type == InitialType::gas ||
-         initial.positions != Positions::lattice || !initial.random_masses.empty() ||
-         (initial.type == InitialType::cold && initial.hot > 1) ||
-         (displaced && initial.perturbation.value * static_cast<double>(displacement_unit) >= 1) ||
+  return initial.variance > Decimal("0") || initial.hot > 1 || initial.positions != Positions::lattice ||
+         initial.perturbation.value * static_cast<double>(displacement_unit) >= 1 || !initial.random_masses.empty() ||
          scene.walls.left.temperature || scene.walls.right.temperature;
 }
 

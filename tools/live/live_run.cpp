@@ -5,7 +5,7 @@
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/checkpoint.hpp"
 #include "cradle/tools/support/atomic_file.hpp"

@@ -7,7 +7,7 @@
 
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tools/scene/fields.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {

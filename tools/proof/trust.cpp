@@ -12,7 +12,7 @@
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/precision/double_double.hpp"
 #include "cradle/tools/proof/certify.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

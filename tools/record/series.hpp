@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cradle/tools/record/measurement.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

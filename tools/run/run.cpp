@@ -8,7 +8,7 @@
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/version.hpp"
 

@@ -15,7 +15,6 @@
 #include "cradle/core/words/word.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/scene/fields.hpp"
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/number_range.hpp"
 #include "cradle/tools/scene/particle_order.hpp"
 
@@ -122,13 +121,16 @@ class Checks {
     } catch (const std::domain_error& error) {
       throw Error(place("law.loss"), error.what(), scene_.law.loss.text, "give another loss or initial.speed");
     }
-    for (const char* key :
-         {"output.snapshots", "output.profiles.times", "output.masses", "output.averages.every", "output.histograms",
-          "output.correlations.every", "output.structure.times", "output.structure.every",
-          "output.pair_distribution.times", "output.pair_distribution.every", "output.events"})
-      if (const auto text = value_text(*find_field(key, scene_), scene_); text && *text != "[]" && *text != "false")
+    for (const Field& field : scene_fields()) {
+      const std::string_view key = field.key;
+      if (!key.starts_with("output.") || key.starts_with("output.series.") || key.starts_with("output.checkpoint.") ||
+          key == "output.profiles.bins" || key == "output.profiles.range" || key == "output.every_replica")
+        continue;
+      if (!field.when->holds(scene_)) continue;
+      if (const auto text = value_text(field, scene_); text && *text != "[]" && *text != "false")
         throw Error(place(key), "nothing to write", "two clusters in the force of particles that are not there",
                     "remove it");
+    }
   }
 
   // If particles are displaced at random, each replica is checked when it is set up (core/initial/walled.hpp).
@@ -242,7 +244,7 @@ class Checks {
   void gas_between_walls() const {
     const Initial& initial = scene_.initial;
     if (initial.type != InitialType::gas) return;
-    if (scene_.law.type != LawType::inelastic)
+    if (law_row(scene_).merges)
       throw Error(place("initial.type"), "a gas between walls needs a law that bounces", said("law.type"),
                   "give law.type = \"inelastic\" or another initial state");
     const Decimal &left = *scene_.walls.left.position, &right = *scene_.walls.right.position;

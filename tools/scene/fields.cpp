@@ -2,7 +2,6 @@
 #include "cradle/tools/scene/fields.hpp"
 
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/scene/laws.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -19,8 +18,15 @@ template <scene::CollapsePolicy P> constexpr auto at_collapse = +[](const Scene&
 constexpr std::string_view other_law = "key of another law";
 constexpr When inelastic{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
 constexpr When wet{other_law, "law.type", "law.type = \"wet\"", of_law<LawType::wet>};
-constexpr When merging{other_law, "law.type", "law.type = \"wet\" or \"sticky\"",
-                       [](const Scene& s) { return law_row(s).merges; }};
+// `law.type = "wet" or "sticky"`: the laws whose particles merge, or bounce.
+std::string laws_that(bool merge) {
+  std::string names;
+  for (const LawRow& row : law_rows)
+    if (row.merges == merge) names.append(names.empty() ? "law.type = \"" : "\" or \"").append(row.name);
+  return names + '"';
+}
+const std::string that_merge = laws_that(true), that_bounce = laws_that(false);
+const When merging{other_law, "law.type", that_merge, [](const Scene& s) { return law_row(s).merges; }};
 constexpr When wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
                            return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
                                   !s.initial.general_rows();
@@ -53,9 +59,8 @@ constexpr When one_hot{other_state, "initial.hot", "initial.type = \"cold\" with
 constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" with several hot particles",
                            [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot > 1; }};
 
-constexpr When may_have_walls{other_law, "law.type", "law.type = \"inelastic\"", [](const Scene& s) {
-                                return s.law.type == LawType::inelastic && s.initial.type != InitialType::gas;
-                              }};
+const When may_have_walls{other_law, "law.type", that_bounce,
+                          [](const Scene& s) { return !law_row(s).merges && s.initial.type != InitialType::gas; }};
 constexpr std::string_view no_wall = "key of a wall that is not there";
 constexpr When left_wall{no_wall, "walls.left.position", "a left wall",
                          [](const Scene& s) { return s.walls.left.position.has_value(); }};
@@ -83,7 +88,7 @@ constexpr When left_holds{no_hold, "gravity.acceleration", "a left wall without 
 constexpr When right_holds{no_hold, "gravity.acceleration", "a right wall without temperature, shaken or with gravity",
                            [](const Scene& s) { return may_hold(s, s.walls.right); }};
 
-constexpr When may_fall{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
+const When may_fall{other_law, "law.type", that_bounce, [](const Scene& s) { return !law_row(s).merges; }};
 
 constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
                     [](const Scene& s) { return s.run.precision == Precision::mpfr; }};
@@ -160,11 +165,13 @@ template <auto M> constexpr auto run_of = member<&Scene::run, M>;
 template <auto M> constexpr auto sweep_of = member<&Scene::sweep, M>;
 template <auto... M> constexpr auto output_of = member<&Scene::output, M...>;
 
-const std::string scalar_names = [] {
+// The names of rows, as a choice.
+std::string names_of(const auto& rows) {
   std::string names;
-  for (const ScalarRow& row : scalar_rows) names.append(names.empty() ? "" : " | ").append(row.name);
+  for (const auto& row : rows) names.append(names.empty() ? "" : " | ").append(row.name);
   return names;
-}();
+}
+const std::string scalar_names = names_of(scalar_rows), law_names = names_of(law_rows);
 
 constexpr std::string_view any = "(-inf, inf)";
 constexpr std::string_view within_run = "[run.start, run.until]";
@@ -173,7 +180,7 @@ constexpr std::string_view within_run = "[run.start, run.until]";
 const Field all_fields[] = {
     {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
 
-    {"law.type", law_type, "", "required", "inelastic | wet | sticky", &always, "what happens at a collision"},
+    {"law.type", law_type, "", "required", law_names, &always, "what happens at a collision"},
     {"law.restitution", law_of<&scene::Law::restitution>, "", "required", "[0, 1]", &inelastic,
      "factor by which a collision reduces the closing speed; 1 is elastic"},
     {"law.cutoff", law_of<&scene::Law::cutoff>, "l/t", "0", "[0, inf)", &inelastic,

@@ -1,25 +1,10 @@
 #include "cradle/tools/scene/laws.hpp"
 
+#include "cradle/tools/scene/scene.hpp"
+
 namespace cradle::tools {
 
-namespace {
-
-constexpr LawRow laws[] = {
-    {.type = LawType::inelastic, .merges = false, .needs_events = true, .policies = true, .provable = true},
-    {.type = LawType::wet, .merges = true, .needs_events = true, .policies = false, .provable = true},
-    {.type = LawType::sticky, .merges = true, .needs_events = false, .policies = false, .provable = true},
-};
-
-constexpr bool laws_in_order() {
-  for (const LawRow& row : laws)
-    if (&laws[static_cast<std::size_t>(row.type)] != &row) return false;
-  return true;
-}
-static_assert(laws_in_order());
-
-}  // namespace
-
-const LawRow& law_row(const Scene& scene) { return laws[static_cast<std::size_t>(scene.law.type)]; }
+const LawRow& law_row(const Scene& scene) { return law_rows[static_cast<std::size_t>(scene.law.type)]; }
 
 bool particles_merge(const Scene& scene) {
   return law_row(scene).merges || scene.run.collapse == scene::CollapsePolicy::merge;

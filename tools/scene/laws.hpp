@@ -1,19 +1,56 @@
-// What the program needs to know of each collision law, one row per law. A new law is a class in core/ (its physics),
-// its keys and its row here (tools/scene), and its lines in tools/engines/engine_of.hpp, where scenes become types
-// (core/README.md). What the paper predicts for it, and what it costs, is a row in tools/theory/laws.cpp.
+// The collision laws: what a scene says of its law, and what the program needs to know of each, one row per law. A new
+// law is a class in core/ (its physics), its name, numbers and row here, rows in fields.cpp if it has numbers of its
+// own, and its lines in tools/engines/engine_of.hpp, where scenes become types (core/README.md). What the paper
+// predicts for it, and what it costs, is a row in tools/theory/laws.cpp.
 #pragma once
 
-#include "cradle/tools/scene/scene.hpp"
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "cradle/tools/scene/decimal.hpp"
 
 namespace cradle::tools {
 
+struct Scene;
+
+enum class LawType { inelastic, wet, sticky };
+
+namespace scene {
+
+struct Law {
+  LawType type = LawType::inelastic;
+  Decimal restitution;  // inelastic
+  Decimal cutoff;       // inelastic: closing speed below which collisions are elastic; 0: none
+  std::optional<Decimal>
+      cutoff_exponent;  // inelastic: the power of the speed with which the restitution falls; none: sharp
+  Decimal loss;         // wet: E_loss
+  bool operator==(const Law&) const = default;
+};
+
+}  // namespace scene
+
 struct LawRow {
   LawType type;
-  bool merges;        // particles stick or pass through each other; otherwise they bounce
-  bool needs_events;  // false: the state at any time follows without collisions
-  bool policies;      // run.collapse can be merge or contact-time
-  bool provable;      // `certify` has its map in balls (tools/proof)
+  std::string_view name;     // as in scenes
+  bool merges = false;       // particles stick or pass through each other; otherwise they bounce, also off walls
+  bool needs_events = true;  // false: the state at any time follows without collisions
+  bool policies = false;     // run.collapse can be merge or contact-time
+  bool provable = false;     // `certify` has its map in balls (tools/proof)
 };
+
+inline constexpr LawRow law_rows[] = {
+    {.type = LawType::inelastic, .name = "inelastic", .policies = true, .provable = true},
+    {.type = LawType::wet, .name = "wet", .merges = true, .provable = true},
+    {.type = LawType::sticky, .name = "sticky", .merges = true, .needs_events = false, .provable = true},
+};
+
+constexpr bool law_rows_in_order() {
+  for (const LawRow& row : law_rows)
+    if (&law_rows[static_cast<std::size_t>(row.type)] != &row) return false;
+  return true;
+}
+static_assert(law_rows_in_order());
 
 /// The row of the scene's law.
 const LawRow& law_row(const Scene& scene);

@@ -1,5 +1,5 @@
-// What the program needs to know of each scalar type, one row per type. A new type is a header in precision/, its place
-// in the two lists there (scalars.hpp, CMakeLists.txt), and its row here.
+// What the program needs to know of each scalar type, one row per type. A new type is a header in precision/, its line
+// in the list there (precision/scalars.hpp), and its row here.
 #pragma once
 
 #include <cstdint>

@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/scalars.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
 // The enumerators are in the order of the names in the table of fields.
-enum class LawType { inelastic, wet, sticky };
 enum class InitialType { rows, ring, list, clusters, cold, gas };
 enum class Velocities { gaussian, uniform };
 enum class Positions { lattice, poisson };
@@ -34,16 +34,6 @@ enum class HotPlace { middle, left };
 enum class Motion { none, sawtooth, parabola, sine };
 enum class CollapsePolicy { cutoff, contact_time, merge, stop };
 enum class Meeting { energy, pass, stick };
-
-struct Law {
-  LawType type = LawType::inelastic;
-  Decimal restitution;  // inelastic
-  Decimal cutoff;       // inelastic: closing speed below which collisions are elastic; 0: none
-  std::optional<Decimal>
-      cutoff_exponent;  // inelastic: the power of the speed with which the restitution falls; none: sharp
-  Decimal loss;         // wet: E_loss
-  bool operator==(const Law&) const = default;
-};
 
 /// One side of a general Riemann problem: particles at distance 1/density.
 struct Row {

@@ -42,7 +42,7 @@ std::optional<AtWallText> at_wall(const Scene& scene, End end, const Displacemen
   const Initial& initial = scene.initial;
   const bool left = end == End::left;
   const WallAt& wall = left ? scene.walls.left : scene.walls.right;
-  if (!wall.position || initial.type == InitialType::gas) return {};
+  if (!wall.position) return {};
   const auto closing = [&](std::string_view v) {
     return left ? difference(wall.speed.text, v) : difference(v, wall.speed.text);
   };
@@ -50,6 +50,7 @@ std::optional<AtWallText> at_wall(const Scene& scene, End end, const Displacemen
     const std::string_view x = left ? initial.x[0] : initial.x.back(), v = left ? initial.v[0] : initial.v.back();
     return AtWallText{left ? difference(x, wall.position->text) : difference(wall.position->text, x), closing(v)};
   }
+  if (initial.type != InitialType::rows && initial.type != InitialType::cold) return {};
   const scene::Row& row = left ? initial.left : initial.right;
   const auto at = rational(wall.position->text),
              spacing = rational(initial.general_rows() ? row.density.text : initial.spacing.text);

@@ -17,8 +17,8 @@ struct AtWallText {
   std::optional<std::string> closing_speed;
 };
 
-/// Of the particle beside the wall at this end, if there is one; in its place if the wall is shaken. Nothing for a gas
-/// that walls close. `displacement` is that of the scene's particles (null for a list).
+/// Of the particle beside the wall at this end, if there is one; in its place if the wall is shaken. Only for lists,
+/// rows and cold gases. `displacement` is that of the scene's particles (null for a list).
 std::optional<AtWallText> at_wall(const Scene& scene, End end, const Displacement& displacement);
 
 }  // namespace cradle::tools

@@ -60,9 +60,14 @@ void place_particles(const Entries& entries, Scene& scene) {
   initial.gap = {};
 }
 
-void sort_times(std::vector<Decimal>& times) {
-  if (!std::ranges::is_sorted(times)) std::ranges::sort(times);
-  times.erase(std::unique(times.begin(), times.end()), times.end());
+void sort_times(Scene& scene) {
+  for (const Field& field : scene_fields()) {
+    const auto* const list = std::get_if<Member<std::vector<Decimal>>>(&field.storage);
+    if (list == nullptr || field.unit != "t") continue;
+    std::vector<Decimal>& times = (*list)(scene);
+    if (!std::ranges::is_sorted(times)) std::ranges::sort(times);
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+  }
 }
 
 // What to do about a scene that is not there: the similar name of a file beside it or of a bundled scene.
@@ -88,12 +93,7 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   refuse_inapplicable_keys(entries, scene);
   place_particles(entries, scene);
   check_scene(scene, entries, source_name);
-  sort_times(scene.output.series.times);
-  sort_times(scene.output.snapshots);
-  sort_times(scene.output.profiles.times);
-  sort_times(scene.output.masses);
-  sort_times(scene.output.structure.times);
-  sort_times(scene.output.pair_distribution.times);
+  sort_times(scene);
   // Either becomes a list of particles: a file, or a word, which is kept in the same place until then.
   if (const auto word = entries.find("initial.word"); word != entries.end())
     start_from_word(word->second.place, scene);

@@ -7,8 +7,8 @@
 #include <compare>
 #include <string>
 
-#include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/rational.hpp"
+#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

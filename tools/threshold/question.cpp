@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "cradle/tools/scene/fields.hpp"
-#include "cradle/tools/scene/laws.hpp"
+#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/version.hpp"

@@ -48,6 +48,15 @@ template <Real T> T far_away() {
   return is_positive(largest) ? largest : T(std::numeric_limits<std::int64_t>::max());
 }
 
+// The double, exactly; a scalar type may have no constructor from double.
+template <Real T> T exactly(double x) {
+  int exponent = 0;
+  T value = T(static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53)));
+  for (exponent -= 53; exponent < 0; ++exponent) value /= T(2);
+  for (; exponent > 0; --exponent) value *= T(2);
+  return value;
+}
+
 // 2^exponent x as a double, rounded by a few units, within the range of double (larger numbers become its largest).
 // Types with a wider range than double define `double split(x, long& exponent)`: x = mantissa 2^exponent, |mantissa| in
 // [1/2, 1] or 0.

@@ -12,7 +12,6 @@
 
 #include "cradle/core/chains/watched_gap.hpp"
 #include "cradle/core/laws/law.hpp"
-#include "cradle/core/laws/wall.hpp"
 #include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {

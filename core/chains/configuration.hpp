@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -53,16 +54,13 @@ template <Real T> void leave_out_walls(Configuration<T>& c, ParticleIndex count)
 // smallest first. Positions so many turns away that they have no digits within one turn are not changed.
 template <Real T> void fold(Configuration<T>& c, const T& circumference) {
   if (c.x.empty()) return;
-  const auto turns = [&] { return std::floor(to_double(T(c.x.front() / circumference))); };
-  double whole = turns();
-  if (!(std::abs(whole) < 0x1p62)) return;
-  const auto turn_back = [&] {
-    const T all = T(static_cast<std::int64_t>(whole));
+  const auto turns = [&] { return T(c.x.front() / circumference); };
+  if (!(magnitude(turns()) * T(std::numeric_limits<T>::epsilon()) < T(1)) || !std::isfinite(to_double(turns()))) return;
+  for (double whole = 0x1p52; std::abs(whole) >= 0x1p52;) {  // a double has not all digits of more turns than that
+    whole = std::floor(to_double(turns()));
+    const T all = exactly<T>(whole);
     for (T& x : c.x) x -= all * circumference;
-  };
-  turn_back();
-  if (std::abs(whole) >= 0x1p52)  // a double has not all digits of the number of turns
-    for (whole = turns(); whole != 0 && std::abs(whole) < 0x1p52; whole = turns()) turn_back();
+  }
   std::size_t first = 0;
   const auto rotate = [&](auto& values) {
     std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values.end());

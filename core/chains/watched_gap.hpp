@@ -49,7 +49,6 @@
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/chains/timed_gap.hpp"
 #include "cradle/core/initial/particles.hpp"
-#include "cradle/core/laws/wall.hpp"
 
 namespace cradle {
 

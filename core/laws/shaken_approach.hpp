@@ -17,6 +17,7 @@
 // no collision if none comes within a period after the particle has ceased to approach that place.
 // A gap that touches 0 or falls below it by rounding alone, and opens again, does not close. On the sawtooth, a
 // particle that is at the tip at the time of the jump, but for rounding, is not hit.
+// The search ends: a time so long that the type does not resolve arcs or teeth counts as that of the collision.
 
 #include <limits>
 #include <optional>
@@ -114,17 +115,24 @@ template <Real T> class ShakenApproach {
       const Approach<T> tooth = straight(T(gap_ + height * teeth), closing_, pull_);
       const auto wait = tooth.meeting_in();
       if (!wait) return {};
-      const T rounding = T(16) * T(std::numeric_limits<T>::epsilon()) * (magnitude(since_.high) + jump);
+      T rounding = roundings(T(magnitude(since_.high) + jump));
+      const bool resolved = rounding < motion_.period() / T(8);
+      if (!resolved) rounding = T(0);
       if (*wait < jump - rounding) return Meeting{*wait, tooth.meeting_speed().value_or(T(0))};
       if (never < jump) return {};
       const Approach<T> to_place = straight(T(gap_ + place_), T(closing_ - speed_), pull_);
-      const auto free = out_of_reach(to_place.gap_after(jump), to_place.closing_after(jump));
+      const T distance = to_place.gap_after(jump);
+      if (!resolved && !(motion_.amplitude() < distance)) return unresolved(jump, tooth.closing_after(jump));
+      const T unseen = (rounding + rounding) * motion_.fastest();  // so far below the tip it is surely hit
+      const auto free = out_of_reach(T(distance + unseen), to_place.closing_after(jump));
       if (!free) return {};
-      const T later = nearest_whole(T(phase_.rest + motion_.at_turns_of(T(jump + *free))));
-      teeth += T(1);
-      if (teeth < later) teeth = later;
+      const T next = teeth + T(1), later = nearest_whole(T(phase_.rest + motion_.at_turns_of(T(jump + *free))));
+      if (!(teeth < next)) return unresolved(jump, tooth.closing_after(jump));
+      teeth = next < later ? later : next;
     }
   }
+  static T roundings(const T& time) { return T(16) * T(std::numeric_limits<T>::epsilon()) * time; }
+  static Meeting unresolved(const T& time, const T& closing) { return {time, is_positive(closing) ? closing : T(0)}; }
 
   // An arc that begins `time` later, with so much of it left.
   struct Arc {
@@ -166,21 +174,27 @@ template <Real T> class ShakenApproach {
                                             T(arc.state.closing - (first ? speed_ : speed_at_start(arc.upper))), pull_);
       const auto free = out_of_reach(to_place.gap_after(T(0)), to_place.closing_after(T(0)));
       if (!free) return {};
+      if (half / T(4) < roundings(arc.time) && !(motion_.amplitude() < to_place.gap_after(T(0))))
+        return unresolved(arc.time, arc.state.closing);
       if (arc.left < *free) {
         const T more = whole_below(T((*free - arc.left) / half)), until = arc.left + more * half;
         const bool even = nearest_whole(T(more / T(2))) * T(2) == more;
-        arc = {T(arc.time + until),
+        const T now = arc.time;
+        arc = {T(now + until),
                half,
                {to_place.gap_after(until), to_place.closing_after(until)},
                even ? !arc.upper : arc.upper};
         arc.state.closing += speed_at_start(arc.upper);
+        if (!(now < arc.time)) return unresolved(now, arc.state.closing);
         continue;
       }
       const Approach<T> here = on(arc);
       const auto wait = here.meeting_in();
       if (wait && !(arc.left < *wait)) return Meeting{T(arc.time + *wait), here.meeting_speed().value_or(T(0))};
+      const T now = arc.time;
       arc = next(arc);
       if (never < arc.time) return {};
+      if (!(now < arc.time)) return unresolved(now, arc.state.closing);
     }
   }
 
@@ -236,8 +250,11 @@ template <Real T> class ShakenApproach {
       const auto free = out_of_reach(T(gap + place), T(closing - speed));
       if (!free) return {};
       if (wait < *free) wait = *free;
-      const T next = time + wait;
-      if (!(time < next)) return Meeting{time, is_positive(closing) ? closing : T(0)};
+      const T next = time + wait, rounding = roundings(RoundsToNearest<T> ? time : T(time + since_.high));
+      if (!(time < next)) return unresolved(time, closing);
+      if (is_positive(time) && is_positive(gap) && gap < motion_.curving() * rounding * rounding &&
+          !(motion_.amplitude() < gap + place))
+        return unresolved(time, closing);  // below a top that is no further than the rounding of the time
       if (never < next) return {};
       time = next;
     }

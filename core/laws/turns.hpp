@@ -22,11 +22,18 @@ namespace cradle {
 
 template <Real T = double> struct UnitVector { T cos, sin; };
 
-// The whole number nearest to y, |y| < 2^53; of two the larger one.
+// The whole number nearest to y, which is in the range of double; of two the larger one.
 template <Real T> T nearest_whole(const T& y) {
-  const T n = T(static_cast<std::int64_t>(std::floor(to_double(y) + 0.5)));
-  const T rest = (y - n) + (y - n);  // to double, y may be rounded to the middle between two
-  return rest < T(-1) ? T(n - T(1)) : rest < T(1) ? n : T(n + T(1));
+  T whole(0), rest = y;
+  double leading = to_double(rest);
+  for (; std::isfinite(leading) && !(std::abs(leading) < 0x1p53); leading = to_double(rest)) {  // it is whole
+    const T part = exactly<T>(leading);
+    whole += part, rest -= part;
+  }
+  if (!std::isfinite(leading)) return y;
+  const T n = T(static_cast<std::int64_t>(std::floor(leading + 0.5)));
+  const T beyond = (rest - n) + (rest - n);  // to double, it may be rounded to the middle between two
+  return whole + (beyond < T(-1) ? T(n - T(1)) : beyond < T(1) ? n : T(n + T(1)));
 }
 inline double nearest_whole(double y) { return std::floor(y + 0.5); }
 

@@ -73,15 +73,6 @@ inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, 
   return std::sqrt(-2 * detail::portable_log(uniform));
 }
 
-// The double, exactly; a scalar type may have no constructor from double.
-template <Real T> T exactly(double x) {
-  int exponent = 0;
-  T value = T(static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53)));
-  for (exponent -= 53; exponent < 0; ++exponent) value /= T(2);
-  for (; exponent > 0; --exponent) value *= T(2);
-  return value;
-}
-
 // The walls of a line of particles: none, one or two.
 template <Real T> class Walls {
  public:

@@ -1,5 +1,6 @@
-// Shaken walls in every scalar type: pi, sine and cosine; when random gaps close, grazing ones among them, against 100
-// digits: never later than they do; a column, in all types the same collisions.
+// Shaken walls in every scalar type: pi, sine and cosine; whole numbers of any size; the search for a collision ends;
+// when random gaps close, grazing ones among them, against 100 digits: never later than they do; a column, in all types
+// the same collisions.
 #include <gtest/gtest.h>
 
 #include <boost/math/constants/constants.hpp>
@@ -43,8 +44,52 @@ TYPED_TEST(ShakenIn, SineAndCosineHaveTheirDigits) {
             most);
 }
 
+// Whole numbers of turns of any size, as long as the type has digits behind the point.
+TYPED_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
+  using T = typename TestFixture::Scalar;
+  const T epsilon = std::numeric_limits<T>::epsilon();
+  T whole(1);
+  for (int k = 0; k < 1000 && whole * epsilon < T(1) / T(16); ++k, whole += whole + T(k % 2))
+    for (const int eighths : {-4, -3, -1, 0, 1, 3}) {
+      ASSERT_EQ(nearest_whole(T(whole + T(eighths) / T(8))), whole) << k << ' ' << eighths;
+      ASSERT_EQ(nearest_whole(T(T(eighths) / T(8) - whole)), -whole) << k << ' ' << eighths;
+    }
+}
+
 template <class P> class ShakenColumnIn : public InPrecision<P> {};
 TYPED_TEST_SUITE(ShakenColumnIn, EachKindOfPrecision, PrecisionName);
+
+// A particle that comes towards the place of the wall as slowly as the type can tell, or is pulled there so, is hit
+// about when it is there; the search ends at any time since the start and any size of the numbers.
+TYPED_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
+  using T = typename TestFixture::Scalar;
+  const T epsilon = std::numeric_limits<T>::epsilon();
+  T root = T(3) / T(4);  // whose 20th power is epsilon, about
+  while (std::pow(to_double(root), 20) > to_double(epsilon) && to_double(root) > 1e-15) root *= T(3) / T(4);
+  for (const Shape shape : {Shape::sawtooth, Shape::parabola, Shape::sine})
+    for (const int phase : {-3, 1}) {
+      const WallMotion<T> motion(shape, T(1) / T(2), T(5) / T(4), T(phase));
+      T u(1);
+      for (int k = 0; k < 25; ++k, u *= root)
+        for (const T& since : {T(0), T(T(1) / u)}) {
+          const Phase<T> now = motion.at({since, T(0)});
+          const T distance = T(11) / T(3), gap = distance - motion.place(now.rest);
+          const auto meeting = [&](const T& closing, const T& pull) {
+            return ShakenApproach<T>(gap, T(motion.speed(now.rest) + closing), pull, splitter<T>(), motion,
+                                     {since, T(0)})
+                .meeting();
+          };
+          const auto met = meeting(u, T(0));
+          if (u > T(1 << 20) * epsilon && since * epsilon < u) {
+            ASSERT_TRUE(met);
+            const T reach = motion.amplitude() + u * motion.period() + T(1) / T(1 << 10);
+            ASSERT_LE(magnitude(T(met->in * u - distance)), reach) << static_cast<int>(shape) << ' ' << k;
+          }
+          for (const T& v : {u, T(0), T(-u)})
+            for (const T& pull : {T(u * u), u, T(-u), T(-u * u)}) meeting(v, pull);
+        }
+    }
+}
 
 // All types make the same collisions on each shape, and keep the account of the energy to their digits.
 TYPED_TEST(ShakenColumnIn, AColumnHasTheSameCollisions) {

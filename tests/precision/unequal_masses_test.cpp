@@ -260,7 +260,7 @@ TEST(SlowUnequalMasses, FallRightOrWarnedOf) {
   expect_falls_right_or_warned<double>(24, 100, 1.5, 2.3, false);
   expect_falls_right_or_warned<double>(25, 25, 1.5, 2.3, true);
   expect_falls_right_or_warned<long double>(26, 20, 1.5, 2.3, false);
-  expect_falls_right_or_warned<double>(29, 25, 0, 2.5, true);
+  expect_falls_right_or_warned<double>(29, 100, 0, 2.5, true);
   expect_falls_right_or_warned<double>(30, 60, 0, 3, false);
 }
 #endif

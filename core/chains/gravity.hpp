@@ -33,6 +33,7 @@ template <Real T> class Gravity {
   bool pulls(ParticleIndex gap) const { return at_wall(gap) || gap == above_pile_; }
   bool at_wall(ParticleIndex gap) const { return gap == left_.gap || gap == right_.gap; }
 
+  bool anywhere() const { return acceleration_ != T(0) || shaken(); }
   // Whether a wall is shaken, and whether a particle may miss the wall at a gap, or one of its jumps.
   bool shaken() const { return left_.wall.motion != nullptr || right_.wall.motion != nullptr; }
   bool may_miss(ParticleIndex gap) const {
@@ -151,6 +152,11 @@ template <class C>
 concept FallingChain = requires {
   requires C::falls;
 };
+// Whether anything falls or is shaken in it; chains in positions of that type are used where nothing does, too.
+template <class C> bool falls(const C& chain) {
+  if constexpr (requires { chain.falling(); }) return chain.falling();
+  return FallingChain<C>;
+}
 
 // Whether a collision with a wall under gravity, or where a wall is shaken, is below the law's cut-off. On an inelastic
 // floor particles collapse without any others; so collisions with walls below the cut-off are elastic too, also if it

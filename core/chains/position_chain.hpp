@@ -102,7 +102,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
     if constexpr (falls)
-      if (at_wall) leave_wall(s, outcome.closing);
+      if (at_wall && falling()) leave_wall(s, outcome.closing);
     front_left_ = std::min(front_left_, s);
     front_right_ = std::max(front_right_, s);
 
@@ -129,6 +129,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     const T& time = at(s).time;
     return field_.rebound(particle(s), T(velocity(s, time) - velocity(s + 1, time)), since_start(time));
   }
+  bool falling() const requires(falls) { return field_.anywhere(); }
   const Account<T>& account() const { return account_; }
   void lose(Slot, const T& energy) { lost_.add(energy); }
   T energy_lost() const { return lost_.value(); }
@@ -219,19 +220,19 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   }
   template <class Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {
     const Particle& struck = at(walls_.left_of(particle(s)) ? s + 1 : s);
-    if constexpr (falls) {
-      bool rested = true;
-      if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
-      const T& w = closing_[s];
-      const Wall<T>& wall = walls_.wall(particle(s));
-      const bool elastic = !rested || below_cutoff(law, w);
-      Outcome<T> outcome = walls_.strike(particle(s), w, struck.m, elastic ? T(1) : wall.restitution,
-                                         field_.shaken_at(particle(s), since_start(time)));
-      outcome.below_cutoff = elastic && wall.reflects();
-      return outcome;
-    } else {
-      return walls_.strike(particle(s), closing_[s], struck.m);
-    }
+    if constexpr (falls)
+      if (falling()) {
+        bool rested = true;
+        if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
+        const T& w = closing_[s];
+        const Wall<T>& wall = walls_.wall(particle(s));
+        const bool elastic = !rested || below_cutoff(law, w);
+        Outcome<T> outcome = walls_.strike(particle(s), w, struck.m, elastic ? T(1) : wall.restitution,
+                                           field_.shaken_at(particle(s), since_start(time)));
+        outcome.below_cutoff = elastic && wall.reflects();
+        return outcome;
+      }
+    return walls_.strike(particle(s), closing_[s], struck.m);
   }
   template <LawChoice Law, class Masses>
   Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {

@@ -112,7 +112,7 @@ template <Real T> struct CollapseWatch {
     for (const auto& gap : {left_of(chain, s), std::optional(s), right_of(chain, s)})
       if (gap) moves_at(chain.closing(*gap));
     if constexpr (ScaleFreeLaw<Law> && provable<Chain>)
-      if (law.scale_free()) {
+      if (law.scale_free() && !falls(chain)) {
         if constexpr (in_gaps<Chain>)
           if (errors.kept()) errors.collision(law, chain, left_of(chain, s), s, right_of(chain, s), local);
         for (const bool on_left : {true, false})
@@ -146,8 +146,8 @@ template <Real T> struct CollapseWatch {
   // Exact types have no square roots, and chains of particles that merge do not need them. Under gravity the theorem
   // does not hold for gaps to walls.
   template <class Chain>
-  static constexpr bool provable =
-      !std::numeric_limits<T>::is_exact && !FallingChain<Chain> && requires(const Chain& chain) {
+  static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
+    requires !FallingChain<Chain> || requires { chain.falling(); };
     chain.particles();
   };
 

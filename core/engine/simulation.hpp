@@ -156,7 +156,7 @@ class Simulation {
   // After the last collision; at a time between it and the time advanced to, which matters if particles fall.
   T kinetic_energy() const { return chain_.kinetic_energy(last_collision_); }
   T kinetic_energy(const T& time) const { return chain_.kinetic_energy(local(time)); }
-  static constexpr bool falls() { return FallingChain<Chain>; }
+  bool falls() const { return cradle::falls(chain_); }
   // The start if there has been no collision.
   T last_collision_time() const { return chain_.stamp(last_collision_).value(); }
   const CollapseReport<T>& collapse() const { return watch_.report; }
@@ -227,6 +227,12 @@ class Simulation {
     while (step()) continue;
     return status_;
   }
+  // So many; false if the run has come to its target before, or ends.
+  [[gnu::noinline]] bool make(std::uint64_t collisions) {
+    for (; collisions > 0; --collisions)
+      if (!step()) return false;
+    return true;
+  }
 
   // The slab loop: time slabs in segments; where these cannot be used, collisions in the plain loop.
   template <class Segments> Status make_slabs(Segments& segments) {
@@ -235,8 +241,7 @@ class Simulation {
     for (T from = last_collision_;;) {
       const double ahead = pacing_.ahead(counts_.collisions, from, target_.stop);
       if (auto plain = segments.plain_collisions(chain_, ahead)) {
-        for (; plain > 0; --plain)
-          if (!step()) return status_;
+        if (!make(plain)) return status_;
         from = last_collision_;
         continue;
       }
@@ -316,7 +321,8 @@ class Simulation {
     } catch (...) {
       undo();
       observer_ = nullptr;
-      for (aim(); reported > 0; --reported) step();
+      aim();
+      make(reported);
       throw;
     }
     undo();

@@ -120,7 +120,7 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   const Account<T>& account() const override { return run_.account(); }
   T energy_lost(const T& time) const override { return run_.energy_lost(time); }
   T kinetic_energy(const T& time) const override { return run_.kinetic_energy(time); }
-  bool falls() const override { return Run::falls(); }
+  bool falls() const override { return run_.falls(); }
   WallTallies<T> wall_tallies(const T& time) const override { return cradle::wall_tallies(run_, time); }
   T last_collision_time() const override { return run_.last_collision_time(); }
   const CollapseReport<T>* collapse() const override {

@@ -61,11 +61,9 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
   const auto in = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& own) {
     return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, own, Chain(particles, start), policy);
   };
-  if (scene.run.coordinates == Coordinates::absolute)
-    return in(std::type_identity<PositionChain<T, Gravity<T>>>{}, law);
   // Closing speeds alone lose the digits of heavy particles' velocities, and sums are not exact under gravity.
   if (far_apart(*particles) && sums_can_be_exact<T>)
-    throw Error({scene.name, 0, scene.gravity.acts() ? "gravity.acceleration" : "walls"},
+    throw Error(scene.place(scene.gravity.acts() ? "gravity.acceleration" : "walls"),
                 "masses too far apart for gaps under gravity or between shaken walls",
                 fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
                             to_double(particles->greatest_mass())),
@@ -82,7 +80,7 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
 template <Real T> void require_resolved(const Scene& scene) {
   const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
   if (!(scene.run.start < scene.run.until) || start < until) return;
-  throw Error({scene.name, 0, "run.until"}, "too close to run.start for this precision",
+  throw Error(scene.place("run.until"), "too close to run.start for this precision",
               fmt::format("{} after {}, which are the same in {}", scene.run.until.text, scene.run.start.text,
                           precision_name(scene.run)),
               "count times from 0 (run.start = 0), or give more digits (run.precision)");
@@ -98,11 +96,11 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
     return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
   };
-  if (scene.gravity.acts() || scene.walls.shaken())
-    return falling_engine_of<T>(scene, particles, policy, workers, bouncing_law<T>(scene));
   if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
   const BouncingLaw<T> law = bouncing_law<T>(scene);
-  if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
+  if (scene.run.coordinates == Coordinates::absolute)
+    return on(std::type_identity<PositionChain<T, Gravity<T>>>{}, law);
+  if (scene.gravity.acts() || scene.walls.shaken()) return falling_engine_of<T>(scene, particles, policy, workers, law);
   if (to_be_watched(*particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
   // Only the most used law has engines of its own, one for identical masses and one for others; the bits are the same.
   const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};

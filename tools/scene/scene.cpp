@@ -32,6 +32,15 @@ bool operator==(const Scene& a, const Scene& b) {
          a.gravity == b.gravity && a.run == b.run && a.output == b.output && a.sweep == b.sweep;
 }
 
+Place Scene::place(std::string_view key) const {
+  const std::string table = std::string(key) + ".";
+  Place found{name, 0, std::string(key)};
+  for (const auto& [given, at] : places)
+    if ((given == key || given.starts_with(table)) && (found.line == 0 || (0 < at.line && at.line < found.line)))
+      found.source = at.source, found.line = at.line;
+  return found;
+}
+
 std::uint64_t longest_lag(const Scene& scene) {
   const Correlations& wanted = scene.output.correlations;
   const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };

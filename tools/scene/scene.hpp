@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -263,7 +265,10 @@ struct Scene {
   Run run;
   Output output;
   Sweep sweep;
+  std::map<std::string, Place, std::less<>> places;  // of the keys that its text gives
 
+  /// Where a key stands, or a table begins; without a line if the text has neither.
+  Place place(std::string_view key) const;
   /// Of a list on a line: between particles, and to walls.
   std::size_t gaps() const {
     return initial.x.size() - 1 + walls.left.position.has_value() + walls.right.position.has_value();

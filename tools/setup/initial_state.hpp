@@ -204,8 +204,7 @@ template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(
                                        scene.gravity.acts() ? number<T>(*scene.gravity.acceleration) : T(0),
                                        std::move(at_left), std::move(at_right));
   } catch (const std::invalid_argument& error) {
-    throw Error({scene.name, 0, scene.walls.any() ? "initial, walls" : "initial"}, "the particles cannot be set up",
-                error.what(), "change the scene");
+    throw Error(scene.place("initial"), "the particles cannot be set up", error.what(), "change the scene");
   }
 }
 

@@ -94,6 +94,7 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   place_particles(entries, scene);
   check_scene(scene, entries, source_name);
   sort_times(scene);
+  for (const auto& [key, value] : entries) scene.places.emplace(key, value.place);
   // Either becomes a list of particles: a file, or a word, which is kept in the same place until then.
   if (const auto word = entries.find("initial.word"); word != entries.end())
     start_from_word(word->second.place, scene);

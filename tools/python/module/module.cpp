@@ -68,7 +68,7 @@ class Digits {
   explicit Digits(const Scene& scene) : counted_(scene.run.precision == Precision::mpfr) {
     if (!counted_) return;
     if (users > 0 && digits != scene.run.digits)
-      throw Error({scene.name, 0, "run.digits"}, "another simulation with other digits is in a call",
+      throw Error(scene.place("run.digits"), "another simulation with other digits is in a call",
                   std::to_string(digits), "let that call end first");
     digits = scene.run.digits;
     set_digits(scene);

@@ -39,7 +39,7 @@ std::unique_ptr<Engine<double>> engine_with(const std::function<double(double)>&
                                             const std::shared_ptr<const cradle::Particles<double>>& particles,
                                             const Policy<double>& policy) {
   const auto refuse = [&](const char* key, const std::string& advice) {
-    throw Error({scene.name, 0, key}, "not with a restitution that is a function", "", advice);
+    throw Error(scene.place(key), "not with a restitution that is a function", "", advice);
   };
   if (particles_merge(scene)) refuse("law.type", "give \"inelastic\", without run.collapse = \"merge\"");
   if (scene.run.collapse == scene::CollapsePolicy::contact_time) refuse("run.collapse", "give \"cutoff\" or \"stop\"");

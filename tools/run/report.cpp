@@ -64,15 +64,6 @@ std::string within(const Number& x, const Number& error) {
 
 }  // namespace
 
-std::string collapsing_floor(const Scene& scene) {
-  const auto collapses = [&](const WallAt& wall, bool floor) { return wall.dissipates() && (floor || wall.shaken()); };
-  const auto& [left, right] = scene.walls;
-  const bool acts = scene.gravity.acts(), to_left = acts && *scene.gravity.acceleration < Decimal("0");
-  if (left.shaken() && right.shaken() && left.position && right.position) return "";  // between which none can rest
-  if (collapses(right, acts && !to_left) && !(to_left && collapses(left, true))) return "walls.right";
-  return collapses(left, to_left) ? "walls.left" : "";
-}
-
 std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t collisions,
                             const std::string& at_wall) {
   std::string text =

@@ -35,9 +35,6 @@ template <Real T> ReportedCollapse reported(const CollapseReport<T>& r) {
 /// `at_wall`: the wall on which it was, if it can hold particles.
 std::string collapse_report(const ReportedCollapse& collapse, RunEnd end, std::uint64_t collisions,
                             const std::string& at_wall);
-/// The wall on which a single particle collapses, "walls.left" or "walls.right", which a rest speed of it would end;
-/// empty if there is none.
-std::string collapsing_floor(const Scene& scene);
 Group collapse_table(const ReportedCollapse& collapse);
 
 struct ReportedIncident {

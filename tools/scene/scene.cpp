@@ -27,6 +27,15 @@ std::optional<std::pair<Decimal, Decimal>> extent(const Scene& scene) {
   return std::pair(*left.position, *right.position);
 }
 
+std::string collapsing_floor(const Scene& scene) {
+  const auto collapses = [&](const WallAt& wall, bool floor) { return wall.dissipates() && (floor || wall.shaken()); };
+  const auto& [left, right] = scene.walls;
+  const bool acts = scene.gravity.acts(), to_left = acts && *scene.gravity.acceleration < Decimal("0");
+  if (left.shaken() && right.shaken() && left.position && right.position) return "";  // between which none can rest
+  if (collapses(right, acts && !to_left) && !(to_left && collapses(left, true))) return "walls.right";
+  return collapses(left, to_left) ? "walls.left" : "";
+}
+
 bool operator==(const Scene& a, const Scene& b) {
   return a.title == b.title && a.law == b.law && a.initial == b.initial && a.walls == b.walls &&
          a.gravity == b.gravity && a.run == b.run && a.output == b.output && a.sweep == b.sweep;

@@ -295,6 +295,10 @@ std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool
 /// A value for display: long lists of numbers are shortened to their ends.
 std::string shortened(const std::string& value);
 
+/// The wall on which a single particle collapses, "walls.left" or "walls.right", which a rest speed of it would end;
+/// empty if there is none.
+std::string collapsing_floor(const Scene& scene);
+
 /// The two ends of where all particles are, if the scene says it: a ring, or walls at rest.
 std::optional<std::pair<Decimal, Decimal>> extent(const Scene& scene);
 

@@ -238,11 +238,16 @@ std::string end_line(const Scene& scene) {
 
 std::string expected_lines(const Scene& scene, const Cost& cost) {
   const bool loses = law_row(scene).merges || scene.law.restitution < Decimal("1");
-  if (!cost.collisions)
-    return fmt::format("collisions and time: not known beforehand for this initial state{}\n",
-                       loses && !particles_merge(scene) && !stops_at_collapse(scene)
-                           ? "; where particles collapse they may have no limit"
-                           : "");
+  if (!cost.collisions) {
+    const std::string floor = collapsing_floor(scene);
+    const bool endless = (loses || !floor.empty()) && !particles_merge(scene) && !stops_at_collapse(scene);
+    const bool rests = (floor == "walls.left" ? scene.walls.left : scene.walls.right).rest_speed.has_value();
+    return fmt::format("collisions and time: not known beforehand for this initial state{}{}\n",
+                       endless ? "; where particles collapse they may have no limit" : "",
+                       !endless || floor.empty() || rests
+                           ? ""
+                           : fmt::format(": with {}.rest_speed they come to rest there instead", floor));
+  }
   const auto* after = stops_at_collapse(scene) ? "where the run stops"
                       : particles_merge(scene) ? "after which particles merge"
                                                : "without limit after it";

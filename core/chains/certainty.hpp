@@ -135,12 +135,14 @@ template <Real T, class Gaps> class Certainty {
     if (gaps.account().uncertain == 0) bring(gaps, motion, s, time);
   }
 
-  // Whether a collision at the gap s may come before or after this time, which is the end of the run.
-  template <class Motion> bool open(const Gaps& gaps, const Motion& motion, Slot s, const T& time) const {
+  // Whether a collision at the gap s may come before or after this time, which is the end of the run and is itself off
+  // by so much.
+  template <class Motion>
+  bool open(const Gaps& gaps, const Motion& motion, Slot s, const T& time, const T& off_by) const {
     const GapMotion<T> now = motion(s, time);
     Off off = gaps[s].off.after(number(now.since));
     off.shift(delay_, -number(now.closing), -number(now.acceleration));
-    return exceeds(Off::largest(off.gap), number(now.gap));
+    return exceeds(Off::largest(off.gap), number(T(now.gap - magnitude(now.closing) * off_by)));
   }
 
   // A sample of how far the closing speed of a gap is off at a time, in which nothing else happens.

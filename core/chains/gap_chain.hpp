@@ -156,10 +156,11 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
 
   // The left particle of a gap for which rounding may decide whether it closes up to a local time, which must not be
-  // before the last collision.
-  std::optional<ParticleIndex> uncertain_at(const T& time) const requires(Line::watched) {
+  // before the last collision. Where deviations are not watched, they are taken for a few roundings of the largest
+  // speed at the start.
+  std::optional<ParticleIndex> uncertain_at(const T& time) const {
     for (Slot s = first(); s <= last(); ++s)
-      if (line_.certainty.open(line_.gaps, line_.motion(field_), s, time)) return particle(s);
+      if (open(s, time)) return particle(s);
     return {};
   }
   // About how far rounding has moved the kinetic energy by this time, from the larger sample.
@@ -230,11 +231,13 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
     foresee_walls();
+    if constexpr (Line::watched && falls)
+      for (Slot s = first(); s <= last(); ++s)
+        if (field_.pulls(particle(s))) line_.watch_meeting(field_, s, T(0));
     find_inner();
     left_.take(particle(first()));
     right_.take(particle(last()) + 1);
-    if (closed())
-      for (Slot s = first(); s <= last(); ++s) fastest_ = std::max(fastest_, magnitude(closing(s)));
+    for (Slot s = first(); s <= last(); ++s) fastest_ = std::max(fastest_, magnitude(closing(s)));
     if (!on_ring()) return;
     range_.place_seam();
     centre_ = particles_->centre_of_mass();
@@ -245,6 +248,13 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   // miss is rounding, of the size of the first of them: a system that has cooled to that is another one.
   bool closed() const { return on_ring() || (!falls && walls_.has(End::left) && walls_.has(End::right)); }
   void find_lost_digits(const T& time);
+  static constexpr int certain_by = 64;  // as in Deviation
+  // How much the rounding of the first and of this time leaves open of the time between them, which decimals give.
+  T off_by(const T& time) const {
+    return T(std::numeric_limits<T>::epsilon()) * (magnitude(start()) + magnitude(clock().time(time)));
+  }
+  // Whether a collision at this gap may come before or after the end of the run.
+  bool open(Slot s, const T& time) const;
 
   Configuration<T> line_configuration(const T& time) const;
   Configuration<T> ring_configuration(const T& time) const;
@@ -364,7 +374,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   HeldRange range_;
   CollisionMemory<T> memory_;
   T centre_{0};   // on a ring: centre of mass at the start
-  T fastest_{0};  // closing speed at the start, of a closed system
+  T fastest_{0};  // closing speed at the start
   Anchor<T> left_, right_;
   Walls<T> walls_;
   [[no_unique_address]] Field field_;

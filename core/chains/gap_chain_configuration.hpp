@@ -62,16 +62,28 @@ template <Real T, class Masses, class Field> void GapChain<T, Masses, Field>::fi
     missing.add(closing(s));
     fastest = std::max(fastest, magnitude(closing(s)));
   }
-  constexpr int certain_by = 64;  // as in Deviation
   const T off =
       T(certain_by) * std::max(magnitude(missing.value()), T(T(std::numeric_limits<T>::epsilon()) * fastest_));
   if (fastest < off) line_.gaps.doubt({clock().time(time), particle(first()), T(off * clock().elapsed(time))});
 }
 
+template <Real T, class Masses, class Field> bool GapChain<T, Masses, Field>::open(Slot s, const T& time) const {
+  if constexpr (Line::watched) {
+    return line_.certainty.open(line_.gaps, line_.motion(field_), s, time, off_by(time));
+  } else {
+    const T gap = gap_at(s, time), speed = closing_at(s, time);
+    if (gap == T(0) && speed == T(0)) return false;  // they touch, at rest
+    // Around a ring the rounding of closing speeds stays; on a line they are soon those of other particles.
+    const T flown = closed() ? clock().elapsed(time) : magnitude(line_.gaps.flown(s, time));
+    const T slow = T(std::numeric_limits<T>::epsilon()) * fastest_;
+    return gap < T(certain_by) * (magnitude(speed) * off_by(time) + slow * flown);
+  }
+}
+
 template <Real T, class Masses, class Field>
 T GapChain<T, Masses, Field>::energy_deviation(const T& time) const requires(Line::watched) {
-  T largest(0);
   const T energy = kinetic_energy(time);
+  T largest = magnitude(T(kinetic_energy(T(time + off_by(time))) - energy));
   for (std::size_t sample = 0; sample < 2; ++sample) {
     const T off = kinetic_energy(time, [&](Slot s) {
       return T(closing_at(s, time) + line_.certainty.closing_off(line_.gaps, line_.motion(field_), s, time, sample));

@@ -250,6 +250,19 @@ template <Real T, class MassesOf> class GapLine {
     }
   }
 
+  // Whether rounding decides that a pulled gap meets its wall, or at which of two times. A floor at rest is always met.
+  template <class Field> void watch_meeting(const Field& field, Slot s, const T& time) {
+    if (!field.may_miss(particle(s))) return;
+    struct Meeting {
+      T in, speed;
+    };
+    certainty.meeting(gaps, s, particle(s), time, [&](const T& less, const T& faster) -> std::optional<Meeting> {
+      const WallApproach<T> open = approach(field, s, T(gaps[s].gap - less), T(closing(s) + faster));
+      const std::optional<T> in = open.meeting_in();
+      return in ? std::optional<Meeting>({*in, open.meeting_speed().value_or(T(0))}) : std::nullopt;
+    });
+  }
+
  private:
   using Cell = std::remove_cvref_t<decltype(std::declval<Gaps&>()[Slot{}])>;
   static Cell cell(const T& gap, const T& time, const T& closing) {
@@ -307,19 +320,6 @@ template <Real T, class MassesOf> class GapLine {
     gaps[s].closing = now + gain;
     if (gaps.below_floor(s)) return gaps.note(s, T(mean + gain), gain, since, struck, particle(s), time);
     return Notice::none;
-  }
-
-  // Whether rounding decides that a pulled gap meets its wall, or at which of two times. A floor at rest is always met.
-  template <class Field> void watch_meeting(const Field& field, Slot s, const T& time) {
-    if (!field.may_miss(particle(s))) return;
-    struct Meeting {
-      T in, speed;
-    };
-    certainty.meeting(gaps, s, particle(s), time, [&](const T& less, const T& faster) -> std::optional<Meeting> {
-      const WallApproach<T> open = approach(field, s, T(gaps[s].gap - less), T(closing(s) + faster));
-      const std::optional<T> in = open.meeting_in();
-      return in ? std::optional<Meeting>({*in, open.meeting_speed().value_or(T(0))}) : std::nullopt;
-    });
   }
 
   bool exact_;

@@ -280,11 +280,17 @@ template <class M> class CertifierIn final : public Certifier {
   struct ProvedParticle {
     N m, x, v, unfolded;
   };
+  // A place on a ring and so many whole turns that it is nearest to another one.
+  static N turned(N x, const N& near, const N& length) {
+    for (double turns = 0x1p53; std::abs(turns) >= 0x1p52 && std::isfinite(turns);) {  // a double has not all digits
+      turns = std::round(to_double(N((near - x) / length)));
+      if (std::isfinite(turns)) x = x + N(turns) * length;
+    }
+    return x;
+  }
   // The way round a ring from a particle to the next one, wherever the run has folded them to.
   N way(const ProvedParticle& from, const ProvedParticle& to, bool single) const {
-    const N length = particles_->circumference();
-    N way = to.unfolded - from.unfolded;
-    for (int pass = 0; pass < 2; ++pass) way = way - N(std::round(to_double(N(way / length)))) * length;
+    const N length = particles_->circumference(), way = turned(N(to.unfolded - from.unfolded), N(0), length);
     return single || way < N(0) ? N(way + length) : way;
   }
   void add_particles(const std::vector<std::optional<ProvedParticle>>& rows) {
@@ -314,11 +320,7 @@ template <class M> class CertifierIn final : public Certifier {
   // On a ring: the run folds places to one circumference.
   N nearest_image(const N& x, const std::string& of_run) const {
     if (!particles_->on_ring() || of_run.find('n') != of_run.npos) return x;
-    const N length = particles_->circumference();
-    N image = x;  // a double has not all digits of many turns
-    for (int pass = 0; pass < 2; ++pass)
-      image = image + N(std::round(to_double(N((from_text<N>(of_run) - image) / length)))) * length;
-    return image;
+    return turned(x, from_text<N>(of_run), particles_->circumference());
   }
 
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {

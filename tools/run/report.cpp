@@ -150,7 +150,7 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
         measures_averages(scene) ? "Averages over many collisions are as good from it; to follow one motion use"
                                  : "Use");
   if (account.uncertain_end)
-    text += fmt::format("rounding may decide whether there is one more collision before the end (t = {}, {}): use more "
+    text += fmt::format("rounding may decide which collisions come before the end (t = {}, {}): use more "
                         "digits (run.precision), or another run.until\n",
                         account.first_uncertain.time.text, place(account.first_uncertain.particle));
   return text;

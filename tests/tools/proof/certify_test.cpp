@@ -291,6 +291,12 @@ TEST_F(Certified, PlacesOnARingAreFoldedAfterAnyNumberOfTurns) {
     EXPECT_GE(x, 0);
     EXPECT_LT(x, 8.5);
   }
+#ifdef CRADLE_WITH_MPFR
+  write("far.toml", "law = {type = \"inelastic\", restitution = 1}\ninitial = {type = \"list\", x = [0.3, 2.5, 4], v = "
+                    "[1.1, 1.1, 1.1], length = 5.5}\noutput.snapshots = [1e49]\n"
+                    "run = {until = 1e49, precision = \"mpfr\", digits = 100}\n");
+  EXPECT_TRUE(begins(certify("far.toml").out, "proved")) << "2e48 turns, of which a double counts the first digits";
+#endif
 }
 
 TEST_F(Certified, AMassTooSmallForADoubleIsThere) {

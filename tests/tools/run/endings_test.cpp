@@ -231,6 +231,36 @@ TEST_F(Endings, ARunIsLongerThanTheRoundingOfItsTimes) {
   shell("cradle run scene.toml --force -o end.h5", 0);
 }
 
+// Times are decimals: what their rounding moves across the end of a run is said, where deviations are watched and where
+// they are not. So is that rounding may decide whether a rising ball meets the ceiling at all.
+TEST_F(Endings, ACollisionThatRoundingMovesAcrossTheEndIsWarnedOf) {
+  const std::string inelastic = "law = {type = \"inelastic\", restitution = 0.25}\n";
+  const auto warned = [&](const std::string& scene) {
+    write("scene.toml", scene);
+    const Printed run = shell("cradle run scene.toml --force -o end.h5", 0);
+    return has(run.err, "rounding may decide which collisions come before the end");
+  };
+  const auto list = [&](const char* until, const char* masses) {
+    return inelastic + "initial = {type = \"list\", x = [0, 0.46, 0.84], v = [0.1, -0.426, 0.361]" + masses +
+           "}\nrun = {start = 1e9, until = " + until + "}\n";
+  };
+  EXPECT_TRUE(warned(list("1000000000.8745247149", ", m = [3.581, 5.577e3, 2.7]")));
+  EXPECT_FALSE(warned(list("1000000000.9", ", m = [3.581, 5.577e3, 2.7]")));
+  EXPECT_TRUE(warned(list("1000000000.8745247149", "")));
+  EXPECT_FALSE(warned(list("1000000000.9", "")));
+  // A closing speed of 1e-21 is lost in those of 1: 2 collisions instead of 3.
+  const std::string slow =
+      "law = {type = \"inelastic\", restitution = 0.9999999999}\ninitial = {type = \"list\", gap = "
+      "[2, 1, 0.5], x = [9932713292.067], v = [0.5, 0.5, 0, 2]}\nrun.until = ";
+  EXPECT_TRUE(warned(slow + "2.4e21"));
+  EXPECT_FALSE(warned(slow + "2.4e3"));
+  write("scene.toml",
+        "law = {type = \"inelastic\", restitution = 1}\ngravity.acceleration = 1\n"
+        "initial = {type = \"list\", x = [0], v = [-1]}\nwalls.left.position = -0.49999999999999999999993\n"
+        "walls.right.position = 4.5\nrun.until = 2\n");
+  EXPECT_TRUE(has(shell("cradle run scene.toml --force -o end.h5", 0).err, "may have decided which one was next"));
+}
+
 TEST_F(Endings, NoRunStaysAtOneTime) {
   const char* wanted = std::getenv("CRADLE_ENDINGS");
   const int scenes = wanted != nullptr ? std::atoi(wanted) : 40;

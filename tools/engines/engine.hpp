@@ -169,22 +169,4 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   RunSegments segments_;
 };
 
-/// About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
-/// together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
-/// relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, only
-/// an engine that watches them knows by how much.
-template <Real T>
-double energy_digits(const Engine<T>& engine, const Scene& scene, double at_start, double at_end, const T& time) {
-  const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
-  const double epsilon = to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
-  const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene.run.digits);
-  double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
-  const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
-  if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
-  const double digits = held - std::log10(error);
-  const std::optional<T> off = engine.energy_deviation(time);
-  if (!off || !is_positive(*off) || !(at_end > 0)) return std::max(0., digits);
-  return std::max(0., std::min(digits, -std::log10(to_double(T(*off / exactly<T>(at_end))))));
-}
-
 }  // namespace cradle::tools

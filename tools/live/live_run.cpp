@@ -107,7 +107,7 @@ Result LiveRun::result() const {
 void LiveRun::write(const std::string& path, Force force) const {
   require_own_law("written");
   if (run_->over() == nullptr)
-    throw Error({scene_.name, 0, ""}, "not at its end", "t = " + run_->time().text,
+    throw Error({scene_.name, 0, ""}, "not at its end", "t = " + run_->time().text(),
                 "advance to run.until = " + scene_.run.until.text + " first, stop the run here, or save a checkpoint");
   const FileClaim claim(path);
   check_overwrite(path, "run", &scene_, force);

@@ -51,7 +51,7 @@ class AverageMeasurement {
 
   explicit AverageMeasurement(const Measured& of) : scene_(of.scene), averages_(time_averages(of.scene, of.samples)) {}
 
-  TimeAverages& finder() { return averages_; }
+  void find(const Moment& now, const Stopped& stopped) { now.find(averages_, stopped); }
   void record(const Moment&, const Due&, TableSink&) { averages_.add_found(); }
   void finish(const Moment&, TableSink& put) {
     if (averages_.samples() == 0 || !(put.for_file() || averages_.complete())) return;

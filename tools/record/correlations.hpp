@@ -24,7 +24,7 @@ inline std::vector<Group> correlation_tables(const Scene& scene) {
         {"vacf_sem", "l^2/t^2", "standard error", {}}}}};
 }
 
-template <Real T> class CorrelationMeasurement {
+class CorrelationMeasurement {
  public:
   static constexpr MeasurementRow row{
       .name = "correlations",
@@ -37,16 +37,16 @@ template <Real T> class CorrelationMeasurement {
   };
 
   /// Throws Error for more tagged particles than memory holds.
-  CorrelationMeasurement(const Measured& of, const cradle::Particles<T>& particles)
+  explicit CorrelationMeasurement(const Measured& of)
       : scene_(of.scene), times_(of.samples),
-        tagged_(particles, static_cast<ParticleIndex>(of.scene.output.correlations.tag_every)),
+        tagged_(of.engine.tag(static_cast<ParticleIndex>(of.scene.output.correlations.tag_every))),
         correlator_(checked(), longest_lag(of.scene)) {}
 
-  void find(const MomentIn<T>& now, const Stopped&) { tagged_.find(now.configuration(), now.elapsed); }
-  void record(const MomentIn<T>&, const Due&, TableSink&) {
-    correlator_.add(tagged_.displacement(), tagged_.velocity());
+  void record(const Moment& now, const Due&, TableSink&) {
+    const TaggedMotion motion = now.tagged();
+    correlator_.add(motion.displacement, motion.velocity);
   }
-  void finish(const MomentIn<T>&, TableSink& put) {
+  void finish(const Moment&, TableSink& put) {
     if (correlator_.samples() == 0 || !(put.for_file() || correlator_.samples() == times_)) return;
     Group table = std::move(correlation_tables(scene_).front());
     std::vector<double> displacement, of_displacement, velocity, of_velocity;
@@ -59,7 +59,7 @@ template <Real T> class CorrelationMeasurement {
     table = filled(table, table.columns.front().values, std::move(displacement), std::move(of_displacement),
                    std::move(velocity), std::move(of_velocity));
     add_attributes(table, {{"samples", correlator_.samples()},
-                           {"particles", std::uint64_t{tagged_.size()}},
+                           {"particles", std::uint64_t{tagged_}},
                            {"error_growth", error_growth(displacements)}});
     put.add(std::move(table));
   }
@@ -69,18 +69,18 @@ template <Real T> class CorrelationMeasurement {
  private:
   std::size_t checked() const {
     constexpr double most = 4e9;
-    const auto count = static_cast<double>(tagged_.size());
+    const auto count = static_cast<double>(tagged_);
     if (const double bytes = Correlator::bytes(count, longest_lag(scene_)); bytes > most)
       throw Error({scene_.name, 0, "output.correlations.tag_every"}, "more tagged particles than memory is for",
-                  fmt::format("{} of them, {:.2g} bytes", tagged_.size(), bytes),
+                  fmt::format("{} of them, {:.2g} bytes", tagged_, bytes),
                   fmt::format("give {:.0f} or more, or a shorter output.correlations.longest",
                               static_cast<double>(scene_.output.correlations.tag_every) * std::ceil(bytes / most)));
-    return tagged_.size();
+    return tagged_;
   }
 
   const Scene& scene_;
   std::size_t times_;
-  TaggedParticles<T> tagged_;
+  std::size_t tagged_;  // particles
   Correlator correlator_;
 };
 

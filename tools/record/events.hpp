@@ -7,7 +7,7 @@
 
 namespace cradle::tools {
 
-template <Real T> class EventMeasurement {
+class EventMeasurement {
  public:
   static constexpr MeasurementRow row{
       .name = "events",
@@ -17,19 +17,23 @@ template <Real T> class EventMeasurement {
       .averaged = false,
   };
 
-  explicit EventMeasurement(const Measured&) {}
+  explicit EventMeasurement(const Measured& of) : exact_(of.exact) {}
 
-  void collision(const Collision<T>& c) {
+  void collision(const ObservedCollision& c) {
     // Room for many at once: a test for each column would take longer than all else here.
     if (rows_ == left_.size()) resize(std::max<std::size_t>(2 * rows_, 1 << 10));
     left_[rows_] = static_cast<std::uint64_t>(c.left);
     right_[rows_] = static_cast<std::uint64_t>(c.right);
-    const T time = c.time.value();
-    time_[rows_] = time;
-    low_[rows_] = to_double(difference(c.time, Pair<T>{T(rounded(time)), T(0)}));
-    interval_[rows_] = c.interval;
-    speed_[rows_] = c.closing_speed;
+    time_.values[rows_] = c.time;
+    low_[rows_] = c.time_low();
+    interval_.values[rows_] = c.interval;
+    speed_.values[rows_] = c.closing_speed;
     ++rows_;
+    if (!exact_) return;
+    ObservedCollision::Texts texts = c.texts();
+    time_.texts->push_back(std::move(texts.time));
+    interval_.texts->push_back(std::move(texts.interval));
+    speed_.texts->push_back(std::move(texts.closing_speed));
   }
   /// The kind of the last collision follows from the counts after it.
   void made(const Counts& now) {
@@ -43,14 +47,13 @@ template <Real T> class EventMeasurement {
   void put_rows(TableSink& put) {
     if (rows_ > 0) put.add(taken_rows());
   }
-  void finish(const MomentIn<T>& now, TableSink& put) {
+  void finish(const Moment& now, TableSink& put) {
     put.add(taken_rows());  // the table is there even without a collision
-    const Configuration<T> end = now.after_last_collision();
-    put.add(initial_rows(now.particles(), end.from, end.to));
+    put.add(initial_rows(now));
   }
 
  private:
-  Recorded<T> taken_rows() {
+  Recorded taken_rows() {
     resize(std::exchange(rows_, 0));
     return {{"events",
              {},
@@ -61,21 +64,23 @@ template <Real T> class EventMeasurement {
               {"interval", "t", "time since the collision before", {}},
               {"closing_speed", "l/t", "closing speed before the collision", {}},
               {"kind", "1", "0 by the law, 1 below the cut-off or within the contact time, 2 merged", {}, 1, true}}},
-            columns<T>(taken(left_), taken(right_), taken(time_), taken(low_), taken(interval_), taken(speed_),
-                       taken(kind_)),
+            columns(taken(left_), taken(right_), std::exchange(time_, NumberColumn(exact_)), taken(low_),
+                    std::exchange(interval_, NumberColumn(exact_)), std::exchange(speed_, NumberColumn(exact_)),
+                    taken(kind_)),
             {}};
   }
 
-  static Recorded<T> initial_rows(const cradle::Particles<T>& particles, ParticleIndex first, ParticleIndex last) {
+  Recorded initial_rows(const Moment& now) const {
+    const auto [first, last] = now.after_last_collision()->range();
     std::vector<std::uint64_t> index;
-    std::vector<T> x, v, m, gap;
-    for (ParticleIndex particle = first; particle <= last; ++particle) {
+    for (ParticleIndex particle = first; particle <= last; ++particle)
       index.push_back(static_cast<std::uint64_t>(particle));
-      x.push_back(particles.position(particle));
-      v.push_back(particles.velocity(particle));
-      m.push_back(particles.mass(particle));
-      gap.push_back(particle + 1 < particles.count() || particles.on_ring() ? particles.gap(particle) : none<T>());
-    }
+    const auto column = [&, first = first, last = last](Moment::Column which) {
+      NumberColumn numbers(exact_);
+      for (const Number& x : now.at_start(which, first, last)) numbers.push_back(x);
+      return numbers;
+    };
+    using enum Moment::Column;
     return {{"initial",
              {},
              {{"index", "1", "number of the particle, from the left", {}},
@@ -86,28 +91,21 @@ template <Real T> class EventMeasurement {
                "l",
                "distance to the next particle: resolves what x cannot; nan behind the last one of a line",
                {}}}},
-            columns<T>(std::move(index), std::move(x), std::move(v), std::move(m), std::move(gap)),
-            {{"circumference", particles.circumference()}}};
-  }
-
-  // The number of type T for the double nearest to `time`.
-  static T rounded(const T& time) {
-    if constexpr (std::same_as<T, double>)
-      return time;
-    else
-      return T(to_double(time));
+            columns(std::move(index), column(x), column(v), column(m), column(gap)),
+            {{"circumference", now.circumference()}}};
   }
 
   void resize(std::size_t rows) {
     for (auto* column : {&left_, &right_, &kind_}) column->resize(rows);
-    for (auto* column : {&time_, &interval_, &speed_}) column->resize(rows);
+    for (auto* column : {&time_, &interval_, &speed_}) column->values.resize(rows);
     low_.resize(rows);
   }
 
   std::size_t rows_ = 0;
   std::vector<std::uint64_t> left_, right_, kind_;
   std::uint64_t merges_ = 0, below_cutoff_ = 0;  // before the last collision
-  std::vector<T> time_, interval_, speed_;
+  bool exact_;
+  NumberColumn time_{exact_}, interval_{exact_}, speed_{exact_};
   std::vector<double> low_;
 };
 

@@ -45,7 +45,7 @@ inline std::vector<Group> histogram_tables(const Scene& scene) {
   return tables;
 }
 
-template <Real T> class HistogramMeasurement {
+class HistogramMeasurement {
  public:
   static constexpr MeasurementRow row{
       .name = "histograms",
@@ -53,52 +53,45 @@ template <Real T> class HistogramMeasurement {
       .wanted = [](const Scene& scene) { return !scene.output.histograms.empty(); },
       .leave_out = [](Output& output) { output.histograms.clear(); },
       .samples = [](const Scene& scene) { return samples_of(scene.output.counting); },
-      .observes = [](const Scene& scene) { return scene.output.observes_collisions(); },
       .tables_at_end = histogram_tables,
       .of_many_collisions = true,
   };
 
   explicit HistogramMeasurement(const Measured& of)
-      : scene_(of.scene), until_(number<T>(of.scene.output.counting.until)),
-        collisions_(number<T>(of.scene.output.counting.from), until_, histogram_bins(true, of.scene), of.particles,
-                    wanted("free_flight") || wanted("pair_flight") || wanted("collisions_per_particle")),
-        gaps_(histogram_bins(true, of.scene)), clusters_(histogram_bins(false, of.scene)) {}
-
-  void made(const Counts& now) { collisions_.made(now); }
-  void collision(const Collision<T>& c) { collisions_(c); }
-  void record(const MomentIn<T>& now, const Due&, TableSink&) {
-    for (const T& gap : now.configuration().gap) gaps_.add(to_double(gap));
-    if (wanted("cluster"))
-      for_each_cluster(now.configuration(), number<T>(*scene_.output.counting.cluster_gap),
-                       [&](std::size_t particles) { clusters_.add(static_cast<double>(particles)); });
+      : scene_(of.scene), engine_(of.engine), gaps_(histogram_bins(true, of.scene)),
+        clusters_(histogram_bins(false, of.scene)) {
+    if (scene_.output.observes_collisions())
+      engine_.count_collisions(scene_.output.counting, histogram_bins(true, scene_),
+                               wanted("free_flight") || wanted("pair_flight") || wanted("collisions_per_particle"));
   }
-  void finish(const MomentIn<T>& now, TableSink& put) {
-    if (!put.for_file() && now.time.value < until_) return;
-    const OctaveHistogram per_particle = collisions_.collisions_per_particle();
-    const std::array<const OctaveHistogram*, histogram_rows.size()> all{&collisions_.free_flights,
-                                                                        &collisions_.pair_flights,
-                                                                        &collisions_.closing_speeds,
-                                                                        &collisions_.dissipative_speeds,
-                                                                        &per_particle,
-                                                                        &gaps_,
-                                                                        &clusters_};
+
+  void record(const Moment& now, const Due&, TableSink&) {
+    for (const double gap : now.column(Moment::Column::gap)) gaps_.add(gap);
+    if (wanted("cluster"))
+      now.for_each_cluster(*scene_.output.counting.cluster_gap,
+                           [&](std::size_t particles) { clusters_.add(static_cast<double>(particles)); });
+  }
+  void finish(const Moment& now, TableSink& put) {
+    if (!put.for_file() && now.time.exact < rounding(scene_)(scene_.output.counting.until.text)) return;
     std::vector<Group> tables = histogram_tables(scene_);
     auto table = tables.begin();
-    for (std::size_t k = 0; k < all.size(); ++k) {
+    auto counts = engine_.counted_collisions();
+    for (std::size_t k = 0; k < histogram_rows.size(); ++k) {
       if (!wanted(histogram_rows[k].name)) continue;
-      table->columns.back().values = all[k]->counts();
+      table->columns.back().values = k < counts.size()    ? std::move(counts[k])
+                                     : k == counts.size() ? gaps_.counts()
+                                                          : clusters_.counts();
       put.add(std::move(*table++));
     }
   }
 
-  static auto state(auto& self) { return std::tie(self.collisions_, self.gaps_, self.clusters_); }
+  static auto state(auto& self) { return std::tie(self.gaps_, self.clusters_); }
 
  private:
   bool wanted(std::string_view name) const { return scene_.output.has_histogram(name); }
 
   const Scene& scene_;
-  T until_;
-  CollisionHistograms<T> collisions_;
+  AnyEngine& engine_;
   OctaveHistogram gaps_, clusters_;
 };
 

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "cradle/core/observe/clusters.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {
@@ -21,16 +20,16 @@ class MassMeasurement {
 
   explicit MassMeasurement(const Measured&) {}
 
-  template <Real T> void record(const MomentIn<T>& now, const Due&, TableSink& put) {
-    const double least = to_double(now.particles().least_mass());
-    std::vector<std::uint64_t> clusters = mass_distribution(now.configuration(), now.particles().least_mass());
+  void record(const Moment& now, const Due&, TableSink& put) {
+    const double least = now.least_mass();
+    std::vector<std::uint64_t> clusters = now.mass_distribution();
     std::vector<double> from;
     for (std::size_t k = 0; k < clusters.size(); ++k) from.push_back(least * std::exp2(static_cast<double>(k) / 4));
-    put.add({numbered(row.name, written_),
-             {{"time", now.time.rounded}},
-             {{"mass", "m", "least mass of the bin, which ends where the next one begins: 2^(1/4) times as high",
-               std::move(from)},
-              {"clusters", "1", "clusters of such a mass", std::move(clusters)}}});
+    put.add(Group{numbered(row.name, written_),
+                  {{"time", now.time.meant.value}},
+                  {{"mass", "m", "least mass of the bin, which ends where the next one begins: 2^(1/4) times as high",
+                    std::move(from)},
+                   {"clusters", "1", "clusters of such a mass", std::move(clusters)}}});
   }
 
   static auto state(auto& self) { return std::tie(self.written_); }

@@ -2,22 +2,22 @@
 // must know of it: its times and tables) and a class that finds, records and at the end tables its numbers.
 // measurements.hpp has the list of all; runs, files, ensembles and comparisons follow from it.
 //
-// The class has, of these, the members that it needs. `now` is a Moment (moment.hpp), `put` takes tables. What is the
-// same for every scalar type takes a Moment, the rest MomentIn<T>.
+// The class has, of these, the members that it needs. `now` is a Moment (engines/moment.hpp), `put` takes tables.
 //
-//   explicit X(measured)       begins; or X(measured, particles)
-//   finder()                   the object whose `find(configuration, particles, elapsed, stopped)` is called at a time
-//                              that is due: it changes nothing yet, and throws WalkStopped where `stopped` stops a loop
-//   find(now, stopped)         or this
+//   explicit X(measured)       begins
+//   find(now, stopped)         at a time that is due: changes nothing yet, and throws WalkStopped where `stopped` stops
+//                              a loop
 //   record(now, due, put)      then: keeps or puts what was found
 //   record_last(now, put)      where a run ends early, with a collision
 //   made(counts)               before the next collision, before rows are put and at the end
-//   collision(c), collision(left, right, time)           every collision, before it is made
+//   collision(c)               every collision, before it is made
 //   rows(), put_rows(put)      of a table that grows during the run: how many wait, and puts these
 //   finish(now, put)           the end
 //   summary()                  numbers of the whole run, by name
 //   state(self), loaded()      what a checkpoint holds (core/base/state.hpp)
 #pragma once
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
@@ -27,7 +27,8 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/tools/record/moment.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
+#include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/record/schedule.hpp"
 
@@ -36,11 +37,11 @@ namespace cradle::tools {
 /// What a measurement is made for.
 struct Measured {
   const Scene& scene;
-  ParticleIndex particles;
+  AnyEngine& engine;
   std::size_t samples;
+  bool exact;  // whether texts of numbers with all digits are wanted
 };
 
-using Stopped = std::function<bool()>;
 using Summary = std::vector<std::pair<std::string, double>>;
 
 // ---- what several of them need

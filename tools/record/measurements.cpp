@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 namespace cradle::tools {
 
@@ -12,7 +11,7 @@ namespace {
 
 template <class... Each> constexpr auto rows_of(MeasurementList<Each...>) { return std::array{&Each::row...}; }
 
-constexpr std::array rows = rows_of(AllMeasurements<double>());
+constexpr std::array rows = rows_of(AllMeasurements());
 
 // Logarithmic spacing starts at this share of the run: six points per decade would need 36 for it.
 constexpr double first_log_share = 1e-6;
@@ -74,14 +73,6 @@ std::vector<Group> in_order(GrowingTables&& growing) {
   };
   std::stable_sort(tables.begin(), tables.end(), [&](const Group& a, const Group& b) { return rank(a) < rank(b); });
   return tables;
-}
-
-Group filled(Group table, std::vector<Numbers> columns) {
-  if (columns.size() != table.columns.size())
-    throw std::logic_error(
-        fmt::format("a table /{} of {} columns, and numbers for {}", table.name, table.columns.size(), columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) table.columns[k].values = std::move(columns[k]);
-  return table;
 }
 
 }  // namespace cradle::tools

@@ -1,7 +1,6 @@
 // The list of measurements, and those that a run holds. To add one, write its file and add it here.
 #pragma once
 
-#include <concepts>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -23,48 +22,39 @@
 namespace cradle::tools {
 
 template <class... Each> struct MeasurementList {};
-template <Real T>
 using AllMeasurements =
-    MeasurementList<SeriesMeasurement<T>, SnapshotMeasurement, ProfileMeasurement, MassMeasurement, ZoneMeasurement,
-                    AverageMeasurement, HistogramMeasurement<T>, CorrelationMeasurement<T>, StructureMeasurement,
-                    PairMeasurement, ScenarioMeasurement, EventMeasurement<T>, WordMeasurement>;
+    MeasurementList<SeriesMeasurement, SnapshotMeasurement, ProfileMeasurement, MassMeasurement, ZoneMeasurement,
+                    AverageMeasurement, HistogramMeasurement, CorrelationMeasurement, StructureMeasurement,
+                    PairMeasurement, ScenarioMeasurement, EventMeasurement, WordMeasurement>;
 
 /// Those that a scene wants.
-template <Real T, class List = AllMeasurements<T>> class Measurements;
-template <Real T, class... Each> class Measurements<T, MeasurementList<Each...>> {
+template <class List> class MeasurementsOf;
+template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
  public:
-  Measurements(const Scene& scene, const cradle::Particles<T>& particles, const Schedule<T>& plan)
-      : scene_(scene), plan_(plan) {
+  /// `exact`: whether texts of numbers with all digits are wanted.
+  MeasurementsOf(const Scene& scene, AnyEngine& engine, const Schedule& plan, bool exact) : scene_(scene), plan_(plan) {
     with_rows(all_, [&]<class M>(std::optional<M>& measurement, std::size_t row) {
-      const Measured of{scene, particles.count(), plan.of[row].samples.size()};
-      if (!M::row.wanted(scene)) return;
-      if constexpr (std::constructible_from<M, const Measured&>)
-        measurement.emplace(of);
-      else
-        measurement.emplace(of, particles);
+      if (M::row.wanted(scene)) measurement.emplace(Measured{scene, engine, plan.of[row].samples.size(), exact});
     });
   }
 
   /// Whether any is due that needs all particles.
-  bool need_particles(const T& time) const {
+  bool need_particles(const Number& time) const {
     return any([&](const auto& m, std::size_t row) { return m.row.of_particles && plan_.due(row, time); });
   }
-  void find(const MomentIn<T>& now, const Stopped& stopped) {
+  void find(const Moment& now, const Stopped& stopped) {
     each([&](auto& m, std::size_t row) {
-      if constexpr (requires { m.finder(); }) {
-        if (plan_.due(row, now.time.value)) m.finder().find(now.configuration(), now.particles(), now.elapsed, stopped);
-      } else if constexpr (requires { m.find(now, stopped); }) {
-        if (plan_.due(row, now.time.value)) m.find(now, stopped);
-      }
+      if constexpr (requires { m.find(now, stopped); })
+        if (plan_.due(row, now.time.exact)) m.find(now, stopped);
     });
   }
-  void record(const MomentIn<T>& now, TableSink& put) {
+  void record(const Moment& now, TableSink& put) {
     each([&](auto& m, std::size_t row) {
       if constexpr (requires(const Due& due) { m.record(now, due, put); })
-        if (const Due due = plan_.due(row, now.time.value)) m.record(now, due, put);
+        if (const Due due = plan_.due(row, now.time.exact)) m.record(now, due, put);
     });
   }
-  void record_last(const MomentIn<T>& now, TableSink& put) {
+  void record_last(const Moment& now, TableSink& put) {
     each([&](auto& m, std::size_t) {
       if constexpr (requires { m.record_last(now, put); }) m.record_last(now, put);
     });
@@ -74,15 +64,11 @@ template <Real T, class... Each> class Measurements<T, MeasurementList<Each...>>
   template <class F> void observe(const Counts& counts, TableSink& put, F f) {
     each([&](auto& m, std::size_t) {
       if constexpr (requires { &std::remove_reference_t<decltype(m)>::collision; }) {
-        if (m.row.observes && !m.row.observes(scene_)) return;
-        f([&m, &counts, &put](const Collision<T>& c) {
+        f([&m, &counts, &put](const ObservedCollision& c) {
           made(m, counts);
           if constexpr (requires { m.put_rows(put); })
             if (m.rows() >= most_rows) m.put_rows(put);
-          if constexpr (requires { m.collision(c); })
-            m.collision(c);
-          else
-            m.collision(c.left, c.right, to_double(T(c.time.value())));
+          m.collision(c);
         });
       }
     });
@@ -99,7 +85,7 @@ template <Real T, class... Each> class Measurements<T, MeasurementList<Each...>>
       if constexpr (requires { m.put_rows(put); }) m.put_rows(put);
     });
   }
-  Summary finish(const MomentIn<T>& now, TableSink& put) {
+  Summary finish(const Moment& now, TableSink& put) {
     Summary summary;
     each([&](auto& m, std::size_t) {
       if constexpr (requires { m.finish(now, put); }) m.finish(now, put);
@@ -137,8 +123,9 @@ template <Real T, class... Each> class Measurements<T, MeasurementList<Each...>>
   }
 
   const Scene& scene_;
-  const Schedule<T>& plan_;
+  const Schedule& plan_;
   std::tuple<std::optional<Each>...> all_;
 };
+using Measurements = MeasurementsOf<AllMeasurements>;
 
 }  // namespace cradle::tools

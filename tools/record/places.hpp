@@ -49,13 +49,7 @@ template <class Measure, class Tables> class PlaceMeasurement {
       : scene_(of.scene), measure_(std::move(measure)), table_(table),
         means_(table.columns.front().rows(), std::max<std::size_t>(of.samples, 1)) {}
 
-  struct Finder {
-    PlaceMeasurement& of;
-    void find(const auto& c, const auto& particles, const auto& elapsed, const Stopped& stopped) const {
-      of.found_ = of.measure_(c, particles, elapsed, stopped);
-    }
-  };
-  Finder finder() { return {*this}; }
+  void find(const Moment& now, const Stopped& stopped) { found_ = now.measured(measure_, stopped); }
   void record(const Moment&, const Due& due, TableSink& put) {
     if (due.sample) means_.add(found_);
     if (!due.table) return;

@@ -39,37 +39,38 @@ class ProfileMeasurement {
 
   explicit ProfileMeasurement(const Measured& of) : scene_(of.scene) {}
 
-  template <Real T> void find(const MomentIn<T>& now, const Stopped& stopped) {
-    found_ =
-        profile(now.configuration(), now.particles(), now.elapsed, range(now), scene_.output.profiles.bins, stopped);
+  void find(const Moment& now, const Stopped& stopped) {
+    found_ = now.profile(range(now), scene_.output.profiles.bins, stopped);
   }
-  template <Real T> void record(const MomentIn<T>& now, const Due&, TableSink& put) {
+  void record(const Moment& now, const Due&, TableSink& put) {
     Group table =
         filled(profile_table(scene_), std::move(found_.x), std::move(found_.velocity), std::move(found_.density),
                std::move(found_.mass_density), std::move(found_.temperature), std::move(found_.density_right),
                std::move(found_.velocity_right), std::move(found_.density_left), std::move(found_.velocity_left));
     table.name = numbered(row.name, written_);
-    table.attributes = {{"time", now.time.rounded}};
+    table.attributes = {{"time", now.time.meant.value}};
     put.add(std::move(table));
   }
 
   static auto state(auto& self) { return std::tie(self.written_); }
 
  private:
-  template <Real T> BinRange range(const MomentIn<T>& now) const {
-    const Engine<T>& run = now.engine();
-    const T& time = now.time.value;
-    BinRange range{to_double(now.configuration().x.front()), to_double(now.configuration().x.back())};
-    if (const auto& wanted = scene_.output.profiles.range; !wanted.empty())
+  BinRange range(const Moment& now) const {
+    BinRange range{};
+    if (const auto& wanted = scene_.output.profiles.range; !wanted.empty()) {
       range = {wanted[0].value, wanted[1].value};
-    else if (run.on_ring())
-      range = {0, to_double(now.particles().circumference())};
-    else if (run.collided_particles() > 0)
-      range = {to_double(run.front_left(time)), to_double(run.front_right(time))};
+    } else if (scene_.initial.on_ring()) {
+      range = {0, now.circumference().value};
+    } else if (const SampledState& state = now.state(); state.front_left) {
+      range = {state.front_left->value, state.front_right->value};
+    } else {
+      const std::vector<double> x = now.column(Moment::Column::x);
+      range = {x.front(), x.back()};
+    }
     if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
     if (!std::isfinite(range.to - range.from))
       throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the particles are where no double reaches",
-                  to_text(time), "give it, or remove output.profiles", Exit::lost);
+                  now.time.exact.text(), "give it, or remove output.profiles", Exit::lost);
     return range;
   }
 

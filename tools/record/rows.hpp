@@ -24,8 +24,6 @@ struct MeasurementRow {
   DecimalColumn (*samples)(const Scene&) = nullptr;
   const std::vector<Decimal>& (*times)(const Output&) = nullptr;
   const char* key = "";
-  /// Null: it observes collisions if its class can.
-  bool (*observes)(const Scene&) = nullptr;
 
   /// Its tables without the numbers, but with their bins: those that grow by rows during the run, that at a time, those
   /// at the end with the span of their time, and the names of its numbers of the whole run.

@@ -12,7 +12,7 @@ inline Summary scenario_numbers(const Scenario& s) {
   const bool met = s.passes + s.sticks > 0;
   return {{"pair_established", s.established},
           {"first_meeting", s.first_meeting},
-          {"first_passed", met ? double(s.first_passed) : none<double>()},
+          {"first_passed", met ? double(s.first_passed) : none()},
           {"passes", static_cast<double>(s.passes)},
           {"sticks", static_cast<double>(s.sticks)},
           {"role_changes", static_cast<double>(s.role_changes)},
@@ -40,14 +40,14 @@ class ScenarioMeasurement {
   explicit ScenarioMeasurement(const Measured& of) : clouds_(has_clouds(of.scene)) {}
 
   void made(const Counts& now) { merges_ = now.merges; }
-  void collision(ParticleIndex left, ParticleIndex right, double time) { watch_.collision(left, right, time, merges_); }
-  template <Real T> void record(const MomentIn<T>& now, const Due&, TableSink& put) { record_last(now, put); }
-  template <Real T> void record_last(const MomentIn<T>& now, TableSink&) {
-    if (clouds_) watch_.sample(now.cloud(), to_double(now.elapsed), now.state().counts.merges);
+  void collision(const ObservedCollision& c) { watch_.collision(c.left, c.right, c.time, merges_); }
+  void record(const Moment& now, const Due&, TableSink& put) { record_last(now, put); }
+  void record_last(const Moment& now, TableSink&) {
+    if (clouds_) now.sample(watch_);
   }
   void finish(const Moment&, TableSink& put) {
     found_ = scenario_numbers(watch_.result(merges_));
-    put.add({"scenario", {found_.begin(), found_.end()}, {}});
+    put.add(Group{"scenario", {found_.begin(), found_.end()}, {}});
   }
   Summary summary() const { return found_; }
 

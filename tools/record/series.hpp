@@ -17,35 +17,19 @@ namespace cradle::tools {
 /// Whether particles end up in two heavy clusters and a cloud: those that merge on a line do, on a ring they do not.
 inline bool has_clouds(const Scene& scene) { return law_row(scene).merges && !scene.initial.on_ring(); }
 
-/// How a column is filled: a container for its numbers, and a function that adds one. Numbers are of the run's type,
-/// given by the scene, doubles or whole numbers.
-template <Real T> struct Filling {
-  using Values = typename Columns<T>::value_type;
-  Values (*empty)();
-  void (*enter)(const MomentIn<T>&, Values&);
-};
-template <Real T, auto value> constexpr Filling<T> filled_by() {
-  using Entry = decltype(value(std::declval<const MomentIn<T>&>()));
-  using Values = typename Filling<T>::Values;
-  if constexpr (std::same_as<Entry, T> || std::same_as<Entry, Given<T>>)
-    return {[] { return Values(std::vector<Entry>()); },
-            [](const MomentIn<T>& at, Values& to) { std::get<std::vector<Entry>>(to).push_back(value(at)); }};
-  else
-    return {[] { return Values(Numbers(std::vector<Entry>())); },
-            [](const MomentIn<T>& at, Values& to) {
-              std::get<std::vector<Entry>>(std::get<Numbers>(to)).push_back(value(at));
-            }};
-}
+/// A row of a column: of the run's type, a double, or a whole number.
+using SeriesEntry = std::variant<Number, double, std::uint64_t>;
 
-template <Real T> struct SeriesColumn {
+struct SeriesColumn {
   const char *name, *unit, *text;
   bool (*when)(const Scene&);
-  Filling<T> filling;
+  SeriesEntry (*at)(const Moment&);
 };
 
-template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
-  using At = const MomentIn<T>&;
+inline const std::vector<SeriesColumn>& series_columns() {
+  using At = const Moment&;
   using Whole = std::uint64_t;
+  static const Number nan{none(), nullptr};
   constexpr auto always = [](const Scene&) { return true; };
   constexpr auto gravity = [](const Scene& scene) { return scene.gravity.acts(); };
   constexpr auto clouds = [](const Scene& scene) { return has_clouds(scene); };
@@ -54,57 +38,57 @@ template <Real T> const std::vector<SeriesColumn<T>>& series_columns() {
   constexpr auto left_loses = [](const Scene& scene) { return scene.walls.left.dissipates(); };
   constexpr auto right_loses = [](const Scene& scene) { return scene.walls.right.dissipates(); };
   constexpr auto core = [](const Scene& scene) { return scene.output.core; };
-  static const std::vector<SeriesColumn<T>> all{
+  static const std::vector<SeriesColumn> all{
       {"time", "t", "a sample is the state after all collisions at times <= t", always,
-       filled_by<T, [](At at) { return at.time; }>()},
+       [](At at) -> SeriesEntry { return at.time.meant; }},
       {"energy", "m l^2/t^2", "kinetic energy of all particles of the scene", always,
-       filled_by<T, [](At at) { return at.state().energy; }>()},
+       [](At at) -> SeriesEntry { return at.state().energy; }},
       {"potential_energy", "m l^2/t^2", "potential energy of all particles under gravity, 0 at x = 0", gravity,
-       filled_by<T, [](At at) { return at.potential_energy(); }>()},
+       [](At at) -> SeriesEntry { return at.potential_energy(); }},
       {"energy_lost", "m l^2/t^2", "energy lost in collisions since the start, with walls too", always,
-       filled_by<T, [](At at) { return at.state().energy_lost; }>()},
+       [](At at) -> SeriesEntry { return at.state().energy_lost; }},
       {"collisions", "1", "collisions since the start, those below the cut-off and merges included", always,
-       filled_by<T, [](At at) { return Whole{at.state().counts.collisions}; }>()},
+       [](At at) -> SeriesEntry { return Whole{at.state().counts.collisions}; }},
       {"collisions_below_cutoff", "1", "collisions closing slower than the cut-off", always,
-       filled_by<T, [](At at) { return Whole{at.state().counts.below_cutoff}; }>()},
+       [](At at) -> SeriesEntry { return Whole{at.state().counts.below_cutoff}; }},
       {"merges", "1", "merges since the start", always,
-       filled_by<T, [](At at) { return Whole{at.state().counts.merges}; }>()},
+       [](At at) -> SeriesEntry { return Whole{at.state().counts.merges}; }},
       {"particles", "1", "particles in the active zone, between the outermost that have collided", always,
-       filled_by<T, [](At at) { return static_cast<Whole>(at.state().particles); }>()},
+       [](At at) -> SeriesEntry { return static_cast<Whole>(at.state().particles); }},
       {"front_left", "l", "position of the leftmost particle that has collided", always,
-       filled_by<T, [](At at) { return at.state().front_left.value_or(none<T>()); }>()},
+       [](At at) -> SeriesEntry { return at.state().front_left.value_or(nan); }},
       {"front_right", "l", "position of the rightmost particle that has collided", always,
-       filled_by<T, [](At at) { return at.state().front_right.value_or(none<T>()); }>()},
+       [](At at) -> SeriesEntry { return at.state().front_right.value_or(nan); }},
       {"cloud_mass", "m", "mass of all particles that have collided", clouds,
-       filled_by<T, [](At at) { return at.cloud().mass; }>()},
+       [](At at) -> SeriesEntry { return at.cloud().mass; }},
       {"cloud_width", "l",
        "standard deviation of position, weighted by mass, of all that have collided but the two heaviest clusters",
-       clouds, filled_by<T, [](At at) { return at.cloud().width; }>()},
+       clouds, [](At at) -> SeriesEntry { return at.cloud().width; }},
       {"wall_left_collisions", "1", "collisions with the left wall since the start", left_wall,
-       filled_by<T, [](At at) { return Whole{at.state().walls[0].collisions}; }>()},
+       [](At at) -> SeriesEntry { return Whole{at.state().walls[0].collisions}; }},
       {"wall_left_energy", "m l^2/t^2", "energy that the left wall has given since the start", left_wall,
-       filled_by<T, [](At at) { return at.state().walls[0].given.value(); }>()},
+       [](At at) -> SeriesEntry { return at.state().walls[0].given; }},
       {"wall_left_momentum", "m l/t", "momentum that the left wall has given since the start", left_wall,
-       filled_by<T, [](At at) { return at.state().walls[0].momentum.value(); }>()},
+       [](At at) -> SeriesEntry { return at.state().walls[0].momentum; }},
       {"wall_left_lost", "m l^2/t^2", "energy lost in the left wall since the start; energy_lost has it too",
-       left_loses, filled_by<T, [](At at) { return at.state().walls[0].dissipated.value(); }>()},
+       left_loses, [](At at) -> SeriesEntry { return at.state().walls[0].dissipated; }},
       {"wall_right_collisions", "1", "collisions with the right wall since the start", right_wall,
-       filled_by<T, [](At at) { return Whole{at.state().walls[1].collisions}; }>()},
+       [](At at) -> SeriesEntry { return Whole{at.state().walls[1].collisions}; }},
       {"wall_right_energy", "m l^2/t^2", "energy that the right wall has given since the start", right_wall,
-       filled_by<T, [](At at) { return at.state().walls[1].given.value(); }>()},
+       [](At at) -> SeriesEntry { return at.state().walls[1].given; }},
       {"wall_right_momentum", "m l/t", "momentum that the right wall has given since the start", right_wall,
-       filled_by<T, [](At at) { return at.state().walls[1].momentum.value(); }>()},
+       [](At at) -> SeriesEntry { return at.state().walls[1].momentum; }},
       {"wall_right_lost", "m l^2/t^2", "energy lost in the right wall since the start; energy_lost has it too",
-       right_loses, filled_by<T, [](At at) { return at.state().walls[1].dissipated.value(); }>()},
+       right_loses, [](At at) -> SeriesEntry { return at.state().walls[1].dissipated; }},
       {"core_mass", "m", "mass within three core_width about the densest place", core,
-       filled_by<T, [](At at) { return at.core().mass; }>()},
+       [](At at) -> SeriesEntry { return at.core().mass; }},
       {"core_width", "l", "shortest length that holds more than half of the mass that has collided", core,
-       filled_by<T, [](At at) { return at.core().width; }>()},
+       [](At at) -> SeriesEntry { return at.core().width; }},
       {"core_velocity_range", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", core,
-       filled_by<T, [](At at) { return at.core().velocity_range; }>()},
-      {"core_gap", "l", "median gap within the core", core, filled_by<T, [](At at) { return at.core().gap; }>()},
+       [](At at) -> SeriesEntry { return at.core().velocity_range; }},
+      {"core_gap", "l", "median gap within the core", core, [](At at) -> SeriesEntry { return at.core().gap; }},
       {"sticky_excess", "m l^2/t^2", "energy minus that of the sticky gas that began alike", core,
-       filled_by<T, [](At at) { return at.sticky_excess(); }>()},
+       [](At at) -> SeriesEntry { return at.sticky_excess(); }},
   };
   return all;
 }
@@ -139,14 +123,14 @@ inline std::vector<Group> cluster_series_tables() {
 inline std::vector<Group> series_tables(const Scene& scene) {
   if (scene.initial.type == InitialType::clusters) return cluster_series_tables();
   std::vector<Group> tables{{"series", {}, {}}};
-  for (const auto& column : series_columns<double>())
+  for (const auto& column : series_columns())
     if (column.when(scene)) tables.front().columns.push_back({column.name, column.unit, column.text, {}});
   if (has_clouds(scene)) tables.push_back(heaviest_table());
   return tables;
 }
 
 /// The series of a scene and, below it, the two heaviest clusters.
-template <Real T> class SeriesMeasurement {
+class SeriesMeasurement {
  public:
   static constexpr MeasurementRow row{
       .name = "series",
@@ -157,20 +141,23 @@ template <Real T> class SeriesMeasurement {
   };
 
   explicit SeriesMeasurement(const Measured& of)
-      : table_(std::move(series_tables(of.scene).front())), clouds_(has_clouds(of.scene)) {
-    for (const SeriesColumn<T>& column : series_columns<T>())
-      if (column.when(of.scene)) fillings_.push_back(column.filling), values_.push_back(column.filling.empty());
+      : table_(std::move(series_tables(of.scene).front())), clouds_(has_clouds(of.scene)), exact_(of.exact) {
+    for (const SeriesColumn& column : series_columns())
+      if (column.when(of.scene)) entries_.push_back(column.at);
   }
 
-  void record(const MomentIn<T>& now, const Due&, TableSink& put) { record_last(now, put); }
-  void record_last(const MomentIn<T>& now, TableSink&) {
-    for (std::size_t k = 0; k < values_.size(); ++k) fillings_[k].enter(now, values_[k]);
+  void record(const Moment& now, const Due&, TableSink& put) { record_last(now, put); }
+  void record_last(const Moment& now, TableSink&) {
+    values_.resize(entries_.size(), Numbers());
+    for (std::size_t k = 0; k < values_.size(); ++k)
+      std::visit([&](const auto& entry) { enter(values_[k], entry); }, entries_[k](now));
     ++rows_;
     if (!clouds_) return;
+    const Number nan{none(), nullptr};
     for (const auto* cluster : {&now.cloud().left, &now.cloud().right}) {
-      mass_.push_back(*cluster ? (*cluster)->mass : none<T>());
-      x_.push_back(*cluster ? (*cluster)->x : none<T>());
-      v_.push_back(*cluster ? (*cluster)->v : none<T>());
+      mass_.push_back(*cluster ? (*cluster)->mass : nan);
+      x_.push_back(*cluster ? (*cluster)->x : nan);
+      v_.push_back(*cluster ? (*cluster)->v : nan);
       index_.push_back(*cluster ? static_cast<std::uint64_t>((*cluster)->index) : no_particle);
     }
   }
@@ -180,22 +167,31 @@ template <Real T> class SeriesMeasurement {
   std::size_t rows() const { return rows_; }
   void put_rows(TableSink& put) {
     if (std::exchange(rows_, 0) == 0) return;
-    put.add(Recorded<T>{table_, std::move(values_), {}});
-    values_.clear();
-    for (const Filling<T>& filling : fillings_) values_.push_back(filling.empty());
+    put.add(Recorded{table_, taken(values_), {}});
+    const auto numbers = [&](NumberColumn& column) { return std::exchange(column, NumberColumn(exact_)); };
     if (clouds_)
-      put.add(Recorded<T>{heaviest_table(), columns<T>(taken(mass_), taken(x_), taken(v_), taken(index_)), {}});
+      put.add(Recorded{heaviest_table(), columns(numbers(mass_), numbers(x_), numbers(v_), taken(index_)), {}});
   }
 
  private:
   static constexpr std::uint64_t no_particle = std::numeric_limits<std::uint64_t>::max();
 
+  void enter(Columns::value_type& column, const Number& x) const {
+    if (!std::holds_alternative<NumberColumn>(column)) column = NumberColumn(exact_);
+    std::get<NumberColumn>(column).push_back(x);
+  }
+  template <class Entry> void enter(Columns::value_type& column, const Entry& x) const {
+    Numbers& numbers = std::get<Numbers>(column);
+    if (!std::holds_alternative<std::vector<Entry>>(numbers)) numbers = std::vector<Entry>();
+    std::get<std::vector<Entry>>(numbers).push_back(x);
+  }
+
   Group table_;
-  bool clouds_;
-  std::vector<Filling<T>> fillings_;
-  Columns<T> values_;
+  bool clouds_, exact_;
+  std::vector<SeriesEntry (*)(const Moment&)> entries_;
+  Columns values_;
   std::size_t rows_ = 0;
-  std::vector<T> mass_, x_, v_;
+  NumberColumn mass_{exact_}, x_{exact_}, v_{exact_};
   std::vector<std::uint64_t> index_;
 };
 

@@ -1,7 +1,6 @@
 // All active particles at times, and where a run ends early.
 #pragma once
 
-#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {
@@ -18,39 +17,39 @@ class SnapshotMeasurement {
       .kept = true,
   };
 
-  explicit SnapshotMeasurement(const Measured&) {}
+  explicit SnapshotMeasurement(const Measured& of) : exact_(of.exact) {}
 
-  template <Real T> void record(const MomentIn<T>& now, const Due&, TableSink& put) {
-    put.add(rows(now.configuration(), now.time));
-  }
-  template <Real T> void record_last(const MomentIn<T>& now, TableSink& put) {
-    put.add(rows(now.after_last_collision(), now.time));
-  }
+  void record(const Moment& now, const Due&, TableSink& put) { put.add(rows(now)); }
+  void record_last(const Moment& now, TableSink& put) { put.add(rows(*now.after_last_collision())); }
 
   static auto state(auto& self) { return std::tie(self.written_); }
 
  private:
-  template <Real T> Recorded<T> rows(const Configuration<T>& c, const Given<T>& time) {
-    std::vector<std::uint64_t> index(c.index.begin(), c.index.end());
-    Recorded<T> rows{{numbered(row.name, written_),
-                      {},
-                      {{"x", "l", "position", {}},
-                       {"v", "l/t", "velocity", {}},
-                       {"m", "m", "mass", {}},
-                       {"index", "1", "number of the particle at the start, from the left", {}},
-                       {"gap", "l", "distance to the next particle: resolves what x cannot", {}},
-                       {"closing_speed", "l/t", "velocity minus that of the next particle", {}}}},
-                     columns<T>(c.x, c.v, c.m, std::move(index), c.gap, c.closing_speed),
-                     {{"time", time}}};
-    if (c.x.size() < 2) return rows;
-    const GapStatistics<T> gaps = gap_statistics(c);
-    rows.attributes.emplace_back("gap_min", gaps.least);
-    rows.attributes.emplace_back("gap_median", gaps.median);
-    if (c.closure_gap) rows.attributes.emplace_back("closure_gap", *c.closure_gap);
-    if (c.closure_speed) rows.attributes.emplace_back("closure_speed", *c.closure_speed);
+  Recorded rows(const Moment& now) {
+    const auto column = [&](Moment::Column which) {
+      NumberColumn numbers(exact_);
+      numbers.values = now.column(which);
+      if (exact_) numbers.texts = now.column_text(which);
+      return numbers;
+    };
+    using enum Moment::Column;
+    Recorded rows{{numbered(row.name, written_),
+                   {},
+                   {{"x", "l", "position", {}},
+                    {"v", "l/t", "velocity", {}},
+                    {"m", "m", "mass", {}},
+                    {"index", "1", "number of the particle at the start, from the left", {}},
+                    {"gap", "l", "distance to the next particle: resolves what x cannot", {}},
+                    {"closing_speed", "l/t", "velocity minus that of the next particle", {}}}},
+                  columns(column(x), column(v), column(m),
+                          std::vector<std::uint64_t>(now.index().begin(), now.index().end()), column(gap),
+                          column(closing_speed)),
+                  {{"time", now.time.meant}}};
+    append(rows.attributes, now.gap_numbers());
     return rows;
   }
 
+  bool exact_;
   std::uint64_t written_ = 0;
 };
 

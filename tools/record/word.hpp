@@ -29,12 +29,12 @@ class WordMeasurement {
     if (word_ != any_word) followed_.emplace(words::read_word(word_, gaps_), gaps_);
   }
 
-  void collision(ParticleIndex left, ParticleIndex, double time) {
-    const auto gap = static_cast<std::size_t>(left + wall_);
-    made_.add(gap, time);
+  void collision(const ObservedCollision& c) {
+    const auto gap = static_cast<std::size_t>(c.left + wall_);
+    made_.add(gap, c.time);
     if (!followed_ || !followed_->follows()) return;
     followed_->add(gap);
-    if (!followed_->follows()) left_at_ = time;
+    if (!followed_->follows()) left_at_ = c.time;
   }
 
   void finish(const Moment&, TableSink& put) { put.add(table()); }

@@ -70,7 +70,7 @@ class ZoneMeasurement {
 
   explicit ZoneMeasurement(const Measured& of) : scene_(of.scene), zone_(zone_average(of.scene)) {}
 
-  ZoneAverage& finder() { return zone_; }
+  void find(const Moment& now, const Stopped& stopped) { now.find(zone_, stopped); }
   void record(const Moment&, const Due&, TableSink&) { zone_.add_found(); }
   void finish(const Moment&, TableSink& put) {
     const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single particles

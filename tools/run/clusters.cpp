@@ -140,11 +140,11 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options, Sink& sin
   const double loss = scene.initial.meeting == scene::Meeting::energy ? scene.law.loss.value : 0;
   Recorder recorder;
   RunOutcome end;
-  const Times<double> samples = times_of<double>(series_times(scene));
-  for (const double time : samples.values()) {
-    end.time = time;
-    motion.advance(time);
-    recorder.add(time, motion, loss);
+  const Times samples(series_times(scene), rounding(scene));
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    end.time = samples[k].value;
+    motion.advance(end.time);
+    recorder.add(end.time, motion, loss);
     if (options.interrupt == nullptr) continue;
     options.interrupt->heed();
     if (options.interrupt->signal() == 0) continue;

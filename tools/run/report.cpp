@@ -20,24 +20,25 @@ std::string place(ParticleIndex left) {
 }
 
 // The decimal exponent of a number's first digit; none for 0.
-std::optional<int> first_digit(const Number& x) {
-  const auto exponent = x.text.find_first_of("eE");
-  const std::string mantissa = x.text.substr(0, exponent);
+std::optional<int> first_digit(const std::string& text) {
+  const auto exponent = text.find_first_of("eE");
+  const std::string mantissa = text.substr(0, exponent);
   const auto first = mantissa.find_first_of("123456789");
   if (first == std::string::npos) return {};
   const auto point = std::min(mantissa.find('.'), mantissa.size());
   const int place = static_cast<int>(point) - static_cast<int>(first) - (first < point ? 1 : 0);
-  return place + (exponent == std::string::npos ? 0 : std::stoi(x.text.substr(exponent + 1)));
+  return place + (exponent == std::string::npos ? 0 : std::stoi(text.substr(exponent + 1)));
 }
 
 // A double may be 0 where the number is not.
-bool is_zero(const Number& x) { return x.value == 0 && !first_digit(x); }
+bool is_zero(const Number& x) { return x.value == 0 && !first_digit(x.text()); }
 
 // Seven digits of a number that may be far below the range of double.
 std::string brief(const Number& x) {
   if (x.value != 0 || is_zero(x)) return fmt::format("{:.6e}", x.value);
-  const auto exponent = x.text.find_first_of("eE");
-  return x.text.substr(0, std::min<std::size_t>(exponent, 8)) + x.text.substr(exponent);
+  const std::string text = x.text();
+  const auto exponent = text.find_first_of("eE");
+  return text.substr(0, std::min<std::size_t>(exponent, 8)) + text.substr(exponent);
 }
 
 // Two digits, rounded up, plus 20 % for the digits that are cut off from the number beside it.
@@ -48,10 +49,11 @@ std::string error_text(const Number& error) {
 
 // "1.71428571428571428 +- 3.8e-15": the number down to a tenth of the error's first digit, if it has so many digits.
 std::string within(const Number& x, const Number& error) {
-  const auto of_number = first_digit(x), of_error = first_digit(error);
-  if (!of_number || !of_error) return x.text;
-  const auto exponent = x.text.find_first_of("eE");
-  std::string mantissa = x.text.substr(0, exponent);
+  const std::string text = x.text();
+  const auto of_number = first_digit(text), of_error = first_digit(error.text());
+  if (!of_number || !of_error) return text;
+  const auto exponent = text.find_first_of("eE");
+  std::string mantissa = text.substr(0, exponent);
   const auto first = mantissa.find_first_of("123456789");
   auto wanted = std::max(*of_number - *of_error + 2, 1);
   std::size_t end = first;
@@ -59,7 +61,7 @@ std::string within(const Number& x, const Number& error) {
   if (const auto point = mantissa.find('.'); point != std::string::npos) end = std::max(end, point);
   mantissa.resize(std::min(end, mantissa.size()));
   // The cut-off part is less than a tenth of the error; error_text adds more than that.
-  return mantissa + (exponent == std::string::npos ? "" : x.text.substr(exponent)) + " +- " + error_text(error);
+  return mantissa + (exponent == std::string::npos ? "" : text.substr(exponent)) + " +- " + error_text(error);
 }
 
 }  // namespace
@@ -74,7 +76,8 @@ std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t
           : std::string("many particles collapse: a gap fell below 2^-100 of what the gap beside it was at the start, "
                         "where a run of more than 16 particles stops without run.stop_gap; that this is an inelastic "
                         "collapse is not proved, and no time of it is known\n");
-  text += fmt::format("  last collision t = {}, number {}, {}\n", r.last_collision.text, collisions, place(r.particle));
+  text +=
+      fmt::format("  last collision t = {}, number {}, {}\n", r.last_collision.text(), collisions, place(r.particle));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));
   if (!is_zero(r.interval))
     text += fmt::format("  interval       {} since the collision there before\n", brief(r.interval));
@@ -127,13 +130,13 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
   if (account.order_lost > 0)
     text += fmt::format(
         "order of collisions lost ({} times, first at t = {} {}, gap {:.3e}): use more digits (run.precision){}\n",
-        account.order_lost, account.first_order_lost.time.text, place(account.first_order_lost.particle),
+        account.order_lost, account.first_order_lost.time.text(), place(account.first_order_lost.particle),
         account.first_order_lost.gap, run.coordinates == Coordinates::absolute ? " or run.coordinates = \"gaps\"" : "");
   if (account.unresolved > 0)
     text += fmt::format(
         "gaps below 1e6 units in the last place of x ({} collisions, first at t = {} {}, gap {:.3e}): results that "
         "depend on such gaps cannot be trusted; use run.coordinates = \"gaps\" or more digits\n",
-        account.unresolved, account.first_unresolved.time.text, place(account.first_unresolved.particle),
+        account.unresolved, account.first_unresolved.time.text(), place(account.first_unresolved.particle),
         account.first_unresolved.gap);
   if (account.simultaneous > 0)
     text += fmt::format(
@@ -145,14 +148,14 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
         "collisions are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided "
         "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
         "system that starts a rounding away. {} more digits (run.precision), and `cradle trust` to see how many\n",
-        account.first_uncertain.time.text, account.first_uncertain.gap, place(account.first_uncertain.particle),
+        account.first_uncertain.time.text(), account.first_uncertain.gap, place(account.first_uncertain.particle),
         std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run),
         measures_averages(scene) ? "Averages over many collisions are as good from it; to follow one motion use"
                                  : "Use");
   if (account.uncertain_end)
     text += fmt::format("rounding may decide which collisions come before the end (t = {}, {}): use more "
                         "digits (run.precision), or another run.until\n",
-                        account.first_uncertain.time.text, place(account.first_uncertain.particle));
+                        account.first_uncertain.time.text(), place(account.first_uncertain.particle));
   return text;
 }
 
@@ -179,7 +182,7 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
     break;
   }
   const std::string broken = fmt::format("stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): ", what,
-                                         g.found, g.bound, g.time.text,
+                                         g.found, g.bound, g.time.text(),
                                          g.guard == Guard::wall ? fmt::format(", particle {}", g.particle)
                                          : g.particle < 0       ? ""
                                                                 : ", " + place(g.particle));

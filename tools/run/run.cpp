@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <type_traits>
-
-#include "cradle/tools/engines/in_precision.hpp"
-#include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/scene/scene.hpp"
@@ -13,10 +10,6 @@
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
-
-// Compiled once per scalar type, in a separate source in instances/ of the build tree.
-template <class T> std::unique_ptr<SceneRun> begin_in(const Scene& scene, const RunOptions& options, Sink& sink);
-template <class T> PlannedTimes planned_in(const Scene& scene);
 
 namespace {
 
@@ -65,28 +58,16 @@ void check_built(const Scene& scene) {
 }
 
 PlannedTimes planned_times(const Scene& scene) {
-  return in_precision<PlannedTimes>(scene, [&]<class T>(std::type_identity<T>) { return planned_in<T>(scene); });
+  const Schedule plan(scene);
+  PlannedTimes times{plan.series().rounded(), {}, scene.run.until.value};
+  for (const MeasurementTimes& each : plan.of) times.tables.push_back(each.tables.rounded());
+  return times;
 }
 
 Scene without_tables(Scene scene) {
   for (const MeasurementRow* row : measurement_rows())
     if (row->leave_out) row->leave_out(scene.output);
   return scene;
-}
-
-void SceneRun::require_in_progress() const {
-  if (over_)
-    throw Error({scene_.name, 0, ""}, "the run is over",
-                std::string(end_row(over_->end).text) + " at t = " + time().text,
-                "write its result, or begin another one");
-}
-
-std::unique_ptr<SceneRun> begin_run(const Scene& scene, const RunOptions& options, Sink& sink) {
-  check_built(scene);
-  if (scene.initial.type == InitialType::clusters)
-    throw Error({scene.name, 0, "initial.type"}, "a model without particles", "clusters", "use `cradle run`");
-  return in_precision<std::unique_ptr<SceneRun>>(
-      scene, [&]<class T>(std::type_identity<T>) { return begin_in<T>(scene, options, sink); });
 }
 
 RunOutcome run_scene(const Scene& scene, const RunOptions& options, Sink& sink) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cradle/core/engine/status.hpp"
-#include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/record/times.hpp"
 
 namespace cradle::tools {
@@ -27,8 +26,13 @@ struct SampledWall {
   std::string given, momentum, dissipated;
 };
 
+struct SampledTime {
+  double value = 0;
+  std::string text = "0";
+};
+
 struct RunSample {
-  Number time;                           // its text and the decimals below have all digits of the run's precision
+  SampledTime time;                      // its text and the decimals below have all digits of the run's precision
   long double epsilon = 0;               // of that precision
   std::vector<RequestedTime> requested;  // all requested times that the run's precision cannot distinguish from `time`
   bool of_series = false;

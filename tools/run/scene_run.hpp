@@ -4,27 +4,22 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cradle/core/base/state_stream.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
-
-struct HeldCollision {
-  ParticleIndex left, right;  // by their numbers at the start
-  double time, interval, closing_speed;
-};
 
 /// After an exception from a function of the caller, the run is at its last collision and can continue. Callers with
 /// several runs see to it that MPFR has the digits of the one that they call (set_digits).
 class SceneRun {
  public:
-  enum class Column { x, v, m, gap, closing_speed };  // of the particles, as in snapshots
+  using Column = Moment::Column;  // of the particles, as in snapshots
 
   explicit SceneRun(const Scene& scene) : scene_(scene) {}
   SceneRun(const SceneRun&) = delete;
@@ -40,7 +35,7 @@ class SceneRun {
   /// Ends the run at its last collision: what it has recorded can then be written. Throws Error if it is over.
   virtual void stop() = 0;
   /// Called before every collision from now on; empty: not any more.
-  virtual void observe(std::function<void(const HeldCollision&)> observer) = 0;
+  virtual void observe(CollisionObserver observer) = 0;
 
   /// Null while the run is in progress.
   const RunOutcome* over() const { return over_ ? &*over_ : nullptr; }

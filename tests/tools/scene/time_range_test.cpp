@@ -37,27 +37,26 @@ TEST(TimeRange, StepsAreTheDecimalsThatAUserWouldWrite) {
   EXPECT_EQ(snapshots("{ from = '0.1', until = 0.3, every = 1e-1 }"), (Strings{"0.1", "0.2", "0.3"}));
   // Every double is the one nearest to its decimal, which sums and products of 0.1 are not.
   const Scene scene = parse("snapshots = { from = 0, until = 100, every = 0.1 }");
-  const auto plan = schedule<double>(scene).snapshots();
-  ASSERT_EQ(plan.size(), 1001U);
+  const Schedule plan(scene);
+  const Times& times = plan.snapshots();
+  ASSERT_EQ(times.size(), 1001U);
   for (std::size_t k = 0; k <= 1000; ++k) {
     const std::string digits = std::to_string(k);
     const std::string decimal =
         digits.size() == 1 ? "0." + digits : digits.substr(0, digits.size() - 1) + "." + digits.back();
-    EXPECT_EQ(plan.values()[k], std::stod(decimal));
+    EXPECT_EQ(times[k].value, std::stod(decimal));
     EXPECT_EQ(scene.output.snapshots[k], Decimal(decimal));
   }
-  EXPECT_NE(plan.values()[3], 3 * 0.1);
+  EXPECT_NE(times[3].value, 3 * 0.1);
 }
 
 // Of the series; 3 0.1 is above 0.3 if it is rounded, and was no sample.
 TEST(Schedule, RoundsEveryTimeOnce) {
   const auto series = [](const std::string& keys) {
-    return schedule<double>(parse_scene(ring + "[output]\n" + keys, "ring.toml", {"run.start=0.1", "run.until=10.3"}))
-        .series();
+    return Schedule(parse_scene(ring + "[output]\n" + keys, "ring.toml", {"run.start=0.1", "run.until=10.3"})).series();
   };
-  EXPECT_EQ(
-      schedule<double>(parse_scene(ring + "[output]\nseries.every = 0.1", "", {"run.until=0.3"})).series().values(),
-      (std::vector<double>{0, 0.1, 0.2, 0.3}));
+  EXPECT_EQ(Schedule(parse_scene(ring + "[output]\nseries.every = 0.1", "", {"run.until=0.3"})).series().rounded(),
+            (std::vector<double>{0, 0.1, 0.2, 0.3}));
   const auto near = [](double time, const Rational& exact) {
     const double ulp = std::nextafter(time, 1e300) - time;
     EXPECT_LE(abs(Rational(Rational(time) - exact)), Rational(ulp) / 2) << time;
@@ -65,14 +64,14 @@ TEST(Schedule, RoundsEveryTimeOnce) {
   const Rational start(1, 10), until(103, 10);
   const auto even = series("series = { points = 1000 }"), over = series("series = { points = 9, over = 3 }");
   ASSERT_EQ(even.size(), 1000U);
-  for (std::size_t k = 0; k < 1000; ++k) near(even.values()[k], start + (until - start) * Rational(k) / 999);
+  for (std::size_t k = 0; k < 1000; ++k) near(even[k].value, start + (until - start) * Rational(k) / 999);
   EXPECT_EQ(over.size(), 30U);  // up to 29/8 of the range, and the end
-  near(over.values()[28], start + (3 - start) * Rational(28) / 8);
-  EXPECT_EQ(over.values().back(), 10.3);
+  near(over[28].value, start + (3 - start) * Rational(28) / 8);
+  EXPECT_EQ(over.back().value, 10.3);
   const auto log = series("series = { points = 20, spacing = 'log' }");
   ASSERT_EQ(log.size(), 20U);
-  EXPECT_EQ(log.values().back(), 10.3);
-  EXPECT_EQ(log.values()[1], 0.1000102);
+  EXPECT_EQ(log.back().value, 10.3);
+  EXPECT_EQ(log[1].value, 0.1000102);
 }
 
 TEST(TimeRange, PointsAreEvenOrOfEqualRatios) {

@@ -37,7 +37,7 @@ py::object called(py::handle function, py::object argument) {
   return py::reinterpret_steal<py::object>(result);
 }
 
-void observe(py::handle function, const HeldCollision& c) {
+void observe(py::handle function, const ObservedCollision& c) {
   const std::array values{PyLong_FromLongLong(c.left), PyLong_FromLongLong(c.right), PyFloat_FromDouble(c.time),
                           PyFloat_FromDouble(c.interval), PyFloat_FromDouble(c.closing_speed)};
   // As tuple.__new__ makes it, without arguments: one is made for every collision that is observed.
@@ -138,8 +138,8 @@ class HeldRun {
   template <class F> void compute(py::handle observer, py::handle law, const F& f) {
     const Use use(*this);
     if (const bool wanted = !observer.is_none(); wanted != std::exchange(observed_, wanted))
-      run_->run().observe(wanted ? [this](const HeldCollision& c) { tools::observe(observer_, c); }
-                                 : std::function<void(const HeldCollision&)>());
+      run_->run().observe(wanted ? [this](const ObservedCollision& c) { tools::observe(observer_, c); }
+                                 : std::function<void(const ObservedCollision&)>());
     observer_ = observer, law_ = law;
     if (observed_ || !law.is_none()) return f();
     const py::gil_scoped_release released;
@@ -231,9 +231,9 @@ PYBIND11_MODULE(_live, module) {
       .def_property_readonly("collisions", reads([](SceneRun& run) { return run.counts().collisions; }))
       .def_property_readonly("merges", reads([](SceneRun& run) { return run.counts().merges; }))
       .def_property_readonly("time", reads([](SceneRun& run) { return run.time().value; }))
-      .def_property_readonly("time_text", reads([](SceneRun& run) { return run.time().text; }))
+      .def_property_readonly("time_text", reads([](SceneRun& run) { return run.time().text(); }))
       .def_property_readonly("energy", reads([](SceneRun& run) { return run.energy().value; }))
-      .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.energy().text; }))
+      .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.energy().text(); }))
       // None while the run is in progress, then how it ended: the outcome, the exit status of `cradle run`, what that
       // prints, and its warning.
       .def_property_readonly("over", reads([](SceneRun& run) -> py::object {

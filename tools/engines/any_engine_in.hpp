@@ -1,0 +1,380 @@
+// The engine of a run and its state at one time in one scalar type: what code for all types requires of them
+// (any_engine.hpp, moment.hpp).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/core/observe/clusters.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/correlations.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
+#include "cradle/tools/engines/engine_of.hpp"
+
+namespace cradle::tools {
+
+template <Real T> struct ExactIn final : ExactNumber {
+  explicit ExactIn(const T& x) : value(x) {}
+  std::string text() const override { return to_text(value); }
+  bool is_less(const ExactNumber& other) const override { return value < static_cast<const ExactIn&>(other).value; }
+  const T value;
+};
+
+template <Real T> double rounded(const T& x) { return x == x ? to_double(x) : none(); }
+
+template <Real T> Number number_of(const T& x) {
+  if constexpr (std::same_as<T, double>)
+    return {rounded(x), nullptr};
+  else
+    return {rounded(x), std::make_shared<ExactIn<T>>(x)};
+}
+template <Real T> std::optional<Number> number_of(const std::optional<T>& x) {
+  return x ? std::optional(number_of(*x)) : std::nullopt;
+}
+template <Real T> T exact_in(const Number& x) {
+  if constexpr (std::same_as<T, double>)
+    return x.value;
+  else
+    return static_cast<const ExactIn<T>&>(*x.exact).value;
+}
+
+template <Real T> Number rounded_once(std::string_view decimal) { return number_of(from_text<T>(decimal)); }
+
+template <Real T> ReportedIncident reported(const Incident<T>& i) {
+  return {number_of(i.time), to_double(i.gap), i.particle};
+}
+template <Real T> ReportedGuard reported(const GuardReport<T>& r, const T& time) {
+  return {r.guard, to_double(r.found), to_double(r.bound), r.particle, number_of(time)};
+}
+
+template <Real T> struct CollisionIn final : ObservedCollision {
+  explicit CollisionIn(const Collision<T>& c) : of(c) {
+    left = c.left, right = c.right;
+    time = to_double(T(c.time.value())), interval = rounded(c.interval), closing_speed = rounded(c.closing_speed);
+  }
+  double time_low() const override {
+    if constexpr (std::same_as<T, double>)
+      return difference(of.time, Pair<T>{time, 0});
+    else
+      return to_double(difference(of.time, Pair<T>{T(time), T(0)}));
+  }
+  Texts texts() const override {
+    return {to_text(T(of.time.value())), to_text(of.interval), to_text(of.closing_speed)};
+  }
+  const Collision<T>& of;
+};
+
+/// What a moment needs of a run.
+template <Real T> struct RunIn {
+  const Scene& scene;
+  std::shared_ptr<const cradle::Particles<T>> particles;
+  T start;
+  std::unique_ptr<Engine<T>> engine;
+  std::optional<TaggedParticles<T>> tagged = {};
+};
+
+template <Real T> class MomentIn final : public Moment {
+ public:
+  MomentIn(RunIn<T>& of, const RunTime& at, bool at_collision)
+      : Moment(at), of_(of), run_(*of.engine), particles_(*of.particles), time_(exact_in<T>(at.exact)),
+        elapsed_(time_ - of.start), at_collision_(at_collision) {}
+
+  const SampledState& state() const override {
+    return computed(state_, [&] {
+      const Sample<T>& s = sampled();
+      const auto wall = [](const WallTally<T>& w) {
+        return SampledState::Wall{w.collisions, number_of(T(w.given.value())), number_of(T(w.momentum.value())),
+                                  number_of(T(w.dissipated.value()))};
+      };
+      return SampledState{number_of(s.energy),
+                          number_of(s.energy_lost),
+                          s.counts,
+                          s.particles,
+                          number_of(s.front_left),
+                          number_of(s.front_right),
+                          {wall(s.walls[0]), wall(s.walls[1])}};
+    });
+  }
+
+  std::vector<double> column(Column which) const override {
+    return made_of<double>(which, [](const T& x) { return rounded(x); });
+  }
+  std::vector<std::string> column_text(Column which) const override {
+    return made_of<std::string>(which, [](const T& x) { return to_text(x); });
+  }
+  const std::vector<ParticleIndex>& index() const override { return configuration().index; }
+  std::pair<ParticleIndex, ParticleIndex> range() const override { return {configuration().from, configuration().to}; }
+  std::vector<std::pair<std::string, Number>> gap_numbers() const override {
+    const Configuration<T>& c = configuration();
+    if (c.x.size() < 2) return {};
+    const GapStatistics<T> gaps = gap_statistics(c);
+    std::vector<std::pair<std::string, Number>> all{{"gap_min", number_of(gaps.least)},
+                                                    {"gap_median", number_of(gaps.median)}};
+    if (c.closure_gap) all.emplace_back("closure_gap", number_of(*c.closure_gap));
+    if (c.closure_speed) all.emplace_back("closure_speed", number_of(*c.closure_speed));
+    return all;
+  }
+  std::unique_ptr<Moment> after_last_collision() const override { return std::make_unique<MomentIn>(of_, time, true); }
+
+  std::vector<Number> at_start(Column which, ParticleIndex first, ParticleIndex last) const override {
+    std::vector<Number> all;
+    for (ParticleIndex b = first; b <= last; ++b)
+      all.push_back(which == Column::x                                   ? number_of(particles_.position(b))
+                    : which == Column::v                                 ? number_of(particles_.velocity(b))
+                    : which == Column::m                                 ? number_of(particles_.mass(b))
+                    : b + 1 < particles_.count() || particles_.on_ring() ? number_of(particles_.gap(b))
+                                                                         : Number{none(), nullptr});
+    return all;
+  }
+  Number circumference() const override { return number_of(particles_.circumference()); }
+  double least_mass() const override { return to_double(particles_.least_mass()); }
+  Number energy_at_start() const override { return number_of(particles_.kinetic_energy()); }
+
+  const SampledCloud& cloud() const override {
+    return computed(sampled_cloud_, [&] {
+      const Cloud<T>& c = cloud_in();
+      const auto heaviest = [](const std::optional<Cluster<T>>& of) -> std::optional<SampledCloud::Heaviest> {
+        if (!of) return {};
+        return SampledCloud::Heaviest{number_of(of->mass), number_of(of->x), number_of(of->v), of->index};
+      };
+      return SampledCloud{heaviest(c.left), heaviest(c.right), number_of(c.mass), number_of(c.width)};
+    });
+  }
+  const DenseCore& core() const override {
+    return computed(core_, [&] { return dense_core(configuration()); });
+  }
+  Number potential_energy() const override {
+    return number_of(cradle::potential_energy(configuration(), particles_, elapsed_));
+  }
+  // From the two ledgers: what they share cancels.
+  Number sticky_excess() const override {
+    StickyGas<T> sticky(of_.particles, of_.start);  // a new one: the result must not depend on earlier samples
+    sticky.advance(time_);
+    const T energy = particles_.kinetic_energy();
+    return number_of(T(T(energy - run_.energy_lost(time_)) - (energy - sticky.energy_lost())));
+  }
+  std::vector<std::uint64_t> mass_distribution() const override {
+    return cradle::mass_distribution(configuration(), particles_.least_mass());
+  }
+  void for_each_cluster(const Decimal& gap, const std::function<void(std::size_t)>& visit) const override {
+    cradle::for_each_cluster(configuration(), number<T>(gap), visit);
+  }
+  TaggedMotion tagged() const override {
+    of_.tagged->find(configuration(), elapsed_);
+    return {of_.tagged->displacement(), of_.tagged->velocity()};
+  }
+
+  void find(TimeAverages& averages, const Stopped& stopped) const override {
+    averages.find(configuration(), particles_, elapsed_, stopped);
+  }
+  void find(ZoneAverage& zone, const Stopped& stopped) const override {
+    zone.find(configuration(), particles_, elapsed_, stopped);
+  }
+  std::vector<double> measured(const StructureFactor& structure, const Stopped& stopped) const override {
+    return structure(configuration(), particles_, elapsed_, stopped);
+  }
+  std::vector<double> measured(const PairDistribution& pairs, const Stopped& stopped) const override {
+    return pairs(configuration(), particles_, elapsed_, stopped);
+  }
+  Profile profile(BinRange range, std::size_t bins, const Stopped& stopped) const override {
+    return cradle::profile(configuration(), particles_, elapsed_, range, bins, stopped);
+  }
+  void sample(ScenarioWatch& watch) const override {
+    watch.sample(cloud_in(), to_double(elapsed_), run_.counts().merges);
+  }
+
+  const char* beyond_range(bool of_particles) const override {
+    const auto any = [](const auto& numbers) {
+      return !std::ranges::all_of(numbers, [](const T& x) { return is_finite(x); });
+    };
+    if (of_particles) return any(configuration().x) ? "a position" : any(configuration().v) ? "a velocity" : nullptr;
+    const Sample<T>& s = sampled();
+    if (!is_finite(s.energy)) return "the energy";
+    const bool held = is_finite(s.front_left.value_or(T(0))) && is_finite(s.front_right.value_or(T(0)));
+    return held ? nullptr : "a front";
+  }
+  std::optional<ReportedGuard> beyond_a_wall() const override {
+    const auto found = cradle::beyond_a_wall(run_, particles_, time_, elapsed_);
+    return found ? std::optional(reported(*found, time_)) : std::nullopt;
+  }
+
+  std::optional<ParticleIndex> uncertain() const override { return run_.uncertain_at(time_); }
+  double ledger_error() const override {
+    T error = particles_.kinetic_energy() - run_.energy_lost(time_) - run_.kinetic_energy(time_);
+    if (particles_.fall())
+      error += particles_.potential_energy() - cradle::potential_energy(configuration(), particles_, elapsed_);
+    return to_double(error);
+  }
+  std::optional<double> energy_deviation(double of) const override {
+    const std::optional<T> off = run_.energy_deviation(time_);
+    if (!off || !is_positive(*off)) return {};
+    return to_double(T(*off / exactly<T>(of)));
+  }
+
+ private:
+  template <class Value, class F> static const Value& computed(std::optional<Value>& value, F f) {
+    if (!value) value.emplace(f());
+    return *value;
+  }
+  const Sample<T>& sampled() const {
+    return computed(sample_, [&] { return cradle::sample(run_, particles_.kinetic_energy(), time_); });
+  }
+  const Configuration<T>& configuration() const {
+    return computed(configuration_,
+                    [&] { return at_collision_ ? run_.configuration_at_last_collision() : run_.configuration(time_); });
+  }
+  const Cloud<T>& cloud_in() const {
+    return computed(cloud_, [&] { return cradle::cloud(configuration()); });
+  }
+  template <class Made, class F> std::vector<Made> made_of(Column which, const F& make) const {
+    const Configuration<T>& c = configuration();
+    const auto& of = *std::array{&c.x, &c.v, &c.m, &c.gap, &c.closing_speed}[static_cast<std::size_t>(which)];
+    std::vector<Made> all;
+    all.reserve(of.size());
+    for (const T& x : of) all.push_back(make(x));
+    return all;
+  }
+
+  RunIn<T>& of_;
+  const Engine<T>& run_;
+  const cradle::Particles<T>& particles_;
+  T time_, elapsed_;
+  bool at_collision_;
+  mutable std::optional<Sample<T>> sample_;
+  mutable std::optional<SampledState> state_;
+  mutable std::optional<Configuration<T>> configuration_;
+  mutable std::optional<Cloud<T>> cloud_;
+  mutable std::optional<SampledCloud> sampled_cloud_;
+  mutable std::optional<DenseCore> core_;
+};
+
+template <Real T> class AnyEngineIn final : public AnyEngine {
+ public:
+  AnyEngineIn(const Scene& scene, const EngineOptions& options)
+      : run_{scene, initial_particles<T>(scene), number<T>(scene.run.start), {}},
+        energy_(run_.particles->mechanical_energy()), last_checked_(run_.start) {
+    run_.engine = engine(options);
+  }
+
+  Status advance(const Number& until, const CollisionObserver& observer) override {
+    return run_.engine->advance(exact_in<T>(until), observer_in(observer));
+  }
+  Status step(std::uint64_t& left, const Number& until, const CollisionObserver& observer) override {
+    return run_.engine->step(left, exact_in<T>(until), observer_in(observer));
+  }
+
+  const Counts& counts() const override { return run_.engine->counts(); }
+  Number last_collision_time() const override { return number_of(run_.engine->last_collision_time()); }
+  ParticleIndex particles() const override { return run_.particles->count(); }
+  ParticleIndex collided_particles() const override { return run_.engine->collided_particles(); }
+  ReportedAccount account() const override {
+    const Account<T>& account = run_.engine->account();
+    return {account.simultaneous,
+            account.order_lost,
+            account.unresolved,
+            reported(account.first_order_lost),
+            reported(account.first_unresolved),
+            account.uncertain > 0,
+            false,
+            reported(account.first_uncertain)};
+  }
+  ReportedCollapse collapse() const override {
+    const CollapseReport<T>& r = *run_.engine->collapse();
+    return {number_of(r.last_collision),
+            number_of(r.interval),
+            number_of(r.gap),
+            r.particle,
+            r.settled,
+            number_of(T(r.time.value())),
+            number_of(r.uncertainty),
+            number_of(r.ratio),
+            number_of(r.ratio_uncertainty)};
+  }
+  long double epsilon() const override { return from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))); }
+
+  std::unique_ptr<Moment> moment(const RunTime& time, bool at_collision) override {
+    return std::make_unique<MomentIn<T>>(run_, time, at_collision);
+  }
+
+  CheckedParticles check(const Number& at) override {
+    const Engine<T>& engine = *run_.engine;
+    const T time = exact_in<T>(at), last = engine.last_collision_time();
+    const Account<T>& account = engine.account();
+    const Configuration<T> now = engine.configuration(time);
+    const GuardCheck<T> found =
+        guarded(now, *run_.particles, counts().collisions, T(energy_ - engine.energy_lost(time)), T(time - run_.start),
+                last, last_checked_, account.order_lost + account.unresolved == 0);
+    last_checked_ = last;
+    return {found.broken ? std::optional(reported(*found.broken, time)) : std::nullopt, to_double(found.gap_min),
+            to_double(found.closure_gap), to_double(found.closure_speed),
+            static_cast<std::uint64_t>(now.to - now.from + 1) - now.x.size()};
+  }
+  bool collided_since_check() const override { return last_checked_ < run_.engine->last_collision_time(); }
+
+  void count_collisions(const Counting& counting, const OctaveBins& bins, bool flights) override {
+    histograms_.emplace(number<T>(counting.from), number<T>(counting.until), bins, particles(), flights);
+  }
+  std::array<std::vector<std::uint64_t>, 5> counted_collisions() override {
+    if (!histograms_) return {};
+    histograms_->made(counts());
+    return {histograms_->free_flights.counts(), histograms_->pair_flights.counts(),
+            histograms_->closing_speeds.counts(), histograms_->dissipative_speeds.counts(),
+            histograms_->collisions_per_particle().counts()};
+  }
+  std::size_t tag(ParticleIndex every) override { return run_.tagged.emplace(*run_.particles, every).size(); }
+
+  void save(StateSink& to) const override {
+    run_.engine->save(to);
+    cradle::save(to, *this);
+  }
+  void load(StateSource& from) override {
+    run_.engine->load(from);
+    cradle::load(from, *this);
+  }
+  std::string shape() const override {
+    return run_.engine->shape() + state_shape<AnyEngineIn>() + (std::same_as<T, double> ? "" : "exact");
+  }
+  static auto state(auto& self) { return std::tie(self.last_checked_, self.histograms_); }
+
+ private:
+  std::unique_ptr<Engine<T>> engine(const EngineOptions& options) const {
+    Policy<T> policy = policy_of<T>(run_.scene);
+    policy.interrupt = options.interrupt;
+    policy.progress = [report = options.progress](const T& time, const Counts& counts) {
+      report(to_double(time), counts);
+    };
+    if constexpr (std::same_as<T, double>)
+      if (options.restitution) return engine_with(options.restitution, run_.scene, run_.particles, policy);
+    return engine_of<T>(run_.scene, run_.particles, policy, options.workers, options.observed);
+  }
+  // The caller's observer comes first, so that a collision is not counted if it throws.
+  Observer<T> observer_in(const CollisionObserver& observer) {
+    if (!observer && !histograms_) return {};
+    return [this, &observer](const Collision<T>& c) {
+      if (observer) observer(CollisionIn<T>(c));
+      if (!histograms_) return;
+      histograms_->made(counts());
+      (*histograms_)(c);
+    };
+  }
+
+  RunIn<T> run_;
+  T energy_;
+  T last_checked_;  // the time of the last collision before the last check
+  std::optional<CollisionHistograms<T>> histograms_;
+};
+
+template <class T> std::unique_ptr<AnyEngine> begin_engine_in(const Scene& scene, const EngineOptions& options) {
+  return std::make_unique<AnyEngineIn<T>>(scene, options);
+}
+
+}  // namespace cradle::tools

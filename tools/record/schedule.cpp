@@ -1,0 +1,95 @@
+#include "cradle/tools/record/schedule.hpp"
+
+#include <algorithm>
+#include <ranges>
+
+namespace cradle::tools {
+
+void Times::push_back(std::string_view decimal, Rounding round) {
+  Number time = round(decimal);
+  if (!empty() && !(back() < time)) return;
+  values_.push_back(time.value);
+  if (time.exact) exact_.push_back(std::move(time));
+  decimals_.push_back(decimal);
+}
+
+std::size_t Times::first_from(const Number& time) const {
+  const std::ranges::iota_view<std::size_t, std::size_t> places(0, size());
+  return *std::ranges::partition_point(places, [&](std::size_t k) { return (*this)[k] < time; });
+}
+std::size_t Times::first_after(const Number& time) const {
+  const std::size_t k = first_from(time);
+  return k < size() && !(time < (*this)[k]) ? k + 1 : k;
+}
+
+bool Times::hold(const Number& time) const {
+  const std::size_t k = first_from(time);
+  return k < size() && !(time < (*this)[k]);
+}
+
+std::vector<double> Times::rounded() const {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < size(); ++k) all.push_back(from_text<double>(decimals_[k]));
+  return all;
+}
+
+std::optional<RunTime> Times::find(const Number& time) const {
+  if (!hold(time)) return {};
+  return RunTime(time, decimal(time));
+}
+
+Schedule::Schedule(const Scene& scene) {
+  const Rounding round = rounding(scene);
+  for (const MeasurementRow* row : measurement_rows())
+    of.push_back({row->samples ? Times(row->samples(scene), round) : Times(),
+                  row->times ? Times(row->times(scene.output), round) : Times()});
+  end_.push_back(scene.run.until.text, round);
+  last_ = end_.back();
+  for_each([&](const Times& times) {
+    if (!times.empty() && last_ < times.back()) last_ = times.back();
+  });
+}
+
+Due Schedule::due(std::size_t row, const Number& time) const {
+  const auto table = of[row].tables.find(time);
+  return {of[row].samples.hold(time), table ? std::optional(table->meant.value) : std::nullopt};
+}
+
+RunTime Schedule::meant(const Number& time) const {
+  std::optional<RunTime> found;
+  for_each([&](const Times& times) {
+    if (!found) found = times.find(time);
+  });
+  return found ? *found : RunTime(time);
+}
+
+std::optional<Number> Schedule::next(const std::optional<Number>& after) const {
+  std::optional<Number> found;
+  for_each([&](const Times& times) {
+    const std::size_t k = after ? times.first_after(*after) : 0;
+    if (k < times.size() && (!found || times[k] < *found)) found = times[k];
+  });
+  return found;
+}
+
+std::vector<RequestedTime> Schedule::requested(const Scene& scene, const Number& time) const {
+  std::vector<RequestedTime> all;
+  const auto at = [&](const Decimal& decimal) -> RequestedTime& {
+    for (RequestedTime& asked : all)
+      if (asked.time == decimal) return asked;
+    return all.emplace_back(decimal);
+  };
+  const Series& wanted = scene.output.series;
+  if (const auto found = series().find(time)) {
+    const Decimal decimal(series().decimal(time));
+    const bool written = !wanted.points || decimal == scene.run.start || decimal == scene.run.until ||
+                         (wanted.over && decimal == *wanted.over);
+    at(written ? decimal : Decimal(found->meant.text())).of_series = true;
+  }
+  if (snapshots().hold(time)) at(Decimal(snapshots().decimal(time))).of_snapshots = true;
+  if (!(time < last())) at(scene.run.until).last = true;
+  if (all.empty()) at(Decimal(meant(time).meant.text()));
+  return all;
+}
+
+}  // namespace cradle::tools

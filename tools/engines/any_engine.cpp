@@ -13,7 +13,7 @@ template <Real T> Number rounded_once(std::string_view decimal);
 
 std::unique_ptr<AnyEngine> begin_engine(const Scene& scene, const EngineOptions& options) {
   if (options.restitution && scene.run.precision != Precision::double_)
-    throw Error({scene.name, 0, "run.precision"}, "a restitution that is a function is of type double",
+    throw Error(scene.place("run.precision"), "a restitution that is a function is of type double",
                 precision_name(scene.run), "give run.precision = \"double\"");
   return in_precision<std::unique_ptr<AnyEngine>>(
       scene, [&]<class T>(std::type_identity<T>) { return begin_engine_in<T>(scene, options); });

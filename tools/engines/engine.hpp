@@ -2,12 +2,9 @@
 // scalar type, not once per engine. It costs a virtual call per sample, none per collision.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,7 +15,6 @@
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
-#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

@@ -81,7 +81,7 @@ std::uint64_t LiveRun::step(std::uint64_t n, const Decimal& until) {
 
 void LiveRun::require_own_law(const char* what) const {
   if (own_law_)
-    throw Error({scene_.name, 0, "restitution"}, std::string("a function cannot be ") + what, "",
+    throw Error(scene_.place("restitution"), std::string("a function cannot be ") + what, "",
                 "collect its numbers in Python (every, on_collision)");
 }
 

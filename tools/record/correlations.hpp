@@ -71,7 +71,7 @@ class CorrelationMeasurement {
     constexpr double most = 4e9;
     const auto count = static_cast<double>(tagged_);
     if (const double bytes = Correlator::bytes(count, longest_lag(scene_)); bytes > most)
-      throw Error({scene_.name, 0, "output.correlations.tag_every"}, "more tagged particles than memory is for",
+      throw Error(scene_.place("output.correlations.tag_every"), "more tagged particles than memory is for",
                   fmt::format("{} of them, {:.2g} bytes", tagged_, bytes),
                   fmt::format("give {:.0f} or more, or a shorter output.correlations.longest",
                               static_cast<double>(scene_.output.correlations.tag_every) * std::ceil(bytes / most)));

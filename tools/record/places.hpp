@@ -10,7 +10,7 @@ namespace cradle::tools {
 /// Of the ring, or between walls at rest. Throws Error if there is neither.
 inline double length_of(const Scene& scene, const char* key) {
   if (const auto ends = extent(scene)) return ends->second.value - ends->first.value;
-  throw Error({scene.name, 0, key}, "no length", "particles that are neither on a ring nor between walls at rest",
+  throw Error(scene.place(key), "no length", "particles that are neither on a ring nor between walls at rest",
               "give output.structure.length, or remove this key");
 }
 

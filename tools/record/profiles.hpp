@@ -69,7 +69,7 @@ class ProfileMeasurement {
     }
     if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
     if (!std::isfinite(range.to - range.from))
-      throw Error({scene_.name, 0, "output.profiles.range"}, "not given, and the particles are where no double reaches",
+      throw Error(scene_.place("output.profiles.range"), "not given, and the particles are where no double reaches",
                   now.time.exact.text(), "give it, or remove output.profiles", Exit::lost);
     return range;
   }

@@ -1,7 +1,6 @@
 #include "cradle/tools/record/schedule.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 namespace cradle::tools {
 
@@ -14,8 +13,11 @@ void Times::push_back(std::string_view decimal, Rounding round) {
 }
 
 std::size_t Times::first_from(const Number& time) const {
-  const std::ranges::iota_view<std::size_t, std::size_t> places(0, size());
-  return *std::ranges::partition_point(places, [&](std::size_t k) { return (*this)[k] < time; });
+  const auto first = std::ranges::lower_bound(values_, time.value) - values_.begin();
+  if (exact_.empty()) return static_cast<std::size_t>(first);
+  const auto last = std::ranges::upper_bound(values_, time.value) - values_.begin();  // the same as doubles
+  return static_cast<std::size_t>(std::lower_bound(exact_.begin() + first, exact_.begin() + last, time) -
+                                  exact_.begin());
 }
 std::size_t Times::first_after(const Number& time) const {
   const std::size_t k = first_from(time);
@@ -34,8 +36,9 @@ std::vector<double> Times::rounded() const {
 }
 
 std::optional<RunTime> Times::find(const Number& time) const {
-  if (!hold(time)) return {};
-  return RunTime(time, decimal(time));
+  const std::size_t k = first_from(time);
+  if (k == size() || time < (*this)[k]) return {};
+  return RunTime(time, decimals_[k]);
 }
 
 Schedule::Schedule(const Scene& scene) {
@@ -46,7 +49,7 @@ Schedule::Schedule(const Scene& scene) {
   end_.push_back(scene.run.until.text, round);
   last_ = end_.back();
   for_each([&](const Times& times) {
-    if (!times.empty() && last_ < times.back()) last_ = times.back();
+    if (last_ < times.back()) last_ = times.back();
   });
 }
 

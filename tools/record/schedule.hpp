@@ -77,7 +77,9 @@ class Schedule {
 
  private:
   template <class F> void for_each(F f) const {
-    for (const MeasurementTimes& each : of) f(each.samples), f(each.tables);
+    for (const MeasurementTimes& each : of)
+      for (const Times* times : {&each.samples, &each.tables})
+        if (!times->empty()) f(*times);
     f(end_);
   }
 

@@ -22,7 +22,7 @@ inline ZoneAverage zone_average(const Scene& scene) {
           .loss = scene.law.loss.value, .speed = scene.initial.speed.value, .spacing = scene.initial.spacing.value};
       reach = 3 * theory::WetZone<double>(shock).half_width();
     } catch (const std::domain_error& error) {
-      throw Error({scene.name, 0, "output.zone.reach"}, "not given, and (13) has no answer", error.what(), "give it");
+      throw Error(scene.place("output.zone.reach"), "not given, and (13) has no answer", error.what(), "give it");
     }
   return {reach, zone.bins, zone.samples, 1.0};
 }

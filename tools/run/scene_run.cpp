@@ -301,7 +301,7 @@ void SceneRun::require_in_progress() const {
 std::unique_ptr<SceneRun> begin_run(const Scene& scene, const RunOptions& options, Sink& sink) {
   check_built(scene);
   if (scene.initial.type == InitialType::clusters)
-    throw Error({scene.name, 0, "initial.type"}, "a model without particles", "clusters", "use `cradle run`");
+    throw Error(scene.place("initial.type"), "a model without particles", "clusters", "use `cradle run`");
   return std::make_unique<EngineRun>(scene, options, sink);
 }
 

@@ -72,11 +72,11 @@ template <Real T, class Masses, class Field> bool GapChain<T, Masses, Field>::op
     return line_.certainty.open(line_.gaps, line_.motion(field_), s, time, off_by(time));
   } else {
     const T gap = gap_at(s, time), speed = closing_at(s, time);
-    if (gap == T(0) && speed == T(0)) return false;  // they touch, at rest
     // Around a ring the rounding of closing speeds stays; on a line they are soon those of other particles.
-    const T flown = closed() ? clock().elapsed(time) : magnitude(line_.gaps.flown(s, time));
-    const T slow = T(std::numeric_limits<T>::epsilon()) * fastest_;
-    return gap < T(certain_by) * (magnitude(speed) * off_by(time) + slow * flown);
+    const T epsilon = std::numeric_limits<T>::epsilon();
+    const T slow = epsilon * fastest_ * (closed() ? clock().elapsed(time) : magnitude(line_.gaps.flown(s, time)));
+    if (speed == T(0) && !(epsilon * slow < gap)) return false;  // they touch, at rest
+    return gap < T(certain_by) * (magnitude(speed) * off_by(time) + slow);
   }
 }
 

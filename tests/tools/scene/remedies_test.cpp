@@ -78,7 +78,7 @@ TEST_F(Remedies, OfWhatARunCannotResolve) {
   EXPECT_TRUE(has(shell(three, 0).err, "in 3 collisions three particles met at one time, within rounding: then the "
                                        "numbers do not say which pair collides first, and the left one is taken; "
                                        "where that matters, give other initial.x or initial.v"));
-  EXPECT_EQ(shell(three + "--set initial.x=[0,1,2.1]", 0).err, "");
+  EXPECT_EQ(shell(three + "--set initial.x=[0,1,2.1] --set run.until=1.01", 0).err, "");
   // A cut-off that is too low for the run is to be raised.
   write("low.toml", "law = { type = 'inelastic', restitution = 0.05, cutoff = 1e-300 }\nrun.until = 2\n"
                     "initial = { type = 'list', x = [0, 1, 3], v = [1, 0, -1] }\n");

@@ -59,8 +59,8 @@ TYPED_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
 template <class P> class ShakenColumnIn : public InPrecision<P> {};
 TYPED_TEST_SUITE(ShakenColumnIn, EachKindOfPrecision, PrecisionName);
 
-// A particle that comes towards the place of the wall as slowly as the type can tell, or is pulled there so, is hit
-// about when it is there; the search ends at any time since the start and any size of the numbers.
+// A particle that approaches the place of the wall as slowly as the type can tell, or is pulled there as weakly,
+// collides about when it arrives there; the search ends at any time since the start and any size of the numbers.
 TYPED_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
   using T = typename TestFixture::Scalar;
   const T epsilon = std::numeric_limits<T>::epsilon();

@@ -145,9 +145,10 @@ const std::string overflowing = "law = { type = 'inelastic', restitution = 0.9 }
 TEST_F(Run, EnergiesThatOverflow) {
   write("a.toml", overflowing);
   const Printed refused = shell("cradle run a.toml -o a.h5", 2);
-  EXPECT_TRUE(has(refused.err,
-                  "a.toml:3: initial: the particles cannot be set up (found the kinetic energy of all particles overflows "
-                  "(found no finite number): give smaller masses or speeds, or a scalar type of a wider range)"));
+  EXPECT_TRUE(
+      has(refused.err,
+          "a.toml:3: initial: the particles cannot be set up (found the kinetic energy of all particles overflows "
+          "(found no finite number): give smaller masses or speeds, or a scalar type of a wider range)"));
   EXPECT_FALSE(exists("a.h5"));
 
   shell("cradle run a.toml --quiet -o a.h5 --set run.precision=mpfr", 0);

@@ -52,6 +52,10 @@ template <Real T> BouncingLaw<T> bouncing_law(const Scene& scene) {
 // Whether the choice of a law at every collision costs a run anything beside its arithmetic: not with larger numbers.
 template <Real T> inline constexpr bool chooses_at_a_cost = sizeof(T) <= 2 * sizeof(double);
 
+template <Real T> bool watched(const Scene& scene, const cradle::Particles<T>& particles) {
+  return to_be_watched(particles, scene.initial.type == InitialType::list);
+}
+
 // Of particles under gravity or at shaken walls. Throws Error for masses that gaps cannot hold.
 template <Real T>
 std::unique_ptr<Engine<T>>
@@ -68,7 +72,7 @@ falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Partic
                 fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
                             to_double(particles->greatest_mass())),
                 "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
-  if (to_be_watched(*particles)) return in(std::type_identity<GapChain<T, WatchedMasses<T>, Gravity<T>>>{}, law);
+  if (watched<T>(scene, *particles)) return in(std::type_identity<GapChain<T, WatchedMasses<T>, Gravity<T>>>{}, law);
   // As without gravity (engine_of): the most used law, identical masses; the bits are the same.
   if constexpr (chooses_at_a_cost<T>)
     if (const auto* inelastic = law.template as<Inelastic<T>>(); inelastic != nullptr && particles->identical_masses())
@@ -101,7 +105,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   if (scene.run.coordinates == Coordinates::absolute)
     return on(std::type_identity<PositionChain<T, Gravity<T>>>{}, law);
   if (scene.gravity.acts() || scene.walls.shaken()) return falling_engine_of<T>(scene, particles, policy, workers, law);
-  if (to_be_watched(*particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
+  if (watched<T>(scene, *particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
   // Only the most used law has engines of its own, one for identical masses and one for others; the bits are the same.
   const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};
   const auto* inelastic = law.template as<Inelastic<T>>();

@@ -46,7 +46,7 @@ std::unique_ptr<Engine<double>> engine_with(const std::function<double(double)>&
   if (scene.run.coordinates == Coordinates::absolute) refuse("run.coordinates", "give \"gaps\"");
   if (scene.gravity.acts()) refuse("gravity.acceleration", "remove it");
   if (scene.walls.shaken()) refuse("walls", "give walls without motion");
-  if (to_be_watched(*particles)) refuse("initial", "give masses that are not so far apart");
+  if (far_apart(*particles)) refuse("initial", "give masses that differ by a factor of 10000 at most");
   return std::make_unique<EngineOf<double, FunctionRun>>(
       Workers(), FunctionLaw(restitution),
       GapChain<double, IndividualMasses<double>>(particles, number<double>(scene.run.start)), policy);

@@ -285,7 +285,7 @@ class Functions(unittest.TestCase):
         sim.advance(30)
         self.assertLess(sim.energy, 25)
         for settings in ({"run.precision": "double-double"}, {"run.coordinates": "absolute"},
-                         {"run.collapse": "merge", "run.merge_speed": 0.1}):
+                         {"run.collapse": "merge", "run.merge_speed": 0.1}, {"initial.masses": [1, 20000]}):
             with self.assertRaisesRegex(cradle.Error, "a function"):
                 cradle.Simulation("fig2", set=small.SHOCK | settings, restitution=law)
 

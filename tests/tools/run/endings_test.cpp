@@ -261,6 +261,19 @@ TEST_F(Endings, ACollisionThatRoundingMovesAcrossTheEndIsWarnedOf) {
   EXPECT_TRUE(has(shell("cradle run scene.toml --force -o end.h5", 0).err, "may have decided which one was next"));
 }
 
+// Round numbers make three of a list's particles meet at one point, or close at the cut-off exactly.
+TEST_F(Endings, TiesThatRoundingDrawsApartOnARingAreWarnedOf) {
+  const auto warned = [&](const char* speeds) {
+    write("scene.toml", fmt::format("law = {{type = \"inelastic\", restitution = 1}}\nrun.until = 20\n"
+                                    "initial = {{type = \"list\", x = [0.5, 1, 2, 3.5, 6.5, 8.5], v = [{}], "
+                                    "length = 9}}\n",
+                                    speeds));
+    return has(shell("cradle run scene.toml --force -o end.h5", 0).err, "may have decided which one was next");
+  };
+  EXPECT_TRUE(warned("-2, 1.5, 0.5, -0.5, 1, 2"));
+  EXPECT_FALSE(warned("-2.013, 1.471, 0.517, -0.523, 1.009, 1.987"));
+}
+
 TEST_F(Endings, NoRunStaysAtOneTime) {
   const char* wanted = std::getenv("CRADLE_ENDINGS");
   const int scenes = wanted != nullptr ? std::atoi(wanted) : 40;

@@ -72,11 +72,10 @@ template <Real T> inline constexpr bool sums_can_be_exact = std::numeric_limits<
   requires std::numeric_limits<T>::round_style == std::round_to_nearest;
 };
 // Watching takes about three times the time per collision, so it is used for masses far apart and for few particles: of
-// identical masses, for very few at a wall (shaken, it makes errors grow; at rest, it may stop a particle), or on a
-// ring if they were placed one by one: round numbers make particles meet in threes, which rounding may draw apart.
+// identical masses, for very few at a wall (shaken, it makes errors grow; at rest, it may stop a particle), or if they
+// were placed one by one: round numbers make particles meet in threes, which rounding may draw apart.
 template <Real T> bool to_be_watched(const Particles<T>& particles, bool placed_one_by_one) {
-  if (particles.identical_masses())
-    return particles.count() <= 16 && (particles.walled() || (particles.on_ring() && placed_one_by_one));
+  if (particles.identical_masses()) return particles.count() <= 16 && (particles.walled() || placed_one_by_one);
   return particles.count() <= 1000 || far_apart(particles);
 }
 

@@ -32,6 +32,12 @@ double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& 
   return std::max(0., off ? std::min(digits, -std::log10(*off)) : digits);
 }
 
+// If rounding may move a collision across the end of a run, it may be the last one, which should not have been made, or
+// one that should have come at any time after it.
+double before_last_collision(const AnyEngine& engine) {
+  return std::nextafter(engine.last_collision_time().value, -std::numeric_limits<double>::infinity());
+}
+
 }  // namespace
 
 RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status) {
@@ -59,7 +65,8 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
         Attribute("ledger_error", now.ledger_error())})
     attributes.push_back(attribute);
   if (account.uncertain || account.uncertain_end)
-    attributes.emplace_back("uncertain_from", account.first_uncertain.time.value);
+    attributes.emplace_back("uncertain_from",
+                            account.uncertain_end ? before_last_collision(engine) : account.first_uncertain.time.value);
   if (!found) return;
   const std::string floor = collapsing_floor(scene);
   const bool on_floor =

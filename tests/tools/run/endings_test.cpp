@@ -261,17 +261,28 @@ TEST_F(Endings, ACollisionThatRoundingMovesAcrossTheEndIsWarnedOf) {
   EXPECT_TRUE(has(shell("cradle run scene.toml --force -o end.h5", 0).err, "may have decided which one was next"));
 }
 
-// Round numbers make three of a list's particles meet at one point, or close at the cut-off exactly.
-TEST_F(Endings, TiesThatRoundingDrawsApartOnARingAreWarnedOf) {
-  const auto warned = [&](const char* speeds) {
+// Round numbers make three of a list's particles meet at one point, which rounding may draw apart.
+TEST_F(Endings, TiesThatRoundingDrawsApartAreWarnedOf) {
+  const auto warned = [&](const char* particles) {
     write("scene.toml", fmt::format("law = {{type = \"inelastic\", restitution = 1}}\nrun.until = 20\n"
-                                    "initial = {{type = \"list\", x = [0.5, 1, 2, 3.5, 6.5, 8.5], v = [{}], "
-                                    "length = 9}}\n",
-                                    speeds));
+                                    "initial = {{type = \"list\", {}}}\n",
+                                    particles));
     return has(shell("cradle run scene.toml --force -o end.h5", 0).err, "may have decided which one was next");
   };
-  EXPECT_TRUE(warned("-2, 1.5, 0.5, -0.5, 1, 2"));
-  EXPECT_FALSE(warned("-2.013, 1.471, 0.517, -0.523, 1.009, 1.987"));
+  EXPECT_TRUE(warned("x = [0.5, 1, 2, 3.5, 6.5, 8.5], v = [-2, 1.5, 0.5, -0.5, 1, 2], length = 9"));
+  EXPECT_FALSE(warned("x = [0.5, 1, 2, 3.5, 6.5, 8.5], v = [-2.013, 1.471, 0.517, -0.523, 1.009, 1.987], length = 9"));
+  const char* line = "x = [92242893.12482], v = [2, 1, 0, -2, -2], gap = [2, 1, 1{}, 2]";
+  EXPECT_TRUE(warned(fmt::format(fmt::runtime(line), ".000000000000000000000005").c_str()));
+  EXPECT_FALSE(warned(fmt::format(fmt::runtime(line), ".05").c_str()));
+}
+
+// The time up to which collisions are certain is not after one that should or should not have come.
+TEST_F(Endings, CollisionsAcrossTheEndAreUncertainFromTheLastOneOn) {
+  write("scene.toml",
+        "law = {type = \"inelastic\", restitution = 0.9999999999}\nrun = {start = -7.25, until = 1.8e21}\n"
+        "initial = {type = \"list\", x = [0, 2, 3.5, 5, 6], v = [0.5, 1, 1, 2, 0.5]}\n");
+  shell("cradle run scene.toml --force -o end.h5", 0);  // makes 3 collisions; the fourth is at 1.2e21
+  EXPECT_LT(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), 1.2e21);
 }
 
 TEST_F(Endings, NoRunStaysAtOneTime) {

@@ -38,6 +38,11 @@ if(Python_Development.Module_FOUND AND pybind11_FOUND)
   list(REMOVE_ITEM _parts tools/python)
   list(TRANSFORM _parts REPLACE "/" "_")
   list(TRANSFORM _parts PREPEND cradle_)
+  foreach(_part IN LISTS _parts)
+    if(TARGET ${_part}_fast)
+      list(APPEND _parts ${_part}_fast)
+    endif()
+  endforeach()
   set_target_properties(${_parts} cradle_steps
                         PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                                    VISIBILITY_INLINES_HIDDEN ON)

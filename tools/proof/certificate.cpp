@@ -162,8 +162,11 @@ void Bounds::put(Group& doubles, Group& exact, const std::string& name, const st
 
 Result certified_result(Certified run) {
   const Certificate& c = run.certificate;
-  Result result = std::move(run.outcome.result);
-  if (c.doubt) result = {provenance(run.scene, precision_name(run.scene.run), end_row(RunEnd::undecided).text), {}};
+  Result result = c.doubt ? Result() : std::move(run.outcome.result);
+  const RunEnd end = c.doubt ? RunEnd::undecided : run.outcome.end;
+  std::vector<Attribute> attributes = provenance(run.scene, precision_name(run.scene.run), end_row(end).text);
+  append(attributes, std::move(result.attributes));
+  result.attributes = std::move(attributes);
   Group certificate{"certificate",
                     {{"verdict", run.proved() ? "proved" : "undecided"},
                      {"collisions", c.collisions},

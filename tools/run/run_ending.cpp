@@ -58,12 +58,11 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
   outcome.warning = account_warning(account, scene);
   if (status == Status::exhausted)
     outcome.warning += exhausted_warning(now.time.exact.text(), counts.collisions, scene);
-  attributes = provenance(scene, precision_name(scene.run), end_row(outcome.end).text);
-  for (const Attribute& attribute :
-       {Attribute("simultaneous_collisions", account.simultaneous), Attribute("order_lost", account.order_lost),
-        Attribute("unresolved_gaps", account.unresolved), Attribute("energy_digits", outcome.energy_digits),
-        Attribute("ledger_error", now.ledger_error())})
-    attributes.push_back(attribute);
+  attributes = {{"simultaneous_collisions", account.simultaneous},
+                {"order_lost", account.order_lost},
+                {"unresolved_gaps", account.unresolved},
+                {"energy_digits", outcome.energy_digits},
+                {"ledger_error", now.ledger_error()}};
   if (account.uncertain || account.uncertain_end)
     attributes.emplace_back("uncertain_from",
                             account.uncertain_end ? before_last_collision(engine) : account.first_uncertain.time.value);

@@ -266,7 +266,10 @@ class EngineRun final : public SceneRun {
     ending.outcome.summary = measurements_.finish(now, sink_);
     if (ending.collapse) sink_.add(std::move(*ending.collapse));
     ending.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-    sink_.end(std::move(ending.attributes), ending.outcome.end);
+    std::vector<Attribute> attributes;
+    if (sink_.for_file()) attributes = provenance(scene_, precision_name(scene_.run), end_row(ending.outcome.end).text);
+    append(attributes, std::move(ending.attributes));
+    sink_.end(std::move(attributes), ending.outcome.end);
     over_ = std::move(ending.outcome);
   }
 

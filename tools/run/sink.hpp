@@ -38,7 +38,7 @@ class Sink : public TableSink {
   using TableSink::add;
   using TableSink::TableSink;
 
-  /// The run is over, and has added all its tables. `attributes` are those of the result.
+  /// The run is over, and has added all its tables. `attributes` are those of the result, for a file with provenance.
   virtual void end(std::vector<Attribute>&& attributes, RunEnd how) = 0;
 
   /// Called often with the number of collisions that the run has made; it is cheap.

@@ -59,8 +59,7 @@ Scene<double> moving(double drift, std::vector<double> m = {}) {
 }
 
 TEST(Energy, InelasticCollapseOfThree) {
-  const Scene<double> particles = list<double>({0, 1, 3}, {1, 0, -1});
-  GapRun<double> run(Inelastic(0.05), GapChain<double>(particles, 0), {CollapsePolicy::stop, 1e-290});
+  GapRun<double> run(Inelastic(0.05), GapChain<double>(three_particles(), 0), {CollapsePolicy::stop, 1e-290});
   ASSERT_EQ(run.advance(2), Status::collapsed);
   EXPECT_GT(run.counts().collisions, 300U);
   const double left = sample(run, 1., run.last_collision_time()).energy;
@@ -73,8 +72,8 @@ TEST(Energy, InelasticCollapseOfThree) {
 
 TEST(Energy, IsNeverNegative) {
   for (const double restitution : {0., 0.03, 0.0717, 0.0719, 0.072, 0.08, 0.2, .5}) {
-    const Scene<double> particles = list<double>({0, 1, 3}, {1, 0, -1});
-    GapRun<double> run(Inelastic<double>(restitution), GapChain<double>(particles, 0), {CollapsePolicy::stop, 1e-200});
+    GapRun<double> run(Inelastic<double>(restitution), GapChain<double>(three_particles(), 0),
+                       {CollapsePolicy::stop, 1e-200});
     double before = 1;
     for (double t = 0.25; t < 40; t += 0.25) {
       const Status status = run.advance(t);

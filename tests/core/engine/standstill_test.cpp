@@ -41,7 +41,7 @@ TEST(Standstill, IsOverWhereTheTimeSinceTheStartAdvances) {
 
 // Three particles whose speeds fall to 1e-280 at t = 12/7, 700 collisions long, and who then part.
 TEST(Standstill, ACutOffBelowTheClocksResolutionIsReached) {
-  auto run = gap_run(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic<double>(0.05, 1e-110));
+  auto run = gap_run(three_particles(), Inelastic<double>(0.05, 1e-110));
   EXPECT_EQ(run.advance(100), Status::reached);
   EXPECT_GT(run.counts().below_cutoff, 0U);
 }

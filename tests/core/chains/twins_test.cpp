@@ -46,19 +46,10 @@ void expect_same_collisions(First first, Second second, double step, double end,
 // one of two operations) and the velocity, by some 2^-53 that then acts for 250 units of time: 400 (2 * 1.4e-14 + 250 *
 // 2.2e-16) < 4e-11 if all roundings had the same sign.
 TEST(Twins, GapsAndPositionsMakeTheSameCollisions) {
-  const auto particles = rshock<double>(400);
-  expect_same_collisions(gap_run(particles, law), position_run(particles, law), 10, 250, 4e-11, 20000);
-}
-
-TEST(Twins, GapsAndPositionsMakeTheSameCollisionsWithUnequalRowsAndACentralMass) {
-  const auto particles = unequal_rows();
-  expect_same_collisions(mass_run(particles, law), position_run(particles, law), 10, 170, 4e-11, 15000);
-}
-
-TEST(Twins, GapsAndPositionsMakeTheSameCollisionsInAMixedGas) {
-  const auto particles = rmix<double>(300);
-  expect_same_collisions(gap_run(particles, Inelastic<double>(0.98, 1e-5)),
-                         position_run(particles, Inelastic<double>(0.98, 1e-5)), 5, 100, 4e-11, 5000);
+  const auto rows = rshock<double>(400), mixed = rmix<double>(300);
+  expect_same_collisions(gap_run(rows, law), position_run(rows, law), 10, 250, 4e-11, 20000);
+  expect_same_collisions(mass_run(unequal_rows(), law), position_run(unequal_rows(), law), 10, 170, 4e-11, 15000);
+  expect_same_collisions(gap_run(mixed, law), position_run(mixed, law), 5, 100, 4e-11, 5000);
 }
 
 // Whom each particle met, in order. Collisions that have no particle in common commute, and particles may pass each
@@ -117,18 +108,13 @@ TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {
 // spacing.
 TEST(Twins, WetGapsAndPositionsMakeTheSameCollisions) {
   using Wide = Digits<50>;
-  for (const double loss : {.01, 0.1, 1.}) {
+  const auto mass = [](ParticleIndex i) { return Wide(1 + bits_of(i, 40, 7)) / Wide(4); };
+  const auto on_line = as_list(*rmix<Wide>(60), mass), large_ring = as_list(*rmix<Wide>(60), mass, Wide(1 << 20));
+  for (const double loss : {.0025, 0.025, .25}) {
     SCOPED_TRACE(loss);
-    std::vector<Wide> x, v, m;
-    for (ParticleIndex i = 0; i < 60; ++i) {
-      x.push_back(Wide(i) + Wide(bits_of(i, 0, 0x3FF)) / Wide(2048));
-      v.push_back(Wide(bits_of(i, 20, 0x3FFF) - 8192) / Wide(4096));
-      m.push_back(Wide(1 + bits_of(i, 40, 7)) / Wide(4));
-    }
-    const List<Wide> large_ring(x, v, m, Wide(1 << 20));
-    Simulation run(Wet<Wide>{Wide(loss)}, ClusterChain<Wide>(list(x, v, m), Wide(0)));
-    SlowRing<Wide> twin(large_ring);
-    for (int t = 5; t <= 60; t += 5) {
+    Simulation run(Wet<Wide>{Wide(loss)}, ClusterChain<Wide>(on_line, Wide(0)));
+    SlowRing<Wide> twin(*large_ring);
+    for (int t = 10; t <= 120; t += 10) {
       ASSERT_EQ(run.advance(Wide(t)), Status::reached);
       twin.advance(Wet<Wide>{Wide(loss)}, Wide(t));
       ASSERT_EQ(run.counts().collisions, twin.collisions) << t;

@@ -5,10 +5,9 @@
 // no longer advances ends, by a rule that does not depend on exponents.
 #include <gtest/gtest.h>
 
-#include "cradle/core/initial/walled.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/digits.hpp"
-#include "cradle/tests/core/fixtures.hpp"
 
 namespace collapse_proof_test {
 
@@ -36,11 +35,7 @@ class Thresholds : public testing::TestWithParam<Family> {
     const Inelastic<double> law(restitution);
     if (GetParam().particles == 3) return mass_run(three_particles(), law, stop);
     if (!GetParam().wall) return mass_run(list<double>({0, 1, 3, 4}, {1.5, 0.5, -0.5, -1.5}), law, stop);
-    Wall<double> wall{0};
-    wall.restitution = restitution;
-    const Scene<double> walled =
-        std::make_shared<Walled<double>>(list<double>({1, 2}, {-0.5, -1.5}), wall, std::nullopt);
-    return mass_run(walled, law, stop);
+    return mass_run(between(0, list<double>({1, 2}, {-0.5, -1.5}), Wall<double>{0, 0, restitution}), law, stop);
   }
   static Wide coupling(const Wide& e) {
     const Wide four(4), two(2);

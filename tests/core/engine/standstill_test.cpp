@@ -4,7 +4,6 @@
 // meet at one time separate by a cut-off, after as many collisions as in exact rationals.
 #include <gtest/gtest.h>
 
-#include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 

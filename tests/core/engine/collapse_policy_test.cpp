@@ -57,24 +57,23 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   EXPECT_LE(report.last_collision, report.time.value());
 }
 
+// The last gap is at the end of the range.
 TEST_P(CollapsePolicies, StopAtAGapMakesExactlyTheCollisionsItTakes) {
-  const std::pair<double, int> decades[] = {
-      {1e-16, GetParam().passes_e16}, {1e-34, GetParam().passes_e34}, {1e-100, GetParam().passes_e100}};
+  const std::pair<double, std::optional<int>> decades[] = {{1e-16, GetParam().passes_e16},
+                                                           {1e-34, GetParam().passes_e34},
+                                                           {1e-100, GetParam().passes_e100},
+                                                           {1e-290, std::nullopt}};
   for (const auto& [gap, collisions] : decades) {
+    SCOPED_TRACE(gap);
     auto run = stopping_run(gap);
-    ASSERT_EQ(run.advance(1e6), Status::collapsed) << gap;
-    EXPECT_EQ(run.counts().collisions, static_cast<std::uint64_t>(collisions)) << gap;
+    ASSERT_EQ(run.advance(1e6), Status::collapsed);
+    if (collisions) {
+      EXPECT_EQ(run.counts().collisions, static_cast<std::uint64_t>(*collisions));
+    }
     EXPECT_LT(run.collapse().gap, gap);
-    EXPECT_GT(run.collapse().gap, 0) << gap;
+    EXPECT_GT(run.collapse().gap, gap / 256);  // a collision takes it down by lam- > 1/50
+    EXPECT_EQ(run.chain().account().order_lost, 0U);
   }
-}
-
-TEST_P(CollapsePolicies, StopReachesGapsAtTheEndOfTheRange) {
-  auto run = stopping_run(1e-290);
-  ASSERT_EQ(run.advance(1e6), Status::collapsed);
-  EXPECT_LT(run.collapse().gap, 1e-290);
-  EXPECT_GT(run.collapse().gap, 1e-290 / 256);  // a collision takes it down by lam- > 1/50
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 TEST_P(CollapsePolicies, WithoutAPolicyTheRunEndsWhereGapsUnderflow) {
@@ -138,8 +137,10 @@ TEST(CollapsePolicies, TripleCollisionWithoutEndIsNoticed) {
   const auto particles = list<double>({0, 1, 2}, {1, 0, -1});
   for (const CollapsePolicy policy : {CollapsePolicy::cutoff, CollapsePolicy::stop}) {
     auto run = gap_run<double>(particles, Inelastic(0.05), {policy, 0, {}});
-    EXPECT_EQ(run.advance(2), Status::exhausted);
-    EXPECT_EQ(run.last_collision_time(), 1);
+    for (int times = 0; times < 5; ++times) {  // it stays exhausted
+      EXPECT_EQ(run.advance(2), Status::exhausted);
+      EXPECT_EQ(run.last_collision_time(), 1);
+    }
     EXPECT_GT(run.chain().account().simultaneous, 0U);
     auto in_positions = position_run<double>(particles, Inelastic(0.05), {policy, 0, {}});
     EXPECT_EQ(in_positions.advance(2), Status::exhausted);

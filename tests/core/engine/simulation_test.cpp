@@ -9,7 +9,6 @@
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/texts.hpp"
 
 namespace simulation_test {
@@ -58,12 +57,6 @@ TEST(Simulation, ATimeBeforeTheLastCollisionIsRefused) {
 TEST(Simulation, TheMessageSaysWhatWasFoundAndWhatToDo) {
   auto run = gap_run(rshock<double>(100), law);
   EXPECT_EQ(message_of([&] { run.advance(nan); }), "the time to advance to is not finite (found nan): give a number");
-}
-
-TEST(Simulation, ExactArithmeticIsAlwaysFinite) {
-  auto run = gap_run<Rational>(list<Rational>({0, 1, 3}, {1, 0, -1}), Inelastic<Rational>(Rational(1, 2), Rational(0)));
-  EXPECT_EQ(run.advance(Rational(1)), Status::reached);
-  EXPECT_EQ(run.last_collision_time(), Rational(1));
 }
 
 // ---- exceptions
@@ -142,14 +135,6 @@ TEST(Exceptions, OfACollapseTheReportIsNotLost) {
     }
   EXPECT_EQ(status, Status::collapsed);
   EXPECT_NEAR(run.collapse().time.value(), 12. / 7, 1e-15);
-}
-
-TEST(Simulation, AnExhaustedRunStaysExhausted) {
-  auto run = gap_run<double>(list<double>({0, 1, 2}, {1, 0, -1}), Inelastic(0.05));
-  for (int times = 0; times < 5; ++times) {
-    EXPECT_EQ(run.advance(2), Status::exhausted);
-    EXPECT_EQ(run.last_collision_time(), 1);
-  }
 }
 
 // ---- sampling times

@@ -21,7 +21,7 @@ TEST(Walls, MakeTheCollisionsOfExactArithmetic) {
   using R = Rational;
   for (const int moving : {0, 1})
     for (const int inelastic : {0, 1}) {
-      Gas<R> plain;
+      cradle::test::Gas<R> plain;  // not the initial state of that name
       const auto scene = list<R>({R(1), R(2), R(7) / 2, R(5)}, {R(1), R(-1) / 3, R(1) / 2, R(-2)});
       for (ParticleIndex b = 0; b < 4; ++b) plain.cells.push_back({scene->position(b), scene->velocity(b), R(1), {b}});
       plain.restitution = R(3) / 4;

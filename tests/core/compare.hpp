@@ -2,9 +2,13 @@
 // Compares runs: states bit for bit, and sequences of collisions if their order matters. Collisions at gaps that are
 // not neighbours commute, so two runs made the same collisions if the order is the same at every two neighbouring gaps.
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <map>
 #include <vector>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/engine/simulation.hpp"
 
@@ -25,6 +29,27 @@ inline bool identical(const Counts& a, const Counts& b) {
   return same_collisions(a, b) && a.close_calls == b.close_calls && a.origin_moves == b.origin_moves;
 }
 
+// Two runs of the same particles at a time: the particles, and all that runs count and sum up.
+template <class Run, class Other, class T> void expect_same_state(const Run& a, const Other& b, const T& time) {
+  EXPECT_TRUE(identical(a.configuration(time), b.configuration(time)));
+  EXPECT_TRUE(same_collisions(a.counts(), b.counts()));
+  EXPECT_EQ(a.counts().collisions, b.counts().collisions);
+  EXPECT_EQ(a.counts().origin_moves, b.counts().origin_moves);
+  EXPECT_EQ(a.chain().local_time(time), b.chain().local_time(time));
+  EXPECT_EQ(a.energy_lost(time), b.energy_lost(time));
+  EXPECT_EQ(a.last_collision_time(), b.last_collision_time());
+  EXPECT_EQ(a.account().simultaneous, b.account().simultaneous);
+  EXPECT_EQ(a.account().order_lost, b.account().order_lost);
+  EXPECT_EQ(a.account().first_order_lost.time, b.account().first_order_lost.time);
+  EXPECT_EQ(a.collided_particles(), b.collided_particles());
+  if constexpr (requires { a.chain().walls(); }) {
+    EXPECT_TRUE(SavedState::of(a.chain().walls()) == SavedState::of(b.chain().walls()));
+  }
+  if (a.on_ring() || a.collided_particles() == 0) return;
+  EXPECT_EQ(a.front_left(time), b.front_left(time));
+  EXPECT_EQ(a.front_right(time), b.front_right(time));
+}
+
 // The collisions in order, for each gap and its right neighbour.
 class Sequence {
  public:
@@ -37,5 +62,23 @@ class Sequence {
  private:
   std::map<ParticleIndex, std::vector<ParticleIndex>> at_pair_;
 };
+
+// Of a run up to a time.
+template <class Run, class T> Sequence sequence_to(Run& run, const T& time) {
+  Sequence sequence;
+  EXPECT_EQ(run.advance(time, [&](const Collision<T>& c) { sequence.add(c.left); }), Status::reached);
+  return sequence;
+}
+
+template <class T> T largest_difference(const std::vector<T>& a, const std::vector<T>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  T largest(0);
+  for (std::size_t j = 0; j < std::min(a.size(), b.size()); ++j) {
+    const T difference = magnitude(T(a[j] - b[j]));
+    if (!(difference == difference)) return difference;  // not a number
+    largest = std::max(largest, difference);
+  }
+  return largest;
+}
 
 }  // namespace cradle::test

@@ -9,6 +9,9 @@
 namespace cradle::test {
 
 using Wide = boost::multiprecision::cpp_bin_float_50;  // expression templates on
+template <unsigned digits>                             // without
+using Digits =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<digits>, boost::multiprecision::et_off>;
 
 inline Wide decimal(const char* digits) { return Wide(std::string(digits)); }
 

@@ -60,29 +60,51 @@ template <class T = double> Scene<T> lattice_rows(ParticleIndex n) {
   return std::make_shared<Rows<T>>(
       symmetric_rows<T>(n, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
 }
+// At integers, with the speeds -1, 0 and 1 by chance: crowds of them collide at one time.
+template <class T> Scene<T> crowds(ParticleIndex n, ParticleIndex seed) {
+  std::vector<T> x, v;
+  for (ParticleIndex i = 0; i < n; ++i) {
+    x.push_back(T(i));
+    v.push_back(T(static_cast<std::int64_t>(hash(i + 1000000 * seed) % 3) - 1));
+  }
+  return list(std::move(x), std::move(v));
+}
 // Rows with different densities and speeds, with a heavy particle between them.
-inline Scene<double> unequal_rows() {
-  return std::make_shared<Rows<double>>(Row<double>{160, 0.75, .5}, Row<double>{240, -0.25, 1.5},
-                                        CentralParticle<double>{20, .125}, rshock_displacement);
+template <class T = double> Scene<T> unequal_rows() {
+  return std::make_shared<Rows<T>>(Row<T>{160, T(3) / T(4), T(1) / T(2)}, Row<T>{240, T(-1) / T(4), T(3) / T(2)},
+                                   CentralParticle<T>{T(20), T(1) / T(8)}, rshock_displacement);
 }
 
 // Rows and rings as in scenes, displaced by counter-based random numbers.
 inline Scene<double> uniform_rows(ParticleIndex count) {
   return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));
 }
-inline Scene<double> gaussian_ring(ParticleIndex count, double length) {
-  return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
+inline Scene<double> gaussian_ring(ParticleIndex count, double length, std::uint64_t seed = 3,
+                                   double perturbation = 0.05) {
+  return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(seed, 0),
+                                        uniform_displacement(perturbation, seed, 0));
 }
 
-// The same particles as a list, which does not know that they are rows.
-template <class T> Scene<T> as_list(const Particles<T>& particles) {
+// The same particles as a list, which does not know that they are rows; also with other masses, by their number, and on
+// a ring.
+template <class T, class Mass>
+Scene<T> as_list(const Particles<T>& particles, const Mass& mass, const T& circumference = T(0)) {
   std::vector<T> x, v, m;
   for (ParticleIndex b = 0; b < particles.count(); ++b) {
     x.push_back(particles.position(b));
     v.push_back(particles.velocity(b));
-    m.push_back(particles.mass(b));
+    m.push_back(mass(b));
   }
-  return list(std::move(x), std::move(v), std::move(m));
+  return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m), circumference);
+}
+template <class T> Scene<T> as_list(const Particles<T>& particles) {
+  return as_list(particles, [&](ParticleIndex b) { return particles.mass(b); });
+}
+
+// Collide at t = 1, and then both gaps are 1 wide and closing at 1: below a restitution of 7 - 4 sqrt 3 they collapse.
+// (0, 1, 2 would be a triple collision.)
+template <class T = double> Scene<T> three_particles(std::vector<T> m = {}) {
+  return list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}, std::move(m));
 }
 
 struct Options {

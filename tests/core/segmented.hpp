@@ -44,27 +44,8 @@ struct SlabsMade {
 
 // The mixture of fixtures.hpp, on a line or, with a circumference, on a ring; masses from 1 to 4.5.
 template <class T> Scene<T> gas(ParticleIndex n, const T& circumference = T(0), bool unequal = false) {
-  const Scene<T> like = rmix<T>(n);
-  std::vector<T> x, v, m;
-  for (ParticleIndex i = 0; i < n; ++i) {
-    x.push_back(like->position(i));
-    v.push_back(like->velocity(i));
-    if (unequal) m.push_back(T(1) + T(bits_of(i, 40, 7)) / T(2));
-  }
-  return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m), circumference);
-}
-
-template <class Run, class T> void expect_same_state(const Run& a, const Run& b, const T& time) {
-  EXPECT_TRUE(identical(configuration_at(a, time), configuration_at(b, time)));
-  EXPECT_TRUE(same_collisions(a.counts(), b.counts()));
-  EXPECT_EQ(a.counts().collisions, b.counts().collisions);
-  EXPECT_EQ(a.counts().origin_moves, b.counts().origin_moves);
-  EXPECT_EQ(a.energy_lost(), b.energy_lost());
-  EXPECT_EQ(a.last_collision_time(), b.last_collision_time());
-  EXPECT_EQ(a.account().simultaneous, b.account().simultaneous);
-  EXPECT_EQ(a.account().order_lost, b.account().order_lost);
-  EXPECT_EQ(a.account().first_order_lost.time, b.account().first_order_lost.time);
-  EXPECT_EQ(a.collided_particles(), b.collided_particles());
+  const auto mass = [=](ParticleIndex b) { return unequal ? T(T(1) + T(bits_of(b, 40, 7)) / T(2)) : T(1); };
+  return as_list(*rmix<T>(n), mass, circumference);
 }
 
 // Every number of every gap, and the accounts of walls.

@@ -52,6 +52,14 @@ class StrictReal {
   double value_;
 };
 
+// A double in a type that may be this one.
+template <class T> T number(double x) {
+  if constexpr (std::same_as<T, StrictReal>)
+    return StrictReal::of(x);
+  else
+    return x;
+}
+
 }  // namespace cradle::test
 
 template <> struct std::numeric_limits<cradle::test::StrictReal> {

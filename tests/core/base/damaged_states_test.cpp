@@ -8,11 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
@@ -171,11 +167,7 @@ TEST(DamagedStates, ReviewsThatNeverComeAreRefused) {
 // end, too.
 TEST(DamagedStates, TimesThatOverflowEnd) {
   using Run = Made<GapChain<double>, Dry>;
-  const auto make = [] {
-    const auto particles =
-        std::make_shared<Ring<double>>(8, 8., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
-    return Run(Dry(0.9, 1e-3), GapChain<double>(particles, 0.));
-  };
+  const auto make = [] { return Run(Dry(0.9, 1e-3), GapChain<double>(gaussian_ring(8, 8), 0.)); };
   Run run = make();
   run.advance(2);
   auto& gaps = field<0>(field<0>(run)).gaps;

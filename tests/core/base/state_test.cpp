@@ -17,6 +17,7 @@ namespace state_test {
 using namespace cradle;
 using test::gaussian_ring;
 using test::uniform_rows;
+using Dry = Inelastic<double>;
 
 template <class X> X there_and_back(const X& x) {
   SavedState state = SavedState::of(x);
@@ -59,30 +60,20 @@ TEST(State, ListsLongerThanTheFileAreRefusedBeforeTheyAreMade) {
   EXPECT_LT(values.capacity(), 1000U);
 }
 
-template <class Make> void expect_same(const Make& make) {
-  test::expect_same_from_anywhere(make, 0, 3.7, 40, [](const auto& later, const auto& whole) {
-    EXPECT_EQ(later.energy_lost(), whole.energy_lost());
-    EXPECT_EQ(later.last_collision_time(), whole.last_collision_time());
-  });
-}
-template <class Law, class Chain>
-void expect_same(const Law& law, const std::shared_ptr<const Particles<double>>& particles) {
-  expect_same([&] { return Simulation<double, Law, Chain>(law, Chain(particles, 0.)); });
+// A run that is made anew takes the state of this one.
+template <class Run, class Make> void expect_taken(const Run& run, const Make& make) {
+  SavedState state = SavedState::of(run);
+  Run later = make();
+  EXPECT_NO_THROW(load(state, later)) << run.last_collision_time();
 }
 
-using Dry = Inelastic<double>;
-
-TEST(State, RunsContinueWithTheSameBits) {
-  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), uniform_rows(60));
-  expect_same<Dry, GapChain<double>>(Dry(0.9, 1e-4), gaussian_ring(20, 20));
-  expect_same<Dry, GapChain<double, IndividualMasses<double>>>(Dry(0.9, 1e-4), uniform_rows(60));
-  expect_same<ContactTime<double>, GapChain<double, IndividualMasses<double>>>(ContactTime<double>(Dry(0.9, 0.), 1e-3),
-                                                                               uniform_rows(60));
-  expect_same<Dry, PositionChain<double>>(Dry(0.9, 1e-4), uniform_rows(60));
-  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), uniform_rows(60));
-  expect_same<Wet<double>, ClusterChain<double>>(Wet<double>(0.01), gaussian_ring(20, 20));
-  expect_same([] { return StickyGas<double>(uniform_rows(60), 0.); });
-  expect_same<Dry, GapChain<double>>(Dry(0.95, 1e-2), uniform_rows(1200));  // in epochs
+// As do runs of all kinds, in engine/same_bits_test.cpp.
+TEST(State, OfAGasWithoutEventsIsContinuedWithTheSameBits) {
+  test::expect_same_from_anywhere([] { return StickyGas<double>(uniform_rows(60), 0.); }, 0, 3.7, 40,
+                                  [](const auto& later, const auto& whole) {
+                                    EXPECT_EQ(later.energy_lost(), whole.energy_lost());
+                                    EXPECT_EQ(later.last_collision_time(), whole.last_collision_time());
+                                  });
 }
 
 // After a collision by which cells are laid out anew, fewer than before, nothing points beyond them.
@@ -93,9 +84,7 @@ TEST(State, OfCellsLaidOutAnewIsTaken) {
   Run run = make();
   for (double time = 0; time <= 300; time += 5) {
     run.advance(time);
-    SavedState state = SavedState::of(run);
-    Run later = make();
-    EXPECT_NO_THROW(load(state, later)) << time;
+    expect_taken(run, make);
   }
 }
 
@@ -124,20 +113,15 @@ TEST(State, WhatDoesNotFitTogetherIsRefused) {
 
 // Slots beyond the gaps that are held keep what a time slab of segments has left there.
 TEST(State, OfRowsThatWereRunInSegmentsIsTaken) {
-  using Run = Simulation<double, Inelastic<double>, GapChain<double>>;
+  using Run = Simulation<double, Dry, GapChain<double>>;
   const auto rows =
       std::make_shared<Rows<double>>(symmetric_rows<double>(4000, 0.5, 1., uniform_displacement(0.05, 1, 0)));
-  const auto begun = [&] { return Run(Inelastic<double>(0.999, 1e-5), GapChain<double>(rows, 0.)); };
+  const auto begun = [&] { return Run(Dry(0.999, 1e-5), GapChain<double>(rows, 0.)); };
   Run run = begun();
-  Workers workers;
-  workers.count = 1;
-  Segments<Inelastic<double>, GapChain<double>> segments(workers);
+  Segments<Dry, GapChain<double>> segments(Workers{});
   for (int k = 1; k <= 30; ++k) {
     run.advance(37.3 * k, segments);
-    SavedState state;
-    save(state, run);
-    Run other = begun();
-    EXPECT_NO_THROW(load(state, other)) << k;
+    expect_taken(run, begun);
   }
 }
 
@@ -146,36 +130,25 @@ TEST(State, OfRingsThatWereRunInSegmentsIsTaken) {
   using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const auto count = static_cast<ParticleIndex>(600 + 37 * seed);
-    const auto ring = std::make_shared<Ring<double>>(count, static_cast<double>(count), 1., gaussian_velocity(seed, 0),
-                                                     uniform_displacement(0.05, seed, 0));
+    const auto ring = gaussian_ring(count, static_cast<double>(count), seed);
     const auto begun = [&] { return Run(Sticky<double>(), ClusterChain<double>(ring, 0.)); };
     Run run = begun();
-    Workers workers;
-    workers.count = 1;
-    Segments<Sticky<double>, ClusterChain<double>> segments(workers, {60, 8, 0, true});
+    Segments<Sticky<double>, ClusterChain<double>> segments(Workers{}, {60, 8, 0, true});
     for (int k = 1; k <= 120; ++k) {
+      SCOPED_TRACE(seed);
       run.advance(0.4 * k, segments);
-      SavedState state;
-      save(state, run);
-      Run other = begun();
-      ASSERT_NO_THROW(load(state, other)) << seed << ", " << k;
+      expect_taken(run, begun);
     }
   }
 }
 
 // In absolute positions a collision may be due beyond the range of the type.
 TEST(State, WithCollisionsThatNeverComeIsTaken) {
-  const auto begun = [] {
-    const auto particles =
-        std::make_shared<List<double>>(std::vector<double>{0, 1, 3}, std::vector<double>{1e-310, 0, -1});
-    return Simulation<double, Inelastic<double>, PositionChain<double>>(Inelastic<double>(0.9),
-                                                                        PositionChain<double>(particles, 0.));
-  };
-  auto run = begun(), other = begun();
+  const auto particles = test::list<double>({0, 1, 3}, {1e-310, 0, -1});
+  const auto begun = [&] { return test::position_run(particles, Dry(0.9)); };
+  auto run = begun();
   run.advance(1);
-  SavedState state;
-  save(state, run);
-  EXPECT_NO_THROW(load(state, other));
+  expect_taken(run, begun);
 }
 
 }  // namespace state_test

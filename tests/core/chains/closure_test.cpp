@@ -8,7 +8,6 @@
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
@@ -69,9 +68,7 @@ TEST(Closure, IsNoNumberWhereNothingMeasuresIt) {
 }
 
 TEST(Closure, IsMeasuredOnARing) {
-  const auto ring =
-      std::make_shared<Ring<double>>(200, 200., 1., gaussian_velocity(1, 0), uniform_displacement(0.1, 1, 0));
-  Simulation run(Wet<double>(0.1), ClusterChain<double>(ring, 0.));
+  Simulation run(Wet<double>(0.1), ClusterChain<double>(gaussian_ring(200, 200), 0.));
   run.advance(30);
   const auto c = run.configuration(30);
   long double way = 0;
@@ -83,9 +80,7 @@ TEST(Closure, IsMeasuredOnARing) {
 
 // Reading is const and means it: under ThreadSanitizer a cache that two readers fill is a race.
 TEST(Reading, ByTwoThreadsAtOnce) {
-  const auto ring =
-      std::make_shared<Ring<double>>(200, 200., 1., gaussian_velocity(1, 0), uniform_displacement(0.1, 1, 0));
-  for (const Scene<double>& particles : {Scene<double>(ring), rshock<double>(100)}) {
+  for (const Scene<double>& particles : {gaussian_ring(200, 200), rshock<double>(100)}) {
     Simulation run(Wet<double>(0.05), ClusterChain<double>(particles, 0.));
     run.advance(400);
     Configuration<double> seen[2];

@@ -6,35 +6,24 @@
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/three_collapses.hpp"
 
 namespace collapse_policy_test {
 
 using namespace cradle;
 using namespace cradle::test;
 
-struct Reference {
-  double restitution, collapse_time;
-  std::uint64_t passes_e16, passes_e34, passes_e100;  // collision at which the gap is first below 1e-16, ...
-  std::uint64_t plain_clock_stops;                    // last collision that moves it, in double
-
-  friend void PrintTo(const Reference& r, std::ostream* out) { *out << "eps=" << r.restitution; }
-};
-const Reference references[] = {{.05, 12. / 7, 18, 38, 111, 31},
-                                {.01, 1.6736937682559527405521559675475, 11, 21, 61, 13},
-                                {1. / 16, 1.7377984054260977582367587110959, 22, 45, 133, 49}};
-
-Scene<double> three_particles() { return list<double>({0, 1, 3}, {1, 0, -1}); }
-
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-class CollapsePolicies : public testing::TestWithParam<Reference> {
+class CollapsePolicies : public testing::TestWithParam<ThreeCollapse> {
  protected:
   Inelastic<double> law() const { return Inelastic(GetParam().restitution); }
+  double collapse_time() const { return std::stod(GetParam().collapse_time); }
   auto stopping_run(double stop_gap) const {
     return gap_run(three_particles(), law(), {CollapsePolicy::stop, stop_gap, {}});
   }
 };
-INSTANTIATE_TEST_SUITE_P(ThreeParticles, CollapsePolicies, testing::ValuesIn(references));
+INSTANTIATE_TEST_SUITE_P(ThreeParticles, CollapsePolicies, testing::ValuesIn(three_collapses));
 
 TEST_P(CollapsePolicies, PlainClockStandsStillEarly) {
   double t = 0;
@@ -55,8 +44,8 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   ASSERT_TRUE(report.settled);
   // Settled by the second collision, after at most six roundings each of a gap, of speeds and of time, none of which
   // acts on t_c by more than a factor 3: t_c = 1 + g/z, g = u = 1 and z > 1 (two_gaps.hpp).
-  EXPECT_NEAR(report.time.value(), GetParam().collapse_time, 2 * epsilon * GetParam().collapse_time);
-  EXPECT_LE(std::abs(report.time.value() - GetParam().collapse_time), report.uncertainty);
+  EXPECT_NEAR(report.time.value(), collapse_time(), 2 * epsilon * collapse_time());
+  EXPECT_LE(std::abs(report.time.value() - collapse_time()), report.uncertainty);
   EXPECT_LE(report.uncertainty, 27 * epsilon);
   EXPECT_LE(run.counts().collisions, GetParam().plain_clock_stops);
   // Intervals between collisions at the same gap span two collisions.
@@ -68,24 +57,23 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   EXPECT_LE(report.last_collision, report.time.value());
 }
 
+// The last gap is at the end of the range.
 TEST_P(CollapsePolicies, StopAtAGapMakesExactlyTheCollisionsItTakes) {
-  const std::pair<double, std::uint64_t> decades[] = {
-      {1e-16, GetParam().passes_e16}, {1e-34, GetParam().passes_e34}, {1e-100, GetParam().passes_e100}};
+  const std::pair<double, std::optional<int>> decades[] = {{1e-16, GetParam().passes_e16},
+                                                           {1e-34, GetParam().passes_e34},
+                                                           {1e-100, GetParam().passes_e100},
+                                                           {1e-290, std::nullopt}};
   for (const auto& [gap, collisions] : decades) {
+    SCOPED_TRACE(gap);
     auto run = stopping_run(gap);
-    ASSERT_EQ(run.advance(1e6), Status::collapsed) << gap;
-    EXPECT_EQ(run.counts().collisions, collisions) << gap;
+    ASSERT_EQ(run.advance(1e6), Status::collapsed);
+    if (collisions) {
+      EXPECT_EQ(run.counts().collisions, static_cast<std::uint64_t>(*collisions));
+    }
     EXPECT_LT(run.collapse().gap, gap);
-    EXPECT_GT(run.collapse().gap, 0) << gap;
+    EXPECT_GT(run.collapse().gap, gap / 256);  // a collision takes it down by lam- > 1/50
+    EXPECT_EQ(run.chain().account().order_lost, 0U);
   }
-}
-
-TEST_P(CollapsePolicies, StopReachesGapsAtTheEndOfTheRange) {
-  auto run = stopping_run(1e-290);
-  ASSERT_EQ(run.advance(1e6), Status::collapsed);
-  EXPECT_LT(run.collapse().gap, 1e-290);
-  EXPECT_GT(run.collapse().gap, 1e-290 / 256);  // a collision takes it down by lam- > 1/50
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 TEST_P(CollapsePolicies, WithoutAPolicyTheRunEndsWhereGapsUnderflow) {
@@ -96,7 +84,7 @@ TEST_P(CollapsePolicies, WithoutAPolicyTheRunEndsWhereGapsUnderflow) {
                          ? run.chain().nearest_gap(run.chain().first())
                          : run.chain().nearest_gap(run.chain().last());
   EXPECT_LT(gap, underflow);
-  EXPECT_NEAR(run.last_collision_time(), GetParam().collapse_time, 2 * epsilon * GetParam().collapse_time);
+  EXPECT_NEAR(run.last_collision_time(), collapse_time(), 2 * epsilon * collapse_time());
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
@@ -129,7 +117,7 @@ TEST_P(CollapsePolicies, PositionsEndWithAnAccount) {
     ASSERT_EQ(run.advance(1e6), settles ? Status::collapsed : Status::exhausted);
     if (settles) {
       ASSERT_TRUE(run.collapse().settled);
-      EXPECT_NEAR(run.collapse().time.value(), GetParam().collapse_time, run.collapse().uncertainty);
+      EXPECT_NEAR(run.collapse().time.value(), collapse_time(), run.collapse().uncertainty);
       EXPECT_LE(run.collapse().uncertainty, 1e6 * epsilon);
     }
     const Account<double>& account = run.chain().account();
@@ -137,9 +125,8 @@ TEST_P(CollapsePolicies, PositionsEndWithAnAccount) {
     EXPECT_GT(account.unresolved, 0U);
     EXPECT_LT(account.first_unresolved.gap, 1e6 * epsilon * 2);
     EXPECT_GT(account.first_unresolved.time, 1);
-    EXPECT_LE(account.first_unresolved.time, GetParam().collapse_time + 2 * epsilon);
-    EXPECT_NEAR(run.last_collision_time(), GetParam().collapse_time,
-                GetParam().collapse_time - account.first_unresolved.time);
+    EXPECT_LE(account.first_unresolved.time, collapse_time() + 2 * epsilon);
+    EXPECT_NEAR(run.last_collision_time(), collapse_time(), collapse_time() - account.first_unresolved.time);
     EXPECT_EQ(account.order_lost, 0U);
   }
 }
@@ -150,8 +137,10 @@ TEST(CollapsePolicies, TripleCollisionWithoutEndIsNoticed) {
   const auto particles = list<double>({0, 1, 2}, {1, 0, -1});
   for (const CollapsePolicy policy : {CollapsePolicy::cutoff, CollapsePolicy::stop}) {
     auto run = gap_run<double>(particles, Inelastic(0.05), {policy, 0, {}});
-    EXPECT_EQ(run.advance(2), Status::exhausted);
-    EXPECT_EQ(run.last_collision_time(), 1);
+    for (int times = 0; times < 5; ++times) {  // it stays exhausted
+      EXPECT_EQ(run.advance(2), Status::exhausted);
+      EXPECT_EQ(run.last_collision_time(), 1);
+    }
     EXPECT_GT(run.chain().account().simultaneous, 0U);
     auto in_positions = position_run<double>(particles, Inelastic(0.05), {policy, 0, {}});
     EXPECT_EQ(in_positions.advance(2), Status::exhausted);
@@ -172,7 +161,7 @@ TEST(CollapsePolicies, TripleCollisionThatEndsIsResolvedFromTheLeft) {
 // A light particle between two heavy ones: its closing speed tends to the heavy ones' speed over 1 - eps and never
 // falls below the cut-off, while the gaps shrink by a constant factor a collision, 1e5 collisions long.
 TEST(CollapsePolicies, CutoffDoesNotEndEveryCollapse) {
-  auto run = mass_run<double>(list<double>({0, 1, 3}, {1, 0, -1}, {1e6, 1, 1e6}), Inelastic(0.8, 1e-4));
+  auto run = mass_run<double>(three_particles({1e6, 1, 1e6}), Inelastic(0.8, 1e-4));
   EXPECT_EQ(run.advance(2), Status::exhausted);
   EXPECT_EQ(run.counts().below_cutoff, 0U);
   EXPECT_EQ(run.chain().account().order_lost, 0U);

@@ -5,23 +5,17 @@
 // no longer advances ends, by a rule that does not depend on exponents.
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
-#include "cradle/core/initial/walled.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/between_walls.hpp"
+#include "cradle/tests/core/digits.hpp"
 
 namespace collapse_proof_test {
 
 using namespace cradle;
 using namespace cradle::test;
-using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>, boost::multiprecision::et_off>;
+using Wide = Digits<60>;
 
-Policy<double> stop() {
-  Policy<double> policy;
-  policy.collapse = CollapsePolicy::stop;
-  return policy;
-}
+const Policy<double> stop{CollapsePolicy::stop};
 
 struct Family {
   const char* name;
@@ -39,13 +33,9 @@ class Thresholds : public testing::TestWithParam<Family> {
   // 1 in proportion to sin(pi k/n).
   static auto run(double restitution) {
     const Inelastic<double> law(restitution);
-    if (GetParam().particles == 3) return mass_run(list<double>({0, 1, 3}, {1, 0, -1}), law, stop());
-    if (!GetParam().wall) return mass_run(list<double>({0, 1, 3, 4}, {1.5, 0.5, -0.5, -1.5}), law, stop());
-    Wall<double> wall{0};
-    wall.restitution = restitution;
-    const Scene<double> walled =
-        std::make_shared<Walled<double>>(list<double>({1, 2}, {-0.5, -1.5}), wall, std::nullopt);
-    return mass_run(walled, law, stop());
+    if (GetParam().particles == 3) return mass_run(three_particles(), law, stop);
+    if (!GetParam().wall) return mass_run(list<double>({0, 1, 3, 4}, {1.5, 0.5, -0.5, -1.5}), law, stop);
+    return mass_run(between(0, list<double>({1, 2}, {-0.5, -1.5}), Wall<double>{0, 0, restitution}), law, stop);
   }
   static Wide coupling(const Wide& e) {
     const Wide four(4), two(2);
@@ -87,21 +77,21 @@ TEST_P(Thresholds, NoneIsReportedThatIsNone) {
 
 TEST(CollapseProof, TheFindingOfARestitutionJustAboveTheLimit) {
   for (const double e : {.0717968, .071797}) {
-    auto run = gap_run(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic<double>(e), stop());
+    auto run = gap_run(three_particles(), Inelastic<double>(e), stop);
     EXPECT_EQ(run.advance(1e6), Status::exhausted) << "it parts after thousands of collisions";
     EXPECT_FALSE(run.collapse().settled);
   }
 }
 
 TEST(CollapseProof, NotWithACutOff) {
-  auto run = gap_run(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic<double>(0.05, 1e-12), stop());
+  auto run = gap_run(three_particles(), Inelastic<double>(0.05, 1e-12), stop);
   EXPECT_EQ(run.advance(1e6), Status::reached);
 }
 
 // A fourth particle reaches the three before they collapse at t = 12/7, or does not.
 TEST(CollapseProof, OthersMayNotComeInTime) {
   for (const double speed : {-30., -1.}) {
-    auto run = gap_run(list<double>({0, 1, 3, 6}, {1, 0, -1, speed}), Inelastic<double>(0.05), stop());
+    auto run = gap_run(list<double>({0, 1, 3, 6}, {1, 0, -1, speed}), Inelastic<double>(0.05), stop);
     ASSERT_EQ(run.advance(1e6), Status::collapsed);
     const auto& found = run.collapse();
     if (speed == -1)

@@ -9,42 +9,27 @@
 // rounded.
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "cradle/core/theory/inelastic_collapse.hpp"
+#include "cradle/tests/core/digits.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
+#include "cradle/tests/core/three_collapses.hpp"
 
 namespace collapse_test {
 
 using namespace cradle;
 using namespace cradle::test;
-using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>, boost::multiprecision::et_off>;
+using Wide = Digits<100>;
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
-struct Reference {
-  double restitution;
-  const char* collapse_time;
-  int passes_e16, passes_e34, passes_e100, passes_e300;  // collision at which the gap is first below 1e-16, ...
-  int plain_clock_stops;                                 // collision at which t + dt == t in plain double
-
-  friend void PrintTo(const Reference& r, std::ostream* out) { *out << "eps=" << r.restitution; }
-};
-const Reference references[] = {
-    {.05, "1.714285714285714285714285714285714285714285714286", 18, 38, 111, 333, 31},
-    {.01, "1.6736937682559527405521559675474991365441632665957", 11, 21, 61, 179, 12},
-    {1. / 16, "1.7377984054260977582367587110958928498213699562943", 22, 45, 133, 398, 49},
-};
-
-// Closing at 1 on both sides, collision at t = 1, collapse at 4/3. (0, 1, 2 would be a triple collision.)
-Scene<double> three_particles() { return list<double>({0, 1, 3}, {1, 0, -1}); }
-
 // Collisions until the gap left beside one is below `least`.
+template <class Chain = GapChain<double>>
 std::vector<Step<double>> collisions_down_to(double least, double restitution, const Scene<double>& particles) {
-  SlowLoop loop(Inelastic<double>(restitution), GapChain<double>(particles, 0));
+  SlowLoop loop(Inelastic<double>(restitution), Chain(particles, 0));
   std::vector<Step<double>> steps;
   do {
     const auto s = loop.next();
@@ -54,57 +39,57 @@ std::vector<Step<double>> collisions_down_to(double least, double restitution, c
   return steps;
 }
 
-int first_below(double gap, const std::vector<Step<double>>& steps) {
-  for (std::size_t n = 0; n < steps.size(); ++n)
-    if (steps[n].nearest_gap < gap) return static_cast<int>(n) + 1;
-  return -1;
-}
-
-class ThreeParticles : public testing::TestWithParam<Reference> {};
-INSTANTIATE_TEST_SUITE_P(Collapse, ThreeParticles, testing::ValuesIn(references));
-
-TEST_P(ThreeParticles, CollisionTimesSumUpToTheCollapseTime) {
-  // 15 digits, where t itself has 16: the first collisions decide, later intervals shrink by lam-/lam+ < 1/2.
-  const auto steps = collisions_down_to(1e-300, GetParam().restitution, three_particles());
-  const Wide collapse = Wide(GetParam().collapse_time);
-  EXPECT_LE(abs(Wide(steps.back().time.value()) - collapse), Wide(1e-15) * collapse);
-}
-
-TEST_P(ThreeParticles, GapTimesClosingSpeedFallsByTheRestitution) {
-  const auto steps = collisions_down_to(1e-300, GetParam().restitution, three_particles());
-  Wide invariant = 1;  // g_0 = p_0 = 1
-  for (std::size_t n = 0; n < steps.size(); ++n) {
-    const Wide product = Wide(steps[n].nearest_gap) * Wide(steps[n].closing_speed);
-    ASSERT_LE(abs(product / invariant - 1), Wide(3 * static_cast<double>(n) * u)) << "collision " << n;
-    invariant *= Wide(GetParam().restitution);
-  }
-}
+class ThreeParticles : public testing::TestWithParam<ThreeCollapse> {};
+INSTANTIATE_TEST_SUITE_P(Collapse, ThreeParticles, testing::ValuesIn(three_collapses));
 
 TEST_P(ThreeParticles, GapPassesEveryDecadeAtTheRightCollision) {
   const auto steps = collisions_down_to(1e-300, GetParam().restitution, three_particles());
-  EXPECT_EQ(first_below(1e-16, steps), GetParam().passes_e16);
-  EXPECT_EQ(first_below(1e-34, steps), GetParam().passes_e34);
-  EXPECT_EQ(first_below(1e-100, steps), GetParam().passes_e100);
-  EXPECT_EQ(first_below(1e-300, steps), GetParam().passes_e300);
+  const auto first_below = [&](double gap) {
+    const auto below = [&](const Step<double>& step) { return step.nearest_gap < gap; };
+    return std::find_if(steps.begin(), steps.end(), below) - steps.begin() + 1;
+  };
+  EXPECT_EQ(first_below(1e-16), GetParam().passes_e16);
+  EXPECT_EQ(first_below(1e-34), GetParam().passes_e34);
+  EXPECT_EQ(first_below(1e-100), GetParam().passes_e100);
+  EXPECT_EQ(first_below(1e-300), GetParam().passes_e300);
 }
 
-// Each p is formed from two others with three roundings, errors inherit the recursion's growth lam+; relative to p_n,
-// with p_n > 0 falling by lam+ a collision, every collision adds at most 3 u (a + eps/lam+)/lam+ < 6 u for these.
-TEST_P(ThreeParticles, ClosingSpeedsFollowTheRecursion) {
-  const auto steps = collisions_down_to(1e-300, GetParam().restitution, three_particles());
-  const Wide eps = GetParam().restitution, a = (1 + eps) / 2;
-  Wide before = 1, p = 1 + a;
-  for (std::size_t n = 1; n < steps.size(); ++n) {
-    ASSERT_LE(abs(Wide(steps[n].closing_speed) / p - 1), Wide(6 * static_cast<double>(n) * u)) << "collision " << n;
-    const Wide next = a * p - eps * before;
+// Unequal masses: a collision at one gap hands the share a_l = (1+eps) m_1/(m_1+m_2) of its closing speed to the right
+// gap, the other way round a_r = (1+eps) m_3/(m_2+m_3). Scaling the closing speeds of every second collision by
+// r = sqrt(a_l/a_r) gives the recursion above with a = sqrt(a_l a_r), so t_c = t_0 + g_0/(p_1 - r lam- p_0) and
+// g_n p_n as before.
+//
+// Bound on the speeds. Each p is formed from two others with three roundings, errors inherit the recursion's growth
+// lam+; relative to p_n, with p_n > 0 falling by lam+ a collision, every collision adds at most
+// 3 u (a + eps/lam+)/lam+ < 6 u for these.
+template <class Chain> void expect_closed_form(double restitution, const std::vector<double>& m, const Wide& collapse) {
+  const auto steps = collisions_down_to<Chain>(1e-290, restitution, three_particles(m));
+  const Wide eps = restitution, to_right = (1 + eps) * m[0] / (m[0] + m[1]), to_left = (1 + eps) * m[2] / (m[1] + m[2]);
+  Wide invariant = 1, before = 0, p = 1;  // g_0 = p_0 = 1
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    const Wide closing = steps[n].closing_speed;
+    ASSERT_EQ(steps[n].particle, static_cast<ParticleIndex>(n % 2));
+    ASSERT_LE(abs(Wide(steps[n].nearest_gap) * closing / invariant - 1), Wide(3 * static_cast<double>(n) * u))
+        << "collision " << n;
+    ASSERT_LE(abs(closing / p - 1), Wide(6 * static_cast<double>(n) * u)) << "collision " << n;
+    invariant *= eps;
+    const Wide next = n == 0 ? Wide(1 + to_right) : Wide((n % 2 == 0 ? to_right : to_left) * p - eps * before);
     before = p;
     p = next;
   }
+  // 15 digits, where t itself has 16: the first collisions decide, later intervals shrink by lam-/lam+ < 1/2.
+  EXPECT_LE(abs(Wide(steps.back().time.value()) - collapse), Wide(1e-15) * collapse);
 }
 
-TEST_P(ThreeParticles, ParticleOfEveryCollisionAlternates) {
-  const auto steps = collisions_down_to(1e-300, GetParam().restitution, three_particles());
-  for (std::size_t n = 0; n < steps.size(); ++n) ASSERT_EQ(steps[n].particle, static_cast<ParticleIndex>(n % 2));
+TEST_P(ThreeParticles, FollowTheClosedForm) {
+  expect_closed_form<GapChain<double>>(GetParam().restitution, {1, 1, 1}, Wide(GetParam().collapse_time));
+}
+
+TEST(Collapse, UnequalMasses) {
+  const Wide eps = 0.1, to_right = (1 + eps) * 3 / 4, to_left = (1 + eps) * 2 / 3;
+  const Wide r = sqrt(Wide(to_right / to_left)), a = sqrt(Wide(to_right * to_left));
+  const Wide slow = (a - sqrt(Wide(a * a - 4 * eps))) / 2;
+  expect_closed_form<GapChain<double, IndividualMasses<double>>>(0.1, {3, 1, 2}, 1 + 1 / (1 + to_right - r * slow));
 }
 
 TEST(Collapse, HappensUpToSevenMinusFourRootThree) {
@@ -117,34 +102,6 @@ TEST(Collapse, HappensUpToSevenMinusFourRootThree) {
   for (const double above : {limit * 1.01, limit * 1.1, 0.5, .999}) {
     const auto steps = collisions_down_to(1e-100, above, three_particles());
     EXPECT_GE(steps.back().nearest_gap, 1e-100) << "eps = " << above << ": all three part";
-  }
-}
-
-// Unequal masses: a collision at one gap hands the share a_l = (1+eps) m_1/(m_1+m_2) of its closing speed to the right
-// gap, the other way round a_r = (1+eps) m_3/(m_2+m_3). Scaling the closing speeds of every second collision by
-// r = sqrt(a_l/a_r) gives the recursion above with a = sqrt(a_l a_r), so t_c = t_0 + g_0/(p_1 - r lam- p_0) and
-// g_n p_n as before.
-TEST(Collapse, UnequalMasses) {
-  const double restitution = 0.1;
-  const std::vector<double> m{3, 1, 2};
-  const auto particles = list<double>({0, 1, 3}, {1, 0, -1}, m);
-  SlowLoop loop(Inelastic<double>(restitution), GapChain<double, IndividualMasses<double>>(particles, 0));
-  const Wide eps = restitution, to_right = (1 + eps) * 3 / 4, to_left = (1 + eps) * 2 / 3;
-  const Wide r = sqrt(Wide(to_right / to_left)), a = sqrt(Wide(to_right * to_left));
-  const Wide slow = (a - sqrt(Wide(a * a - 4 * eps))) / 2;
-  const Wide collapse = 1 + 1 / (1 + to_right - r * slow);
-
-  Wide invariant = 1;
-  for (int n = 0;; ++n) {
-    const auto s = loop.next();
-    ASSERT_TRUE(s.has_value());
-    const Step<double> step = loop.collide(*s);
-    ASSERT_LE(abs(Wide(step.nearest_gap) * Wide(step.closing_speed) / invariant - 1), Wide(3 * n * u))
-        << "collision " << n;
-    invariant *= eps;
-    if (step.nearest_gap > 1e-290) continue;
-    EXPECT_LE(abs(Wide(step.time.value()) - collapse), Wide(1e-15) * collapse);
-    break;
   }
 }
 

@@ -10,9 +10,7 @@
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/walled.hpp"
-#include "cradle/core/observe/sample.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/rational.hpp"
 
 namespace energy_test {
@@ -22,10 +20,10 @@ using namespace cradle::test;
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
-template <class Run> void expect_near(const Run& run, const Rational& exact, const std::string& what) {
+template <class Run> void expect_near(const Run& run, const Rational& exact) {
   const double energy = run.kinetic_energy(), wanted = to_double(exact);
-  EXPECT_GE(energy, 0) << what;
-  EXPECT_LE(std::abs(energy - wanted), 16 * u * wanted) << what << " " << energy << " " << wanted;
+  EXPECT_GE(energy, 0);
+  EXPECT_LE(std::abs(energy - wanted), 16 * u * wanted) << energy << " " << wanted;
 }
 
 // P^2/2M and what particles of these velocities, against any of them, have against each other.
@@ -59,8 +57,7 @@ Scene<double> moving(double drift, std::vector<double> m = {}) {
 }
 
 TEST(Energy, InelasticCollapseOfThree) {
-  const Scene<double> particles = list<double>({0, 1, 3}, {1, 0, -1});
-  GapRun<double> run(Inelastic(0.05), GapChain<double>(particles, 0), {CollapsePolicy::stop, 1e-290});
+  auto run = gap_run<double>(three_particles(), Inelastic(0.05), {CollapsePolicy::stop, 1e-290});
   ASSERT_EQ(run.advance(2), Status::collapsed);
   EXPECT_GT(run.counts().collisions, 300U);
   const double left = sample(run, 1., run.last_collision_time()).energy;
@@ -68,50 +65,48 @@ TEST(Energy, InelasticCollapseOfThree) {
   EXPECT_GT(left, 1e-257);
   EXPECT_LT(left, 1e-254);
   EXPECT_EQ(left, run.kinetic_energy());
-  expect_near(run, exact_energy(run.chain()), "three");
+  expect_near(run, exact_energy(run.chain()));
 }
 
 TEST(Energy, IsNeverNegative) {
   for (const double restitution : {0., 0.03, 0.0717, 0.0719, 0.072, 0.08, 0.2, .5}) {
-    const Scene<double> particles = list<double>({0, 1, 3}, {1, 0, -1});
-    GapRun<double> run(Inelastic<double>(restitution), GapChain<double>(particles, 0), {CollapsePolicy::stop, 1e-200});
+    SCOPED_TRACE(restitution);
+    auto run = gap_run<double>(three_particles(), Inelastic(restitution), {CollapsePolicy::stop, 1e-200});
     double before = 1;
     for (double t = 0.25; t < 40; t += 0.25) {
       const Status status = run.advance(t);
       const double energy = sample(run, 1., status == Status::reached ? t : run.last_collision_time()).energy;
-      EXPECT_GE(energy, 0) << restitution << " " << t;
-      EXPECT_LE(energy, before) << restitution << " " << t;
+      EXPECT_GE(energy, 0) << t;
+      EXPECT_LE(energy, before) << t;
       before = energy;
       if (status != Status::reached) break;
     }
-    expect_near(run, exact_energy(run.chain()), "restitution " + std::to_string(restitution));
+    expect_near(run, exact_energy(run.chain()));
   }
+}
+
+template <class Run> void expect_exact_at(double until, Run run) {
+  SCOPED_TRACE(until);
+  run.advance(until);
+  expect_near(run, exact_energy(run.chain()));
 }
 
 TEST(Energy, OfClosingSpeeds) {
   const std::vector<double> masses{1, 3, 1e-6, 1, 7, 1e6, 1, 1, 0.3, 2, 5, 1e3};
   for (const double drift : {0., 1., 1e6})
     for (const auto& [restitution, until] : {std::pair{.1, .5}, {.1, 30.}, {.9, 5.}, {.9, 50.}}) {
-      const std::string what = std::to_string(drift) + " " + std::to_string(restitution) + " " + std::to_string(until);
-      GapRun<double> equal(Inelastic(restitution, 1e-9), GapChain<double>(moving(drift), 0));
-      equal.advance(until);
-      expect_near(equal, exact_energy(equal.chain()), what);
-      MassRun<double> unequal(Inelastic(restitution, 1e-3),
-                              GapChain<double, IndividualMasses<double>>(moving(drift, masses), 0));
-      unequal.advance(until);
-      expect_near(unequal, exact_energy(unequal.chain()), "unequal " + what);
+      SCOPED_TRACE(testing::Message() << "drift " << drift << ", restitution " << restitution);
+      expect_exact_at(until, gap_run<double>(moving(drift), Inelastic(restitution, 1e-9)));
+      expect_exact_at(until, mass_run<double>(moving(drift, masses), Inelastic(restitution, 1e-3)));
     }
 }
 
 TEST(Energy, OfRowsAndRings) {
+  const Inelastic law(0.9, 1e-4);
   for (const double until : {.25, 10., 60., 90.}) {
-    GapRun<double> streamed(Inelastic(0.9, 1e-4), GapChain<double>(rshock<double>(200), 0));
-    GapRun<double> held(Inelastic(0.9, 1e-4), GapChain<double>(rshock<double>(200), 0, true));
-    GapRun<double> ring(Inelastic(0.9, 1e-4), GapChain<double>(gaussian_ring(100, 100), 0));
-    streamed.advance(until), held.advance(until), ring.advance(until);
-    expect_near(streamed, exact_energy(streamed.chain()), "rows " + std::to_string(until));
-    expect_near(held, exact_energy(held.chain()), "rows held " + std::to_string(until));
-    expect_near(ring, exact_energy(ring.chain()), "ring " + std::to_string(until));
+    expect_exact_at(until, gap_run(rshock<double>(200), law));
+    expect_exact_at(until, gap_run(rshock<double>(200), law, {}, 0., {.hold_all = true}));
+    expect_exact_at(until, gap_run(gaussian_ring(100, 100), law));
   }
 }
 
@@ -120,11 +115,11 @@ TEST(Energy, BetweenWalls) {
   for (const double speed : {0., .25})
     for (const bool left : {true, false})
       for (const double until : {40., 60.}) {
+        SCOPED_TRACE(testing::Message() << speed << (left ? " left, t = " : " right, t = ") << until);
         const Wall<double> wall{left ? -1. : 20., left ? -speed : speed, .5};
-        const auto particles =
-            std::make_shared<Walled<double>>(moving(left ? -0.5 : 0.5), left ? std::optional(wall) : std::nullopt,
-                                             left ? std::nullopt : std::optional(wall));
-        GapRun<double> run(Inelastic(0.5, 1e-6), GapChain<double>(particles, 0));
+        const auto particles = between(0, moving(left ? -0.5 : 0.5), left ? std::optional(wall) : std::nullopt,
+                                       left ? std::nullopt : std::optional(wall));
+        auto run = gap_run(particles, Inelastic(0.5, 1e-6));
         run.advance(until);
         EXPECT_GT(run.chain().walls().tally(left ? End::left : End::right).collisions, 0U);
         const auto& chain = run.chain();
@@ -133,33 +128,27 @@ TEST(Energy, BetweenWalls) {
           left ? v -= Rational(chain.closing(s)) : v += Rational(chain.closing(s));
           twice += v * v;
         }
-        expect_near(run, twice / Rational(2), std::to_string(speed) + (left ? " left " : " right "));
+        expect_near(run, twice / Rational(2));
       }
 }
 
 // Chains that hold velocities: those of a configuration that holds all particles, in the frame of their momentum.
 TEST(Energy, OfVelocities) {
-  const auto exact = [](const auto& run, double until) {
+  const auto expect_exact = [](double until, auto run) {
+    run.advance(until);
     const Configuration<double> c = run.configuration(until);
     Rational twice(0);
     for (std::size_t j = 0; j < c.x.size(); ++j) twice += Rational(c.m[j]) * Rational(c.v[j]) * Rational(c.v[j]);
-    return twice / Rational(2);
+    EXPECT_NEAR(run.kinetic_energy() / to_double(Rational(twice / Rational(2))), 1, 64 * u) << until;
   };
   for (const double until : {5., 40.}) {
-    PositionRun<double> positions(Inelastic(0.9), PositionChain<double>(rmix<double>(60), 0));
-    positions.advance(until);
-    EXPECT_NEAR(positions.kinetic_energy() / to_double(exact(positions, until)), 1, 64 * u);
-    Simulation<double, Wet<double>, ClusterChain<double>> wet(Wet(0.01),
-                                                              ClusterChain<double>(gaussian_ring(100, 100), 0));
-    wet.advance(until);
-    EXPECT_NEAR(wet.kinetic_energy() / to_double(exact(wet, until)), 1, 64 * u);
-    StickyGas<double> sticky(gaussian_ring(100, 100), 0);
-    sticky.advance(until);
-    EXPECT_NEAR(sticky.kinetic_energy() / to_double(exact(sticky, until)), 1, 64 * u);
+    expect_exact(until, position_run(rmix<double>(60), Inelastic(0.9)));
+    expect_exact(until, Simulation(Wet(0.01), ClusterChain<double>(gaussian_ring(100, 100), 0)));
+    expect_exact(until, StickyGas<double>(gaussian_ring(100, 100), 0));
   }
   // Of rows, where most particles are not held.
   const Scene<double> rows = rshock<double>(2000);
-  Simulation<double, Wet<double>, ClusterChain<double>> wet(Wet(0.01), ClusterChain<double>(rows, 0));
+  Simulation wet(Wet(0.01), ClusterChain<double>(rows, 0));
   StickyGas<double> sticky(rows, 0);
   for (const double until : {.1, 20., 200.}) {
     wet.advance(until), sticky.advance(until);
@@ -173,7 +162,7 @@ TEST(Energy, OfVelocities) {
 // While half of the energy is left it is the ledger's, which for elastic particles is that at the start.
 TEST(Energy, OfElasticParticlesStays) {
   const Scene<double> particles = rmix<double>(50);
-  GapRun<double> run(Inelastic(1.), GapChain<double>(particles, 0));
+  auto run = gap_run(particles, Inelastic(1.));
   for (const double t : {1., 10., 100.}) {
     run.advance(t);
     EXPECT_EQ(sample(run, particles->kinetic_energy(), t).energy, particles->kinetic_energy());

@@ -12,16 +12,15 @@
 // are rounded once more a collision: 3 n t 2^-53.
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include "cradle/core/theory/inelastic_shock.hpp"
+#include "cradle/tests/core/digits.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace front_test {
 
 using namespace cradle;
 using namespace cradle::test;
-using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
+using Wide = Digits<50>;
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
@@ -68,15 +67,35 @@ TEST_P(Fronts, FollowTheRecursionFromCollisionToCollision) {
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
-TEST_P(Fronts, AreContinuousInTime) {
-  auto run = gap_run(lattice(), law());
-  const double end = std::stod(GetParam().turnover);
-  for (int k = 1; k <= 997; ++k) {
-    const double t = std::max(1.001, end * k / 997);
+// At `outputs` times up to the turnover.
+template <class Run, class Tolerance>
+void expect_front_at_times(Run run, const theory::InelasticShock<Wide>& shock, double end, int outputs,
+                           const Tolerance& tolerance) {
+  for (int k = 1; k <= outputs; ++k) {
+    const double t = std::max(1.001, end * k / outputs);
     ASSERT_EQ(run.advance(t), Status::reached);
-    const auto n = theory::front_collision_before(shock(), Wide(t)).collision;
-    expect_front(run, t, theory::front_position_discrete(shock(), Wide(t)), tolerance(n, t));
+    const auto n = theory::front_collision_before(shock, Wide(t)).collision;
+    expect_front(run, t, theory::front_position_discrete(shock, Wide(t)), tolerance(n, t));
   }
+}
+
+TEST_P(Fronts, AreContinuousInTime) {
+  expect_front_at_times(gap_run(lattice(), law()), shock(), std::stod(GetParam().turnover), 997, tolerance);
+}
+
+// Positions and velocities are rounded twice as often.
+TEST_P(Fronts, FollowTheRecursionInAbsolutePositions) {
+  expect_front_at_times(position_run(lattice(), law()), shock(), std::stod(GetParam().turnover), 20,
+                        [](std::uint64_t n, double t) { return 2 * tolerance(n, t); });
+}
+
+// Rows of particles displaced at random: the front still is within a spacing of the lattice's, as long as particles
+// come at a steady rate; displacements do not add up.
+TEST_P(Fronts, OfPerturbedRowsStayWithinASpacing) {
+  const Scene<double> rows = std::make_shared<Rows<double>>(
+      symmetric_rows<double>(GetParam().particles, 0.5, 1, uniform_displacement(0.05, 1, 0)));
+  expect_front_at_times(gap_run(rows, law()), shock(), std::stod(GetParam().turnover), 10,
+                        [](std::uint64_t, double) { return 1; });
 }
 
 TEST_P(Fronts, ReachFarthestAtTheTabulatedTurnover) {
@@ -89,32 +108,6 @@ TEST_P(Fronts, ReachFarthestAtTheTabulatedTurnover) {
               tolerance(GetParam().collisions, t) + representation);
   EXPECT_EQ(run.chain().account().order_lost, 0U);
   EXPECT_EQ(run.chain().account().simultaneous, GetParam().simultaneous);
-}
-
-TEST_P(Fronts, FollowTheRecursionInAbsolutePositions) {
-  auto run = position_run(lattice(), law());
-  const double end = std::stod(GetParam().turnover);
-  for (int k = 1; k <= 20; ++k) {
-    const double t = end * k / 20;
-    ASSERT_EQ(run.advance(t), Status::reached);
-    const auto n = theory::front_collision_before(shock(), Wide(t)).collision;
-    // Positions and velocities are rounded twice as often.
-    expect_front(run, t, theory::front_position_discrete(shock(), Wide(t)), 2 * tolerance(n, t));
-  }
-}
-
-// Rows of particles displaced at random: the front still is within a spacing of the lattice's, as long as particles
-// come at a steady rate; displacements do not add up.
-TEST_P(Fronts, OfPerturbedRowsStayWithinASpacing) {
-  auto run = gap_run<double>(std::make_shared<Rows<double>>(symmetric_rows<double>(GetParam().particles, 0.5, 1,
-                                                                                   uniform_displacement(0.05, 1, 0))),
-                             law());
-  const double end = std::stod(GetParam().turnover);
-  for (int k = 1; k <= 10; ++k) {
-    const double t = end * k / 10;
-    ASSERT_EQ(run.advance(t), Status::reached);
-    expect_front(run, t, theory::front_position_discrete(shock(), Wide(t)), 1);
-  }
 }
 
 }  // namespace front_test

@@ -129,15 +129,16 @@ TEST(Misuse, RowsOfNumbersThatAreNone) {
 TEST(Misuse, ListsOfNumbersThatAreNone) {
   for (const double none : {infinity, -infinity, nan}) {
     const std::string found = std::to_string(none);
-    for (const std::size_t n : {1U, 3U}) {  // a single particle has no neighbour to be out of order with
+    // A single particle has no neighbour to be out of order with.
+    for (const auto& [n, particle] : {std::pair(1U, 0U), {3U, 0U}, {3U, 1U}, {3U, 2U}}) {
       std::vector<double> x, v(n, 0.), m(n, 1.);
       for (std::size_t i = 0; i < n; ++i) x.push_back(static_cast<double>(i));
       std::vector<double> bad_x = x, bad_v = v, bad_m = m;
-      bad_x.back() = bad_v.back() = bad_m.back() = none;
-      const std::string last = "particle " + std::to_string(n - 1);
-      expect_refused([&] { List<double>(bad_x, v, m); }, "position of " + last + " is not finite", found);
-      expect_refused([&] { List<double>(x, bad_v, m); }, "velocity of " + last + " is not finite", found);
-      expect_refused([&] { List<double>(x, v, bad_m); }, "mass of " + last + " is not finite", found);
+      bad_x[particle] = bad_v[particle] = bad_m[particle] = none;
+      const std::string which = "particle " + std::to_string(particle);
+      expect_refused([&] { List<double>(bad_x, v, m); }, "position of " + which + " is not finite", found);
+      expect_refused([&] { List<double>(x, bad_v, m); }, "velocity of " + which + " is not finite", found);
+      expect_refused([&] { List<double>(x, v, bad_m); }, "mass of " + which + " is not finite", found);
       expect_refused([&] { List<double>(x, v, m, none); }, "circumference is not finite", found);
     }
   }

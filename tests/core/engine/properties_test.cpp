@@ -31,14 +31,7 @@ struct Case {
 };
 
 Scene<double> alternating_masses(double ratio) {
-  const auto even = rmix<double>(100);
-  std::vector<double> x, v, m;
-  for (ParticleIndex b = 0; b < even->count(); ++b) {
-    x.push_back(even->position(b));
-    v.push_back(even->velocity(b));
-    m.push_back(b % 2 == 0 ? 1 : ratio);
-  }
-  return list(std::move(x), std::move(v), std::move(m));
+  return as_list(*rmix<double>(100), [=](ParticleIndex b) { return b % 2 == 0 ? 1 : ratio; });
 }
 
 std::vector<Case> cases() {
@@ -50,15 +43,9 @@ std::vector<Case> cases() {
           {"masses 1:1e6", alternating_masses(1e6), Inelastic(0.999, 1e-4), {1, 5, 10}, 3}};
 }
 
-double total_mass(const Particles<double>& particles) {
-  double mass = 0;
-  for (ParticleIndex b = 0; b < particles.count(); ++b) mass += particles.mass(b);
-  return mass;
-}
-
 template <class Run> void expect_conservation(Run run, const Case& scene) {
   constexpr bool in_positions = std::same_as<Run, PositionRun<double>>;
-  const double mass = total_mass(*scene.particles);
+  const double mass = scene.particles->total_mass();
   double before = 0, squares = 0;
   for (const double t : scene.times) {
     SCOPED_TRACE(testing::Message() << scene.name << ", t = " << t);
@@ -105,13 +92,7 @@ TEST(Properties, MomentumOrderAndEnergyInPositions) {
 // Equal masses, whatever their size, are not treated as a special case of unequal ones, nor otherwise.
 TEST(Properties, EqualMassesOneByOneHaveTheBitsOfIdenticalParticles) {
   for (const double mass : {1., 3., .1}) {
-    const auto rows = rshock<double>(200);
-    std::vector<double> x, v;
-    for (ParticleIndex b = 0; b < rows->count(); ++b) {
-      x.push_back(rows->position(b));
-      v.push_back(rows->velocity(b));
-    }
-    const auto particles = list(x, v, std::vector<double>(x.size(), mass));
+    const auto particles = as_list(*rshock<double>(200), [=](ParticleIndex) { return mass; });
     for (const double restitution : {.9, .4}) {
       auto identical_particles = gap_run<double>(particles, Inelastic<double>(restitution, 1e-3));
       auto individual = mass_run<double>(particles, Inelastic<double>(restitution, 1e-3));

@@ -30,14 +30,8 @@ const Case cases[] = {{"eps = 15/16", 12, 15, 16, true, 40},
                       {"eps = 3/4, unequal masses", 12, 3, 4, false, 40}};
 
 template <class T> Scene<T> scene(const Case& c) {
-  const auto particles = rmix<T>(c.particles);
-  std::vector<T> x, v, m;
-  for (ParticleIndex b = 0; b < particles->count(); ++b) {
-    x.push_back(particles->position(b));
-    v.push_back(particles->velocity(b));
-    m.push_back(c.equal_masses ? T(1) : T(1 + bits_of(b, 40, 7)));
-  }
-  return list(std::move(x), std::move(v), std::move(m));
+  return as_list(*rmix<T>(c.particles),
+                 [&](ParticleIndex b) { return c.equal_masses ? T(1) : T(1 + bits_of(b, 40, 7)); });
 }
 template <class T> Inelastic<T> law(const Case& c) { return Inelastic<T>(T(c.numerator) / T(c.denominator)); }
 
@@ -68,40 +62,37 @@ TEST(Rational, MomentumEnergyAndClosureAreExact) {
   }
 }
 
+template <class Gaps>
+void expect_the_same_dynamics(Gaps gaps, PositionRun<Rational> positions, const Rational& end, const char* name) {
+  SCOPED_TRACE(name);
+  Collisions<Rational> in_gaps, in_positions;
+  gaps.advance(end, in_gaps);
+  positions.advance(end, in_positions);
+  EXPECT_EQ(in_gaps.left, in_positions.left);
+  EXPECT_EQ(in_gaps.time, in_positions.time);
+  const auto a = configuration_at(gaps, end), b = configuration_at(positions, end);
+  EXPECT_EQ(a.x, b.x);
+  EXPECT_EQ(a.v, b.v);
+  EXPECT_EQ(a.gap, b.gap);
+  EXPECT_EQ(a.closing_speed, b.closing_speed);
+  EXPECT_EQ(gaps.energy_lost(), positions.energy_lost());
+}
+
 TEST(Rational, GapsAndPositionsAreTheSameDynamics) {
   for (const Case& c : cases) {
     const auto particles = scene<Rational>(c);
-    auto gaps = mass_run(particles, law<Rational>(c));
-    auto positions = position_run(particles, law<Rational>(c));
-    Collisions<Rational> in_gaps, in_positions;
-    gaps.advance(Rational(c.end), in_gaps);
-    positions.advance(Rational(c.end), in_positions);
-    EXPECT_EQ(in_gaps.left, in_positions.left) << c.name;
-    EXPECT_EQ(in_gaps.time, in_positions.time) << c.name;
-    const auto a = configuration_at(gaps, Rational(c.end)), b = configuration_at(positions, Rational(c.end));
-    EXPECT_EQ(a.x, b.x) << c.name;
-    EXPECT_EQ(a.v, b.v) << c.name;
-    EXPECT_EQ(a.gap, b.gap) << c.name;
-    EXPECT_EQ(a.closing_speed, b.closing_speed) << c.name;
-    EXPECT_EQ(gaps.energy_lost(), positions.energy_lost()) << c.name;
+    expect_the_same_dynamics(mass_run(particles, law<Rational>(c)), position_run(particles, law<Rational>(c)), c.end,
+                             c.name);
   }
 }
 
-TEST(Rational, StreamedRowsAreTheSameDynamicsAsHeldOnes) {
-  const auto particles = rshock<Rational>(12);
+TEST(Rational, StreamedRowsAndHeldOnesAreTheSameDynamics) {
+  const auto rows = rshock<Rational>(12);
   const Inelastic<Rational> soft(Rational(15) / Rational(16), Rational(0));
-  auto streamed = gap_run(particles, soft);
-  auto held = gap_run(particles, soft, {}, Rational(0), {.hold_all = true});
-  auto positions = position_run(particles, soft);
   for (int t = 2; t <= 20; ++t) {  // from the first collision on: before it a streamed chain shows what it holds
-    streamed.advance(Rational(t));
-    held.advance(Rational(t));
-    positions.advance(Rational(t));
-    const auto a = configuration_at(streamed, Rational(t)), b = configuration_at(held, Rational(t)),
-               c = configuration_at(positions, Rational(t));
-    EXPECT_EQ(a.x, b.x);
-    EXPECT_EQ(a.x, c.x);
-    EXPECT_EQ(a.v, c.v);
+    expect_the_same_dynamics(gap_run(rows, soft), position_run(rows, soft), t, "streamed");
+    expect_the_same_dynamics(gap_run(rows, soft, {}, Rational(0), {.hold_all = true}), position_run(rows, soft), t,
+                             "held");
   }
 }
 
@@ -133,9 +124,8 @@ TEST(Rational, DoubleMakesTheSameCollisions) {
 // Three particles at eps = 1/20, where lam+ = 2/5, lam- = 1/8 and t_c = 12/7 are rational: every collision lies on the
 // closed form, g_n p_n = eps^n and t_c - t_n = g_n/(p_{n+1} - lam- p_n).
 TEST(Rational, CollapseObeysItsClosedForm) {
-  const auto particles = list<Rational>({0, 1, 3}, {1, 0, -1});
   const Rational eps(1, 20), a = (1 + eps) / 2, slow(1, 8), collapse(12, 7);
-  SlowLoop loop(Inelastic<Rational>(eps), GapChain<Rational>(particles, 0));
+  SlowLoop loop(Inelastic<Rational>(eps), GapChain<Rational>(three_particles<Rational>(), 0));
   Rational invariant = 1, before = 0;
   for (int n = 0; n < 40; ++n) {
     const auto s = loop.next();

@@ -4,7 +4,6 @@
 // meet at one time separate by a cut-off, after as many collisions as in exact rationals.
 #include <gtest/gtest.h>
 
-#include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
@@ -41,7 +40,7 @@ TEST(Standstill, IsOverWhereTheTimeSinceTheStartAdvances) {
 
 // Three particles whose speeds fall to 1e-280 at t = 12/7, 700 collisions long, and who then part.
 TEST(Standstill, ACutOffBelowTheClocksResolutionIsReached) {
-  auto run = gap_run(list<double>({0, 1, 3}, {1, 0, -1}), Inelastic<double>(0.05, 1e-110));
+  auto run = gap_run(three_particles(), Inelastic<double>(0.05, 1e-110));
   EXPECT_EQ(run.advance(100), Status::reached);
   EXPECT_GT(run.counts().below_cutoff, 0U);
 }

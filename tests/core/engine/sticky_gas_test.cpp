@@ -8,11 +8,7 @@
 #include <random>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/ring.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
@@ -147,7 +143,7 @@ TEST(StickyGas, TakesInOnlyWhatIsHit) {
 
 // Interrupted again and again while rows are taken in, it ends in the bits of a gas that was left alone.
 TEST(StickyGas, InterruptedItContinuesToTheSameBits) {
-  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(400'000, 0.5, 1.0, rshock_displacement));
+  const auto rows = rshock<double>(400'000);
   Policy<double> policy;
   int calls = 0;
   policy.interrupt = [&] { return ++calls % 3 != 0; };
@@ -187,8 +183,7 @@ TEST(StickyGas, CentralClusterOfUnequalRows) {
 
 // Two particles of a row, 2^-30 apart, at t = 1e9: rounding of their places is 1e-7, yet they never meet.
 TEST(StickyGas, EqualVelocitiesNeverMeet) {
-  const auto pair = std::make_shared<List<double>>(std::vector<double>{1, 1 + 0x1p-30}, std::vector<double>{0.7, 0.7});
-  StickyGas<double> gas(pair, 0.0);
+  StickyGas<double> gas(list<double>({1, 1 + 0x1p-30}, {0.7, 0.7}), 0.0);
   gas.advance(1e9);
   EXPECT_EQ(gas.counts().merges, 0U);
 }
@@ -197,8 +192,7 @@ TEST(StickyGas, EqualVelocitiesNeverMeet) {
 // 2e7 particles). At N = 1e6 and t = 100 the energy is that of some 5e4 clusters, of about its own size each: 1 %.
 TEST(StickyGas, CoolsByTheTwoThirdsLaw) {
   constexpr ParticleIndex n = 1'000'000;
-  const auto ring =
-      std::make_shared<Ring<double>>(n, double(n), 1.0, gaussian_velocity(1, 0), uniform_displacement(0, 1, 0));
+  const auto ring = gaussian_ring(n, double(n), 1, 0);
   StickyGas<double> gas(ring, 0.0);
   for (const double t : {10.0, 30.0, 100.0}) {
     gas.advance(t);

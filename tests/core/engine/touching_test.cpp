@@ -58,9 +58,8 @@ TEST(Touching, CollisionsWithinRoundingAreInNoWrongOrder) {
     for (const double cutoff : {.001, .1})
       for (const ParticleIndex count : {10, 50})
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-          const auto ring = std::make_shared<Ring<double>>(count, static_cast<double>(count), 1.,
-                                                           gaussian_velocity(seed, 0), uniform_displacement(0, 1, 0));
-          auto run = gap_run<double>(ring, Inelastic<double>(restitution, cutoff));
+          auto run = gap_run<double>(gaussian_ring(count, static_cast<double>(count), seed, 0),
+                                     Inelastic<double>(restitution, cutoff));
           run.advance(200);
           EXPECT_EQ(run.account().order_lost, 0U) << restitution << ", " << cutoff << ", " << count << ", " << seed;
           EXPECT_TRUE(restitution > 0 || run.account().simultaneous > 0);
@@ -68,10 +67,9 @@ TEST(Touching, CollisionsWithinRoundingAreInNoWrongOrder) {
 }
 
 TEST(Touching, AWindowInSegmentsIsThatOfThePlainLoop) {
-  const auto ring =
-      std::make_shared<Ring<double>>(600, 600., 1., gaussian_velocity(1, 0), uniform_displacement(0, 1, 0));
   for (const SegmentsAs& as : segmentations())
-    expect_same_in_segments<GapChain<double>, double>(ring, Inelastic<double>(0, 0.1), as, {5., 30.});
+    expect_same_in_segments<GapChain<double>, double>(gaussian_ring(600, 600, 1, 0), Inelastic<double>(0, 0.1), as,
+                                                      {5., 30.});
 }
 
 // 2^30/3 - 1/10 is no double, and what is lost is not: at the next move it belongs to another local time.

@@ -1,6 +1,6 @@
 // Piles: particles that come to rest on one another on a floor. When they do, against sums of geometric series;
-// accounts of energy and momentum, on floors at either end and between two walls; a pile that is let go; saved and
-// streamed states; laws with a cut-off or a contact time; what is refused.
+// accounts of energy and momentum, on floors at either end and between two walls; a pile that is let go; laws with a
+// cut-off or a contact time; what is refused.
 
 #include <cmath>
 #include <numbers>
@@ -9,40 +9,13 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/initial/walled.hpp"
-#include "cradle/core/observe/configuration_statistics.hpp"
-#include "cradle/core/observe/guards.hpp"
-#include "cradle/core/observe/sample.hpp"
-#include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/saved.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 
 namespace resting_test {
 
 using namespace cradle;
 using namespace cradle::test;
 
-using Chain = GapChain<double, IndividualMasses<double>, Gravity<double>>;
-template <class Law> using RunOf = Simulation<double, Law, Chain>;
-using Motion = std::shared_ptr<const WallMotion<double>>;
-
-Motion shaken(Shape shape, double amplitude, double phase = 0) {
-  return std::make_shared<WallMotion<double>>(shape, amplitude, 3., phase);
-}
-Wall<double> wall(double position, double restitution, double rest_speed, Motion motion = nullptr, double speed = 0) {
-  return {.position = position,
-          .speed = speed,
-          .restitution = restitution,
-          .motion = std::move(motion),
-          .rest_speed = rest_speed};
-}
-Scene<double> between(double acceleration, const Scene<double>& particles, std::optional<Wall<double>> left,
-                      std::optional<Wall<double>> right = {}) {
-  return std::make_shared<Walled<double>>(particles, std::move(left), std::move(right), acceleration);
-}
-template <class Law> RunOf<Law> run_of(const Scene<double>& particles, const Law& law, bool hold_all = false) {
-  return {law, Chain(particles, 0., hold_all)};
-}
 struct Met {
   ParticleIndex left;
   double time;
@@ -53,8 +26,8 @@ struct Met {
 // downwards, the floor at 3/2, and the next collision, at the same time, at 3/8 downwards; the upper ball flies at
 // (7/32) w. So it comes back as often as 4 (7/32)^n > 1/64, at times of a geometric series.
 TEST(Resting, TwoBallsAgainstGeometricSeries) {
-  const auto particles = between(-1, list<double>({0.5, 8}, {0, 0}), wall(0, 0.5, 1. / 64));
-  auto run = run_of(particles, Inelastic<double>(0.5));
+  const auto particles = between(-1, list<double>({0.5, 8}, {0, 0}), wall(0, nullptr, 0.5, 0, 1. / 64));
+  auto run = falling(particles, Inelastic<double>(0.5));
   std::vector<Met> lower, upper;
   EXPECT_EQ(run.advance(100.,
                         [&](const Collision<double>& c) {
@@ -82,8 +55,8 @@ TEST(Resting, TwoBallsAgainstGeometricSeries) {
 
 // A particle that meets the pile below its rest speed leaves it as it is: the wall has the impulse and what is lost.
 TEST(Resting, ThePileIsTheWall) {
-  const auto particles = between(-1, list<double>({0.5, 8}, {0, 0}, {1, 3}), wall(0, 0.5, 5));
-  auto run = run_of(particles, Inelastic<double>(0.5));
+  const auto particles = between(-1, list<double>({0.5, 8}, {0, 0}, {1, 3}), wall(0, nullptr, 0.5, 0, 5));
+  auto run = falling(particles, Inelastic<double>(0.5));
   EXPECT_EQ(run.advance(4.), Status::reached);
   EXPECT_EQ(run.counts().collisions, 2U);
   const auto tally = sample(run, 0., 4.).walls[0];
@@ -99,8 +72,8 @@ TEST(Resting, ThePileIsTheWall) {
 // at rest, so low that what is thrown up meets it.
 TEST(Resting, AccountsBalance) {
   const std::vector<double> x{0.3, 0.9, 1.2, 1.7, 2.3}, v{0.5, 0, -0.25, 0, 0.25}, m{1, 1.5, 0.75, 2, 1};
-  const Motion motions[] = {nullptr, shaken(Shape::sine, 0.08), shaken(Shape::sine, 0.3, 0.2),
-                            shaken(Shape::parabola, 0.25, 1), shaken(Shape::sawtooth, 0.05)};
+  const Shaking motions[] = {nullptr, shaken(Shape::sine, 0.08), shaken(Shape::sine, 0.3, 0.2),
+                             shaken(Shape::parabola, 0.25, 1), shaken(Shape::sawtooth, 0.05)};
   for (std::size_t k = 0; k < 5; ++k)
     for (const bool mirrored : {false, true})
       for (const bool closed : {false, true})
@@ -113,21 +86,17 @@ TEST(Resting, AccountsBalance) {
             const std::size_t j = mirrored ? x.size() - 1 - i : i;
             at.push_back(sign * x[j]), moving.push_back(sign * v[j]), heavy.push_back(m[j]);
           }
-          const Wall<double> floor = wall(0, 0.25, 0.1, motions[k], sign * speed);
+          const Wall<double> floor = wall(0, motions[k], 0.25, sign * speed, 0.1);
           std::optional<Wall<double>> ceiling;
-          if (closed) ceiling = wall(sign * 2.5, 0.75, 0, nullptr, sign * speed);
+          if (closed) ceiling = wall(sign * 2.5, nullptr, 0.75, sign * speed, 0);
           const auto particles = between(-sign, list<double>(at, moving, heavy), mirrored ? ceiling : floor,
                                          mirrored ? std::optional(floor) : ceiling);
-          auto run = run_of(particles, Inelastic<double>(0.75));
+          auto run = falling(particles, Inelastic<double>(0.75));
           int resting = 0, flying = 0;
           for (double t = 0.01; t < 25; t += 0.0501) {
             ASSERT_EQ(run.advance(t), Status::reached);
             const auto c = run.configuration(t);
-            ASSERT_TRUE(!guarded(c, *particles, run.counts().collisions,
-                                 particles->mechanical_energy() - run.energy_lost(t), t, run.last_collision_time(), 0.,
-                                 true)
-                             .broken)
-                << t;
+            ASSERT_TRUE(guards_hold(run, *particles, t)) << t;
             const auto now = sample(run, 0., t);
             const double potential = potential_energy(c, *particles, t);
             const double sum = now.energy + std::abs(potential) + now.energy_lost + std::abs(now.given);
@@ -161,9 +130,9 @@ TEST(Resting, AccountsBalance) {
 TEST(Resting, APileIsLetGoAtTheExactTime) {
   const double amplitude = 0.25, omega = 3, quarter = std::numbers::pi / 2;
   const double phi = std::asin(1 / (amplitude * omega * omega)), t = (phi + quarter) / omega, after = 0.03;
-  const auto floor = wall(0, 0.25, 0.5, shaken(Shape::sine, amplitude, -quarter));  // at its lowest place
+  const auto floor = wall(0, shaken(Shape::sine, amplitude, -quarter), 0.25, 0, 0.5);  // at its lowest place
   const auto particles = between(-1, list<double>({-0.249, -0.248, -0.247, 1}, {0, 0, 0, 1}), floor);
-  auto run = run_of(particles, Inelastic<double>(1));
+  auto run = falling(particles, Inelastic<double>(1));
   ASSERT_EQ(run.advance(t + after), Status::reached);
   ASSERT_LT(run.last_collision_time(), t / 2);
   const auto c = run.configuration(t + after);
@@ -180,31 +149,12 @@ TEST(Resting, APileIsLetGoAtTheExactTime) {
   EXPECT_NEAR(c.closing_speed[2], closing, 1e-13);
 }
 
-TEST(Resting, SavedAndStreamedPilesHaveTheSameBits) {
-  for (const Motion& motion : {Motion(), shaken(Shape::sine, 0.25, 0.2), shaken(Shape::sawtooth, 0.05)}) {
-    const auto particles =
-        between(-1, list<double>({0.3, 0.9, 1.2, 1.7}, {0.5, 0, -0.25, 0}), wall(0, 0.25, 0.1, motion));
-    expect_same_from_anywhere([&] { return run_of(particles, Inelastic<double>(0.75)); }, 0.5, 0.37, 8,
-                              [](const auto& later, const auto& whole) {
-                                EXPECT_TRUE(identical(later.configuration(8.), whole.configuration(8.)));
-                              });
-    // Rows, which are streamed, and held as a whole; asked often and once.
-    const auto rows = between(-0.5, lattice_rows(30), wall(-16, 0.25, 0.25, motion));
-    auto streamed = run_of(rows, Inelastic<double>(0.75, 0.01)),
-         held = run_of(rows, Inelastic<double>(0.75, 0.01), true);
-    for (double t = 0.1; t < 40; t += 0.7) ASSERT_EQ(streamed.advance(t), Status::reached);
-    ASSERT_EQ(streamed.advance(40.), Status::reached);
-    ASSERT_EQ(held.advance(40.), Status::reached);
-    EXPECT_TRUE(identical(streamed.configuration(40.), held.configuration(40.)));
-  }
-}
-
 // Where many inelastic particles are thrown together, collapses among them end by the law: the whole column comes to
 // rest, with a cut-off or a contact time, on a floor that takes what falls on it (restitution 0) and on another.
 TEST(Resting, AColumnComesToRest) {
   const auto at_rest = [](auto law, double of_floor) {
-    const auto particles = between(-1, rmix<double>(20), wall(-1, of_floor, 0.05));
-    auto run = run_of(particles, law);
+    const auto particles = between(-1, rmix<double>(20), wall(-1, nullptr, of_floor, 0, 0.05));
+    auto run = falling(particles, law);
     EXPECT_EQ(run.advance(200.), Status::reached);
     const auto c = run.configuration(200.);
     for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(c.x[i], -1, 1e-12);
@@ -221,11 +171,11 @@ TEST(Resting, AColumnComesToRest) {
 TEST(Resting, WhereTheyCannotRestIsSaid) {
   const auto two = list<double>({1, 2}, {0, 0});
   const auto sine = shaken(Shape::sine, 0.25);
-  EXPECT_NO_THROW(between(-1, two, wall(0, 0.5, 0.1, sine), wall(3, 1, 0)));
-  EXPECT_NO_THROW(between(-1, two, wall(0, 0.5, 0.1), wall(3, 1, 0, sine)));
-  EXPECT_THROW(between(-1, two, wall(0, 0.5, 0.1), wall(3, 1, 0.1)), std::invalid_argument);
-  EXPECT_THROW(between(-1, two, wall(0, 0.5, 0.1, sine), wall(3, 1, 0, sine)), std::invalid_argument);
-  EXPECT_NO_THROW(between(-1, list<double>({1}, {0}), wall(0, 0.5, 0.1, sine), wall(3, 1, 0.1, sine)));
+  EXPECT_NO_THROW(between(-1, two, wall(0, sine, 0.5, 0, 0.1), wall(3, nullptr, 1)));
+  EXPECT_NO_THROW(between(-1, two, wall(0, nullptr, 0.5, 0, 0.1), wall(3, sine, 1)));
+  EXPECT_THROW(between(-1, two, wall(0, nullptr, 0.5, 0, 0.1), wall(3, nullptr, 1, 0, 0.1)), std::invalid_argument);
+  EXPECT_THROW(between(-1, two, wall(0, sine, 0.5, 0, 0.1), wall(3, sine, 1)), std::invalid_argument);
+  EXPECT_NO_THROW(between(-1, list<double>({1}, {0}), wall(0, sine, 0.5, 0, 0.1), wall(3, sine, 1, 0, 0.1)));
 }
 
 }  // namespace resting_test

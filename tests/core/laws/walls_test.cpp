@@ -1,139 +1,69 @@
-// Walls: against exact rationals collision by collision, in both coordinates, streamed, in segments and from a saved
-// state; the energy that they give, a gas between thermal ones, and walls that are refused.
+// Walls: against exact rationals collision by collision, in both coordinates, and in segments; the energy that they
+// give, a gas between thermal ones, and walls that are refused.
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/initial/walled.hpp"
-#include "cradle/core/observe/configuration_statistics.hpp"
-#include "cradle/core/observe/guards.hpp"
-#include "cradle/core/observe/sample.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/rational.hpp"
-#include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/core/segmented.hpp"
+#include "cradle/tests/precision/reference_gas.hpp"
 
 namespace walls_test {
 
 using namespace cradle;
 using namespace cradle::test;
 
-template <class T>
-std::shared_ptr<const Particles<T>> walled(const Scene<T>& particles, std::optional<Wall<T>> left,
-                                           std::optional<Wall<T>> right) {
-  return std::make_shared<Walled<T>>(particles, std::move(left), std::move(right));
-}
-template <class T> Wall<T> thermal(const T& position, double temperature) {
-  return {.position = position, .temperature = temperature, .seed = 5, .replica = 2};
-}
-
-// The plainest gas between walls there is: positions and velocities, all pairs compared before every collision.
-template <class T> struct PlainGas {
-  std::vector<T> x, v, m;
-  T left, right, speed_left, speed_right, restitution_left, restitution_right, restitution;
-  T time{0}, lost{0};
-  WallTallies<T> walls = {};
-
-  // Makes the next collision at a time <= until; returns its gap, numbered by the particle on its left, or -2.
-  ParticleIndex step(const T& until) {
-    const auto n = static_cast<ParticleIndex>(x.size());
-    std::optional<T> first;
-    ParticleIndex at = -2;
-    const auto place = [&](ParticleIndex b) { return b < 0 ? left : b == n ? right : x[std::size_t(b)]; };
-    const auto speed = [&](ParticleIndex b) { return b < 0 ? speed_left : b == n ? speed_right : v[std::size_t(b)]; };
-    for (ParticleIndex g = -1; g < n; ++g) {
-      const T closing = speed(g) - speed(g + 1);
-      if (!(closing > T(0))) continue;
-      const T wait = (place(g + 1) - place(g)) / closing;
-      if (!first || wait < *first) first = wait, at = g;
-    }
-    if (!first || time + *first > until) return fly(T(until - time)), -2;
-    fly(*first);
-    const T closing = speed(at) - speed(at + 1);
-    const T before = energy();
-    if (at < 0 || at + 1 == n) {
-      const std::size_t side = at < 0 ? 0 : 1;
-      const T r = side == 0 ? restitution_left : restitution_right, mass = side == 0 ? m[0] : m.back();
-      const T momentum = mass * (T(1) + r) * (side == 0 ? closing : T(-closing));
-      walls[side].collisions += 1;
-      walls[side].momentum.add(momentum);
-      walls[side].given.add(momentum * (side == 0 ? speed_left : speed_right));
-      walls[side].dissipated.add(mass * (T(1) - r * r) * closing * closing / T(2));
-      lost += mass * (T(1) - r * r) * closing * closing / T(2);
-    }
-    if (at < 0)
-      v[0] = speed_left + restitution_left * closing;
-    else if (at + 1 == n)
-      v.back() = speed_right - restitution_right * closing;
-    else {
-      const auto l = std::size_t(at), r = l + 1;
-      const T impulse = (T(1) + restitution) * closing * m[l] * m[r] / (m[l] + m[r]);
-      v[l] -= impulse / m[l];
-      v[r] += impulse / m[r];
-    }
-    if (at >= 0 && at + 1 < n) lost += before - energy();
-    return at;
-  }
-  T energy() const {
-    T twice(0);
-    for (std::size_t b = 0; b < x.size(); ++b) twice += m[b] * v[b] * v[b];
-    return twice / T(2);
-  }
-  void fly(const T& span) {
-    for (std::size_t b = 0; b < x.size(); ++b) x[b] += v[b] * span;
-    left += speed_left * span, right += speed_right * span, time += span;
-  }
-};
-
+// Against a gas that searches all pairs before every collision.
 TEST(Walls, MakeTheCollisionsOfExactArithmetic) {
   using R = Rational;
-  const R eps = R(3) / 4;
   for (const int moving : {0, 1})
     for (const int inelastic : {0, 1}) {
-      PlainGas<R> plain{{R(1), R(2), R(7) / 2, R(5)},
-                        {R(1), R(-1) / 3, R(1) / 2, R(-2)},
-                        {R(1), R(1), R(1), R(1)},
-                        R(0),
-                        R(6),
-                        R(moving) / 16,
-                        R(-moving) / 32,
-                        inelastic ? R(1) / 3 : R(1),
-                        inelastic ? R(7) / 8 : R(1),
-                        eps};
-      const auto particles =
-          walled<R>(list(plain.x, plain.v), Wall<R>{plain.left, plain.speed_left, plain.restitution_left},
-                    Wall<R>{plain.right, plain.speed_right, plain.restitution_right});
-      auto run = gap_run<R>(particles, Inelastic<R>(eps));
-      auto twin = position_run<R>(particles, Inelastic<R>(eps));
+      cradle::test::Gas<R> plain;  // not the initial state of that name
+      const auto scene = list<R>({R(1), R(2), R(7) / 2, R(5)}, {R(1), R(-1) / 3, R(1) / 2, R(-2)});
+      for (ParticleIndex b = 0; b < 4; ++b) plain.cells.push_back({scene->position(b), scene->velocity(b), R(1), {b}});
+      plain.restitution = R(3) / 4;
+      plain.walls = {GasWall<R>{R(0), R(moving) / 16, inelastic ? R(1) / 3 : R(1)},
+                     GasWall<R>{R(6), R(-moving) / 32, inelastic ? R(7) / 8 : R(1)}};
+      const auto wall = [&](std::size_t side) {
+        return Wall<R>{plain.walls[side]->origin, plain.walls[side]->v, plain.walls[side]->restitution};
+      };
+      const auto particles = between<R>(R(0), scene, wall(0), wall(1));
+      auto run = gap_run<R>(particles, Inelastic<R>(plain.restitution));
+      auto twin = position_run<R>(particles, Inelastic<R>(plain.restitution));
       const R energy = plain.energy(), until = R(11);
       std::vector<ParticleIndex> wanted, seen, seen_by_twin;
-      for (ParticleIndex gap; (gap = plain.step(until)) != -2;) wanted.push_back(gap);
+      while (plain.next(until)) wanted.push_back(*plain.latest);
+      plain.advance(until, wanted.size() + 1);
+      EXPECT_FALSE(plain.tied);
       EXPECT_EQ(run.advance(until, [&](const Collision<R>& c) { seen.push_back(c.left); }), Status::reached);
       EXPECT_EQ(twin.advance(until, [&](const Collision<R>& c) { seen_by_twin.push_back(c.left); }), Status::reached);
       EXPECT_GE(wanted.size(), 10U);
       EXPECT_EQ(seen, wanted);
       EXPECT_EQ(seen_by_twin, wanted);
       for (const auto& c : {configuration_at(run, until), configuration_at(twin, until)}) {
-        EXPECT_EQ(c.x, plain.x);
-        EXPECT_EQ(c.v, plain.v);
+        ASSERT_EQ(c.x.size(), plain.cells.size());
+        for (std::size_t b = 0; b < c.x.size(); ++b) {
+          EXPECT_EQ(c.x[b], plain.place(plain.cells[b]));
+          EXPECT_EQ(c.v[b], plain.velocity(plain.cells[b]));
+        }
         EXPECT_EQ(c.gap.size(), 3U);
         EXPECT_EQ(c.closure_gap.value_or(R(0)), 0);
       }
-      const Sample<R> now = sample(run, energy, until), by_twin = sample(twin, energy, until);
-      for (const auto& s : {now, by_twin}) {
+      for (const auto& s : {sample(run, energy, until), sample(twin, energy, until)}) {
         EXPECT_EQ(s.energy, plain.energy());
-        EXPECT_EQ(s.energy_lost, plain.lost);
         EXPECT_EQ(energy - s.energy_lost + s.given, s.energy);
         for (const std::size_t side : {0U, 1U}) {
-          EXPECT_EQ(s.walls[side].collisions, plain.walls[side].collisions);
-          EXPECT_EQ(s.walls[side].given.value(), plain.walls[side].given.value());
-          EXPECT_EQ(s.walls[side].momentum.value(), plain.walls[side].momentum.value());
-          EXPECT_EQ(s.walls[side].dissipated.value(), plain.walls[side].dissipated.value());
+          EXPECT_EQ(s.walls[side].collisions, plain.walls[side]->collisions);
+          EXPECT_EQ(s.walls[side].given.value(), plain.walls[side]->given);
+          EXPECT_EQ(s.walls[side].momentum.value(), plain.walls[side]->momentum);
+          EXPECT_EQ(s.walls[side].dissipated.value(), plain.walls[side]->lost);
         }
         EXPECT_EQ(s.particles, 4);
-        EXPECT_EQ(*s.front_left, plain.x.front());
-        EXPECT_EQ(*s.front_right, plain.x.back());
+        EXPECT_EQ(*s.front_left, plain.place(plain.cells.front()));
+        EXPECT_EQ(*s.front_right, plain.place(plain.cells.back()));
       }
     }
 }
@@ -147,7 +77,7 @@ TEST(Walls, AreMirrorsOfTheParticles) {
   std::vector<R> places, speeds;
   for (std::size_t b = x.size(); b-- > 0;) places.push_back(-x[b]), speeds.push_back(-v[b]);
   places.insert(places.end(), x.begin(), x.end()), speeds.insert(speeds.end(), v.begin(), v.end());
-  auto run = gap_run<R>(walled<R>(list(x, v), Wall<R>{R(0), R(0), eps}, {}), Inelastic<R>(eps));
+  auto run = gap_run<R>(between<R>(R(0), list(x, v), Wall<R>{R(0), R(0), eps}, {}), Inelastic<R>(eps));
   auto mirrored = gap_run<R>(list(places, speeds), Inelastic<R>(eps));
   std::uint64_t at_wall = 0;
   run.advance(until, [&](const Collision<R>& c) { at_wall += c.left < 0; });
@@ -161,7 +91,7 @@ TEST(Walls, AreMirrorsOfTheParticles) {
 }
 
 TEST(Walls, AParticleBetweenThemGoesToAndFro) {
-  const auto particles = walled<double>(list<double>({.25}, {1}), Wall<double>{0.}, Wall<double>{1.});
+  const auto particles = between<double>(0, list<double>({.25}, {1}), Wall<double>{0.}, Wall<double>{1.});
   auto run = gap_run<double>(particles, Inelastic<double>(1));
   run.advance(1000);
   EXPECT_EQ(run.counts().collisions, 1000U);
@@ -172,7 +102,7 @@ TEST(Walls, AParticleBetweenThemGoesToAndFro) {
 
 // A piston of speed V that meets a particle at rest gives it 2 V; the particle never comes back.
 TEST(Walls, APistonKicks) {
-  const auto particles = walled<double>(list<double>({1}, {0}), Wall<double>{0., .5}, {});
+  const auto particles = between<double>(0, list<double>({1}, {0}), Wall<double>{0., .5}, {});
   auto run = gap_run<double>(particles, Inelastic<double>(1));
   run.advance(10);
   EXPECT_EQ(run.counts().collisions, 1U);
@@ -186,85 +116,34 @@ TEST(Walls, APistonKicks) {
 }
 
 TEST(Walls, InelasticParticlesAtAWallLoseWhatTheLedgerSays) {
-  const auto particles = walled<double>(rmix<double>(60), Wall<double>{-1., 0., .9}, Wall<double>{61., -0.01, .8});
+  const auto particles = between<double>(0, rmix<double>(60), Wall<double>{-1., 0., .9}, Wall<double>{61., -0.01, .8});
   auto run = gap_run<double>(particles, Inelastic<double>(0.95, 1e-3));
-  const double before = particles->kinetic_energy();
   EXPECT_EQ(run.advance(300), Status::reached);
   EXPECT_GT(run.counts().collisions, 1000U);
+  const double before = particles->kinetic_energy();
   const auto now = sample(run, before, 300.);
   const auto c = configuration_at(run, 300.);
   EXPECT_NEAR(kinetic_energy(c, *particles, c.time), now.energy, 1e-13 * before);
   EXPECT_NEAR(before - now.energy_lost + now.given, now.energy, 1e-13 * before);
   EXPECT_LT(std::abs(*c.closure_gap), 1e-11);
-  const auto check =
-      guarded(c, *particles, run.counts().collisions, now.energy, 300., run.last_collision_time(), 0., true);
-  EXPECT_FALSE(check.broken);
-}
-
-template <class Run> void expect_same_piecewise(Run once) {
-  Run often = once;
-  once.advance(60);
-  for (double t = 0; t <= 60; t += 0.37) often.advance(t);
-  often.advance(60);
-  EXPECT_TRUE(identical(configuration_at(once, 60.), configuration_at(often, 60.)));
-  EXPECT_EQ(once.energy_lost(), often.energy_lost());
-  EXPECT_TRUE(SavedState::of(once.chain().walls()) == SavedState::of(often.chain().walls()));
-}
-
-TEST(Walls, GiveTheSameAtAnyCadence) {
-  const auto particles = walled<double>(rmix<double>(40), thermal(-1., 0.5), Wall<double>{41., -.02});
-  expect_same_piecewise(gap_run<double>(particles, Inelastic<double>(0.97, 1e-4)));
-  expect_same_piecewise(position_run<double>(particles, Inelastic<double>(0.97, 1e-4)));
-}
-
-TEST(Walls, RowsAreStreamedTowardsAnEndWithoutOne) {
-  const auto particles = walled<double>(uniform_rows(400), Wall<double>{-205., .8}, {});
-  auto streamed = gap_run<double>(particles, Inelastic<double>(0.99, 0.1)),
-       held = gap_run<double>(particles, Inelastic<double>(0.99, 0.1), {}, 0., {.hold_all = true});
-  for (const double t : {20., 40., 120.}) {
-    streamed.advance(t);
-    held.advance(t);
-    EXPECT_TRUE(identical(configuration_at(streamed, t), configuration_at(held, t)));
-    EXPECT_EQ(sample(streamed, 50., t).given, sample(held, 50., t).given);
-  }
-  EXPECT_LT(streamed.chain().last() - streamed.chain().first(), held.chain().last() - held.chain().first() + 1);
-  EXPECT_GT(streamed.counts().collisions, 1000U);
+  EXPECT_TRUE(guards_hold(run, *particles, 300.));
 }
 
 TEST(Walls, RunsInSegmentsHaveTheBitsOfThePlainLoop) {
+  const auto hot = between<double>(0, gas<double>(800), thermal(-1., 0.4), thermal(801., 0.1));
+  auto plain = gap_run(hot, Inelastic<double>(0.98, 1e-3));
+  plain.advance(40);
+  for (const End end : {End::left, End::right}) EXPECT_GT(plain.chain().walls().tally(end).collisions, 5U);
   SlabsMade made;
   for (const auto& as : segmentations()) {
-    const auto hot = walled<double>(gas<double>(800), thermal(-1., 0.4), thermal(801., 0.1));
-    made += expect_same_in_segments<GapChain<double>>(hot, Inelastic<double>(0.98, 1e-3), as, {8., 9.});
-    const auto mixed = walled<double>(gas<double>(800, 0., true), Wall<double>{-1., 0.1, .9}, thermal(801., 0.1));
+    made += expect_same_in_segments<GapChain<double>>(hot, Inelastic<double>(0.98, 1e-3), as, {8., 9., 40.});
+    const auto mixed = between<double>(0, gas<double>(800, 0., true), Wall<double>{-1., 0.1, .9}, thermal(801., 0.1));
     made += expect_same_in_segments<GapChain<double, IndividualMasses<double>>>(mixed, Inelastic<double>(0.98, 1e-3),
                                                                                 as, {9.});
-    const auto shock = walled<double>(uniform_rows(1600), Wall<double>{-805., .8}, {});
+    const auto shock = between<double>(0, uniform_rows(1600), Wall<double>{-805., .8}, {});
     made += expect_same_in_segments<GapChain<double>>(shock, Inelastic<double>(0.98, 0.1), as, {350.});
   }
   EXPECT_GT(made.slabs, 200U);
-}
-
-TEST(Walls, SegmentsReportWhatWallsGave) {
-  const auto hot = walled<double>(gas<double>(800), thermal(-1., 0.4), thermal(801., 0.1));
-  using Chain = GapChain<double>;
-  const Inelastic<double> law(0.98, 1e-3);
-  Simulation<double, Inelastic<double>, Chain> plain(law, Chain(hot, 0.)), segmented(law, Chain(hot, 0.));
-  Segments<Inelastic<double>, Chain> segments(threads(2), {.gaps = 40, .ghosts = 12, .anywhere = true});
-  plain.advance(40);
-  segmented.advance(40, segments);
-  for (const End end : {End::left, End::right}) EXPECT_GT(plain.chain().walls().tally(end).collisions, 5U);
-  EXPECT_TRUE(SavedState::of(plain.chain().walls()) == SavedState::of(segmented.chain().walls()));
-}
-
-TEST(Walls, RunsContinueFromASavedState) {
-  const auto particles = walled<double>(rmix<double>(30), thermal(-1., 0.5), Wall<double>{31., -0.02, .9});
-  const Inelastic<double> law(0.97, 1e-4);
-  const auto check = [](const auto& later, const auto& whole) {
-    EXPECT_TRUE(SavedState::of(later.chain().walls()) == SavedState::of(whole.chain().walls()));
-  };
-  expect_same_from_anywhere([&] { return gap_run<double>(particles, law); }, 0.5, 6.1, 30, check);
-  expect_same_from_anywhere([&] { return position_run<double>(particles, law); }, 0.5, 6.1, 30, check);
 }
 
 // Particles that leave a wall of temperature 1 do so with the density v exp(-v^2/2): mean sqrt(pi/2), mean square 2.
@@ -291,7 +170,7 @@ TEST(Walls, AGasTakesOnTheirTemperature) {
   std::vector<double> x, v, m;
   for (ParticleIndex i = 0; i < n; ++i) x.push_back(double(i) + 0.5), v.push_back(0), m.push_back(i % 2 ? 2.5 : 1);
   const auto make = [&] {
-    const auto particles = walled<double>(list<double>(x, v, m), thermal(0., 3), thermal(double(n), 3));
+    const auto particles = between<double>(0, list<double>(x, v, m), thermal(0., 3), thermal(double(n), 3));
     return mass_run<double>(particles, Inelastic<double>(1));
   };
   // Nothing moves until something comes from a wall: a first push.
@@ -300,32 +179,24 @@ TEST(Walls, AGasTakesOnTheirTemperature) {
   EXPECT_EQ(run.counts().collisions, 0U);
   v[0] = -1;
   auto moving = make();
-  double sum = 0, squares = 0;
-  constexpr int blocks = 40;
-  for (int block = 0; block < blocks + 4; ++block) {
-    double mean = 0;
-    for (int k = 0; k < 500; ++k) {
-      const double t = 500. * block + k + 1;
-      moving.advance(t);
-      mean += sample(moving, 0.5, t).energy / 500;
-    }
-    if (block >= 4) sum += mean, squares += mean * mean;
-  }
-  const double mean = sum / blocks, error = std::sqrt((squares / blocks - mean * mean) / (blocks - 1));
+  const auto [mean, error] = block_mean(40, 500, 1, [&](double t) {
+    EXPECT_EQ(moving.advance(t), Status::reached);
+    return sample(moving, 0.5, t).energy;
+  });
   EXPECT_LT(error, 1);
   EXPECT_NEAR(mean, n * 3. / 2, 4 * error);
 }
 
 TEST(Walls, WhereTheyCannotBeIsSaid) {
   const auto particles = list<double>({1, 2}, {0, 0});
-  EXPECT_THROW(walled<double>(particles, Wall<double>{1.}, {}), std::invalid_argument);
-  EXPECT_THROW(walled<double>(particles, Wall<double>{1.5}, {}), std::invalid_argument);
-  EXPECT_THROW(walled<double>(particles, {}, Wall<double>{2.}), std::invalid_argument);
-  EXPECT_THROW(walled<double>(particles, Wall<double>{0., 0., 1.5}, {}), std::invalid_argument);
-  EXPECT_THROW(walled<double>(particles, Wall<double>{0., NAN}, {}), std::invalid_argument);
-  EXPECT_THROW(walled<double>(particles, thermal(0., -1), {}), std::invalid_argument);
-  EXPECT_THROW(walled<double>(gaussian_ring(10, 10), Wall<double>{-1.}, {}), std::invalid_argument);
-  EXPECT_NO_THROW(walled<double>(particles, Wall<double>{0.}, Wall<double>{3.}));
+  EXPECT_THROW(between<double>(0, particles, Wall<double>{1.}, {}), std::invalid_argument);
+  EXPECT_THROW(between<double>(0, particles, Wall<double>{1.5}, {}), std::invalid_argument);
+  EXPECT_THROW(between<double>(0, particles, {}, Wall<double>{2.}), std::invalid_argument);
+  EXPECT_THROW(between<double>(0, particles, Wall<double>{0., 0., 1.5}, {}), std::invalid_argument);
+  EXPECT_THROW(between<double>(0, particles, Wall<double>{0., NAN}, {}), std::invalid_argument);
+  EXPECT_THROW(between<double>(0, particles, thermal(0., -1), {}), std::invalid_argument);
+  EXPECT_THROW(between<double>(0, gaussian_ring(10, 10), Wall<double>{-1.}, {}), std::invalid_argument);
+  EXPECT_NO_THROW(between<double>(0, particles, Wall<double>{0.}, Wall<double>{3.}));
 }
 
 }  // namespace walls_test

@@ -1,14 +1,11 @@
 // The event queue against a sorted list, under random updates of three neighbouring gaps at a time, as the event loop
 // makes them. Times on a grid that every key resolves must come in exactly the list's order; times finer than a key
-// must be reported as too close. The width of the index in a key must not change a run: same bits for 3, 13 and 20
-// bits.
+// must be reported as too close. (That the width of the index in a key changes no run is in engine/same_bits_test.cpp.)
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/sorted_list_queue.hpp"
 
 namespace queue_test {
@@ -124,66 +121,6 @@ TEST(Queue, RoundedKeysAreCloseWithinTheirRounding) {
   for (EventQueue* queue : {&exact, &rounded}) queue->replace(6, 1, 1 + resolution, 9);
   EXPECT_FALSE(exact.close(exact.key_of(5), 6));
   EXPECT_TRUE(rounded.close(rounded.key_of(5), 6));
-}
-
-struct Shock {
-  ParticleIndex particles;
-  Inelastic<double> law;
-  double end;
-  Displacement displacement;
-};
-
-// 16 slots and a million are the same run: what keys cannot distinguish is decided by exact times.
-std::uint64_t close_calls_of_the_same_run(const Shock& shock, int bits) {
-  const Scene<double> particles =
-      std::make_shared<Rows<double>>(symmetric_rows<double>(shock.particles, 0.5, 1, shock.displacement));
-  auto narrow = gap_run(particles, shock.law, {}, 0., {.least_queue_bits = 3});
-  auto wide = gap_run(particles, shock.law, {}, 0., {.least_queue_bits = bits});
-  EXPECT_EQ(narrow.advance(shock.end), Status::reached);
-  EXPECT_EQ(wide.advance(shock.end), Status::reached);
-  EXPECT_TRUE(identical(configuration_at(narrow, shock.end), configuration_at(wide, shock.end))) << bits;
-  EXPECT_TRUE(same_collisions(narrow.counts(), wide.counts())) << bits;
-  EXPECT_EQ(narrow.energy_lost(), wide.energy_lost()) << bits;
-  EXPECT_EQ(narrow.counts().origin_moves, wide.counts().origin_moves) << bits;
-  return wide.counts().close_calls;
-}
-
-TEST(Queue, WidthOfTheIndexDoesNotChangeABitUpToTheFirstCollapse) {
-  const Shock shock{400, Inelastic(0.98, 1e-5), 312, rshock_displacement};
-  close_calls_of_the_same_run(shock, 13);
-  close_calls_of_the_same_run(shock, 20);
-}
-
-TEST(Queue, WidthOfTheIndexDoesNotChangeABitInACollapse) {
-  const Shock shock{200, Inelastic(0.9, 1e-3), 100, rshock_displacement};
-  for (const int bits : {13, 18}) close_calls_of_the_same_run(shock, bits);
-}
-
-// Without perturbation collisions are simultaneous all the time, two gaps apart.
-TEST(Queue, WidthOfTheIndexDoesNotChangeABitOnALattice) {
-  const Shock shock{200, Inelastic(0.98, 1e-5), 150, [](ParticleIndex) { return std::int64_t{0}; }};
-  for (const int bits : {13, 20}) EXPECT_GT(close_calls_of_the_same_run(shock, bits), 0U) << bits;
-}
-
-// Displacements of a few 2^-28: collisions all along the line come within 1e-8 of each other, which a key with 20 bits
-// of index does not resolve at t = 100, and a key with 8 does. Those far apart commute, but the origin of time must not
-// move between them in another order.
-TEST(Queue, WidthOfTheIndexDoesNotChangeABitWhereCollisionsAreNearlySimultaneous) {
-  std::uint64_t few = 0, many = 0;
-  for (const ParticleIndex particles : {100, 200, 300}) {
-    for (ParticleIndex seed = 0; seed < 20; ++seed) {
-      SCOPED_TRACE(testing::Message() << particles << " particles, seed " << seed);
-      const Shock shock{particles, Inelastic(0.98, 1e-5), 0.75 * static_cast<double>(particles),
-                        [seed](ParticleIndex particle) { return bits_of(particle + 1000 * seed, 0, 0xF) - 8; }};
-      few += close_calls_of_the_same_run(shock, 8);
-      many += close_calls_of_the_same_run(shock, 18);
-    }
-  }
-  EXPECT_GT(many, few);
-}
-
-TEST(Queue, WidthOfTheIndexDoesNotChangeABitInThePapersShock) {
-  close_calls_of_the_same_run({8000, Inelastic(0.999, 1e-5), 4000, rshock_displacement}, 20);
 }
 
 }  // namespace queue_test

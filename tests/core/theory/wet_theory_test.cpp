@@ -235,13 +235,6 @@ TEST(WetFront, HasTheScalesOfItsUnits) {
 
 // ---- scalars ----
 
-template <class T> T number(double x) {
-  if constexpr (std::same_as<T, StrictReal>)
-    return StrictReal::of(x);
-  else
-    return x;
-}
-
 TEST(WetTheoryScalars, StrictTypeGivesTheBitsOfDouble) {
   const auto evaluate = []<class T>(T zero) {
     WetShock<T> shock{number<T>(0.01)};

@@ -1,0 +1,81 @@
+#pragma once
+// Particles between walls that are at rest, move, are hot or are shaken, with or without gravity; the runs made of
+// them, and what holds in each.
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/core/observe/guards.hpp"
+#include "cradle/core/observe/sample.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+
+namespace cradle::test {
+
+using FallingGaps = GapChain<double, IndividualMasses<double>, Gravity<double>>;
+using FallingPositions = PositionChain<double, Gravity<double>>;
+using Shaking = std::shared_ptr<const WallMotion<double>>;
+
+template <class T>
+Scene<T> between(const std::type_identity_t<T>& acceleration, const Scene<T>& particles,
+                 std::type_identity_t<std::optional<Wall<T>>> left = {},
+                 std::type_identity_t<std::optional<Wall<T>>> right = {}) {
+  return std::make_shared<Walled<T>>(particles, std::move(left), std::move(right), acceleration);
+}
+inline Wall<double> thermal(double position, double temperature) {
+  return {.position = position, .temperature = temperature, .seed = 5, .replica = 2};
+}
+inline Shaking shaken(Shape shape, double amplitude, double phase = 0, double frequency = 3) {
+  return std::make_shared<WallMotion<double>>(shape, amplitude, frequency, phase);
+}
+inline Wall<double> wall(double position, Shaking motion, double restitution = 1, double speed = 0,
+                         double rest_speed = 0) {
+  return {.position = position,
+          .speed = speed,
+          .restitution = restitution,
+          .motion = std::move(motion),
+          .rest_speed = rest_speed};
+}
+inline constexpr Shape shapes[] = {Shape::sawtooth, Shape::parabola, Shape::sine};
+
+template <class Law>
+Simulation<double, Law, FallingGaps> falling(const Scene<double>& particles, const Law& law, double start = 0) {
+  return {law, FallingGaps(particles, start)};
+}
+template <class Law>
+Simulation<double, Law, FallingPositions> falling_positions(const Scene<double>& particles, const Law& law) {
+  return {law, FallingPositions(particles, 0.)};
+}
+
+// What is left of the energy beyond what walls gave and what was lost, at most over the sizes of these.
+template <class Run> double unaccounted(const Run& run, const Particles<double>& particles, double t) {
+  const auto now = sample(run, particles.kinetic_energy(), t);
+  const double potential = potential_energy(run.configuration(t), particles, t);
+  return std::abs(now.energy + potential - (particles.mechanical_energy() - now.energy_lost + now.given)) /
+         (now.energy + std::abs(potential) + now.energy_lost + std::abs(now.given));
+}
+template <class Run> bool guards_hold(const Run& run, const Particles<double>& particles, double t) {
+  return !guarded(run.configuration(t), particles, run.counts().collisions,
+                  particles.mechanical_energy() - run.energy_lost(t), t, run.last_collision_time(), 0., true)
+              .broken;
+}
+
+// The mean of `value(t)` over many blocks of times, after the first four, and its standard error.
+struct BlockMean {
+  double mean, error;
+};
+template <class Value> BlockMean block_mean(int blocks, int samples, double spacing, const Value& value) {
+  double sum = 0, squares = 0;
+  for (int block = -4; block < blocks; ++block) {
+    double mean = 0;
+    for (int k = 0; k < samples; ++k) mean += value(spacing * ((block + 4.) * samples + k + 1)) / samples;
+    if (block >= 0) sum += mean / blocks, squares += mean * mean / blocks;
+  }
+  return {sum, std::sqrt((squares - sum * sum) / (blocks - 1))};
+}
+
+}  // namespace cradle::test

@@ -1,0 +1,288 @@
+// What must not change a bit of a run. Proves, for every kind of chain, law and scene below: a run has the same bits
+// with output once, ten or ten thousand times, or at the very time of each collision; with and without an observer;
+// with any number of index bits in the queue's keys; if it streams its rows, holds them completely, or has the same
+// particles as a list; and if it is saved anywhere and continued by another run.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "cradle/core/chains/cluster_chain.hpp"
+#include "cradle/tests/core/between_walls.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/saved.hpp"
+
+namespace same_bits_test {
+
+using namespace cradle;
+using namespace cradle::test;
+
+using Dry = Inelastic<double>;
+using Gaps = GapChain<double>;
+using Masses = GapChain<double, IndividualMasses<double>>;
+using Positions = PositionChain<double>;
+using Clusters = ClusterChain<double>;
+
+// So much happens in it; `active`: particles between the outermost ones that are held at the end.
+struct Least {
+  std::uint64_t collisions = 100, merges = 0, close_calls = 0;
+  ParticleIndex active = 0;
+};
+// A run that can be made anew; output is at multiples of `step`.
+template <class Chain, class Law> struct Gas {
+  std::string name;
+  Scene<double> particles;
+  Law law;
+  double step, end;
+  Least least = {};
+
+  Simulation<double, Law, Chain> run(Options options = {}) const {
+    if constexpr (StreamingChain<Chain>)
+      return {law, Chain(particles, 0., options.hold_all), {}, options.least_queue_bits};
+    else
+      return {law, Chain(particles, 0.), {}, options.least_queue_bits};
+  }
+};
+template <class Chain, class Law>
+Gas<Chain, Law> gas(std::string name, Scene<double> particles, const Law& law, double step, double end,
+                    Least least = {}) {
+  return {std::move(name), std::move(particles), law, step, end, least};
+}
+
+// With rows of speed 1/2 collapse sets in at t = 2/(1 - (4/pi) atan sqrt eps).
+const Dry law(0.98, 1e-5);    // t = 311
+const Dry softer(0.9, 1e-3);  // t = 60
+
+// From the first collision on, while rows come in, and after both are used up.
+template <class Property> void for_each_of_rows(const Property& property) {
+  property(gas<Gaps>("rows beyond their collapse", rshock<double>(200), softer, 2.5, 250,
+                     {.collisions = 100000, .active = 200}));
+  property(gas<Masses>("unequal rows", unequal_rows(), law, 12.5, 500, {.collisions = 15000, .active = 303}));
+  property(gas<Gaps>("rows with a contact time", uniform_rows(400), ContactTime<double>(Dry(0.9), 1e-3), 10, 80,
+                     {.collisions = 1000}));
+  property(gas<Clusters>("wet rows that pass first", rshock<double>(400), Wet<double>(0.005), 2.5, 400,
+                         {.merges = 101, .active = 400}));
+  property(gas<Clusters>("wet rows that merge from the start", rshock<double>(400), Wet<double>(0.05), 2.5, 400,
+                         {.merges = 101, .active = 400}));
+  property(
+      gas<Clusters>("unequal wet rows", unequal_rows(), Wet<double>(0.02), 12.5, 800, {.merges = 101, .active = 401}));
+  property(gas<Clusters>("rows that merge when slow", uniform_rows(400), InelasticMerging<double>(Dry(0.9), 1e-3), 10,
+                         400, {.collisions = 1000, .merges = 1}));
+  property(gas<Gaps>("rows beside a piston", between(0, uniform_rows(400), Wall<double>{-205., .8}), Dry(0.99, 0.1), 20,
+                     120, {.collisions = 1001}));
+  property(gas<FallingGaps>("falling rows", between(-0.01, uniform_rows(400), Wall<double>{-205., 0.25, .8}),
+                            Dry(0.99, 0.1), 20, 120, {.collisions = 1001}));
+  for (const Shaking& motion : {Shaking(), shaken(Shape::sine, 0.25, 0.2), shaken(Shape::sawtooth, 0.05)})
+    property(gas<FallingGaps>("rows that come to rest on a floor",
+                              between(-0.5, lattice_rows(30), wall(-16, motion, 0.25, 0, 0.25)), Dry(0.75, 0.01), 10,
+                              40));
+}
+
+template <class Property> void for_each_gas(const Property& property) {
+  for_each_of_rows(property);
+  property(gas<Gaps>("mixed velocities", rmix<double>(32), Dry(0.9375), 10, 100));
+  property(gas<Gaps>("rows in epochs", uniform_rows(1200), Dry(0.95, 1e-2), 4, 40));
+  property(gas<Gaps>("a ring", gaussian_ring(20, 20), Dry(0.9, 1e-4), 4, 40));
+  property(gas<Clusters>("a wet ring", gaussian_ring(20, 20), Wet<double>(0.01), 4, 40));
+  property(gas<Masses>("particles with a contact time", uniform_rows(60), ContactTime<double>(Dry(0.9), 1e-3), 4, 40));
+  property(gas<Positions>("rows in positions", uniform_rows(60), Dry(0.9, 1e-4), 4, 40));
+  // Collisions are simultaneous all the time, two gaps apart.
+  for (const double restitution : {1., .98})
+    property(gas<Gaps>("lattice", lattice_rows(200), Dry(restitution, 1e-5), 0.25, 60, {.close_calls = 101}));
+  property(gas<Positions>("lattice in positions", lattice_rows(200), Dry(0.98, 1e-5), 0.25, 60, {.close_calls = 101}));
+  property(gas<Clusters>("wet lattice", lattice_rows(200), Wet<double>(0.001), 0.25, 60, {.close_calls = 101}));
+
+  const auto walls = between(0, rmix<double>(40), thermal(-1, 0.5), Wall<double>{41., -0.02, .9});
+  property(gas<Gaps>("between walls", walls, Dry(0.97, 1e-4), 0.37, 60));
+  property(gas<Positions>("between walls in positions", walls, Dry(0.97, 1e-4), 0.37, 60));
+  const auto falls = between(-0.25, rmix<double>(40), thermal(-1, 0.5), Wall<double>{41., -0.02, .9});
+  property(gas<FallingGaps>("falling", falls, Dry(0.97, 1e-3), 0.37, 60, {.collisions = 301}));
+  property(gas<FallingPositions>("falling in positions", falls, Dry(0.97, 1e-3), 0.37, 60, {.collisions = 301}));
+  property(gas<FallingGaps>("falling with a contact time", falls, ContactTime<double>(Dry(0.97, 1e-3), 1e-3), 0.37, 60,
+                            {.collisions = 301}));
+  for (const Shape shape : shapes) {
+    const auto between_shaken =
+        between(-0.25, rmix<double>(20), wall(-1, shaken(shape, 0.25, 0.3), 0.9), wall(21, shaken(shape, 0.5, 0, 2)));
+    property(gas<FallingGaps>("between shaken walls", between_shaken, Dry(0.97, 1e-3), 0.37, 20));
+    property(gas<FallingPositions>("between shaken walls, in positions", between_shaken, Dry(0.97, 1e-3), 0.37, 20));
+  }
+  for (const Shaking& motion : {Shaking(), shaken(Shape::sine, 0.25, 0.2), shaken(Shape::sawtooth, 0.05)})
+    property(gas<FallingGaps>(
+        "a pile", between(-1, list<double>({0.3, 0.9, 1.2, 1.7}, {0.5, 0, -0.25, 0}), wall(0, motion, 0.25, 0, 0.1)),
+        Dry(0.75), 0.37, 8, {.collisions = 10}));
+  property(
+      gas<FallingGaps>("a ball that comes to rest",
+                       between(-1, list<double>({0.3}, {0}), wall(0, shaken(Shape::sine, 0.2, 0.2), 0.25, 0, 0.05)),
+                       Dry(1), 0.73, 12, {.collisions = 1}));
+}
+
+// Rows displaced by a few 2^-28, so that collisions all along the line come within 1e-8 of each other: a key with 18
+// bits of index does not resolve that, and one with 8 does.
+template <class Property> void for_each_of_nearly_simultaneous(const Property& property) {
+  for (const ParticleIndex count : {100, 200, 300})
+    for (ParticleIndex seed = 0; seed < 20; ++seed) {
+      const Scene<double> rows = std::make_shared<Rows<double>>(symmetric_rows<double>(
+          count, 0.5, 1, [seed](ParticleIndex particle) { return bits_of(particle + 1000 * seed, 0, 0xF) - 8; }));
+      property(gas<Gaps>(std::to_string(count) + " particles, seed " + std::to_string(seed), rows, law, 1,
+                         0.75 * static_cast<double>(count)));
+    }
+}
+
+// Rows that are each other's mirror image: collisions come in pairs at the same time but for rounding, so that keys
+// cannot decide which is first, and at the centre three particles meet.
+template <class Property> void for_each_of_mirrored_wet_rows(const Property& property) {
+  for (ParticleIndex seed = 0; seed < 20; ++seed) {
+    const auto displacement = [seed](ParticleIndex particle) {
+      const auto of_left = [seed](ParticleIndex b) { return bits_of(b + 1000 * seed, 0, 0xFFFFF); };
+      return particle < 50 ? of_left(particle) : -of_left(99 - particle);
+    };
+    const Scene<double> rows = std::make_shared<Rows<double>>(symmetric_rows<double>(100, 0.5, 1, displacement));
+    property(gas<Clusters>("mirrored wet rows, seed " + std::to_string(seed), rows, Wet<double>(0.01), 1, 60));
+  }
+}
+
+template <class First, class Second> void expect_same_to(double end, First& first, Second& second) {
+  ASSERT_EQ(first.advance(end), Status::reached);
+  ASSERT_EQ(second.advance(end), Status::reached);
+  expect_same_state(first, second, end);
+}
+
+// Makes output at the exact time of each collision, found by an observed run of the same particles.
+template <class Run> void expect_same_at_collisions(Run observed, Run often, Run& once, double end) {
+  std::vector<double> times;
+  std::uint64_t closing = 0;
+  const auto observer = [&](const Collision<double>& c) {
+    times.push_back(c.time.value()), closing += c.closing_speed > 0;
+  };
+  ASSERT_EQ(observed.advance(end, observer), Status::reached);
+  expect_same_to(end, once, observed);
+  EXPECT_EQ(observed.counts().close_calls, once.counts().close_calls);
+  EXPECT_EQ(closing, observed.counts().collisions);
+  for (const double t : times) ASSERT_EQ(often.advance(t), Status::reached);
+  expect_same_to(end, once, often);
+  EXPECT_EQ(often.counts().close_calls, once.counts().close_calls);
+}
+
+TEST(SameBits, AtAnyCadenceAndWithAnObserver) {
+  for_each_gas([](const auto& gas) {
+    SCOPED_TRACE(gas.name);
+    auto once = gas.run();
+    expect_same_at_collisions(gas.run(), gas.run(), once, gas.end);
+    EXPECT_GE(once.counts().collisions, gas.least.collisions);
+    EXPECT_GE(once.counts().merges, gas.least.merges);
+    EXPECT_GE(once.counts().close_calls, gas.least.close_calls);
+    for (const int outputs : {10, 10000}) {
+      auto often = gas.run();
+      for (int k = 1; k <= outputs; ++k) {
+        const double t = gas.end * k / outputs;
+        ASSERT_EQ(often.advance(t), Status::reached);
+        if (k % 100 == 0) often.configuration(t);
+      }
+      expect_same_to(gas.end, once, often);
+      EXPECT_EQ(often.counts().close_calls, once.counts().close_calls);
+    }
+  });
+}
+
+TEST(SameBits, WithOutputBetweenNearlySimultaneousCollisions) {
+  for_each_of_nearly_simultaneous([](const auto& gas) {
+    SCOPED_TRACE(gas.name);
+    auto once = gas.run({.least_queue_bits = 18});
+    expect_same_at_collisions(gas.run({.least_queue_bits = 18}), gas.run({.least_queue_bits = 18}), once, gas.end);
+  });
+  std::uint64_t close_calls = 0;
+  for_each_of_mirrored_wet_rows([&](const auto& gas) {
+    SCOPED_TRACE(gas.name);
+    auto once = gas.run();
+    expect_same_at_collisions(gas.run(), gas.run(), once, gas.end);
+    auto wide = gas.run({.least_queue_bits = 16});
+    expect_same_to(gas.end, once, wide);
+    close_calls += wide.counts().close_calls;
+  });
+  EXPECT_GT(close_calls, 0U);
+}
+
+TEST(SameBits, WhetherRowsAreStreamedHeldOrListed) {
+  for_each_of_rows([]<class Chain, class Law>(const Gas<Chain, Law>& gas) {
+    SCOPED_TRACE(gas.name);
+    auto streamed = gas.run(), held = gas.run({.hold_all = true}), listed = gas.run();
+    EXPECT_LT(streamed.chain().last() - streamed.chain().first(), held.chain().last() - held.chain().first());
+    const bool walls = gas.particles->wall(End::left) != nullptr;
+    if (!walls) listed = Gas<Chain, Law>{"", as_list(*gas.particles), gas.law, 0, 0}.run();
+    for (double t = gas.step; t <= gas.end; t += gas.step) {
+      SCOPED_TRACE(t);
+      expect_same_to(t, streamed, held);
+      if (!walls) expect_same_to(t, streamed, listed);
+      if constexpr (std::same_as<Law, Dry>) {
+        ASSERT_EQ(streamed.counts().close_calls, held.counts().close_calls);
+      }
+    }
+    const auto last = streamed.configuration(gas.end);
+    EXPECT_GE(last.to - last.from + 1, gas.least.active);
+    EXPECT_GT(streamed.counts().collisions, 2 * streamed.counts().merges);
+  });
+}
+
+TEST(SameBits, SavedAnywhereAndContinued) {
+  for_each_gas([](const auto& gas) {
+    SCOPED_TRACE(gas.name);
+    expect_same_from_anywhere([&] { return gas.run(); }, 0, gas.end / 15.3, gas.end,
+                              [&](const auto& later, const auto& whole) { expect_same_state(later, whole, gas.end); });
+  });
+}
+
+// 16 slots and a million are the same run: what keys cannot distinguish is decided by exact times. Returns the close
+// calls of the widest.
+template <class Gas> std::uint64_t close_calls_of_the_same_run(const Gas& gas, std::initializer_list<int> widths) {
+  SCOPED_TRACE(gas.name);
+  auto narrow = gas.run({.least_queue_bits = 3});
+  std::uint64_t close_calls = 0;
+  for (const int bits : widths) {
+    SCOPED_TRACE(bits);
+    auto wide = gas.run({.least_queue_bits = bits});
+    expect_same_to(gas.end, narrow, wide);
+    close_calls = wide.counts().close_calls;
+  }
+  return close_calls;
+}
+
+TEST(SameBits, WithAnyWidthOfTheIndex) {
+  for_each_gas([](const auto& gas) { close_calls_of_the_same_run(gas, {8, 13, 20}); });
+  // A queue of 8 million slots, for some hundred collisions.
+  close_calls_of_the_same_run(gas<Clusters>("widest", rshock<double>(400), Wet<double>(0.05), 1, 20), {23});
+  // Up to the first collapse.
+  close_calls_of_the_same_run(gas<Gaps>("rows", rshock<double>(400), law, 1, 312), {13, 20});
+  for (const int bits : {13, 20})
+    EXPECT_GT(close_calls_of_the_same_run(gas<Gaps>("lattice", lattice_rows(200), law, 1, 150), {bits}), 0U);
+  // The paper's shock.
+  close_calls_of_the_same_run(gas<Gaps>("shock", rshock<double>(8000), Dry(0.999, 1e-5), 1, 4000), {20});
+}
+
+// Collisions far apart commute, but the origin of time must not move between them in another order.
+TEST(SameBits, WithAnyWidthOfTheIndexWhereCollisionsAreNearlySimultaneous) {
+  std::uint64_t few = 0, many = 0;
+  for_each_of_nearly_simultaneous([&](const auto& gas) {
+    few += close_calls_of_the_same_run(gas, {8});
+    many += close_calls_of_the_same_run(gas, {18});
+  });
+  EXPECT_GT(many, few);
+}
+
+// Hundreds of collisions at a time, which the factor 1 - eps separates, from exactly simultaneous to what a key
+// resolves.
+TEST(SameBits, WithAnyWidthOfTheIndexInCrowdsOfTies) {
+  for (const ParticleIndex seed : {1, 2, 3, 4}) {
+    const auto particles = crowds<double>(1000, seed);
+    for (const double dissipation : {1e-6, 1e-12, 1e-14}) {
+      SCOPED_TRACE(testing::Message() << "1 - eps = " << dissipation << ", seed " << seed);
+      const auto crowd = gas<Gaps>("a crowd", particles, Dry(1 - dissipation), 1, 20);
+      close_calls_of_the_same_run(crowd, {13, 17, 20, seed == 1 ? 23 : 11});
+      auto narrow = crowd.run();
+      narrow.advance(20);
+      EXPECT_GT(narrow.counts().close_calls, narrow.counts().collisions / 20) << "nothing to decide here";
+    }
+    close_calls_of_the_same_run(gas<Clusters>("wet", particles, Wet<double>(1e-9), 1, 20), {14, 20});
+  }
+}
+
+}  // namespace same_bits_test

@@ -1,14 +1,174 @@
-// Keys, commands and options that messages and help name exist: every key is in the table of keys, every command is one
-// of the program's, and its options are options of that command.
+// Wrong input has the answers that stand in messages.txt: one message, with file, line and key, and nothing else is
+// left behind. Keys, commands and options that messages and help name exist: every key is in the table of keys, every
+// command is one of the program's, and its options are options of that command.
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/setup/list_file.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::messages_test {
 
 using Names = std::set<std::string>;
+using Lines = std::vector<std::string>;
+
+struct Input {
+  std::size_t line;  // of messages.txt
+  std::map<std::string, Lines> files;
+  Lines settings, before;  // before: commands that succeed
+  std::string command, message;
+  int status;
+
+  std::string text(const std::string& file) const {
+    std::string all;
+    for (const std::string& of_file : files.at(file)) all += of_file + "\n";
+    return all;
+  }
+};
+
+struct Inputs {
+  std::string name;
+  std::vector<Input> all;
+};
+
+void PrintTo(const Inputs& inputs, std::ostream* stream) { *stream << inputs.name; }
+
+// Reads messages.txt, whose head describes its form.
+class Table {
+ public:
+  Table() {
+    std::ifstream file(test::source_folder + "/tests/tools/messages.txt");
+    Lines input;
+    for (std::string text; next(file, text);) {
+      if (text.starts_with("## "))
+        groups.push_back({text.substr(3), {}});
+      else if (text.starts_with("=>"))
+        add(std::move(input), text, file), input.clear();
+      else if (text.starts_with('@') && text.ends_with(" ="))
+        texts_[text.substr(0, text.size() - 2)] = until_blank(file);
+      else if (!input.empty() || !(text.empty() || text.starts_with('#')))
+        input.push_back(text);
+    }
+    if (!input.empty()) throw std::logic_error("messages.txt ends in an input without a message");
+  }
+  std::vector<Inputs> groups;
+
+ private:
+  bool next(std::istream& file, std::string& text) { return ++line_, static_cast<bool>(std::getline(file, text)); }
+  Lines until_blank(std::istream& file) {
+    Lines lines;
+    for (std::string text; next(file, text) && !text.empty();) lines.push_back(text);
+    return lines;
+  }
+  Lines with_texts(const Lines& lines) const {
+    Lines whole;
+    for (const std::string& line : lines)
+      if (line.starts_with('@'))
+        std::ranges::copy(with_texts(texts_.at(line)), std::back_inserter(whole));
+      else
+        whole.push_back(line);
+    return whole;
+  }
+
+  void add(Lines lines, const std::string& answer, std::istream& file) {
+    static const std::regex form("=>(?: \\[([0-9])\\])?(?: (.*))?"), replacement("([0-9]+): ?(.*)");
+    std::smatch match;
+    std::regex_match(answer, match, form);
+    Input input{line_, {}, {}, {}, {}, match[2], match[1].matched ? std::stoi(match[1]) : 2};
+    for (const std::string& more : until_blank(file)) input.message += more.substr(2);
+    std::string name = "s.toml";
+    std::set<std::size_t> replaced;
+    for (const std::string& line : with_texts(lines)) {
+      if (line.starts_with("$ ")) {
+        if (!input.command.empty()) input.before.push_back(input.command);
+        input.command = line.substr(2);
+      } else if (line.starts_with("--- ")) {
+        input.files[name = line.substr(4)];
+      } else if (line.starts_with("--set ")) {
+        std::istringstream words(line);
+        std::copy_if(std::istream_iterator<std::string>(words), {}, std::back_inserter(input.settings),
+                     [](const std::string& word) { return word != "--set"; });
+      } else if (std::regex_match(line, match, replacement)) {
+        const std::size_t number = std::stoul(match[1]);
+        std::string& of_scene = input.files.at(name).at(number - 1);
+        of_scene = (replaced.insert(number).second ? "" : of_scene + "\n") + match[2].str();
+      } else {
+        input.files[name].push_back(line);
+      }
+    }
+    groups.back().all.push_back(std::move(input));
+  }
+
+  std::size_t line_ = 0;
+  std::map<std::string, Lines> texts_;
+};
+
+class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
+ protected:
+  // What is in the folder, but for what the shell writes there.
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+      all[entry.path().string()] = entry.is_regular_file() ? contents(entry.path()) : "";
+    all.erase(path(".out")), all.erase(path(".err"));
+    return all;
+  }
+
+  // The message; nothing where the input is taken.
+  std::string of_reading(const Input& input) const {
+    try {
+      const std::string name = input.files.begin()->first;
+      if (name == "s.toml") {
+        tools::parse_scene(input.text(name), name, input.settings);
+      } else {
+        std::istringstream list(input.text(name));
+        tools::parse_list(list, name, tools::Run());
+      }
+      return "";
+    } catch (const tools::Error& error) {
+      EXPECT_EQ(error.exit_code(), input.status) << error.what();
+      return error.what();
+    }
+  }
+
+  // The message of a refusal, which is all that it prints and leaves behind.
+  std::string of_command(const Input& input) const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) std::filesystem::remove_all(entry);
+    for (const auto& [name, lines] : input.files) {
+      std::filesystem::create_directories((folder / name).parent_path());
+      write(name, input.text(name));
+    }
+    for (const std::string& command : input.before) shell(command, 0);
+    const auto before = files();
+    const Printed printed = shell(input.command, input.status);
+    if (input.status == 0) return "";
+    EXPECT_TRUE(files() == before) << "a file was made or changed";
+    EXPECT_TRUE(begins(printed.err, "cradle: "));
+    EXPECT_EQ(std::ranges::count(printed.err, '\n'), 1) << printed.err;
+    return printed.err.substr(8, printed.err.size() - 9);
+  }
+};
+
+TEST_P(Answers, AreThoseOfTheTable) {
+  for (const Input& input : GetParam().all) {
+    SCOPED_TRACE("messages.txt:" + std::to_string(input.line));
+    const std::string found = input.command.empty() ? of_reading(input) : of_command(input), wanted = input.message;
+    if (wanted.ends_with("..."))
+      EXPECT_TRUE(begins(found, wanted.substr(0, wanted.size() - 3)));
+    else
+      EXPECT_EQ(found, wanted);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Input, Answers, testing::ValuesIn(Table().groups),
+                         [](const auto& inputs) { return inputs.param.name; });
 
 // The texts between quotes in a source of the program, those that follow each other as one.
 std::string texts(const std::string& source) {

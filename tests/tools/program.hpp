@@ -83,6 +83,32 @@ class ProgramTest : public testing::Test {
     EXPECT_TRUE(contents(folder / a) == contents(folder / b)) << a << " and " << b << " differ";
   }
 
+  // The result of a run of this scene, written as scene.toml, that ends with this status.
+  tools::Result result_of(const std::string& scene, const std::string& options = "", int status = 0) const {
+    write("scene.toml", scene);
+    shell("cradle run scene.toml --quiet --force -o result.h5 " + options, status);
+    return read("result.h5");
+  }
+  // Its results in all types of this build that are wider than double.
+  template <class Use> void in_wide_types(const std::string& scene, const std::string& options, const Use& use) const {
+    write("scene.toml", scene);
+    for (const std::string precision : {"'long double'", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
+      SCOPED_TRACE(precision);
+      const Printed run =
+          shell("cradle run scene.toml --quiet --force -o wide.h5 --set run.precision=" + precision + " " + options);
+      if (has(run.err, "not in this build")) continue;
+      ASSERT_EQ(run.status, 0) << run.err;
+      use(read("wide.h5"));
+    }
+  }
+  // The command's file has the same bytes on any number of threads; it is left as 1.h5.
+  void expect_same_on_threads(const std::string& command) const {
+    for (const std::string threads : {"1", "2", "3", "8"}) {
+      shell(command + " --quiet --force --threads " + threads + " -o " + threads + ".h5", 0);
+      expect_same("1.h5", threads + ".h5");
+    }
+  }
+
   std::filesystem::path folder;
 };
 

@@ -1,4 +1,4 @@
-// The other commands, and bad input: one message with file, line and key, and the documented status.
+// The other commands. (Bad input: tests/tools/messages.txt.)
 
 #include <algorithm>
 #include <string>
@@ -12,11 +12,9 @@ namespace cradle::tests::commands_test {
 class Commands : public ProgramTest {
  protected:
   void make_small_result() const {
-    ASSERT_EQ(
-        shell("cradle run fig2 --quiet --set initial.particles=200 --set run.until=60 --set output.snapshots=[20,60] "
-              "--set output.profiles.times=[30] --set output.series.points=5 -o small.h5")
-            .status,
-        0);
+    shell("cradle run fig2 --quiet --set initial.particles=200 --set run.until=60 --set output.snapshots=[20,60] --set "
+          "output.profiles.times=[30] --set output.series.points=5 -o small.h5",
+          0);
   }
 };
 
@@ -133,16 +131,6 @@ TEST_F(Commands, WhatIsPrintedArrivesOrTheStatusSaysSo) {
   }
 }
 
-TEST_F(Commands, ThreadsAreAcceptedByARunAndChangeNothing) {
-  make_small_result();
-  const std::string once = contents(folder / "small.h5");
-  ASSERT_EQ(shell("cradle run fig2 --threads 2 --quiet --set initial.particles=200 --set run.until=60 --set "
-                  "output.snapshots=[20,60] --set output.profiles.times=[30] --set output.series.points=5 -o small.h5")
-                .status,
-            0);
-  EXPECT_EQ(contents(folder / "small.h5"), once);
-}
-
 TEST_F(Commands, PlotMakesPicturesInEveryFormat) {
   make_small_result();
   for (const auto* name : {"small.png", "small.pdf", "small.svg"}) {
@@ -154,119 +142,6 @@ TEST_F(Commands, PlotMakesPicturesInEveryFormat) {
 TEST_F(Commands, VersionNamesCompilerAndScalarTypes) {
   const Printed version = shell("cradle --version", 0);
   for (const auto* text : {"cradle 0.", "compiler", "-ffp-contract=off", "double"}) EXPECT_TRUE(has(version.out, text));
-}
-
-// ---- bad input
-
-constexpr const char* good_scene = R"([law]
-type = "inelastic"
-restitution = 0.9
-[initial]
-type = "list"
-file = "particles.csv"
-[run]
-until = 10
-)";
-
-struct BadInput {
-  const char* name;
-  const char* replace;  // in the good scene
-  const char* by;
-  const char* particles;
-  int status;
-  const char* message;  // begins what is printed after "cradle: "
-};
-
-void PrintTo(const BadInput& bad, std::ostream* stream) { *stream << bad.message; }
-
-class BadInputs : public Commands, public testing::WithParamInterface<BadInput> {};
-
-TEST_P(BadInputs, EndInOneMessageAndTheDocumentedStatus) {
-  const BadInput& bad = GetParam();
-  std::string scene = good_scene;
-  if (*bad.replace) scene.replace(scene.find(bad.replace), std::string(bad.replace).size(), bad.by);
-  write("scene.toml", scene);
-  if (bad.particles) write("particles.csv", bad.particles);
-  const Printed run = shell("cradle run scene.toml", bad.status);
-  EXPECT_TRUE(begins(run.err, std::string("cradle: ") + bad.message));
-  EXPECT_TRUE(has(run.err, "): ")) << "what is wrong (what was found): what to do\n";
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  EXPECT_FALSE(exists("scene.h5"));
-}
-
-constexpr const char* good_particles = "x,v\n0,1\n1,0\n";
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, BadInputs,
-    testing::Values(BadInput{"UnknownKey", "restitution = 0.9", "restitution = 0.9\nresitution = 0.8", good_particles,
-                             2, "scene.toml:4: law.resitution: "},
-                    BadInput{"WrongType", "until = 10", "until = \"soon\"", good_particles, 2,
-                             "scene.toml:8: run.until: "},
-                    BadInput{"OutOfRange", "0.9", "1.5", good_particles, 2,
-                             "scene.toml:3: law.restitution: out of range (found 1.5): "},
-                    BadInput{"NaN", "0.9", "nan", good_particles, 2, "scene.toml:3: law.restitution: "},
-                    BadInput{"Infinity", "until = 10", "until = inf", good_particles, 2, "scene.toml:8: run.until: "},
-                    BadInput{"NotToml", "[run]", "[run", good_particles, 2, "scene.toml:7: "},
-                    BadInput{"ParticlesOutOfOrder", "", "", "x,v\n1,0\n0,1\n", 2, "particles.csv:3: "},
-                    BadInput{"ParticlesCoincident", "", "", "x,v\n0,1\n1,0\n1.0,-1\n", 2, "particles.csv:4: "},
-                    BadInput{"ParticleBeyondTheType", "", "", "x,v\n0,1\n1,1e400\n", 2,
-                             "particles.csv:3: v: too large for the precision (found 1e400 with \"double\"): "},
-                    BadInput{"TooManySamples", "until = 10", "until = 10\n[output]\nseries = { every = 1e-9 }",
-                             good_particles, 2, "scene.toml:10: output.series.every: too many samples (found 1e-9"},
-                    BadInput{"ParticleNotANumber", "", "", "x,v\n0,1\n1,nan\n", 2, "particles.csv:3: "},
-                    BadInput{"ListMissing", "", "", nullptr, 4, "particles.csv: "}),
-    [](const auto& parameter) { return std::string(parameter.param.name); });
-
-TEST_F(Commands, MissingFilesAndUnwritableOutputAreStatus4) {
-  const std::vector<std::string> commands{"cradle run nothing.toml",
-                                          "cradle info nothing.h5",
-                                          "cradle plot nothing.h5",
-                                          "cradle export nothing.h5 --to csv",
-                                          "cradle run fig2 -o no/such/folder/a.h5",
-                                          "cradle run fig2 -o .",
-                                          "echo junk > junk.h5; cradle info junk.h5"};
-  for (const auto& command : commands) {
-    const Printed run = shell(command, 4);
-    EXPECT_TRUE(begins(run.err, "cradle: ")) << command;
-  }
-}
-
-TEST_F(Commands, TruncatedResultIsRefused) {
-  make_small_result();
-  const Printed info = shell("head -c 3000 small.h5 > cut.h5; cradle info cut.h5", 4);
-  EXPECT_TRUE(has(info.err, "cut.h5"));
-}
-
-TEST_F(Commands, BadCommandLinesAreStatus2) {
-  for (const auto* command :
-       {"cradle", "cradle walk fig2", "cradle run", "cradle run fig2 --sett a=1", "cradle export a.h5",
-        "cradle run fig2 --set law.restitution", "cradle run fig2 --set run.precision=float16",
-        "cradle run fig2 --set initial.type=ring", "printf '\\211HDF' > a.h5; cradle run a.h5",
-        "cradle sweep fig2 --vary law.restitution=0.1:0.9:10000 --vary run.until=1:2:10000"}) {
-    const Printed run = shell(command, 2);
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  }
-}
-
-TEST_F(Commands, BadCommandLinesSayWhatIsWrongAndWhoseHelpToRead) {
-  const std::vector<std::pair<const char*, const char*>> commands{
-      {"walk fig2", "no such command (found walk): see `cradle --help`"},
-      {"ensamble fig2", "no such command (found ensamble): did you mean `cradle ensemble`?"},
-      {"run fig2 --sett a=1", "no such option (found --sett): did you mean --set? See `cradle run --help`"},
-      {"run fig2 --until 100",
-       "no such option (found --until): did you mean --set run.until=VALUE? See `cradle run --help`"},
-      {"resume a.h5 --unti 100", "no such option (found --unti): did you mean --until? See `cradle resume --help`"},
-      {"run fig2 --threads -1",
-       "--threads: not a whole number from 0 to 4294967295 (found -1): see `cradle run --help`"},
-      {"run fig2 b.h5", "more than this command takes (found b.h5): see `cradle run --help`"},
-      {"ensemble fig2", "--replicas is required: see `cradle ensemble --help`"},
-      {"ensemble fig2 --replicas 0",
-       "--replicas: not a whole number from 1 to 9007199254740992 (found 0): see `cradle ensemble --help`"},
-      {"ensemble fig2 --replicas 1e3",
-       "--replicas: not a whole number from 1 to 9007199254740992 (found 1e3): see `cradle ensemble --help`"},
-      {"trust fig2 --digits 16,5",
-       "--digits: not a whole number from 10 to 1000 (found 5): see `cradle trust --help`"}};
-  for (const auto& [command, message] : commands)
-    EXPECT_EQ(shell(std::string("cradle ") + command).err, std::string("cradle: ") + message + "\n");
 }
 
 TEST_F(Commands, EveryHelpEndsWithAnExampleAndTheExitStatuses) {

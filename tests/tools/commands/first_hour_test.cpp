@@ -66,15 +66,6 @@ TEST_F(FirstHour, NewSceneListsEveryKeyThatItCouldUse) {
   shell("cradle run shock.toml --quiet", 0);
 }
 
-TEST_F(FirstHour, NewReplacesNothing) {
-  write("mine.toml", "mine");
-  const Printed again = shell("cradle new mine.toml", 4);
-  EXPECT_EQ(again.err, "cradle: mine.toml: the file is there already: choose another name\n");
-  EXPECT_EQ(contents(folder / "mine.toml"), "mine");
-  shell("cradle new other.toml --from no_such_scene", 4);
-  EXPECT_FALSE(exists("other.toml"));
-}
-
 TEST_F(FirstHour, ManualPageHasEveryCommandOptionAndKey) {
   const Printed page = shell("cradle manual", 0);
   EXPECT_TRUE(begins(page.out, ".TH CRADLE 1 "));
@@ -118,35 +109,12 @@ TEST_F(FirstHour, CompletionsAreScriptsOfTheirShells) {
   }
   const Printed words = shell("cradle completion words -- run fig2 --th");
   EXPECT_TRUE(begins(words.out, "--threads\tthreads to use at most"));
-  const Printed other = shell("cradle completion csh", 2);
-  EXPECT_EQ(other.err, "cradle: no such shell (found csh): give bash, zsh or fish\n");
-}
-
-TEST_F(FirstHour, ReportOfWhatIsNoResultIsOneMessage) {
-  ASSERT_EQ(shell("cradle run fig5 --quiet -o it.h5 && echo junk > junk.h5 && head -c 3000 it.h5 > cut.h5 && : > no.h5")
-                .status,
-            0);
-  for (const auto* name : {"junk.h5", "cut.h5", "no.h5", "nothing.h5"}) {
-    const Printed report = shell(std::string("cradle report ") + name, 4);
-    EXPECT_TRUE(has(report.err, name));
-    EXPECT_EQ(std::count(report.err.begin(), report.err.end(), '\n'), 1) << report.err;
-  }
-}
-
-TEST_F(FirstHour, WithoutPythonPicturesAndReportsSayWhatIsMissing) {
-  shell("cradle run fig5 --quiet -o it.h5", 0);
-  for (const auto* command : {"plot", "report"}) {
-    const Printed run = shell(std::string("CRADLE_PYTHON=$PWD/none cradle ") + command + " it.h5", 4);
-    EXPECT_TRUE(has(run.err, "no Python with h5py and matplotlib"));
-  }
 }
 
 TEST_F(FirstHour, ExportWritesWhatIsThereAsAResult) {
   shell("cradle run fig5 --quiet -o it.h5", 0);
   EXPECT_EQ(shell("cradle export it.h5 --result copy.h5").out, "copy.h5\n");
   shell("cradle diff it.h5 copy.h5", 0);
-  const Printed nothing = shell("cradle export it.h5", 2);
-  EXPECT_EQ(nothing.err, "cradle: nothing to export to: give --to DIR, --result FILE or both\n");
 }
 
 }  // namespace cradle::tests::first_hour_test

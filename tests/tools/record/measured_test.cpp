@@ -1,7 +1,7 @@
 // What is measured during a run. Proves: heat flux, collision rate and closing speeds of gases whose exact
 // values are known, within 4 standard errors over replicas, and the diffusion of tagged particles; accounts of walls
 // that balance; the same bytes on any number of threads and ranks, in segments and out of them, and nearly the same
-// numbers in every scalar type; and which scenes are refused. Checkpoints: tools/store/resume_test.
+// numbers in every scalar type. Checkpoints: tools/store/resume_test. Scenes that are refused: tools/messages.txt.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -162,8 +162,17 @@ pair_distribution = { every = 10, distance = 4, bins = 4, times = [30] }
   }
 }
 
-TEST(Measured, IsNearlyTheSameInEveryScalarType) {
-  const std::string text = R"(
+using Measuring = ProgramTest;
+
+constexpr std::pair<const char*, const char*> of_particles[] = {{"correlations", "msd"},
+                                                                {"correlations", "vacf"},
+                                                                {"structure_average", "s"},
+                                                                {"structure/0000", "s"},
+                                                                {"pair_distribution_average", "pair_distribution"},
+                                                                {"pair_distribution/0000", "pair_distribution"}};
+
+TEST_F(Measuring, IsNearlyTheSameInEveryScalarType) {
+  const std::string scene = R"(
 law = { type = "inelastic", restitution = 0.9, cutoff = 1e-3 }
 initial = { type = "ring", particles = 60, positions = "poisson" }
 run.until = 4
@@ -173,34 +182,15 @@ correlations.every = 0.25
 structure = { every = 1, times = [3] }
 pair_distribution = { every = 1, times = [3], distance = 20, bins = 8 }
 )";
-  const auto run = [&](const std::string& precision) {
-    const Scene scene = parse_scene(text, "scene.toml", {"run.precision=" + precision});
-    tools::check_built(scene);
-    return tools::run_scene(scene, {tools::Progress::Show::never}).result;
-  };
-  const Result wanted = run("double");
-  for (const std::string precision : {"long double", "double-double", "float128", "mpfr"}) {
-    SCOPED_TRACE(precision);
-    Result found;
-    try {
-      found = run(precision);
-    } catch (const tools::Error&) {  // not built
-      continue;
-    }
-    for (const auto& [group, name] : {std::pair("correlations", "msd"),
-                                      {"correlations", "vacf"},
-                                      {"structure_average", "s"},
-                                      {"structure/0000", "s"},
-                                      {"pair_distribution_average", "pair_distribution"},
-                                      {"pair_distribution/0000", "pair_distribution"}}) {
+  const Result wanted = result_of(scene);
+  in_wide_types(scene, "", [&](const Result& found) {
+    for (const auto& [group, name] : of_particles) {
       const auto a = numbers(wanted, group, name), b = numbers(found, group, name);
       ASSERT_EQ(a.size(), b.size());
       for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * (1 + a[k])) << group << " " << k;
     }
-  }
+  });
 }
-
-using Measuring = ProgramTest;
 
 const std::string measured = "averages = { every = 0.2, bins = 7, range = [0, 4000] }\nhistograms = ['free_flight', "
                              "'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', 'gap', "
@@ -227,13 +217,10 @@ TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
   for (const std::string scene : {"dry", "wet", "walls"})
     for (const std::string precision : {"double", "double-double"}) {
       SCOPED_TRACE(scene + " in " + precision);
-      const std::string run = "cradle run " + scene + ".toml --quiet --force --set run.precision=" + precision;
-      for (const std::string threads : {"1", "2", "8"}) {
-        shell(run + " --threads " + threads + " -o " + threads + ".h5", 0);
-        expect_same("1.h5", threads + ".h5");
-      }
+      const std::string run = "cradle run " + scene + ".toml --set run.precision=" + precision;
+      expect_same_on_threads(run);
       // With so many samples the plain loop makes all collisions.
-      shell(run + " --set output.series.points=3000 -o plain.h5", 0);
+      shell(run + " --quiet --force --set output.series.points=3000 -o plain.h5", 0);
       const Result found = read("1.h5"), wanted = read("plain.h5");
       for (const tools::Group& group : wanted.groups) {
         if (group.name.ends_with("series")) continue;
@@ -256,11 +243,7 @@ TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
   for (const std::string scene : {"gas", "ring"}) {
     SCOPED_TRACE(scene);
     const std::string ensemble = "ensemble " + scene + ".toml --quiet --force";
-    shell("cradle " + ensemble + " --replicas 30 --threads 1 -o 1.h5", 0);
-    for (const std::string threads : {"2", "8"}) {
-      shell("cradle " + ensemble + " --replicas 30 --threads " + threads + " -o " + threads + ".h5", 0);
-      expect_same("1.h5", threads + ".h5");
-    }
+    expect_same_on_threads("cradle ensemble " + scene + ".toml --replicas 30");
     // Replicas from two files are those of one.
     shell("cradle " + ensemble + " --replicas 30 --first 30 -o later.h5", 0);
     shell("cradle merge 1.h5 later.h5 --force -o merged.h5", 0);
@@ -277,84 +260,13 @@ TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
 #endif
   }
   const Result found = read("1.h5");
-  for (const auto& [group, name] : {std::pair("correlations", "msd"),
-                                    {"correlations", "vacf"},
-                                    {"structure_average", "s"},
-                                    {"structure/0001", "s"},
-                                    {"pair_distribution_average", "pair_distribution"},
-                                    {"pair_distribution/0001", "pair_distribution"}})
+  for (const auto& [group, name] : of_particles)
     for (const double error : numbers(found, fmt::format("ensemble/{}/{}", group, name), "sem"))
       EXPECT_GE(error, 0) << group;
+  for (const char* later : {"ensemble/structure/0001/s", "ensemble/pair_distribution/0001/pair_distribution"})
+    for (const double error : numbers(found, later, "sem")) EXPECT_GE(error, 0) << later;
   EXPECT_EQ(numbers(found, "ensemble/correlations", "lag")[3], 0.75);
   EXPECT_EQ(found.find("ensemble/structure_average/s_sem"), nullptr);
-}
-
-TEST(Measured, WhatIsRefused) {
-  const auto message = [](const std::string& output, const std::string& more = "law.restitution = 1\nlaw.type = "
-                                                                               "'inelastic'\n") {
-    return refusal(tools::Exit::bad_input, [&] {
-      parse_scene(more + "initial.type = 'rows'\nrun.until = 10\n[output]\n" + output, "scene.toml");
-    });
-  };
-  const auto expect = [](const std::string& found, const std::string& wanted) {
-    EXPECT_TRUE(has(found, wanted)) << found;
-  };
-  const std::string gaps = "histograms = ['gap']\n";
-  expect(message("averages.every = 0.1"), "output.averages.range: missing");
-  expect(message("averages = { every = 1, range = [0, 1] }"),
-         "too few samples for errors (found 1): give 0.322581 or less");
-  expect(message("averages = { every = 0.1, range = [1, 0] }"), "output.averages.range: not a range");
-  expect(message("averages = { bins = 3 }"), "output.averages.bins: key of averages that are not requested");
-  expect(message("averages = { every = 1e-9, range = [0, 1] }"), "too many samples");
-  expect(message("histograms = ['gaps']"), "no such choice (found \"gaps\"): give a list of free_flight, pair_flight");
-  expect(message("counting.from = 1"), "output.counting.from: key of histograms that are not requested");
-  expect(message(gaps), "output.counting.every: missing");
-  expect(message("histograms = ['cluster']\ncounting.every = 1"), "output.counting.cluster_gap: missing");
-  expect(message("histograms = ['closing_speed']\ncounting.every = 1"), "output.counting.every: key of histograms");
-  expect(message(gaps + "counting = { every = 1, range = [0, 1] }"), "output.counting.range: out of range");
-  expect(message(gaps + "counting = { every = 1, range = [2, 1] }"), "give two numbers, the lower one first");
-  expect(message(gaps + "counting = { every = 1, from = 3, until = 2 }"), "output.counting.until: out of range");
-  expect(message("histograms = ['pair_flight']", "law.type = 'sticky'\n"), "leave out pair_flight");
-  expect(message("correlations.every = 1", "law.type = 'sticky'\n"), "particles that merge");
-  expect(message("correlations.from = 1"), "output.correlations.from: key of correlations that are not requested");
-  expect(message("correlations = { every = 1, longest = 0.5 }"), "output.correlations.longest: out of range");
-  expect(message("correlations = { every = 1e-7 }"), "too many samples");
-  expect(message("structure.every = 1"), "output.structure.length: missing");
-  expect(message("structure.waves = 5"), "output.structure.waves: key of structure factors that are not requested");
-  expect(message("structure = { times = [1], until = 3, length = 1 }"), "output.structure.until: key of structure");
-  expect(message("structure.times = [11]\nstructure.length = 1"), "output.structure.times: out of range");
-  expect(message("pair_distribution.every = 1"), "output.pair_distribution.distance: missing");
-  expect(message("pair_distribution = { every = 1, distance = 3 }"), "pairs without a density to compare them with");
-  expect(message("pair_distribution.bins = 3"), "output.pair_distribution.bins: key of pair distributions");
-  const std::string walls = "law = { type = 'inelastic', restitution = 1 }\ninitial.particles = 20\nwalls = { left = "
-                            "{ position = -15 }, right = { position = 15 } }\n";
-  expect(message("pair_distribution = { every = 1, distance = 31 }", walls),
-         "more than there is between the walls (found 31): give 30 at most");
-  const auto on_ring = [](const std::string& output) {
-    return refusal(tools::Exit::bad_input, [&] {
-      parse_scene("law = { type = 'inelastic', restitution = 1 }\ninitial = { type = 'ring', particles = 5, length = "
-                  "5 }\nrun.until = 40\n[output]\n" +
-                      output,
-                  "scene.toml");
-    });
-  };
-  EXPECT_EQ(on_ring("averages = { every = 1, bins = 2, range = [-5, 5.5] }"),
-            "scene.toml:5: output.averages.range: bins longer than the ring (found from -5 to 5.5): give a range of 10 "
-            "at most, or more bins");
-  EXPECT_EQ(on_ring("profiles = { times = [1], bins = 2, range = [-5, 5.5] }"),
-            "scene.toml:5: output.profiles.range: bins longer than the ring (found from -5 to 5.5): give a range of 10 "
-            "at most, or more bins");
-  EXPECT_EQ(on_ring("structure = { times = [1], length = 2 }"),
-            "scene.toml:5: output.structure.length: waves that do not close on the ring (found 2): remove it, or give "
-            "the length of the ring, 5, or a whole part of it");
-  const auto tagged = refusal(tools::Exit::bad_input, [] {
-    tools::run_scene(
-        parse_scene("law = { type = 'inelastic', restitution = 1 }\ninitial = { type = 'ring', particles = "
-                    "1.1e6 }\nrun.until = 10\noutput = { series.points = 2, correlations.every = 1e-5 }",
-                    "scene.toml"),
-        {tools::Progress::Show::never});
-  });
-  expect(tagged, "more tagged particles than memory is for (found 1100000 of them");
 }
 
 }  // namespace cradle::tests::measured_test

@@ -1,10 +1,9 @@
-// Scenes as a user writes them: literals survive exactly, every mistake has its own message with file, line and key,
-// and the effective scene reads back as the same scene.
+// Scenes as a user writes them: literals survive exactly, and the effective scene reads back as the same scene. What is
+// refused, and with which message, is in tests/tools/messages.txt.
 #include "cradle/tools/scene/scene.hpp"
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -12,7 +11,6 @@
 
 namespace cradle::tools::scene_test {
 
-using test::begins;
 using test::has;
 using tests::matches;
 using tests::ProgramTest;
@@ -46,36 +44,6 @@ Scene parse(const std::string& text, const Strings& overrides = {}) { return par
 std::string message(const std::string& text, const Strings& overrides = {}) {
   return refusal(Exit::bad_input, [&] { parse(text, overrides); });
 }
-
-// A message that ends in ... is the beginning of one.
-void expect_message(const std::string& found, const std::string& key, const std::string& message) {
-  const std::string expected = key.ends_with(' ') ? key + message : key + ": " + message;
-  if (message.ends_with("..."))
-    EXPECT_TRUE(begins(found, expected.substr(0, expected.size() - 3)));
-  else
-    EXPECT_EQ(found, expected);
-}
-struct Wrong {
-  std::string scene;
-  int line;  // 0: the file
-  std::string key, message;
-};
-void expect_refused(const std::vector<Wrong>& scenes) {
-  for (const auto& [scene, line, key, wrong] : scenes)
-    expect_message(message(scene), (line == 0 ? "s.toml: " : "s.toml:" + std::to_string(line) + ": ") + key, wrong);
-}
-struct Overridden {
-  std::string scene;
-  struct Wrong {
-    std::string settings, key, message;  // settings are separated by spaces
-  };
-  void expect_refused(const std::vector<Wrong>& all) const {
-    for (const auto& [settings, key, wrong] : all) {
-      std::istringstream words(settings);
-      expect_message(message(scene, {std::istream_iterator<std::string>(words), {}}), "--set " + key, wrong);
-    }
-  }
-};
 
 Strings texts(const std::vector<Decimal>& numbers) {
   Strings result;
@@ -117,13 +85,6 @@ TEST(Scene, DefaultsAreThoseOfTheTable) {
 
 TEST(Scene, OnlyTheContractsKeysAreRequired) {
   EXPECT_EQ(parse("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 1\n").initial.particles, 8000U);
-  expect_refused({
-      {line(2, ""), 0, "law.type", "missing: give one of inelastic, wet, sticky"},
-      {line(3, ""), 0, "law.restitution", "missing: give a number from 0 to 1"},
-      {line(5, ""), 0, "initial.type", "missing: give one of rows, ring, list, clusters, cold, gas"},
-      {line(8, ""), 0, "run.until", "missing: give a number of run.start = 0 or more"},
-      {"law.type = 'wet'\ninitial.type = 'ring'\nrun.until = 1", 0, "law.loss", "missing: give a number of 0 or more"},
-  });
 }
 
 TEST(Scene, LiteralsAreKeptExactly) {
@@ -132,6 +93,7 @@ TEST(Scene, LiteralsAreKeptExactly) {
   EXPECT_EQ(parse(restitution("0." + std::string(5000, '9') + " # many")).law.restitution.text.size(), 5002U);
   EXPECT_EQ(parse(restitution("\"0.999\"")).law.restitution.text, "0.999");
   EXPECT_EQ(parse(restitution("+0.99_9")).law.restitution.text, "0.999");
+  EXPECT_EQ(parse(restitution("+0.500_000_000_000_000_1E-0_0")).law.restitution.text, "0.5000000000000001e-00");
   EXPECT_EQ(parse(restitution("'.5'")).law.restitution.text, "0.5");
   const Scene scene = parse(good + "start = -1_0.25E-1\nstop_gap = 1e-400\nprecision = 'mpfr'\n");
   EXPECT_EQ(scene.run.start.text, "-10.25e-1");
@@ -149,119 +111,25 @@ TEST(Scene, LiteralsAreKeptExactly) {
   EXPECT_EQ(texts(list.initial.v), (Strings{"1", "1e-7", "16"}));
 }
 
-// However many digits it has, a number is one that TOML has too.
-TEST(Scene, LongLiteralsAreTomlToo) {
-  for (const char* wrong : {"0000000000000000.5", ".50000000000000000", "5.000000000000000e", "1__0.00000000000000",
-                            "0_.50000000000000000", "1.e-400", ".5e-400", "--0.5000000000000000"})
-    expect_refused({{restitution(wrong), 3, "", "not valid TOML..."}});
-  EXPECT_EQ(parse(restitution("+0.500_000_000_000_000_1E-0_0")).law.restitution.text, "0.5000000000000001e-00");
-}
-
-// A number above 0 in the scene is above 0 in the run, and numbers that are always doubles are doubles that exist.
-TEST(Scene, NumbersThatThePrecisionTakesFor0) {
-  const std::string head = "law = { type = 'inelastic', restitution = 0.5 }\nrun.until = 1\n";
-  const std::string rows = head + "initial = { type = 'rows', left = { particles = 2, speed = 1 }, "
-                                  "right = { particles = 2, speed = -1 }, centre.mass = 1e-400 }\n";
-  const std::string list = head + "initial = { type = 'list', x = [0, 1], v = [0, 0] }\n";
-  const std::string mpfr = "run.precision = 'mpfr'\n", close = "1." + std::string(400, '0') + "1";
-  for (const auto& [text, key] :
-       {std::pair{rows, "initial.centre.mass"},
-        {list + "run.stop_gap = 1e-400", "run.stop_gap"},
-        {list + "output.series.every = 1e-400", "output.series.every"},
-        {list + mpfr + "walls.left = { position = -1, temperature = 1e-400 }", "walls.left.temperature"}})
-    EXPECT_TRUE(has(message(text), key + std::string(": too small for the precision (found 1e-400 with \"double\")")));
-  EXPECT_EQ(parse(rows + "run.precision = 'mpfr'").initial.centre.mass.text, "1e-400");
-  parse(list + mpfr + "run.stop_gap = 1e-400");
-  for (const char* range : {"[1, 1.00000000000000000001]", "[-1e400, 1]"})
-    EXPECT_TRUE(has(message(list + mpfr + "output.profiles.range = " + range), "not a range of doubles"));
-  // A wall beside a particle by less than any binary number of a hundred digits resolves.
-  parse(list + mpfr + "walls.right.position = " + close);
-  EXPECT_TRUE(has(message(head + "initial = { type = 'list', x = [0, " + close +
-                          "], v = [0, 0] }\nwalls.right.position = 1\n" + mpfr),
-                  "a wall among the particles"));
+// A number above 0 in the scene is above 0 in the run. A wall beside a particle by less than any binary number of a
+// hundred digits resolves.
+TEST(Scene, NumbersThatOnlyAWidePrecisionHolds) {
+  const std::string head = "law = { type = 'inelastic', restitution = 0.5 }\nrun.until = 1\nrun.precision = 'mpfr'\n",
+                    close = "1." + std::string(400, '0') + "1";
+  EXPECT_EQ(parse(head + "initial = { type = 'rows', left = { particles = 2, speed = 1 }, "
+                         "right = { particles = 2, speed = -1 }, centre.mass = 1e-400 }\n")
+                .initial.centre.mass.text,
+            "1e-400");
+  parse(head + "initial = { type = 'list', x = [0, 1], v = [0, 0] }\nwalls.right.position = " + close);
+  EXPECT_TRUE(
+      has(message(head + "initial = { type = 'list', x = [0, " + close + "], v = [0, 0] }\nwalls.right.position = 1\n"),
+          "a wall among the particles"));
 }
 
 TEST(Scene, IntegersMayBeWrittenAsFloats) {
   EXPECT_EQ(parse(line(6, "particles = 2e7")).initial.particles, 20000000U);
   EXPECT_EQ(parse(line(6, "particles = 8000.0")).initial.particles, 8000U);
   EXPECT_EQ(parse(line(6, "seed = 18446744073709551615")).initial.seed, std::numeric_limits<std::uint64_t>::max());
-  const std::string even = ": give an even integer from 2 to 1e15";
-  expect_refused({
-      {line(6, "particles = 80.5"), 6, "initial.particles", "not an integer (found 80.5)" + even},
-      {line(6, "particles = 8001"), 6, "initial.particles", "odd (found 8001)" + even},
-      {line(6, "seed = 18446744073709551616"), 6, "initial.seed", "out of range (found 1844..."},
-  });
-}
-
-TEST(Scene, MistakesAreReportedWithLineAndKey) {
-  const std::string just_above = "1.00000000000000000000001", unit = ": give a number from 0 to 1",
-                    law = ": give one of inelastic, wet, sticky", another = "key of another initial state (found ",
-                    policy = "key of another collapse policy (found run.collapse = ";
-  // Ranges are exact: these are within them.
-  parse(restitution("1.0000000000000000000000"));
-  parse(line(6, "perturbation = 0.49999999999999999999999"));
-  parse(line(8, "until = 1e400\nprecision = \"float128\""));
-  expect_refused({
-      {restitution("1.5"), 3, "law.restitution", "out of range (found 1.5)" + unit},
-      {restitution(just_above), 3, "law.restitution", "out of range (found " + just_above + ")" + unit},
-      {restitution("-1e-400"), 3, "law.restitution", "out of range (found -1e-400)" + unit},
-      {line(6, "perturbation = 0.5"), 6, "initial.perturbation",
-       "out of range (found 0.5): give a number from 0 to below 0.5"},
-      {line(6, "spacing = 0"), 6, "initial.spacing", "out of range (found 0): give a number above 0"},
-      {good + "start = 7000", 8, "run.until", "out of range (found 6500): give a number of run.start = 7000 or more"},
-      // numbers that are not finite
-      {line(8, "until = inf"), 8, "run.until", "not finite (found inf): give a number of run.start = 0 or more"},
-      {restitution("-nan"), 3, "law.restitution", "not finite (found -nan)" + unit},
-      {restitution("\"nan\""), 3, "law.restitution", "not finite..."},
-      {line(8, "until = 1e400"), 8, "run.until",
-       "too large for the precision (found 1e400 with \"double\"): give a smaller number or another run.precision"},
-      // wrong types
-      {restitution("\"much\""), 3, "law.restitution", "wrong type (found \"much\")" + unit},
-      {restitution("[1, 2]"), 3, "law.restitution", "wrong type (found an array of 2 values)" + unit},
-      {restitution("{ value = 1 }"), 3, "law.restitution", "wrong type (found a table)" + unit},
-      {restitution("true"), 3, "law.restitution", "wrong type (found true..."},
-      {line(2, "type = 5"), 2, "law.type", "wrong type (found 5)" + law},
-      {line(2, "type = \"dry\""), 2, "law.type", "no such choice (found \"dry\")" + law},
-      {"title = 5\n" + good, 1, "title", "wrong type (found 5): give a text"},
-      {"output = 5\n" + good, 1, "output", "wrong type (found 5)..."},
-      {good + "[output]\nevents = 1", 10, "output.events", "wrong type (found 1): give true or false"},
-      {good + "[output]\nsnapshots = 5", 10, "output.snapshots", "wrong type (found 5): gi..."},
-      // an element is reported at its own line
-      {good + "[output]\nsnapshots = [1,\n 2, true]", 11, "output.snapshots",
-       "wrong type (found true): give a list of numbers from run.start = 0 to run.until = 6500, or a table {from, "
-       "until, every}"},
-      // unknown keys name the nearest known one
-      {line(3, "restituton = 0.9"), 3, "law.restituton", "unknown key (found 0.9): did you mean law.restitution?"},
-      {good + "restitution = 0.9", 9, "run.restitution", "unknown key (found 0.9): did you mean law.restitution?"},
-      {good + "[otuput]\nevents = true", 10, "otuput.events", "unknown key (found true): did you mean output.events?"},
-      {good + "[weather]\n", 9, "weather", "unknown key (found a table): remove it; the manual lists all keys"},
-      // keys that do not apply
-      {restitution("0.9\nloss = 1"), 4, "law.loss",
-       "key of another law (found law.type = \"inelastic\"): remove it, it belongs to law.type = \"wet\""},
-      {line(2, "type = \"sticky\""), 3, "law.restitution", "key of another law (found law.type = \"..."},
-      // more helpful than the loss that is missing
-      {line(2, "type = \"wet\""), 3, "law.restitution", "key of another law ..."},
-      {line(6, "length = 10"), 6, "initial.length",
-       another +
-           "initial.type = \"rows\"): remove it, it belongs to initial.type = \"ring\" or initial.type = \"list\""},
-      {line(5, "type = \"ring\"\nspeed = 1"), 6, "initial.speed", another + "initial.type = \"rin..."},
-      {good + "digits = 50", 9, "run.digits",
-       "key of another precision (found run.precision = \"double\"): remove it, it belongs to run.precision = "
-       "\"mpfr\""},
-      {good + "collapse = 'merge'\nmerge_speed = 1e-8\ncontact_time = 1", 11, "run.contact_time",
-       policy + "\"merge\"): remove it, it belongs to run.collapse = \"contact-time\""},
-      {good + "merge_speed = 1", 9, "run.merge_speed", "key of another collapse policy (f..."},
-      {"law.type = 'sticky'\ninitial.type = 'rows'\n[run]\nuntil = 1\ncollapse = 'merge'\nmerge_speed = 1", 5,
-       "run.collapse", "collapse policy of another law (found law.type = \"sticky\"): remove it, it belongs to ..."},
-      {good + "collapse = 'cutoff'\nstop_gap = 1", 10, "run.stop_gap", "..."},
-      {good + "collapse = 'contact-time'", 0, "run.contact_time", "missing: give a number above 0"},
-      {good + "[output]\nseries = { points = 10, every = 1 }", 10, "output.series.points",
-       "second way to say when the series is sampled (found output.series.every = 1): remove it, it belongs to a "
-       "series without every and times"},
-      {line(4, "[initial"), 4, "", "not valid TOML (f..."},
-      {line(6, "type = 'rows'"), 6, "", "not valid TOML (f..."},
-      {line(6, "particles = 1 2"), 6, "", "not valid TOML (f..."},
-  });
 }
 
 TEST(Scene, TimesAreSortedAndWithinTheRun) {
@@ -271,17 +139,8 @@ TEST(Scene, TimesAreSortedAndWithinTheRun) {
   EXPECT_EQ(texts(scene.output.series.times), (Strings{"2", "3"}));
   EXPECT_FALSE(scene.output.series.points);
   EXPECT_EQ(texts(scene.output.profiles.range), (Strings{"-4", "4e1"}));
-  const std::string output = good + "[output]\n";
-  expect_refused({
-      {output + "snapshots = [1, 6500.001]", 10, "output.snapshots",
-       "out of range (found 6500.001): give a list of numbers from run.start = 0 to run.until = 6500, or a table "
-       "{from, until, every}"},
-      {output + "series.times = []", 10, "output.series.times",
-       "no times (found an empty list): give at least one time"},
-      {output + "profiles.range = [4, -4]", 10, "output.profiles.range",
-       "not a range (found from 4 to -4): give two positions, the lower one first"},
-      {output + "profiles.range = [4]", 10, "output.profiles.range", "not a range (found an array of 1 ..."},
-  });
+  EXPECT_EQ(parse(good + "[output]\nseries = { points = 11, over = 100 }").output.series.over, Decimal("100"));
+  EXPECT_EQ(parse(good, {"run.start=6499.9999999", "output.series.every=1e-9"}).output.series.every->text, "1e-9");
 }
 
 TEST(Scene, RunCutShortOnTheCommandLineKeepsTheTimesWithinIt) {
@@ -289,34 +148,17 @@ TEST(Scene, RunCutShortOnTheCommandLineKeepsTheTimesWithinIt) {
   EXPECT_EQ(texts(parse(scene, {"run.until=100"}).output.snapshots), (Strings{"1", "50"}));
   EXPECT_TRUE(parse(scene, {"run.until=100"}).output.profiles.times.empty());
   EXPECT_EQ(texts(parse(scene, {"run.until=100", "run.start=2"}).output.snapshots), (Strings{"50"}));
-  Overridden{scene}.expect_refused({{"run.until=100 output.snapshots=[200]", "output.snapshots", "out of range..."}});
 }
 
 TEST(Scene, GeneralRows) {
-  const std::string start = "law.type = 'sticky'\nrun.until = 9\n", head = start + "initial.type = 'rows'\n";
-  const std::string left = "[initial.left]\nparticles = 3\nspeed = 1\n";
-  const std::string right = "[initial.right]\nparticles = 5\nspeed = 0.5\ndensity = 2\n";
-  const Scene scene = parse(head + left + right + "[initial.centre]\nmass = 4\nspeed = 0.75");
+  const Scene scene = parse("law.type = 'sticky'\nrun.until = 9\ninitial.type = 'rows'\n[initial.left]\n"
+                            "particles = 3\nspeed = 1\n[initial.right]\nparticles = 5\nspeed = 0.5\ndensity = 2\n"
+                            "[initial.centre]\nmass = 4\nspeed = 0.75");
   EXPECT_TRUE(scene.initial.general_rows());
   EXPECT_EQ(scene.initial.left.particles, 3U);
   EXPECT_EQ(scene.initial.left.density.text, "1");
   EXPECT_EQ(scene.initial.right.density.text, "2");
   EXPECT_EQ(scene.initial.centre.mass.text, "4");
-  expect_refused({
-      {head + left, 0, "initial.right.particles", "missing: give an integer from 1 to 1e15"},
-      {head + left + "[initial.right]\nparticles = 5\nspeed = 1.0", 9, "initial.right.speed",
-       "the rows do not meet (found left row at 1, right row at 1.0): give the right row a lower velocity than the "
-       "left row"},
-      {head + left + right + "[initial.centre]\nmass = 1\nspeed = 2", 13, "initial.centre.speed",
-       "a row does not reach the particle between the rows (found left row at 1, centre at 2, right row at 0.5): give "
-       "a velocity between those of the rows"},
-      {head + left + right + "[initial.centre]\nspeed = 2", 12, "initial.centre.speed", "..."},
-      {head + "initial.particles = 8\n" + left + right, 4, "initial.particles",
-       "key of another initial state (found initial.left.particles = 3): remove it, it belongs to initial.type = "
-       "\"rows\" without [initial.left] and [initial.right] or initial.type = \"ring\" or initial.type = \"cold\" or "
-       "initial.type = \"gas\""},
-      {start + "initial.type = 'ring'\n" + left, 5, "initial.left.particles", "key of another initial st..."},
-  });
 }
 
 TEST(Scene, WallsStandOutsideTheParticles) {
@@ -331,28 +173,6 @@ TEST(Scene, WallsStandOutsideTheParticles) {
   EXPECT_EQ(parse(effective_toml(scene)), scene);
   EXPECT_FALSE(parse(three).walls.any());
   EXPECT_FALSE(parse(rows + "walls.left.position = -7.6").walls.right.position);
-
-  const std::string walls = three + "[walls]\n",
-                    among = "a wall among the particles, which would have met before the start (found wall at ";
-  expect_refused({
-      {walls + "left.position = 0\nleft.temperature = 0", 6, "walls.left.temperature",
-       "out of range (found 0): give a number above 0"},
-      {walls + "left.position = 0\nleft.temperature = 1\nleft.restitution = 0.5", 7, "walls.left.restitution",
-       "key of a wall that reflects (found walls.left.temperature = 1): remove it, it belongs to a left wall without "
-       "temperature"},
-      {walls + "right.speed = 1", 5, "walls.right.speed", "key of a wall that is not there..."},
-      {walls + "left.position = 1", 5, "walls.left.position", among + "1, first particle at 1): move it outwards"},
-      {walls + "right.position = 3", 5, "walls.right.position", among + "3, last particle at 4): move it outwards"},
-      {rows + "walls.left.position = -7.5", 4, "walls.left.position", "a wall among the particles..."},
-      {walls + "left.position = 0\nleft.speed = 0.25\nright.position = 4.5\nright.speed = -0.5", 6, "walls.left.speed",
-       "the walls meet before the run ends (found at t = 7): give smaller speeds, or an earlier run.until"},
-      {dry + "initial.type = 'ring'\nwalls.left.position = -1", 4, "walls.left.position",
-       "a wall without a line of particles..."},
-      {"law = { type = 'wet', loss = 1 }\nrun.until = 1\ninitial.type = 'rows'\nwalls.left.position = -1e5", 4,
-       "walls.left.position", "key of another law..."},
-  });
-  EXPECT_TRUE(
-      begins(message(three + "run.collapse = 'merge'\nrun.merge_speed = 1\nwalls.left.position = 0"), "s.toml:"));
 }
 
 TEST(Scene, RingIsAsLongAsItHasParticles) {
@@ -362,54 +182,18 @@ TEST(Scene, RingIsAsLongAsItHasParticles) {
   EXPECT_EQ(parse(text + "initial.length = 1e-2").initial.length.text, "1e-2");
 }
 
-TEST(Scene, ParticlesInTheScene) {
+TEST(Scene, MassesBelowTheRangeOfDouble) {
   const std::string head = "law.type = 'sticky'\nrun.until = 9\n[initial]\ntype = 'list'\n";
-  expect_refused({
-      {head, 0, "initial.file",
-       "missing: name a CSV file of particles, or give initial.x (or initial.gap) and initial.v"},
-      {head + "file = 'b.csv'\nx = [1]", 5, "initial.file",
-       "two lists of particles (found initial.file and initial.x): remove one of them"},
-      {head + "x = [1, 2]\nv = [1]", 6, "initial.v", "not one per particle (found 1 for 2 positions): give 2 numbers"},
-      {head + "x = [1, 2]", 0, "initial.v", "not one per particle (found 0 for 2 positions): give 2 numbers"},
-      {head + "x = [1,\n 1.0]\nv = [2, 1]", 6, "initial.x",
-       "particles that touch and approach (found 1.0 after 1): ..."},
-      {head + "gap = []\nv = [2, 1]", 5, "initial.gap", "no gaps (found an empty list): ..."},
-      {head + "x = [1, 2]\nv = [1, 2]\nm = [1, 0]", 7, "initial.m", "out of range (found 0..."},
-      {head + "x = []\nv = []", 5, "initial.x", "no particles ..."},
-      {head + "x = [1, 2]\nv = [1, 2]\nm = [1, 1e-400]", 7, "initial.m",
-       "too small for the precision (found 1e-400 with \"double\"): give a larger number or another run.precision"},
-  });
   EXPECT_EQ(parse(head + "x = [1, 2]\nv = [1, 2]\nm = [1, 1e-400]", {"run.precision=float128"}).initial.m[1], "1e-400");
 }
 
 const std::string small = "law.type = 'inelastic'\nlaw.restitution = 0.9\nrun.until = 10\ninitial.particles = 100\n",
-                  ring = small + "initial.type = 'ring'\n", cold = small + "initial.type = 'cold'\n",
-                  wet = "law.type=wet law.restitution= law.loss=1 ";
+                  ring = small + "initial.type = 'ring'\n", cold = small + "initial.type = 'cold'\n";
 
 TEST(Scene, MassesRepeat) {
   EXPECT_TRUE(parse(ring).initial.masses.empty());
   EXPECT_EQ(texts(parse(ring, {"initial.masses=[1, 4.25]"}).initial.masses), (Strings{"1", "4.25"}));
   EXPECT_EQ(parse(good, {"initial.masses=[1,2,3]"}).initial.masses.size(), 3U);  // rows end with a part of the pattern
-  const std::string indivisible = "the pattern does not divide the ring (found ",
-                    multiple = "): give initial.particles as a multiple of ",
-                    range = "): give a list of numbers above 0";
-  expect_refused({
-      {"[initial]\ntype = \"ring\"\nparticles = 7\nmasses = [1, 2]\n[law]\ntype = \"sticky\"\n[run]\nuntil = 1\n", 4,
-       "initial.masses", indivisible + "2 masses, 7 particles" + multiple + "2"},
-  });
-  Overridden{good}.expect_refused({
-      {"initial.masses=[1e-400]", "initial.masses", "..."},  // not in double
-      {wet + "initial.masses=[1,2] output.zone.from=1", "output.zone.from",
-       "for particles of mass 1 (found initial.masses of others)..."},
-      {wet + "initial.masses=[2] output.scenario=true", "output.scenario",
-       "for particles of mass 1 (found initial.masses of others)..."},
-  });
-  Overridden{ring}.expect_refused({
-      {"initial.masses=[1,2,3]", "initial.masses", indivisible + "3 masses, 100 particles" + multiple + "3"},
-      {"initial.masses=[]", "initial.masses", "no masses (found an empty list): give at least one mass"},
-      {"initial.masses=[1,0]", "initial.masses", "out of range (found 0" + range},
-      {"initial.masses=[1,-1]", "initial.masses", "out of range (found -1" + range},
-  });
   EXPECT_TRUE(unequal_masses(parse(good, {"initial.masses=[1,2]"})));
   EXPECT_TRUE(unequal_masses(parse(good, {"initial.masses=[2]"})));
   EXPECT_FALSE(unequal_masses(parse(good, {"initial.masses=[1,1.0]"})));
@@ -424,49 +208,11 @@ TEST(Scene, ColdGas) {
   const Scene many = parse(cold, {"initial.hot=32", "initial.place=left"});
   EXPECT_EQ(many.initial.energy.text, "32");  // one each
   EXPECT_EQ(many.initial.place, scene::HotPlace::left);
-  const std::string range = "): give an integer from 1 to initial.particles = 100",
-                    another = "key of another initial state (found initial.", remove = "): remove it, it belongs to ";
-  Overridden{cold}.expect_refused({
-      {"initial.hot=101", "initial.hot", "out of range (found 101" + range},
-      {"initial.hot=0", "initial.hot", "out of range (found 0" + range},
-      {"initial.energy=1", "initial.energy",
-       another + "hot = 1" + remove + "initial.type = \"cold\" with several hot particles"},
-      {"initial.hot=2 initial.speed=1", "initial.speed",
-       another + "hot = 2" + remove +
-           "initial.type = \"cold\" with initial.hot = 1 or initial.type = \"rows\" without [initial.left] and "
-           "[initial.right] or initial.type = \"clusters\""},
-      {"initial.hot=2 initial.energy=0", "initial.energy", "out of range (found 0): give a number above 0"},
-  });
-  Overridden{good}.expect_refused({
-      {"initial.hot=2", "initial.hot", another + "type = \"rows\"" + remove + "initial.type = \"cold\""},
-  });
 }
 
 TEST(Scene, RestitutionOfTheSpeed) {
   EXPECT_FALSE(parse(good, {"law.cutoff=1e-3"}).law.cutoff_exponent.has_value());
   EXPECT_EQ(parse(good, {"law.cutoff=1e-3", "law.cutoff_exponent=4"}).law.cutoff_exponent->text, "4");
-  const std::string key = "law.cutoff_exponent", range = "): give a number above 0", cutoff = "law.cutoff=1e-3 ";
-  Overridden{good}.expect_refused({
-      {cutoff + "law.cutoff_exponent=0", key, "out of range (found 0" + range},
-      {cutoff + "law.cutoff_exponent=-1", key, "out of range (found -1" + range},
-      {"law.cutoff_exponent=4", key,
-       "no cut-off that sets in (found law.cutoff = 0): give law.cutoff too, or remove this key"},
-      {cutoff + "law.cutoff_exponent=4 run.collapse=merge run.merge_speed=1", "run.collapse",
-       "not built with a restitution that depends on the speed (found \"merge\")..."},
-      {wet + "law.cutoff_exponent=4", key, "key of another law..."},
-  });
-}
-
-TEST(Scene, SamplesAreCountedBeforeMemoryForThemIsTaken) {
-  Overridden{good}.expect_refused({
-      {"output.series.every=1e-9", "output.series.every",
-       "too many samples (found 1e-9, which makes 6.5e+12 of them until run.until): give a longer time, 1e+07 samples "
-       "at most"},
-      {"output.series.points=1e8", "output.series.points", "out of range (found 1e8): give an integer from 2 to 1e7"},
-      {wet + "output.zone.from=1 output.zone.samples=1e8", "output.zone.samples", "out of range (found 1e8): ..."},
-  });
-  expect_refused({{good + "[output.series]\nevery = 1e-300", 10, "output.series.every", "too many samples..."}});
-  EXPECT_EQ(parse(good, {"run.start=6499.9999999", "output.series.every=1e-9"}).output.series.every->text, "1e-9");
 }
 
 // How often a run is checkpointed cannot change its result, nor stand in it.
@@ -474,29 +220,9 @@ TEST(Scene, CheckpointsAreNoPartOfTheEffectiveScene) {
   const Scene often = parse(good + "[output]\ncheckpoint = { every_seconds = 0.5 }");
   EXPECT_EQ(often.output.checkpoint.every_seconds, tools::Decimal("0.5"));
   EXPECT_EQ(effective_toml(often), effective_toml(parse(good)));
-  expect_refused({{good + "[output]\ncheckpoint = { every_seconds = -1 }", 10, "output.checkpoint.every_seconds",
-                   "out of range (found -1): ..."}});
-}
-
-TEST(Scene, PointsAreSpreadOverATimeAndContinueBehindIt) {
-  const std::string series = good + "[output]\nseries = { ", key = "output.series.over";
-  EXPECT_EQ(parse(series + "points = 11, over = 100 }").output.series.over, tools::Decimal("100"));
-  expect_refused({
-      {series + "points = 11, over = 1e9 }", 10, key, "out of range (found 1e9): ..."},
-      {series + "points = 11, over = 1e-9 }", 10, key, "too many samples (found 1e-9, ..."},
-      {series + "every = 1, over = 100 }", 10, key, "second way to say when the series is sampled..."},
-  });
 }
 
 class SceneFiles : public ProgramTest {};
-
-TEST_F(SceneFiles, ResultsAreNoScenes) {
-  write("a.h5", "\x89HDF\r\n\x1a\nand so on");
-  EXPECT_EQ(refusal(Exit::bad_input, [&] { read_scene(path("a.h5")); }),
-            path("a.h5") +
-                ": a result, not a scene (found HDF5): give the scene file, or inspect it with `cradle info " +
-                path("a.h5") + "`");
-}
 
 // What is no file is neither waited for nor read without end, whatever command it is given to.
 TEST_F(SceneFiles, AreFiles) {
@@ -519,17 +245,10 @@ TEST_F(SceneFiles, AreFiles) {
     EXPECT_FALSE(has(shell(std::string("cradle ") + command).err, "abcdef")) << command;
 }
 
-// A message is whole, and says what a terminal would do rather than show.
-TEST(Scene, ControlCharactersAreWrittenOut) {
-  expect_refused({
-      {restitution("\"a\\u0000b\\u001B[2J\""), 3, "law.restitution",
-       "wrong type (found \"a\\x00b\\x1b[2J\"): give a number from 0 to 1"},
-      {line(3, "\"a\\u0000b\" = 1"), 3, "law.a\\x00b", "unknown key (found 1): remove it; the manual lists all keys"},
-      {"title = \"a\\u0000b\"\n" + good, 1, "title", "a text with a character 0 (found \"a\\x00b\"): give a text"},
-      {line(5, "type = \"list\"\nfile = \"a\\u0000b\""), 6, "initial.file", "a text with a character 0..."},
-      {line(2, "type = \"" + std::string(5000, 'a') + "\""), 2, "law.type",
-       "no such choice (found \"" + std::string(100, 'a') + "...\"): give one of inelastic, wet, sticky"},
-  });
+TEST(Scene, LongTextsAreCutOffInMessages) {
+  EXPECT_EQ(message(line(2, "type = \"" + std::string(5000, 'a') + "\"")),
+            "s.toml:2: law.type: no such choice (found \"" + std::string(100, 'a') +
+                "...\"): give one of inelastic, wet, sticky");
 }
 
 TEST(Overrides, ReplaceAddAndRemove) {
@@ -548,17 +267,6 @@ TEST(Overrides, ReplaceAddAndRemove) {
   const Scene every = parse(good + "[output]\nseries = { points = 5, spacing = 'log' }", {"output.series.every=0.5"});
   EXPECT_FALSE(every.output.series.points);
   EXPECT_EQ(every.output.series.every->text, "0.5");
-}
-
-TEST(Overrides, ErrorsNameTheAssignment) {
-  Overridden{good}.expect_refused({
-      {"law.restitution=1.5", "law.restitution", "out of range (found 1.5): give a number from 0 to 1"},
-      {"law.restituton=0.5", "law.restituton", "unknown key (found 0.5): did you mean law.restitution?"},
-      {"run.until=soon", "run.until", "wrong type (found \"soon\"): ..."},
-      {"output.snapshots=[1,9999]", "output.snapshots", "out of range (found ..."},
-  });
-  EXPECT_EQ(message(good, {"law.restitution"}),
-            "--set: not an assignment (found law.restitution): write table.key=value");
 }
 
 TEST(EffectiveScene, ReadsBackAsTheSameScene) {
@@ -653,8 +361,6 @@ TEST_F(SceneFiles, ComeBeforeBundledNames) {
   const Scene scene = read_scene(path("mine.toml"), {"run.until=7"});
   EXPECT_EQ(scene.name, "mine");
   EXPECT_EQ(scene.run.until.text, "7");
-  const std::string missing = refusal(Exit::io, [] { read_scene("fig99"); });
-  EXPECT_EQ(missing, "fig99: no such scene (found neither a file nor a bundled scene): did you mean fig9?");
 }
 
 }  // namespace cradle::tools::scene_test

@@ -1,5 +1,5 @@
 // Ranges of times in place of lists: the decimals that a user would write, in every key that takes times, in files and
-// on the command line; every mistake has its own message with file, line and key.
+// on the command line. (Messages: tests/tools/messages.txt.)
 #include "cradle/tools/scene/time_range.hpp"
 
 #include "cradle/tests/core/rational.hpp"
@@ -12,8 +12,6 @@ namespace cradle::tools::time_range_test {
 
 using Strings = std::vector<std::string>;
 using cradle::test::Rational;
-using tests::begins;
-using tests::refusal;
 
 const std::string ring = "law = { type = 'sticky' }\ninitial = { type = 'ring', particles = 10 }\n[run]\nuntil = 100\n";
 
@@ -25,10 +23,6 @@ Strings snapshots(const std::string& range, const Strings& overrides = {}) {
   for (const Decimal& time : parse("snapshots = " + range, overrides).output.snapshots) texts.push_back(time.text);
   return texts;
 }
-std::string refused(const std::string& range, const Strings& overrides = {}) {
-  return refusal(Exit::bad_input, [&] { snapshots(range, overrides); });
-}
-
 TEST(TimeRange, StepsAreTheDecimalsThatAUserWouldWrite) {
   EXPECT_EQ(snapshots("{ from = 70, until = 70.08, every = 0.02 }"),
             (Strings{"70", "70.02", "70.04", "70.06", "70.08"}));
@@ -91,8 +85,6 @@ TEST(TimeRange, EndsAreThoseOfTheRunWhereNotGiven) {
   EXPECT_EQ(snapshots("{ every = 50 }", {"run.start=20"}), (Strings{"20", "70"}));
   EXPECT_EQ(snapshots("{ from = 60, every = 20 }", {"run.until=90"}), (Strings{"60", "80"}));
   EXPECT_EQ(snapshots("{ from = 20, points = 2, spacing = 'log' }"), (Strings{"20", "100"}));
-  EXPECT_EQ(refusal(Exit::bad_input, [] { parse("snapshots = { every = 1 }", {"run.until="}); }),
-            "s.toml: run.until: missing: give a number of run.start = 0 or more");
 }
 
 // Keys that take lists of times take ranges, whatever they are called.
@@ -123,49 +115,6 @@ TEST(TimeRange, IsSetOnTheCommandLine) {
   EXPECT_EQ(series.output.series.times, (std::vector{Decimal("1"), Decimal("100")}));
   // A run cut short keeps the times of the file that are within it, and none of the command line outside.
   EXPECT_EQ(snapshots("{ from = 0, until = 100, every = 30 }", {"run.until=50"}), (Strings{"0", "30"}));
-  EXPECT_TRUE(begins(refused("[]", {"run.until=50", "output.snapshots={ from = 0, until = 90, every = 30 }"}),
-                     "--set output.snapshots.until: out of range (found 60): "));
-}
-
-TEST(TimeRange, MistakesHaveMessages) {
-  const std::string at = "s.toml:6: output.snapshots";
-  EXPECT_EQ(refused("{ from = 1, until = 2 }"), at + ": a range of times that is not divided (found neither every nor "
-                                                     "points): give from, until and every, or from, until, points and "
-                                                     "spacing");
-  EXPECT_EQ(refused("{ every = 1, points = 3 }"),
-            at + ".points: two ways to divide a range of times (found every and points): remove one of them");
-  EXPECT_EQ(refused("{ every = 1, spacing = 'log' }"), at + ".spacing: spacing of a range that every divides (found "
-                                                            "\"log\"): remove it, or give points instead of every");
-  EXPECT_EQ(refused("{ every = 1, form = 3 }"),
-            at + ".form: unknown key in a range of times (found 3): give from, until "
-                 "and every, or from, until, points and spacing");
-  EXPECT_EQ(refused("{ from = 3, until = 2, every = 1 }"), at + ".until: a range of times that ends before it begins "
-                                                                "(found from 3 until 2): give from the lower time");
-  EXPECT_EQ(refused("{ every = 0 }"), at + ".every: out of range (found 0): give a number above 0");
-  EXPECT_EQ(refused("{ every = -1 }"), at + ".every: out of range (found -1): give a number above 0");
-  EXPECT_EQ(refused("{ every = true }"), at + ".every: not a decimal number (found true): give a number");
-  EXPECT_EQ(refused("{ every = [1] }"), at + ".every: not a decimal number (found an array of 1 value): give a number");
-  EXPECT_EQ(refused("{ every = nan }"), at + ".every: not a decimal number (found nan): give a number");
-  EXPECT_EQ(refused("{ every = 1e-7 }"), at + ".every: too many times (found 1e-7, which makes 1e+09 of them): give a "
-                                              "longer time, 1e+06 times at most");
-  EXPECT_TRUE(begins(refused("{ every = 1e-300000 }"), at + ".every: too many times"));
-  EXPECT_EQ(refused("{ points = 1 }"), at + ".points: out of range (found 1): give an integer from 2 to 1e+06");
-  EXPECT_EQ(refused("{ points = 2.5 }"), at + ".points: out of range (found 2.5): give an integer from 2 to 1e+06");
-  EXPECT_EQ(refused("{ points = 1e7 }"), at + ".points: out of range (found 1e7): give an integer from 2 to 1e+06");
-  EXPECT_EQ(refused("{ points = 3, spacing = 'logarithmic' }"),
-            at + ".spacing: no such choice (found \"logarithmic\"): give one of linear, log");
-  EXPECT_EQ(refused("{ points = 3, spacing = 'log' }"), at +
-                                                            ": equal ratios from a time that is not above 0 (found 0): "
-                                                            "give from a time above 0, or spacing = \"linear\"");
-  EXPECT_EQ(refused("{ from = 1, until = 1.0000000000000001, points = 4 }"),
-            at +
-                ".points: times closer to each other than 15 digits resolve (found 4 from 1 until 1.0000000000000001): "
-                "give fewer points, a longer range, or every");
-  EXPECT_EQ(refused("{ from = 50, until = 200, every = 75 }"),
-            at + ".until: out of range (found 125): give a list of numbers from run.start = 0 to run.until = 100, or a "
-                 "table {from, until, every}");
-  EXPECT_TRUE(begins(refused("{ from = -1, until = 2, every = 3 }"), at + ".from: out of range (found -1): "));
-  EXPECT_TRUE(begins(refused("{}"), at + ": wrong type (found a table): give a list of numbers"));
 }
 
 }  // namespace cradle::tools::time_range_test

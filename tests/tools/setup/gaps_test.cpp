@@ -234,29 +234,14 @@ TEST(TouchingParticles, ThatPartOrRestAreAccepted) {
   EXPECT_EQ(energy_after("initial.gap = [1, 0]\ninitial.v = [-1, 0, 0]"), 0.5);
 }
 
-TEST(TouchingParticles, ThatApproachAreRefusedWithAdviceThatWorks) {
-  const std::string advice =
-      "give them the velocities that they have after this collision, or a distance: initial.gap, or a column gap, with "
-      "1e-300 there";
-  EXPECT_EQ(refusal(Exit::bad_input,
-                    [&] { parse_scene(touching + "initial.x = [0, 1, 1]\ninitial.v = [0, 1, 0]", "s.toml"); }),
-            "s.toml:4: initial.x: particles that touch and approach (found 1 after 1): " + advice);
-  EXPECT_EQ(refusal(Exit::bad_input,
-                    [&] { parse_scene(touching + "initial.gap = [1, 0]\ninitial.v = [0, 1, 0]", "s.toml"); }),
-            "s.toml:4: initial.gap: particles that touch and approach (found 1 after 1): " + advice);
+// As is advised where they touch and approach (tests/tools/messages.txt).
+TEST(TouchingParticles, AreGivenADistanceInstead) {
   for (const char* gaps : {"[1, 1e-300]", "[1e-300, 1e-300]"}) {
     const Scene scene = parse_scene(touching + "initial.gap = " + gaps + "\ninitial.v = [1, 0, 0]", "s.toml");
     const RunOutcome cradle = run_scene(scene, {.progress = Progress::Show::never});
     EXPECT_EQ(cradle.collisions, 2U);
     EXPECT_EQ(cradle.warning, "");
   }
-}
-
-TEST(TouchingParticles, HaveNoPlacesInAbsolutePositions) {
-  const Scene scene = parse_scene(
-      touching + "initial.x = [1, 1.00000000000000000001]\ninitial.v = [0, 0]\nrun.coordinates = 'absolute'", "s.toml");
-  EXPECT_TRUE(test::has(refusal(Exit::bad_input, [&] { run_scene(scene, {.progress = Progress::Show::never}); }),
-                        "have the same place in absolute positions"));
 }
 
 // A run that is continued nine times from a file of its last state: gaps and closing speeds are read, not differences

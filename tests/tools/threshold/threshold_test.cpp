@@ -1,5 +1,5 @@
 // `cradle threshold`: values at which outcomes change that are known in closed form, decisions in rationals beside
-// runs, continuation to the last byte, and what is refused.
+// runs, and continuation to the last byte. (What is refused: tests/tools/messages.txt.)
 
 #include <cmath>
 #include <cstdint>
@@ -207,33 +207,6 @@ TEST_F(ThresholdCommand, ContinuesAfterAKillToTheSameBytes) {
   shell(command + "a.h5 && " + command + "b.h5", 0);
   expect_same("a.h5", "b.h5");
   EXPECT_FALSE(exists("a.h5.part"));
-}
-
-TEST_F(ThresholdCommand, SaysWhatIsWrong) {
-  const auto expect = [&](const std::string& arguments, const std::string& message, int status = 2) {
-    const Printed printed = shell("cradle threshold collapse3 -o a.h5 " + arguments, status);
-    EXPECT_TRUE(has(printed.err, message)) << printed.err;
-    EXPECT_FALSE(exists("a.h5"));
-    EXPECT_FALSE(exists("a.h5.part"));
-  };
-  expect("--vary law.restitution=0.05:0.06", "--vary: the same outcome at both ends (found inelastic collapse at 0.05 "
-                                             "and at 0.06): give ends between which it changes");
-  expect("--vary law.restitutoin=0.05:0.1", "--vary: no such key (found law.restitutoin): did you mean "
-                                            "law.restitution?");
-  expect("--vary output.events=0:1", "--vary: not a key with a number (found output.events, true or false)");
-  expect("--vary initial.x=0:1", "not a key with a number (found initial.x, list of numbers): give one of its numbers, "
-                                 "initial.x[0]=LOW:HIGH");
-  expect("--vary 'initial.x[3]=0:1'", "not a number of a list (found initial.x[3]): give initial.x[0] to initial.x[2]");
-  expect("--vary law.restitution=0.1:0.05", "--vary: no range");
-  expect("--vary law.restitution=0.1", "--vary: not a key and two numbers");
-  expect("--vary law.restitution=0.05:x", "--vary: not a key and two numbers");
-  expect("--vary law.restitution=0.05:2", "law.restitution");
-  expect("--vary law.restitution=0.05:0.1 --outcome wins",
-         "--outcome: no such outcome (found wins): give one of collapse, gap, collisions, merges, pair");
-  expect("--vary law.restitution=0.05:0.1 --outcome pair", "--outcome: nothing says which clusters");
-  expect("--vary law.restitution=0.05:0.1 --set law.cutoff=1e-3 --set run.collapse=cutoff --set run.stop_gap= "
-         "--outcome collapse",
-         "--outcome: the run does not end at a collapse");
 }
 
 }  // namespace cradle::tests::threshold_test

@@ -1,4 +1,4 @@
-// `cradle words`, and scenes that start from a word.
+// `cradle words`, and scenes that start from a word. (What is refused: tests/tools/messages.txt.)
 
 #include <cmath>
 #include <cstdint>
@@ -56,24 +56,6 @@ TEST_F(WordsCommand, PrintsAProvedRangeAndWritesIt) {
   EXPECT_NEAR(numbers(result, "words", "high").front(), 5 - 2 * std::sqrt(6.), 1e-15);
   // The file's scene is the state that is printed.
   shell("cradle export ababcb.h5 --to csv && cradle check csv/scene.toml", 0);
-}
-
-TEST_F(WordsCommand, RefusesWhatIsNoWord) {
-  const auto expect = [&](const std::string& arguments, const std::string& message) {
-    const Printed printed = shell("cradle words " + arguments, 2);
-    EXPECT_TRUE(has(printed.err, message)) << printed.err;
-    EXPECT_FALSE(exists("a.h5"));
-  };
-  expect("3 abd", "WORD: a letter that is no gap (found d in abd): use the letters a to b");
-  expect("4 aabcb", "gap a closes twice running");
-  expect("4 abab", "gap c never closes (found abab)");
-  expect("4 abcbabcb", "a word that repeats a shorter one");
-  expect("2 a", "not a number of particles");
-  expect("4", "no word: give either a word or --search LENGTH");
-  expect("4 abcb --masses 1,2,1", "not one mass per particle (found 3 for 4 particles)");
-  expect("3 ab --masses 1,0,1", "not a mass (found 0)");
-  expect("3 ab --walls up", "no such walls (found up)");
-  expect("3 ab --at 0.08", "no such state at this restitution (found 0.08): give one between 0 and 0.0717967697");
 }
 
 TEST_F(WordsCommand, SearchesAllWords) {
@@ -148,18 +130,6 @@ TEST_F(WordsCommand, RecordsTheOrderOfCollisions) {
   shell("cradle run two.toml --set output.word=any -o any.h5", 0);
   EXPECT_EQ(numbers<std::string>(read("any.h5"), "sequence", "letters").front(), "bcba");
   EXPECT_FALSE(has(shell("cradle info any.h5", 0).out, "periods"));
-
-  const auto refused = [&](const std::string& options, const std::string& message) {
-    const Printed printed = shell("cradle run two.toml -o no.h5 " + options, 2);
-    EXPECT_TRUE(has(printed.err, message)) << printed.err;
-  };
-  refused("--set output.word=bcbd", "output.word: a letter that is no gap (found d in bcbd): use the letters a to c");
-  refused("--set output.word=bcbc", "output.word: gap a never closes (found bcbc)");
-  refused("--set walls.left.position= --set walls.right.position= --set initial.length=3",
-          "output.word: letters are of particles on a line that bounce (found a ring)");
-  refused("--set walls.left.position= --set walls.right.position= --set law.type=sticky --set law.restitution=",
-          "output.word: letters are of particles on a line that bounce (found particles that merge)");
-  refused("--set walls.left.position= --set walls.right.position=", "output.word: not a few particles (found 1 gaps)");
 }
 
 TEST_F(WordsCommand, ScenesStartFromAWordInEveryType) {
@@ -173,12 +143,6 @@ TEST_F(WordsCommand, ScenesStartFromAWordInEveryType) {
     // Errors of 1e-16 grow by 15,000 in a period.
     EXPECT_GE(periods_kept(left, "ababcb"), 3U) << type;
   }
-  const Printed refused = shell("cradle run word.toml --set law.restitution=0.2", 2);
-  EXPECT_TRUE(has(refused.err, "initial.word: a word without a self-similar state at this restitution (found ababcb at "
-                               "0.2): see `cradle words 4 ababcb`"))
-      << refused.err;
-  EXPECT_TRUE(has(shell("cradle run word.toml --set initial.word=abba", 2).err, "closes twice running"));
-  EXPECT_TRUE(has(shell("cradle run word.toml --set 'initial.x=[1, 2]'", 2).err, "particles of a word and others"));
 }
 
 }  // namespace cradle::tests::words_test

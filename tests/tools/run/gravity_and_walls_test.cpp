@@ -1,0 +1,134 @@
+// Gravity and shaken walls in scenes: the account of energy in a result, with balls that rest on a floor; the same bits
+// from a checkpoint and on any number of threads; all types make the same collisions; ensembles; a column in free fall
+// is that without gravity. (Bad input: tests/tools/messages.txt.)
+#include <cmath>
+#include <tuple>
+
+#include "cradle/tests/tools/program.hpp"
+
+namespace cradle::tests::gravity_and_walls_test {
+
+using tools::Result;
+
+const std::string law = "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.01 }\n";
+const std::string beads = "initial = { type = 'list', x = [1, 2, 3.5, 4, 6], v = [0.5, 0, -1, 0, 0.25] }\n";
+const std::string ball = "initial = { type = 'list', x = [1], v = [0.5] }\n";
+const std::string falls = "gravity.acceleration = -0.5\n";
+const std::string output = "run.until = 12\noutput = { series.points = 49, snapshots = [0, 3, 12], events = true }\n";
+std::string floor_of(const std::string& motion, const std::string& more = "restitution = 0.9") {
+  return "walls.left = { position = 0, motion = '" + motion + "', amplitude = 0.25, frequency = 3, phase = 0.5, " +
+         more + " }\n";
+}
+const std::string falling = law + beads + falls + "walls.left = { position = 0, restitution = 0.9 }\n" + output;
+const std::string between = law +
+                            "initial = { type = 'gas', particles = 40, perturbation = 0.2 }\nrun.until = 6\n"
+                            "gravity.acceleration = 0.25\nwalls.right.temperature = 2\noutput.snapshots = [6]\n"
+                            "output.series.points = 7\noutput.profiles = { times = [5], bins = 4, range = [0, 40] }\n";
+std::string shaken(const std::string& floor) { return law + beads + falls + floor + output; }
+
+using GravityAndWalls = ProgramTest;
+
+TEST_F(GravityAndWalls, TheAccountOfEnergyBalances) {
+  for (const std::string& scene :
+       {falling, between, falling + "run.coordinates = 'absolute'\n", shaken(floor_of("sine")),
+        shaken(floor_of("sawtooth")), shaken(floor_of("parabola")),
+        shaken(floor_of("sine")) + "run.coordinates = 'absolute'\n", law + beads + floor_of("sine") + output,
+        law + ball + falls + floor_of("sine", "restitution = 0.25, rest_speed = 0.2") + output,
+        shaken(floor_of("sine", "restitution = 0.9, rest_speed = 0.1"))}) {
+    SCOPED_TRACE(scene);
+    const Result result = result_of(scene);
+    const auto of = [&](const std::string& name) { return numbers(result, "series", name); };
+    const std::string wall = has(scene, "walls.left") ? "wall_left_" : "wall_right_";
+    const auto kinetic = of("energy"), lost = of("energy_lost"), given = of(wall + "energy");
+    const auto potential = has(scene, "gravity") ? of("potential_energy") : std::vector<double>(kinetic.size());
+    EXPECT_GT(numbers<std::uint64_t>(result, "series", wall + "collisions").back(), has(scene, "gravity") ? 2U : 0U);
+    if (has(scene, "motion")) {
+      EXPECT_NE(given.back(), 0);
+    }
+    EXPECT_GT(lost.back(), 0);
+    const double scale = std::abs(potential[0]) + kinetic[0] + std::abs(given.back());
+    for (std::size_t k = 0; k < kinetic.size(); ++k)
+      EXPECT_NEAR(kinetic[k] + potential[k] + lost[k] - given[k], kinetic[0] + potential[0], 1e-13 * scale);
+    for (const auto& [name, value] : result.attributes)
+      if (name == "ledger_error") {
+        EXPECT_LT(std::abs(std::get<double>(value)), 1e-13 * scale);
+      }
+  }
+}
+
+// x = 1 - t^2/4 and 4 + t/2 - t^2/4; the potential energy is half of their sum.
+TEST_F(GravityAndWalls, APositionIsQuadratic) {
+  const Result result = result_of(law + falls +
+                                  "initial = { type = 'list', x = [1, 4], v = [0, 0.5] }\nrun.until = 4\n"
+                                  "output = { series.times = [0, 4], snapshots = [4] }\n");
+  EXPECT_EQ(numbers(result, "snapshots/0000", "x"), (std::vector<double>{-3, 2}));
+  EXPECT_EQ(numbers(result, "snapshots/0000", "v"), (std::vector<double>{-2, -1.5}));
+  EXPECT_EQ(numbers(result, "series", "potential_energy"), (std::vector<double>{2.5, -0.5}));
+  EXPECT_EQ(numbers(result, "series", "energy"), (std::vector<double>{0.125, 3.125}));
+}
+
+TEST_F(GravityAndWalls, AColumnInFreeFallHasTheGapsOfOneAtRest) {
+  const std::string rows = law + "initial = { type = 'rows', particles = 200, perturbation = 0.1 }\nrun.until = 60\n"
+                                 "output = { series.points = 7, snapshots = [60] }\n";
+  const Result rest = result_of(rows), fall = result_of(rows + "gravity.acceleration = -3\n"),
+               none = result_of(rows + "gravity.acceleration = 0\n");
+  for (const char* name : {"gap", "closing_speed"}) {
+    EXPECT_EQ(numbers(fall, "snapshots/0000", name), numbers(rest, "snapshots/0000", name));
+    EXPECT_EQ(numbers(none, "snapshots/0000", name), numbers(rest, "snapshots/0000", name));
+  }
+  EXPECT_EQ(numbers<std::uint64_t>(fall, "series", "collisions"), numbers<std::uint64_t>(rest, "series", "collisions"));
+  const auto x = numbers(fall, "snapshots/0000", "x"), still = numbers(rest, "snapshots/0000", "x");
+  for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], still[k] - 1.5 * 3600, 1e-11);
+  EXPECT_EQ(numbers(none, "series", "energy"), numbers(rest, "series", "energy"));
+  for (const tools::Column& column : none.find("series")->columns) EXPECT_FALSE(has(column.name, "potential"));
+}
+
+// x(t) = A sin(omega t + phi) in [-A, A] at a sample of the wall's own particle: one that rests on it.
+TEST_F(GravityAndWalls, ABallAtRestHasTheMotionOfTheFloor) {
+  const Result result = result_of(law + ball + "gravity.acceleration = -4\n" +  // A omega^2 = 2.25 < 4
+                                  floor_of("sine", "restitution = 0.25, rest_speed = 0.2") + output);
+  EXPECT_NEAR(numbers(result, "snapshots/0002", "x").back(), 0.25 * std::sin(36.5), 1e-14);
+  EXPECT_NEAR(numbers(result, "snapshots/0002", "v").back(), 0.75 * std::cos(36.5), 1e-14);
+  EXPECT_LT(numbers<std::uint64_t>(result, "series", "collisions").back(), 20U);
+}
+
+TEST_F(GravityAndWalls, TheSameBitsFromACheckpointAndOnAnyNumberOfThreads) {
+  write("scene.toml", between);
+  expect_same_on_threads("cradle run scene.toml --set initial.particles=3000 --set run.until=2");
+  for (const std::string& floor : {floor_of("sawtooth"), floor_of("parabola"), floor_of("sine"),
+                                   floor_of("sine", "restitution = 0.9, rest_speed = 0.1")}) {
+    write("scene.toml", shaken(floor));
+    expect_same_on_threads("cradle run scene.toml");
+    result_of(shaken(floor), "--set run.until=5 --set output.snapshots=[0,3]");
+    shell("cradle resume result.h5 --until 12 --quiet", 0);
+    EXPECT_EQ(numbers(read("result.h5"), "events", "time"), numbers(read("1.h5"), "events", "time"));
+  }
+}
+
+TEST_F(GravityAndWalls, TheSameCollisionsInEveryPrecision) {
+  for (const std::string& scene : {falling, shaken(floor_of("sine"))}) {
+    const std::string options = "--set run.until=6 --set output.snapshots=[6]";
+    const Result of_double = result_of(scene, options);
+    in_wide_types(scene, options, [&](const Result& wide) {
+      EXPECT_EQ(numbers<std::uint64_t>(wide, "events", "left"), numbers<std::uint64_t>(of_double, "events", "left"));
+      const auto x = numbers(wide, "snapshots/0000", "x"), wanted = numbers(of_double, "snapshots/0000", "x");
+      for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], wanted[k], 1e-12);
+    });
+  }
+}
+
+TEST_F(GravityAndWalls, Ensembles) {
+  const std::string gas = law + "initial = { type = 'gas', particles = 40 }\nrun.until = 6\noutput.series.points = 7\n"
+                                "walls.right = { motion = 'sine', amplitude = 0.25, frequency = 3 }\n";
+  for (const auto& [scene, name, replicas] :
+       {std::tuple(between, "potential_energy", 3), std::tuple(gas, "wall_right_energy", 2)}) {
+    double sum = 0;
+    for (int k = 0; k < replicas; ++k)
+      sum += numbers(result_of(scene, "--set initial.replica=" + std::to_string(k)), "series", name).back();
+    shell("cradle ensemble scene.toml --quiet --force -o e.h5 --replicas " + std::to_string(replicas), 0);
+    const auto mean = numbers(read("e.h5"), "ensemble/series/" + std::string(name), "mean");
+    EXPECT_NEAR(mean.back(), sum / replicas, 1e-12 * std::abs(sum));
+  }
+}
+
+}  // namespace cradle::tests::gravity_and_walls_test

@@ -21,23 +21,24 @@ using namespace cradle::test::drawn;
 struct Totals {
   std::uint64_t scenes = 0, collisions = 0, merges = 0, below_cutoff = 0, on_walls = 0, at_ceilings = 0, on_thermal = 0;
 };
-// Scenes of one kind: how many are drawn, and the least that must be reached in each test.
+// Scenes of one kind: how many are drawn, and what is proved of them at least.
 struct Family {
   const char* name;
   Drawn (*draw)(std::uint64_t number);
   std::uint64_t scenes;
-  Totals proved;
-  double exact_proved;  // share of the exact runs
-  std::uint64_t wrong, wrong_sides, in_balls;
+  Totals least;
   friend std::ostream& operator<<(std::ostream& out, const Family& family) { return out << family.name; }
 };
 const Family families[] = {
-    {"Inelastic", draw, 800, {500, 0, 0, 0, 0, 0, 0}, 0.8, 2000, 300, 100},
-    {"Sticky", draw_sticky, 400, {300, 0, 0, 0, 0, 0, 0}, 0.8, 500, 0, 100},
-    {"Wet", draw_wet, 300, {200, 0, 100, 0, 0, 0, 0}, 0.8, 500, 0, 100},
-    {"WithWalls", draw_with_walls, 350, {200, 0, 0, 0, 500, 0, 0}, 0.9, 1000, 0, 100},
-    {"SpeedDependent", draw_speed_dependent, 300, {200, 1500, 0, 0, 0, 0, 0}, 0.8, 1000, 0, 75},
-    {"Falling", draw_falling, 600, {400, 0, 0, 100, 1000, 100, 200}, 0.9, 2000, 0, 100},
+    {"Inelastic", draw, 800, {.scenes = 500}},
+    {"Sticky", draw_sticky, 400, {.scenes = 300, .merges = 500}},
+    {"Wet", draw_wet, 300, {.scenes = 200, .merges = 100}},
+    {"WithWalls", draw_with_walls, 350, {.scenes = 200, .on_walls = 500}},
+    {"SpeedDependent", draw_speed_dependent, 300, {.scenes = 200, .collisions = 1500}},
+    {"Falling",
+     draw_falling,
+     600,
+     {.scenes = 400, .below_cutoff = 100, .on_walls = 1000, .at_ceilings = 100, .on_thermal = 200}},
 };
 
 class CertifyDrawn : public testing::TestWithParam<Family> {
@@ -92,8 +93,13 @@ TEST_P(CertifyDrawn, WhatIsProvedIsWhatTheExactGasGives) {
     if (!d.merges()) {  // clusters go by other names there
       ASSERT_EQ(digest_of(collisions), digest_of(run.collisions));
     }
+    if (d.acceleration != 0) {
+      ASSERT_EQ(collisions, run.collisions);
+    }
     EXPECT_EQ(checker.proved().merges, run.gas.merges);
-    EXPECT_TRUE(d.sticky || law_of(d).elastic || checker.proved().below_cutoff == run.gas.below_cutoff);
+    if (d.has_roots() || !(d.sticky || law_of(d).elastic)) {
+      EXPECT_EQ(checker.proved().below_cutoff, run.gas.below_cutoff);
+    }
     expect_state(checker, d, run.gas);
     checker.for_each(B(until), [&](ParticleIndex particle, const B&, const B& x, const B& v) {
       EXPECT_LT(x.radius(), 1e-12) << particle << ", not by being wide";
@@ -109,7 +115,7 @@ TEST_P(CertifyDrawn, WhatIsProvedIsWhatTheExactGasGives) {
       if (d.walls[side]->temperature == 0) found.below_cutoff += run.gas.below_cutoff;
     }
   });
-  const Totals& least = GetParam().proved;
+  const Totals& least = GetParam().least;
   EXPECT_GE(found.scenes, least.scenes);
   EXPECT_GE(found.collisions, least.collisions);
   EXPECT_GE(found.merges, least.merges);
@@ -127,7 +133,7 @@ TEST_P(CertifyDrawn, CollisionsOfTheExactGasAreProved) {
     ++all, counted += proved(checker, run.collisions);
   });
   EXPECT_GE(all, 150U);
-  EXPECT_GE(static_cast<double>(counted), GetParam().exact_proved * static_cast<double>(all));
+  EXPECT_GE(counted, all * 9 / 10);
 }
 
 TEST_P(CertifyDrawn, ARunThatIsWrongInOneCollisionIsNeverProved) {
@@ -171,8 +177,10 @@ TEST_P(CertifyDrawn, ARunThatIsWrongInOneCollisionIsNeverProved) {
                    holds(checker.state_at(B(until)).energy, other.gas.energy()));
     }
   });
-  EXPECT_GE(refused, GetParam().wrong);
-  EXPECT_GE(wrong_sides, GetParam().wrong_sides);
+  EXPECT_GE(refused, 2000U);
+  if (GetParam().draw == draw) {
+    EXPECT_GE(wrong_sides, 300U);
+  }
 }
 
 TEST_P(CertifyDrawn, EveryStateInTheBallsOfTheStartStaysInThem) {
@@ -190,8 +198,8 @@ TEST_P(CertifyDrawn, EveryStateInTheBallsOfTheStartStaysInThem) {
       for (const auto& wall : run.gas.walls) on_walls += wall ? wall->collisions : 0;
     });
   }
-  EXPECT_GE(counted, GetParam().in_balls);
-  EXPECT_GE(on_walls, GetParam().proved.on_walls / 5);
+  EXPECT_GE(counted, 150U);
+  EXPECT_GE(on_walls, GetParam().least.on_walls / 5);
 }
 
 TEST_P(CertifyDrawn, SideBySideCollisionsAreThoseOfOneByOne) {
@@ -207,7 +215,7 @@ TEST_P(CertifyDrawn, SideBySideCollisionsAreThoseOfOneByOne) {
     if (!proves) continue;
     for (const auto& account : checker.state_at(B(until)).walls) on_walls += account.collisions;
   }
-  EXPECT_GE(on_walls, GetParam().proved.on_walls);
+  EXPECT_GE(on_walls, GetParam().least.on_walls);
 }
 
 }  // namespace certify_drawn_test

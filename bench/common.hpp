@@ -1,10 +1,14 @@
 #pragma once
-// Shared by the benchmarks: the clock, and the initial states of the published collision counts.
+// Shared by the benchmarks: the clock, the initial states of the published collision counts, and their check.
 
 #include <ctime>
 
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,8 +43,9 @@ template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex n) 
   return std::make_shared<cradle::Rows<T>>(cradle::symmetric_rows<T>(n, T(1) / T(2), T(1), displacement));
 }
 
-// Random velocities; masses are 1 and `other_mass` in turn.
-template <class T = double> std::shared_ptr<const cradle::Particles<T>> gas(ParticleIndex n, double other_mass = 1) {
+// Random velocities; masses are 1 and `other_mass` in turn; on a ring if it has a circumference.
+template <class T = double>
+std::shared_ptr<const cradle::Particles<T>> gas(ParticleIndex n, double other_mass = 1, const T& circumference = T(0)) {
   std::vector<T> x, v, m;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
     const std::uint64_t bits = hash(i);
@@ -48,7 +53,20 @@ template <class T = double> std::shared_ptr<const cradle::Particles<T>> gas(Part
     v.push_back(T(static_cast<double>(bits >> 28) * 0x1p-35 - 1));
     if (other_mass != 1) m.push_back(T(i % 2 == 0 ? 1 : other_mass));
   }
-  return std::make_shared<cradle::List<T>>(std::move(x), std::move(v), std::move(m));
+  return std::make_shared<cradle::List<T>>(std::move(x), std::move(v), std::move(m), circumference);
+}
+
+// All engines must count the same collisions up to a time: the number expected or, if that is 0, that of the first one.
+inline void check(const std::string& scene, const std::string& engine, double time, std::uint64_t found,
+                  std::uint64_t expected) {
+  static std::map<std::pair<std::string, double>, std::uint64_t> seen;
+  if (expected == 0) expected = seen.try_emplace({scene, time}, found).first->second;
+  if (found == expected) return;
+  std::fprintf(stderr,
+               "%s, %s: %llu collisions by t = %g (expected %llu): the engines do not agree, times mean nothing\n",
+               scene.c_str(), engine.c_str(), static_cast<unsigned long long>(found), time,
+               static_cast<unsigned long long>(expected));
+  std::exit(1);
 }
 
 }  // namespace bench

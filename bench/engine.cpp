@@ -15,9 +15,6 @@
 // the measured code.
 
 #include <concepts>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,10 +28,9 @@
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "twins/indexed_heap.hpp"
+#include "twins/heaps.hpp"
 #include "twins/priority_queue.hpp"
 #include "twins/time_slots.hpp"
-#include "twins/tuned_heap.hpp"
 
 namespace {
 
@@ -104,18 +100,6 @@ struct Case {
   std::vector<Check> checks;  // a run ends with the last
 };
 
-void check(const Case& c, const std::string& engine, const Check& at, std::uint64_t found) {
-  static std::map<std::pair<std::string, double>, std::uint64_t> seen;
-  const std::uint64_t expected =
-      at.collisions > 0 ? at.collisions : seen.try_emplace({c.name, at.time}, found).first->second;
-  if (found == expected) return;
-  std::fprintf(stderr,
-               "%s, %s: %llu collisions by t = %g (expected %llu): the engines do not agree, times mean nothing\n",
-               c.name.c_str(), engine.c_str(), static_cast<unsigned long long>(found), at.time,
-               static_cast<unsigned long long>(expected));
-  std::exit(1);
-}
-
 template <class Engine>
 constexpr clockid_t clock_of = std::same_as<Engine, InSegments<2>> ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
 
@@ -133,7 +117,7 @@ template <class Engine> void measure(benchmark::State& state, const Case& c, con
       engine.advance(at.time);
       last = seconds_now(clock_of<Engine>) - start;
       seconds += last;
-      check(c, engine_name, at, engine.collisions());
+      check(c.name, engine_name, at.time, engine.collisions(), at.collisions);
     }
     collisions += engine.collisions();
     if constexpr (requires { engine.statistics(); }) {

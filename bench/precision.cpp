@@ -32,8 +32,7 @@
 #include "precision/engines.hpp"
 #include "precision/reversal.hpp"
 #include "precision/shock.hpp"
-#include "twins/indexed_heap.hpp"
-#include "twins/tuned_heap.hpp"
+#include "twins/heaps.hpp"
 
 namespace {
 

@@ -47,16 +47,7 @@ ParticlesPointer between_walls(ParticleIndex n) {
 }
 
 // Masses 1 and 1.0001, so that even elastic particles have to be followed.
-ParticlesPointer ring(ParticleIndex n) {
-  std::vector<double> x, v, m;
-  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
-    const std::uint64_t bits = hash(i);
-    x.push_back(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29);
-    v.push_back(static_cast<double>(bits >> 28) * 0x1p-35 - 1);
-    m.push_back(i % 2 == 0 ? 1 : 1.0001);
-  }
-  return std::make_shared<List<double>>(std::move(x), std::move(v), std::move(m), static_cast<double>(n));
-}
+ParticlesPointer ring(ParticleIndex n) { return gas(n, 1.0001, static_cast<double>(n)); }
 
 template <class Run, class T, class Segments>
 [[gnu::noinline, gnu::no_icf]] void by_loop(Run& run, const T& to, Segments& loop) {

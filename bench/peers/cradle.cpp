@@ -5,14 +5,11 @@
 // Seconds are processor time of the thread; with two threads, time by the clock.
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
-#include <vector>
 
 #include "../common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
-#include "cradle/core/initial/list.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
@@ -24,19 +21,10 @@ using Law = cradle::Inelastic<double>;
 using Chain = cradle::GapChain<double, cradle::IndividualMasses<double>>;
 using Run = cradle::Simulation<double, Law, Chain>;
 
-std::shared_ptr<const cradle::Particles<double>> gas(std::uint64_t particles) {
-  std::vector<double> x, v, m;
-  for (std::uint64_t i = 0; i < particles; ++i) {
-    x.push_back(gas_position(i));
-    v.push_back(gas_velocity(i));
-    m.push_back(i % 2 == 0 ? 1 : heavier);
-  }
-  return std::make_shared<cradle::List<double>>(std::move(x), std::move(v), std::move(m),
-                                                static_cast<double>(particles));
-}
-
 template <class Advance> void measure(const char* engine, std::uint64_t particles, clockid_t clock, Advance advance) {
-  Run run(Law(1, 0), Chain(gas(particles), 0.));
+  Run run(
+      Law(1, 0),
+      Chain(bench::gas(static_cast<cradle::ParticleIndex>(particles), heavier, static_cast<double>(particles)), 0.));
   const double start = bench::seconds_now(clock);
   advance(run);
   std::printf("%s %llu %.4f\n", engine, static_cast<unsigned long long>(run.counts().collisions),

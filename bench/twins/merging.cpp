@@ -41,8 +41,7 @@ void MergingEngine::fly(Particle& particle, double time) const {
 
 void MergingEngine::advance(double until) {
   for (;;) {
-    const std::uint32_t i = heap_.first();
-    const double time = heap_.due(i);
+    const auto [time, i] = heap_.first();
     if (time > until) return;
     Particle& left = particles_[i];
     const std::uint32_t j = left.right;

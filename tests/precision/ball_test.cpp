@@ -5,6 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#ifdef CRADLE_WITH_MPFR
+#include <boost/multiprecision/mpfr.hpp>
+#endif
+
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/precision/ball.hpp"
 #include "cradle/precision/ball_text.hpp"
@@ -15,33 +19,13 @@ namespace ball_test {
 using namespace cradle;
 using namespace cradle::test;
 
-Rational exact(double x) { return exactly(x); }
-Rational power_of_two(long exponent) {
-  const Rational power(boost::multiprecision::cpp_int(1) << static_cast<unsigned>(std::abs(exponent)));
-  return exponent < 0 ? Rational(1 / power) : power;
-}
-Rational exact(long double x) {  // also beyond the range of double
-  int exponent = 0;
-  x = std::frexp(x, &exponent);
-  const auto high = static_cast<double>(x);
-  return (exactly(high) + exactly(static_cast<double>(x - high))) * power_of_two(exponent);
-}
+Rational exact(double x) { return Rational(x); }
+Rational exact(long double x) { return Rational(x); }
 Rational exact(const double_double& x) { return exactly(x.high()) + exactly(x.low()); }
-Rational size_of(const Rational& x) { return x < 0 ? Rational(-x) : x; }
 
 #ifdef CRADLE_WITH_MPFR
 template <int Limbs> Rational exact(const Mpfr<Limbs>& x) {
-  mpz_t whole;
-  mpz_init(whole);
-  if (mpfr_zero_p(x.get())) return Rational(0);
-  const mpfr_exp_t exponent = mpfr_get_z_2exp(whole, x.get());
-  char* digits = mpz_get_str(nullptr, 10, whole);
-  Rational value{std::string(digits)};
-  void (*release)(void*, std::size_t) = nullptr;
-  mp_get_memory_functions(nullptr, nullptr, &release);
-  release(digits, std::string(digits).size() + 1);
-  mpz_clear(whole);
-  return value * power_of_two(exponent);
+  return Rational(boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80>>(x.get()));
 }
 #endif
 
@@ -86,7 +70,7 @@ template <class M> struct Draws {
 };
 
 template <class M> void expect_holds(const Ball<M>& x, const Rational& number) {
-  ASSERT_TRUE(size_of(exact(x.middle()) - number) <= exact(x.radius()))
+  ASSERT_TRUE(abs(exact(x.middle()) - number) <= exact(x.radius()))
       << to_double(x.middle()) << ", radius " << x.radius();  // rationals may have thousands of digits
 }
 
@@ -107,7 +91,7 @@ TYPED_TEST(Balls, HoldWhatTheOperationsGive) {
     useful += is_finite(quotient);
     // Not wider than they must be: a sum's radius is those of its terms and a rounding.
     EXPECT_LE(exact(sum.radius()), (exact(x.radius()) + exact(y.radius())) * (1 + exact(0x1p-40)) +
-                                       size_of(exact(sum.middle())) * exact(0x1p-100));
+                                       abs(exact(sum.middle())) * exact(0x1p-100));
   }
   EXPECT_GT(useful, 1000U);
 }
@@ -175,7 +159,7 @@ TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
         }
     if (k % 2 != 0) continue;
     // What doubly stochastic collisions rely on: together they are no wider than before, but for roundings.
-    const Rational roundings = (size_of(exact(x.middle())) + size_of(exact(y.middle()))) * exact(0x1p-98);
+    const Rational roundings = (abs(exact(x.middle())) + abs(exact(y.middle()))) * exact(0x1p-98);
     EXPECT_LE(exact(l.radius()) + exact(r.radius()),
               (exact(x.radius()) + exact(y.radius())) * (1 + exact(0x1p-40)) + roundings);
   }

@@ -46,7 +46,7 @@ void expect_same_run(const Scene<T>& particles, const Inelastic<T>& law, int end
     const Seen<T>&a = early_collisions[n], &b = late_collisions[n];
     ASSERT_EQ(a.left, b.left) << n;
     ASSERT_TRUE(a.closing_speed == b.closing_speed) << n;
-    ASSERT_LE(abs(b.time - Reference(1e12) - a.time), Reference(1e-18)) << n;
+    ASSERT_LE(abs(b.time - 1e12 - a.time), 1e-18) << n;
   }
   if (status != Status::reached) return;
   const auto a = configuration_at(early_run, shift), b = configuration_at(late_run, T(late + shift));
@@ -55,19 +55,11 @@ void expect_same_run(const Scene<T>& particles, const Inelastic<T>& law, int end
   EXPECT_TRUE(early_run.energy_lost() == late_run.energy_lost());
 }
 
-TYPED_TEST(LateStart, MixedVelocities) {
+TYPED_TEST(LateStart, MakesTheSameCollisions) {
   using T = typename TypeParam::Scalar;
   expect_same_run(rmix<T>(32), Inelastic<T>(T(15) / T(16), T(0)), 1000);
-}
-
-TYPED_TEST(LateStart, Shock) {
-  using T = typename TypeParam::Scalar;
   expect_same_run(rshock<T>(200), Inelastic<T>(from_text<T>(".9"), from_text<T>("1e-3")), 58);
-}
-
-// Gaps fall to 1e-30 while time advances at 1e12.
-TYPED_TEST(LateStart, Collapse) {
-  using T = typename TypeParam::Scalar;
+  // Gaps fall to 1e-30 while time advances at 1e12.
   expect_same_run(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}), Inelastic<T>(from_text<T>(".05"), T(0)), 2,
                   stop_below(from_text<T>("1e-30")));
 }

@@ -60,12 +60,7 @@ template <class T> struct End {
 };
 // Ends by itself, or after so many collisions.
 template <class T> End<T> end_of(const System& s, const char* stop_gap) {
-  const auto numbers = [](const std::vector<std::string>& texts) {
-    std::vector<T> values;
-    for (const std::string& text : texts) values.push_back(from_text<T>(text));
-    return values;
-  };
-  Scene<T> particles = list<T>(numbers(s.x), numbers(s.v), numbers(s.m));
+  Scene<T> particles = list<T>(numbers<T>(s.x), numbers<T>(s.v), numbers<T>(s.m));
   if (!s.wall.empty()) {
     Wall<T> wall{T(0)};
     wall.restitution = from_text<T>(s.wall);

@@ -1,7 +1,8 @@
-// Scenes drawn at random for the checker of proofs, in the engine's numbers, in balls and in rationals; what the exact
-// gas and the engine make of them.
+// Scenes drawn at random for the checker of proofs, in the engine's numbers, in balls, in rationals and in 100 digits;
+// what the exact gas and the engine make of them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +12,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/certify/checker.hpp"
@@ -31,8 +34,13 @@ using Collisions = std::vector<std::pair<ParticleIndex, ParticleIndex>>;
 
 inline Rational exact(const B& x) { return exactly(x.middle().high()) + exactly(x.middle().low()); }
 inline bool holds(const B& x, const Rational& number) {
-  const Rational off = exact(x) - number;
-  return (off < 0 ? -off : off) <= exactly(x.radius());
+  return abs(Rational(exact(x) - number)) <= exactly(x.radius());
+}
+// Without what is so small that it would have too many digits.
+inline Rational in_rationals(const bin_float& x) { return abs(x) < 1e-200 ? Rational(0) : Rational(x); }
+// A number that is known to 80 digits.
+inline bool holds(const B& x, const bin_float& number) {
+  return abs(Rational(exact(x) - in_rationals(number))) <= exactly(x.radius()) + exactly(1e-80);
 }
 
 struct DrawnWall {
@@ -41,23 +49,27 @@ struct DrawnWall {
   double temperature = 0;  // above 0: thermal
 };
 
-// Multiples of 1/64, so that all types have the same particles; coefficients as decimals.
+// Multiples of 1/64, so that all types have the same particles; coefficients as decimals. Only one of the laws is
+// meant: sticky, wet (with a loss), or inelastic, with a restitution that may depend on the speed (with an exponent).
 struct Drawn {
   std::vector<int> gaps, velocities, masses;
   const char* restitution = "1";
-  int cutoff = 0, length = 0;
+  int cutoff = 0, length = 0, loss = 0;
   bool sticky = false;
+  const char* exponent = nullptr;
   std::array<std::optional<DrawnWall>, 2> walls = {};  // left, right
   int acceleration = 0;
+
+  bool merges() const { return sticky || loss > 0; }
+  bool has_roots() const { return acceleration != 0 || loss > 0 || exponent != nullptr; }
 };
 
-inline Drawn draw(std::uint64_t number, bool sticky) {
+inline Drawn draw(std::uint64_t number) {
   std::uint64_t index = 0;
   const auto below = [&](int bound) {
     return static_cast<int>(random_bits(11, number, index++) % static_cast<std::uint64_t>(bound));
   };
   Drawn d;
-  d.sticky = sticky;
   const int particles = 3 + below(5);
   const bool equal = below(2) == 0, small = below(8) == 0;  // few numbers to choose from: ties, cut-offs hit exactly
   for (int b = 0; b < particles; ++b) {
@@ -75,9 +87,21 @@ inline Drawn draw(std::uint64_t number, bool sticky) {
   return d;
 }
 
+inline Drawn draw_sticky(std::uint64_t number) {
+  Drawn d = draw(number);
+  d.sticky = true;
+  return d;
+}
+inline Drawn draw_wet(std::uint64_t number) {
+  Drawn d = draw(number);
+  d.loss = 8 * (1 + static_cast<int>(number % 7));
+  d.restitution = "0.5", d.cutoff = 0;  // not used
+  return d;
+}
+
 // The same with one wall or two.
 inline Drawn draw_with_walls(std::uint64_t number) {
-  Drawn d = draw(number, false);
+  Drawn d = draw(number);
   d.length = 0;
   std::uint64_t index = 0;
   const auto below = [&](int bound) {
@@ -94,6 +118,18 @@ inline Drawn draw_with_walls(std::uint64_t number) {
     wall.temperature = below(3) == 0 ? (1 + below(8)) / 8. : 0;
     d.walls[side] = wall;
   }
+  return d;
+}
+
+// With a restitution that depends on the speed, a third of them between walls at a temperature of 0.
+inline Drawn draw_speed_dependent(std::uint64_t number) {
+  Drawn d = number % 3 == 0 ? draw_with_walls(number) : draw(number);
+  for (auto& wall : d.walls)
+    if (wall) wall->temperature = 0;
+  d.length = 0;
+  if (d.cutoff == 0) d.cutoff = 32;
+  constexpr const char* exponents[] = {"1", "4", "0.5", "2.5", "1.0", "1.5"};
+  d.exponent = exponents[number % 6];
   return d;
 }
 
@@ -119,29 +155,32 @@ inline int place_of(const Drawn& d, std::size_t side) {
 inline int velocity_of(const Drawn& d, std::size_t side) { return (side == 0 ? 1 : -1) * d.walls[side]->speed; }
 constexpr std::uint64_t wall_seed = 21;
 
-inline Gas<Rational> gas_of(const Drawn& d) {
-  Gas<Rational> gas;
-  Rational place(0);
-  for (std::size_t b = 0; b < d.gaps.size(); place += Rational(d.gaps[b++]) / 64)
-    gas.cells.push_back(
-        {place, Rational(d.velocities[b]) / 64, Rational(d.masses[b]) / 64, {static_cast<ParticleIndex>(b)}});
-  gas.restitution = decimal<Rational>(d.restitution);
-  gas.cutoff = Rational(d.cutoff) / 64;
-  gas.length = Rational(d.length) / 64;
+template <class T> Gas<T> gas_of(const Drawn& d) {
+  const auto unit = [](int n) { return T(n) / 64; };
+  Gas<T> gas;
+  int place = 0;
+  for (std::size_t b = 0; b < d.gaps.size(); place += d.gaps[b++])
+    gas.cells.push_back({unit(place), unit(d.velocities[b]), unit(d.masses[b]), {static_cast<ParticleIndex>(b)}});
+  gas.restitution = decimal<T>(d.restitution);
+  gas.cutoff = unit(d.cutoff), gas.length = unit(d.length), gas.loss = unit(d.loss);
+  if (d.exponent) gas.cutoff_exponent = decimal<T>(d.exponent);
   for (std::size_t side = 0; side < 2; ++side) {
     if (!d.walls[side]) continue;
     const double temperature = d.walls[side]->temperature;
-    gas.walls[side] = {Rational(place_of(d, side)) / 64, Rational(velocity_of(d, side)) / 64,
-                       decimal<Rational>(d.walls[side]->restitution)};
+    gas.walls[side] = {unit(place_of(d, side)), unit(velocity_of(d, side)), decimal<T>(d.walls[side]->restitution)};
     if (temperature > 0)
-      gas.walls[side]->random_speed = [=](std::uint64_t collision, const Rational& mass) {
-        return exactly(thermal_speed(wall_seed, 0, static_cast<End>(side), collision) *
-                       std::sqrt(temperature / static_cast<double>(mass)));
+      gas.walls[side]->random_speed = [=](std::uint64_t collision, const T& mass) {
+        return T(thermal_speed(wall_seed, 0, static_cast<End>(side), collision) *
+                 std::sqrt(temperature / static_cast<double>(mass)));
       };
   }
-  gas.acceleration = Rational(d.acceleration) / 64;
-  gas.law = d.sticky ? GasLaw::sticky : GasLaw::inelastic;
+  gas.acceleration = unit(d.acceleration);
+  gas.law = d.sticky ? GasLaw::sticky : d.loss > 0 ? GasLaw::wet : GasLaw::inelastic;
   return gas;
+}
+// f(gas): in rationals or, where there are roots, in 100 digits.
+template <class F> void with_gas(const Drawn& d, F f) {
+  d.has_roots() ? f(gas_of<bin_float>(d)) : f(gas_of<Rational>(d));
 }
 
 template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn& d) {
@@ -169,39 +208,12 @@ template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn&
 inline CertainLaw<B> law_of(const Drawn& d) {
   CertainLaw<B> law;
   if (d.sticky) law.kind = CertainLaw<B>::Kind::sticky;
+  if (d.loss > 0) law.kind = CertainLaw<B>::Kind::wet, law.loss = B(d.loss) / B(64);
   law.restitution = from_text<B>(d.restitution);
   law.elastic = std::string(d.restitution) == "1";
   if (d.cutoff > 0) law.cutoff = B(d.cutoff) / B(64);
+  if (d.exponent) law.cutoff_exponent = from_text<B>(d.exponent);
   return law;
-}
-
-inline Rational of_decimals(const bin_float& x) {
-  if (abs(x) < bin_float(1e-200)) return Rational(0);
-  return decimal<Rational>(x.str(90, std::ios_base::scientific));
-}
-// Known to 80 digits.
-inline bool holds_wide(const B& x, const bin_float& number) {
-  const Rational off = exact(x) - of_decimals(number);
-  return (off < 0 ? -off : off) <= exactly(x.radius()) + exactly(1e-80);
-}
-
-template <class To, class From> Gas<To> converted(const Gas<From>& gas) {
-  const auto number = [](const From& x) { return To(numerator(x)) / To(denominator(x)); };
-  Gas<To> to;
-  for (const auto& cell : gas.cells)
-    to.cells.push_back({number(cell.origin), number(cell.v), number(cell.m), cell.particles});
-  to.restitution = number(gas.restitution), to.cutoff = number(gas.cutoff);
-  to.acceleration = number(gas.acceleration);
-  for (std::size_t side = 0; side < 2; ++side) {
-    if (!gas.walls[side]) continue;
-    const GasWall<From>& wall = *gas.walls[side];
-    to.walls[side] = {number(wall.origin), number(wall.v), number(wall.restitution)};
-    if (wall.random_speed)
-      to.walls[side]->random_speed = [=](std::uint64_t collision, const To& mass) {
-        return number(wall.random_speed(collision, From(of_decimals(mass))));
-      };
-  }
-  return to;
 }
 
 // Balls of the start that are wide: every state in them has its own motion, which stays within the balls.
@@ -234,82 +246,61 @@ template <class T> Gas<T> off_the_middle(Gas<T> gas, std::uint64_t number) {
 constexpr int until = 4;
 constexpr std::size_t most_collisions = 60;
 
-// What a run reports beside its collisions. A collision on the wrong side of the cut-off may leave their sequence
-// unchanged.
-struct Said {
-  std::uint64_t below;
-  Rational energy;
-};
-
-// Whether these are proved to be the collisions of the scene; `checker` is left where they end.
-inline bool proved(Checker<B>& checker, const Collisions& collisions, const std::optional<Said>& said = {}) {
-  if (checker.begin()) return false;
-  for (const auto& [left, right] : collisions)
-    if (checker.collision(left, right)) return false;
-  const auto end = checker.state_at(B(until));
-  return !end.doubt && (!said || (checker.proved().below_cutoff == said->below && holds(end.energy, said->energy)));
+inline testing::AssertionResult is_doubt(const std::optional<Doubt<B>>& doubt, Check check, bool refuted) {
+  if (!doubt) return testing::AssertionFailure() << "no doubt";
+  return (doubt->check == check && doubt->refuted == refuted ? testing::AssertionSuccess()
+                                                             : testing::AssertionFailure())
+         << "check " << static_cast<int>(doubt->check) << (doubt->refuted ? ", refuted" : ", open");
 }
 
-// All of them, in the exact gas; `wrong`: that one on the wrong side of the cut-off.
-struct ExactRun {
+inline bool proved_in_order(Checker<B>& checker, const Collisions& collisions) {
+  return std::none_of(collisions.begin(), collisions.end(),
+                      [&](const auto& pair) { return checker.collision(pair.first, pair.second).has_value(); });
+}
+// Whether these are proved to be the collisions of the scene; `checker` is left where they end.
+inline bool proved(Checker<B>& checker, const Collisions& collisions) {
+  return !checker.begin() && proved_in_order(checker, collisions) && !checker.state_at(B(until)).doubt;
+}
+
+// All collisions of a gas, if there are not too many; `wrong`: that one on the wrong side of the cut-off.
+template <class T> struct GasRun {
+  Gas<T> gas;
   Collisions collisions;
-  std::uint64_t digest = 0, below = 0;
-  bool tied = false, ended = false;
-  Gas<Rational> gas;
+  bool ended = false;
 };
-inline ExactRun exact_run(const Drawn& d, std::size_t wrong = most_collisions) {
-  ExactRun run;
-  run.gas = gas_of(d);
-  Trace trace;
+template <class T> GasRun<T> run_of(Gas<T> gas, std::size_t wrong = most_collisions) {
+  GasRun<T> run{std::move(gas), {}};
   while (run.collisions.size() < most_collisions) {
     const auto collision = run.gas.next(until, run.collisions.size() == wrong);
     if (!collision) break;
     run.collisions.push_back(*collision);
-    trace.collision(collision->first, collision->second);
   }
   run.ended = run.collisions.size() < most_collisions;
   if (run.ended) run.gas.time = until;
-  run.digest = trace.digest();
-  run.tied = run.gas.tied;
-  run.below = run.gas.below_cutoff;
   return run;
 }
 
-// Of the scenes from number `from` on whose run, by `run_of`, is short and without ties: how many there are, and of how
-// many the collisions are proved.
-struct ProvedRuns {
-  std::uint64_t all = 0, proved = 0;
-};
-template <class Draw, class RunOf>
-ProvedRuns proved_of_exact_runs(std::uint64_t from, std::uint64_t to, const Draw& draw, const RunOf& run_of) {
-  ProvedRuns count;
-  for (std::uint64_t number = from; number < to; ++number) {
-    const Drawn d = draw(number);
-    const auto run = run_of(d);
-    if (!run.ended || run.gas.tied) continue;
-    ++count.all;
-    Checker<B> checker(particles_of<B>(d), law_of(d));
-    if (proved(checker, run.collisions)) ++count.proved;
-  }
-  return count;
-}
-
 // The collisions that the engine makes in doubles.
-template <class Run> Collisions made_by(Run&& run) {
+template <class Run> Collisions made_by(Run&& run, double to = until) {
   Collisions collisions;
-  run.advance(until, [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.right); });
+  run.advance(to, [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.right); });
   return collisions;
 }
 inline Collisions made(const Drawn& d) {
   const auto particles = particles_of<double>(d);
-  const Inelastic<double> law(std::stod(d.restitution), d.cutoff / 64.);
-  if (d.sticky) {
-    const InelasticMerging<double> merging(Inelastic<double>(0.), std::numeric_limits<double>::max());
-    return made_by(Simulation(merging, ClusterChain<double>(particles, 0.)));
-  }
-  if (d.acceleration != 0)
-    return made_by(Simulation(law, GapChain<double, IndividualMasses<double>, Gravity<double>>(particles, 0.)));
-  return made_by(Simulation(law, GapChain<double, IndividualMasses<double>>(particles, 0.)));
+  const auto in_clusters = [&](const auto& law) {
+    return made_by(Simulation(law, ClusterChain<double>(particles, 0.)));
+  };
+  if (d.loss > 0) return in_clusters(Wet<double>(d.loss / 64.));
+  if (d.sticky) return in_clusters(InelasticMerging<double>(Inelastic<double>(0.), std::numeric_limits<double>::max()));
+  const double restitution = std::stod(d.restitution), cutoff = d.cutoff / 64.;
+  const auto in_gaps = [&](const auto& law) {
+    if (d.acceleration != 0)
+      return made_by(Simulation(law, GapChain<double, IndividualMasses<double>, Gravity<double>>(particles, 0.)));
+    return made_by(Simulation(law, GapChain<double, IndividualMasses<double>>(particles, 0.)));
+  };
+  if (d.exponent) return in_gaps(SpeedDependent<double>(restitution, cutoff, std::stod(d.exponent)));
+  return in_gaps(Inelastic<double>(restitution, cutoff));
 }
 
 inline std::uint64_t digest_of(const Collisions& collisions) {
@@ -318,9 +309,16 @@ inline std::uint64_t digest_of(const Collisions& collisions) {
   return trace.digest();
 }
 
-inline bool shares_a_particle(const std::pair<ParticleIndex, ParticleIndex>& a,
-                              const std::pair<ParticleIndex, ParticleIndex>& b) {
-  return a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second;
+// Exchanges a collision with the next other one that shares a particle with it, if there is one.
+inline bool exchange_with_next(Collisions& collisions, std::size_t number) {
+  const auto at = collisions.begin() + static_cast<std::ptrdiff_t>(number);
+  const auto next = std::find_if(at + 1, collisions.end(), [&](const auto& other) {
+    return other != *at && (other.first == at->first || other.first == at->second || other.second == at->first ||
+                            other.second == at->second);
+  });
+  if (next == collisions.end()) return false;
+  std::iter_swap(at, next);
+  return true;
 }
 
 }  // namespace cradle::test::drawn

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/precision/scalars.hpp"
@@ -70,6 +71,18 @@ template <class Reference, class T> Reference sum_of_doubles(T x) {
     x -= cradle::exactly<T>(leading);
   }
   return sum;
+}
+
+// Doubles exactly, decimals as the type rounds them.
+template <class T> std::vector<T> numbers(const std::vector<double>& values) {
+  std::vector<T> all;
+  for (const double value : values) all.push_back(cradle::exactly<T>(value));
+  return all;
+}
+template <class T> std::vector<T> numbers(const std::vector<std::string>& decimals) {
+  std::vector<T> all;
+  for (const std::string& decimal : decimals) all.push_back(from_text<T>(decimal));
+  return all;
 }
 
 // Exact dynamics until a gap is smaller than this; 0: until the collapse time is known.

@@ -1,13 +1,15 @@
 // Scenes at the limits of the number range. Proves: gaps over 300 decades and masses of 1:1e12 in one chain make the
 // same collisions in double as in double-double; with restitutions at and next to 0 and 1, and with collisions at equal
 // times, a run ends as it should, without a hang and without a lost order; the velocity cut-off takes effect exactly
-// below its value.
+// below its value; a light particle between a wall that takes energy and a heavy particle, elastic at low speeds, comes
+// to an end in every type, also in types with unlimited exponents.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
@@ -23,12 +25,7 @@ constexpr double u = 0x1p-53;
 // Every scalar starts from the same doubles.
 template <class T>
 Scene<T> in(const std::vector<double>& x, const std::vector<double>& v, const std::vector<double>& m) {
-  const auto convert = [](const std::vector<double>& from) {
-    std::vector<T> to;
-    for (const double value : from) to.push_back(T(value));
-    return to;
-  };
-  return list<T>(convert(x), convert(v), convert(m));
+  return list<T>(numbers<T>(x), numbers<T>(v), numbers<T>(m));
 }
 
 template <class T> Sequence collisions_of(MassRun<T> run, const T& end, std::uint64_t& collisions) {
@@ -204,6 +201,21 @@ TYPED_TEST(EveryExtreme, CutoffFromBothSides) {
       EXPECT_TRUE(magnitude(T(after - expected)) <= w * std::numeric_limits<T>::epsilon() * T(4));
     }
   }
+}
+
+template <class P> using SlowStandstill = InPrecision<P>;
+TYPED_TEST_SUITE(SlowStandstill, WidePrecision, PrecisionName);
+
+TYPED_TEST(SlowStandstill, EndsARunThatNoLongerAdvances) {
+  using T = typename TypeParam::Scalar;
+  Wall<T> wall{T(0)};
+  wall.restitution = T(1) / T(2);
+  const Scene<T> pair = list<T>({T(1), T(2)}, {T(0), T(-1)}, {T(1), T(1000)});
+  const auto walled = std::make_shared<Walled<T>>(pair, wall, std::nullopt);
+  const SpeedDependent<T> law(T(9) / T(10), T(1) / T(100), T(2));
+  Simulation run(law, GapChain<T, IndividualMasses<T>>(walled, T(0)), Policy<T>{});
+  EXPECT_EQ(run.advance(T(1000)), Status::exhausted);
+  EXPECT_LE(run.counts().collisions, 1200000U);
 }
 
 }  // namespace extremes_test

@@ -3,8 +3,6 @@
 // numbers of their own, however they are moved about in memory; zeros and signs are right.
 #ifdef CRADLE_WITH_MPFR
 
-#include "cradle/precision/mpfr.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,9 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/tests/precision/every_scalar.hpp"
+
 namespace mpfr_test {
 
 using namespace cradle;
+using namespace cradle::test;
 
 // An mpfr_t of the working precision, as the library's own functions know it.
 class Plain {
@@ -33,7 +34,7 @@ bool same(mpfr_srcptr a, mpfr_srcptr b) {
   return (mpfr_nan_p(a) && mpfr_nan_p(b)) || mpfr_equal_p(a, b);
 }
 
-template <int L> class RandomNumbers {
+template <class T> class RandomNumbers {
  public:
   explicit RandomNumbers(unsigned long seed) : random_(seed) {
     gmp_randinit_mt(state_);
@@ -44,25 +45,15 @@ template <int L> class RandomNumbers {
   ~RandomNumbers() { gmp_randclear(state_); }
 
   // All bits random, exponents of a few units (so that sums cancel) or far beyond double's.
-  Mpfr<L> operator()() {
+  T operator()() {
     Plain x;
     mpfr_urandomb(x.value, state_);
     const long spread = random_() % 4 == 0 ? 100000 : 3;
     mpfr_mul_2si(x.value, x.value, static_cast<long>(random_() % static_cast<unsigned long>(2 * spread)) - spread,
                  MPFR_RNDN);
     if (random_() & 1) mpfr_neg(x.value, x.value, MPFR_RNDN);
-    return from(x);
-  }
-  static Mpfr<L> from(const Plain& x) {
-    char* text = nullptr;
-    mpfr_asprintf(&text, "%Ra", x.value);
-    Mpfr<L> number;
-    mpfr_t read;
-    mpfr_init2(read, MpfrPrecision::bits());
-    mpfr_strtofr(read, text, nullptr, 0, MPFR_RNDN);
-    mpfr_set(const_cast<mpfr_ptr>(number.get()), read, MPFR_RNDN);
-    mpfr_clear(read);
-    mpfr_free_str(text);
+    T number;
+    mpfr_set(const_cast<mpfr_ptr>(number.get()), x.value, MPFR_RNDN);
     return number;
   }
 
@@ -71,23 +62,14 @@ template <int L> class RandomNumbers {
   std::mt19937_64 random_;
 };
 
-template <int Limbs, unsigned Digits> struct Size {
-  using Number = Mpfr<Limbs>;
-  static constexpr int limbs = Limbs;
-  static constexpr unsigned digits = Digits;
-};
-
-template <class S> class MpfrInPlace : public testing::Test {
- protected:
-  void SetUp() override { MpfrPrecision::set_bits(MpfrPrecision::bits_for(S::digits)); }
-};
+template <class P> using MpfrInPlace = InPrecision<P>;
 using Sizes =
-    testing::Types<Size<4, 20>, Size<4, 50>, Size<4, 76>, Size<8, 50>, Size<8, 100>, Size<16, 200>, Size<56, 1000>>;
-TYPED_TEST_SUITE(MpfrInPlace, Sizes);
+    Joined<EveryMpfr, testing::Types<Precision<Mpfr<4>, 76>, Precision<Mpfr<8>, 50>, Precision<Mpfr<8>, 100>>>::Types;
+TYPED_TEST_SUITE(MpfrInPlace, Sizes);  // by number: two have 50 digits
 
 TYPED_TEST(MpfrInPlace, OperationsHaveTheBitsOfTheLibrary) {
-  using T = typename TypeParam::Number;
-  RandomNumbers<TypeParam::limbs> random(1);
+  using T = typename TypeParam::Scalar;
+  RandomNumbers<T> random(1);
   Plain expected;
   for (int k = 0; k < 5000; ++k) {
     const T x = random();
@@ -114,8 +96,8 @@ TYPED_TEST(MpfrInPlace, OperationsHaveTheBitsOfTheLibrary) {
 }
 
 TYPED_TEST(MpfrInPlace, OperandAndResultMayBeOneObject) {
-  using T = typename TypeParam::Number;
-  RandomNumbers<TypeParam::limbs> random(2);
+  using T = typename TypeParam::Scalar;
+  RandomNumbers<T> random(2);
   for (int k = 0; k < 500; ++k) {
     const T x = random();
     T twice = x, nothing = x, square = x, one = x, itself = x;
@@ -130,8 +112,8 @@ TYPED_TEST(MpfrInPlace, OperandAndResultMayBeOneObject) {
 
 // A conversion rounds to nearest, the reading of the limbs cuts off at 2^-53 of 1: one unit apart at most.
 TYPED_TEST(MpfrInPlace, LeadingDigitsAreThoseOfTheLibrary) {
-  using T = typename TypeParam::Number;
-  RandomNumbers<TypeParam::limbs> random(3);
+  using T = typename TypeParam::Scalar;
+  RandomNumbers<T> random(3);
   for (int k = 0; k < 5000; ++k) {
     const T x = k == 0 ? T(1) : k == 1 ? T(T(1) - std::numeric_limits<T>::epsilon() / T(2)) : random();
     if (x == T(0)) continue;
@@ -151,8 +133,8 @@ TYPED_TEST(MpfrInPlace, LeadingDigitsAreThoseOfTheLibrary) {
 }
 
 TYPED_TEST(MpfrInPlace, CopiesAreNumbersOfTheirOwn) {
-  using T = typename TypeParam::Number;
-  RandomNumbers<TypeParam::limbs> random(4);
+  using T = typename TypeParam::Scalar;
+  RandomNumbers<T> random(4);
   const T x = random(), y = random();
   T copy = x, assigned;
   assigned = y;
@@ -174,7 +156,7 @@ TYPED_TEST(MpfrInPlace, CopiesAreNumbersOfTheirOwn) {
 }
 
 TYPED_TEST(MpfrInPlace, ZerosAndIntegers) {
-  using T = typename TypeParam::Number;
+  using T = typename TypeParam::Scalar;
   const T zero(0), minus_zero = -zero;
   EXPECT_TRUE(zero == T(0) && minus_zero == zero);
   EXPECT_FALSE(is_negative(minus_zero) || is_positive(minus_zero) || is_negative(zero) || is_positive(zero));

@@ -112,48 +112,45 @@ void check(const Law& law, const std::shared_ptr<const Particles<T>>& particles,
             std::vector<ParticleIndex>(collisions.begin(), collisions.begin() + static_cast<std::ptrdiff_t>(most)));
 }
 
+template <class Chain, class MakeLaw> void check(MakeLaw law, const Drawn& d, bool ring) {
+  using T = typename Chain::Scalar;
+  check<T, std::invoke_result_t<MakeLaw, const Drawn&>, Chain>(law(d), particles_of<T>(d, ring), d);
+}
+template <class Chain, class MakeLaw> void check_drawn_scenes(MakeLaw law, bool on_rings = true) {
+  EXPECT_TRUE(rc::check([&] {
+    const Drawn d = draw();
+    check<Chain>(law, d, on_rings && d.ring);
+  }));
+}
+template <class T> Inelastic<T> inelastic(const Drawn& d) {
+  return Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff));
+}
+
 template <class P> class RandomScenes : public InPrecision<P> {};
 TYPED_TEST_SUITE(RandomScenes, EachKindOfPrecision, PrecisionName);
 
 TYPED_TEST(RandomScenes, InelasticInGaps) {
   using T = typename TestFixture::Scalar;
-  EXPECT_TRUE(rc::check([] {
-    const Drawn d = draw();
-    check<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>(
-        Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)), particles_of<T>(d, d.ring), d);
-  }));
+  check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(inelastic<T>);
 }
 TYPED_TEST(RandomScenes, InelasticInPositions) {
   using T = typename TestFixture::Scalar;
-  EXPECT_TRUE(rc::check([] {
-    const Drawn d = draw();
-    check<T, Inelastic<T>, PositionChain<T>>(Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)),
-                                             particles_of<T>(d, false), d);
-  }));
+  check_drawn_scenes<PositionChain<T>>(inelastic<T>, false);
 }
 TYPED_TEST(RandomScenes, WithAContactTime) {
   using T = typename TestFixture::Scalar;
-  EXPECT_TRUE(rc::check([] {
-    const Drawn d = draw();
-    check<T, ContactTime<T>, GapChain<T, IndividualMasses<T>>>(
-        ContactTime<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)), particles_of<T>(d, d.ring), d);
-  }));
+  check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(
+      [](const Drawn& d) { return ContactTime<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)); });
 }
 TYPED_TEST(RandomScenes, Wet) {
   using T = typename TestFixture::Scalar;
-  EXPECT_TRUE(rc::check([] {
-    const Drawn d = draw();
-    check<T, cradle::Wet<T>, ClusterChain<T>>(cradle::Wet<T>(in_units<T>(d.loss)), particles_of<T>(d, d.ring), d);
-  }));
+  check_drawn_scenes<ClusterChain<T>>([](const Drawn& d) { return cradle::Wet<T>(in_units<T>(d.loss)); });
 }
 TYPED_TEST(RandomScenes, Merging) {
   using T = typename TestFixture::Scalar;
-  EXPECT_TRUE(rc::check([] {
-    const Drawn d = draw();
-    check<T, InelasticMerging<T>, ClusterChain<T>>(
-        InelasticMerging<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)),
-        particles_of<T>(d, d.ring), d);
-  }));
+  check_drawn_scenes<ClusterChain<T>>([](const Drawn& d) {
+    return InelasticMerging<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff));
+  });
 }
 
 // Found here: three particles collapse down to gaps of 1e-1080, and the times of other collisions, in such units, are
@@ -168,10 +165,7 @@ TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision)
                 0,
                 false,
                 {0, 0, 64}};
-  EXPECT_TRUE(rc::check([&] {
-    check<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>(
-        Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff)), particles_of<T>(d, d.ring), d);
-  }));
+  EXPECT_TRUE(rc::check([&] { check<GapChain<T, IndividualMasses<T>>>(inelastic<T>, d, false); }));
 }
 
 }  // namespace random_scenes_test

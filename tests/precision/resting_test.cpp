@@ -52,7 +52,7 @@ struct Brute {
   std::vector<Event> events;
 
   Brute(const Setup& of, const Reference& by) : setup(of), displaced(by) {
-    for (std::size_t i = 0; i < places.size(); ++i) x.push_back(places[i]), v.push_back(velocities[i]);
+    x = numbers<Reference>(places), v = numbers<Reference>(velocities);
   }
   Reference turns(const Reference& at) const {
     const Reference y = frequency * at / (2 * pi);
@@ -157,16 +157,13 @@ struct Brute {
 };
 
 template <class T> std::vector<Brute::Event> events_of(const Setup& setup) {
-  std::vector<T> x, v, m;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    x.push_back(exactly<T>(places[i])), v.push_back(exactly<T>(velocities[i])), m.push_back(exactly<T>(masses[i]));
   Wall<T> floor{T(0), exactly<T>(setup.speed), exactly<T>(setup.of_floor)};
   floor.rest_speed = exactly<T>(setup.rest_speed);
   if (setup.shape)
     floor.motion =
         std::make_shared<WallMotion<T>>(*setup.shape, exactly<T>(setup.amplitude), exactly<T>(frequency), T(0));
-  const std::shared_ptr<const Particles<T>> particles =
-      std::make_shared<Walled<T>>(list(x, v, m), floor, std::nullopt, T(-1));
+  const std::shared_ptr<const Particles<T>> particles = std::make_shared<Walled<T>>(
+      list(numbers<T>(places), numbers<T>(velocities), numbers<T>(masses)), floor, std::nullopt, T(-1));
   using Chain = GapChain<T, IndividualMasses<T>, Gravity<T>>;
   Simulation<T, Inelastic<T>, Chain> run(Inelastic<T>(exactly<T>(setup.restitution)), Chain(particles, T(0)));
   std::vector<Brute::Event> events;

@@ -1,20 +1,52 @@
-// Runs in parallel threads. Proves: two runs at once give the bits of the same two runs in turn, in double-double,
-// binary128 and MPFR, whose working precision is one value per process set before the threads start.
-#include <gtest/gtest.h>
+// Threads in the types whose queue keys are rounded times: double-double, binary128 and MPFR, whose working precision
+// is one value per process set before the threads start. Proves: one run in segments has the bits of the plain loop
+// there too, the energy lost included, which these types sum up gap by gap; two runs at once give the bits of the same
+// two runs in turn.
+#include "cradle/tests/core/segmented.hpp"
 
 #include <thread>
 
 #include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace threads_test {
+namespace precision_threads_test {
 
 using namespace cradle;
 using namespace cradle::test;
 
-template <class P> using Threads = InPrecision<P>;
-TYPED_TEST_SUITE(Threads, WidePrecision, PrecisionName);
+template <class P> using WideThreads = InPrecision<P>;
+TYPED_TEST_SUITE(WideThreads, WidePrecision, PrecisionName);
+
+template <class T, class Masses> void expect_same_gaps(const Scene<T>& scene, const std::vector<T>& times) {
+  SlabsMade all;
+  for (const Inelastic<T>& law :
+       {Inelastic<T>(T(999) / T(1000), T(1) / T(100000)), Inelastic<T>(T(3) / T(10), T(1) / T(2))})
+    for (const SegmentsAs& as : {SegmentsAs{{.gaps = 40, .ghosts = 4, .collisions = 4, .anywhere = true}, 2},
+                                 SegmentsAs{{.gaps = 150, .ghosts = 48, .anywhere = true}, 3}})
+      all += expect_same_in_segments<GapChain<T, Masses>>(scene, law, as, times);
+  EXPECT_GT(all.slabs, 10U);
+  EXPECT_GT(all.again, 0U);
+}
+
+TYPED_TEST(WideThreads, SegmentsOfRowsThatAreStreamedOfGasesOnARingAndOnALine) {
+  using T = typename TypeParam::Scalar;
+  expect_same_gaps<T, IdenticalMasses<T>>(rshock<T>(1200), {T(500), T(520)});
+  expect_same_gaps<T, IdenticalMasses<T>>(gas<T>(600, T(600)), {T(5), T(25)});
+  expect_same_gaps<T, IndividualMasses<T>>(gas<T>(700, T(0), true), {T(10), T(80)});
+}
+
+// Wet and sticky: particles merge, and with them what their gaps have lost.
+TYPED_TEST(WideThreads, SegmentsOfParticlesThatMergeOnARing) {
+  using T = typename TypeParam::Scalar;
+  const SegmentsAs as{{.gaps = 40, .ghosts = 8, .collisions = 4, .anywhere = true}, 2};
+  const Scene<T> scene = gas<T>(600, T(600), true);
+  SlabsMade made = expect_same_in_segments<ClusterChain<T>>(scene, Wet<T>(T(1) / T(50)), as, std::vector{T(5), T(40)});
+  made += expect_same_in_segments<ClusterChain<T>>(scene, Sticky<T>(), as, std::vector{T(5), T(40)});
+  EXPECT_GT(made.slabs, 10U);
+  EXPECT_GT(made.again, 0U);
+}
+
+// ---- runs side by side
 
 template <class T> struct Result {
   Configuration<T> configuration;
@@ -30,7 +62,7 @@ template <class T> Result<T> result(const char* restitution) {
   return {configuration_at(run, end), run.energy_lost(), run.counts()};
 }
 
-TYPED_TEST(Threads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
+TYPED_TEST(WideThreads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
   using T = typename TypeParam::Scalar;
   const char* const restitutions[] = {".9", ".92"};
   const Result<T> in_turn[] = {result<T>(restitutions[0]), result<T>(restitutions[1])};
@@ -49,4 +81,4 @@ TYPED_TEST(Threads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
   }
 }
 
-}  // namespace threads_test
+}  // namespace precision_threads_test

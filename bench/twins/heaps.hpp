@@ -1,0 +1,131 @@
+#pragma once
+// The better conventional engines: a binary heap with one entry per gap. It knows the place of each gap's entry, so a
+// new prediction replaces the old one in place (increase or decrease key). There are no stale events, and the heap
+// never grows.
+
+#include <algorithm>
+#include <utility>
+
+#include "line.hpp"
+
+namespace twins {
+
+struct Event {
+  double time;
+  std::uint32_t gap;
+};
+
+// The layout is that of textbooks: gaps in heap order, the place of each gap, the key of each gap.
+class IndexedHeap {
+ public:
+  explicit IndexedHeap(std::vector<double> due) : heap_(due.size()), place_(due.size()), due_(std::move(due)) {
+    const auto size = static_cast<std::uint32_t>(heap_.size());
+    for (std::uint32_t i = 0; i < size; ++i) heap_[i] = place_[i] = i;
+    for (std::uint32_t p = size / 2; p-- > 0;) sink(p);
+  }
+
+  Event first() const { return {due_[heap_[0]], heap_[0]}; }
+
+  void update(std::uint32_t gap, double time) {
+    const bool sooner = time < due_[gap];
+    due_[gap] = time;
+    if (sooner)
+      rise(place_[gap]);
+    else
+      sink(place_[gap]);
+  }
+
+ private:
+  void rise(std::uint32_t p) {
+    for (; p > 0 && before(p, (p - 1) / 2); p = (p - 1) / 2) exchange(p, (p - 1) / 2);
+  }
+
+  void sink(std::uint32_t p) {
+    const auto size = static_cast<std::uint32_t>(heap_.size());
+    for (std::uint32_t child; (child = 2 * p + 1) < size; p = child) {
+      if (child + 1 < size && before(child + 1, child)) ++child;
+      if (!before(child, p)) break;
+      exchange(p, child);
+    }
+  }
+
+  bool before(std::uint32_t p, std::uint32_t q) const { return due_[heap_[p]] < due_[heap_[q]]; }
+  void exchange(std::uint32_t p, std::uint32_t q) {
+    std::swap(heap_[p], heap_[q]);
+    place_[heap_[p]] = p;
+    place_[heap_[q]] = q;
+  }
+
+  std::vector<std::uint32_t> heap_;   // gaps
+  std::vector<std::uint32_t> place_;  // of each gap in the heap
+  std::vector<double> due_;           // of each gap
+};
+
+// A faster form: entries contain their times, so that comparing two needs no look-up, and an entry that moves up or
+// down leaves a hole instead of being exchanged at every level.
+class TunedHeap {
+ public:
+  explicit TunedHeap(const std::vector<double>& due) : heap_(due.size()), place_(due.size()) {
+    for (std::uint32_t i = 0; i < heap_.size(); ++i) heap_[i] = {due[i], i};
+    std::make_heap(heap_.begin(), heap_.end(), [](const Event& a, const Event& b) { return a.time > b.time; });
+    for (std::uint32_t p = 0; p < heap_.size(); ++p) place_[heap_[p].gap] = p;
+  }
+
+  const Event& first() const { return heap_.front(); }
+
+  void update(std::uint32_t gap, double time) {
+    const std::uint32_t p = place_[gap];
+    if (time < heap_[p].time)
+      rise(p, {time, gap});
+    else
+      sink(p, {time, gap});
+  }
+
+ private:
+  void rise(std::uint32_t p, Event event) {
+    while (p > 0 && event.time < heap_[(p - 1) / 2].time) {
+      put(p, heap_[(p - 1) / 2]);
+      p = (p - 1) / 2;
+    }
+    put(p, event);
+  }
+
+  void sink(std::uint32_t p, Event event) {
+    const auto size = static_cast<std::uint32_t>(heap_.size());
+    for (std::uint32_t child; (child = 2 * p + 1) < size; p = child) {
+      if (child + 1 < size && heap_[child + 1].time < heap_[child].time) ++child;
+      if (!(heap_[child].time < event.time)) break;
+      put(p, heap_[child]);
+    }
+    put(p, event);
+  }
+
+  void put(std::uint32_t p, const Event& event) {
+    heap_[p] = event;
+    place_[event.gap] = p;
+  }
+
+  std::vector<Event> heap_;
+  std::vector<std::uint32_t> place_;  // of each gap's entry in the heap
+};
+
+template <class Heap> class HeapEngine {
+ public:
+  HeapEngine(const cradle::Particles<double>& particles, Law law) : line_(particles, law), heap_(line_.all_due()) {}
+
+  // Makes every collision at times <= until.
+  void advance(double until);
+
+  std::uint64_t collisions() const { return collisions_; }
+
+ private:
+  Line line_;
+  Heap heap_;
+  std::uint64_t collisions_ = 0;
+};
+using IndexedHeapEngine = HeapEngine<IndexedHeap>;
+using TunedHeapEngine = HeapEngine<TunedHeap>;
+extern template class HeapEngine<IndexedHeap>;
+extern template class HeapEngine<TunedHeap>;
+
+}  // namespace twins

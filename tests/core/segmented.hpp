@@ -185,14 +185,18 @@ SlabsMade expect_same_in_segments(const Scene<std::type_identity_t<T>>& scene, c
         EXPECT_EQ(watched.advance(time, in_slabs, seen.by(watched)), status);
         expect_same(plain, watched, time);
         EXPECT_TRUE(seen == in_plain) << "other collisions, or in another order";
-        EXPECT_EQ(in_slabs.statistics().given_up > 0, segments.statistics().given_up > 0);
       }
       if (::testing::Test::HasFailure()) return {};
     }
     if (status != Status::reached) break;
   }
   SlabsMade made;
-  for (const InSegments& one : alone) made += one.segments.statistics();
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    made += alone[k].segments.statistics();
+    // Time slabs that are observed end elsewhere, and steps may give up one where the other run has none to give up.
+    if (!ways[k].observed || ways[k].how.steps != nullptr) continue;
+    EXPECT_EQ(observed[k].segments.statistics().given_up > 0, alone[k].segments.statistics().given_up > 0);
+  }
   return made;
 }
 template <class Chain, class T = typename Chain::Scalar, class Law>

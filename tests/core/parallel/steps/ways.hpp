@@ -27,9 +27,11 @@ inline std::vector<SegmentsAs> on_all_vectors(Segmentation how, unsigned threads
 // Every segmentation on the widest vectors, and one on each other kind.
 inline std::vector<SegmentsAs> all_ways() {
   std::vector<SegmentsAs> ways = segmentations();
-  for (std::size_t k = 1; k < all_steps().size(); ++k) ways.push_back(segmentations()[k % segmentations().size()]);
-  for (std::size_t k = 0; k < ways.size(); ++k)
-    ways[k].how.steps = &all_steps()[k < segmentations().size() ? 0 : k - segmentations().size() + 1];
+  for (SegmentsAs& as : ways) as.how.steps = &all_steps().front();
+  for (std::size_t k = 1; k < all_steps().size(); ++k) {
+    ways.push_back(segmentations()[k % segmentations().size()]);
+    ways.back().how.steps = &all_steps()[k];
+  }
   return ways;
 }
 

@@ -1,6 +1,6 @@
 // Steps in double-double (core/parallel/steps/pairs.inl). Proves: runs in segments with steps have the bits of the
-// plain loop: both doubles of every gap, closing speed, local time, lag and loss; on lines, rows and rings, with equal
-// and unequal masses, between walls, on lattices, on 1, 2, 3 and 8 threads. Nearly
+// plain loop: both doubles of every gap, closing speed, local time, lag and loss, and every collision that is observed;
+// on lines, rows and rings, with equal and unequal masses, between walls, on lattices, on 1, 2, 3 and 8 threads. Nearly
 // all collisions of gases are made in steps.
 //
 // As steps_cases.cpp it is built with errors planted too, and must fail with each of them.

@@ -1,8 +1,7 @@
 // Steps (core/parallel/steps). Proves: with steps, on each kind of vectors, runs in segments have the bits of the plain
 // loop: every gap, closing speed, local time and lag, counts, losses and what walls gave, and every collision that is
-// observed; for all laws that bounce, on
-// lines, rows and rings, with equal and unequal masses, on lattices and through collapses. Nearly all collisions of
-// gases are made in steps.
+// observed; for all laws that bounce, on lines, rows and rings, with equal and unequal masses, on lattices and through
+// collapses. Nearly all collisions of gases are made in steps.
 //
 // The same program is built with errors planted in the vectors (CMakeLists.txt): it must fail with each of them.
 #include <gtest/gtest.h>

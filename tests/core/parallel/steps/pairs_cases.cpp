@@ -75,24 +75,6 @@ TEST_F(StepsOfPairs, SlowFigure2) {
   EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions));
 }
 
-// Scenes and segmentations drawn at random.
-TEST_F(StepsOfPairs, RandomGases) {
-  for (std::uint64_t seed = 1; seed < 40 && !HasFailure(); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937_64 random(seed);
-    const auto below = [&](std::uint64_t n) { return random() % n; };
-    const auto n = static_cast<ParticleIndex>(20 + 2 * below(300));
-    const bool unequal = below(2) == 0;
-    const Scene<T> scene = gas<T>(n, below(3) == 0 ? T(n) : T(0), unequal);
-    std::vector<SegmentsAs> ways;
-    for (const Steps& steps : all_steps())
-      ways.push_back({{.gaps = 1 + below(400), .ghosts = 1 + below(80), .anywhere = true, .steps = &steps},
-                      static_cast<unsigned>(1 + below(3))});
-    const Inelastic<T> law(part(static_cast<int>(400 + below(601)), 1000), part(1, static_cast<int>(10 + below(90))));
-    const int time = static_cast<int>(1 + below(30));
-    unequal ? expect_same_in_steps<Unequal>(scene, law, {time, 2 * time}, ways)
-            : expect_same_in_steps<Equal>(scene, law, {time, 2 * time}, ways);
-  }
-}
+TEST_F(StepsOfPairs, RandomScenes) { expect_same_in_random_scenes<Equal, Unequal>(39); }
 
 }  // namespace steps_of_pairs_test

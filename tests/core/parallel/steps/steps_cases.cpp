@@ -8,9 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <random>
 #include <string>
 #include <utility>
@@ -245,83 +242,6 @@ TEST_F(Steps, SlowFigure2IntoItsCollapse) {
   EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions));
 }
 
-// ---- random scenes: seconds here; by hand as many as CRADLE_FUZZ_SECONDS says, from the scene CRADLE_FUZZ_SEED on
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random_(seed) {}
-  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
-  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-  template <class T> T one_of(std::initializer_list<T> all) { return all.begin()[below(all.size())]; }
-
- private:
-  std::mt19937_64 random_;
-};
-
-Scene<double> random_scene(Dice& dice, bool unequal, double& duration) {
-  const auto n = static_cast<ParticleIndex>(20 + 2 * dice.below(dice.one_of<std::size_t>({30, 200, 800})));
-  duration = dice.one_of({1., 20., 60.}) * dice.uniform();
-  if (!unequal && dice.below(4) == 0) {
-    duration += static_cast<double>(n) * 0.2;
-    return std::make_shared<Rows<double>>(
-        symmetric_rows<double>(n, 0.5, 1., uniform_displacement(dice.one_of({0.4, 0.05, 1e-6}), dice.below(1000), 0)));
-  }
-  const bool ring = dice.below(3) == 0, lattice = dice.below(8) == 0;
-  const double still = dice.one_of({0., 0., 0.7}), heavy = dice.one_of({1.0001, 3., 50.});
-  std::vector<double> x, v, m;
-  for (ParticleIndex i = 0; i < n; ++i) {
-    x.push_back(static_cast<double>(i) + (lattice ? 0 : 0.5 * dice.uniform()));
-    v.push_back(dice.uniform() < still ? 0 : lattice ? dice.one_of({-1., 0., 1.}) : 2 * dice.uniform() - 1);
-    if (unequal) m.push_back(dice.below(2) == 0 ? 1 : heavy);
-  }
-  const double last = static_cast<double>(n);
-  const Scene<double> scene = std::make_shared<List<double>>(x, v, m, ring ? last : 0.);
-  if (ring || dice.below(3) > 0) return scene;
-  const auto wall = [&](double at) -> std::optional<Wall<double>> {
-    if (dice.below(3) == 0) return {};
-    return Wall<double>{
-        .position = at, .restitution = dice.uniform(), .temperature = dice.one_of({0., 0.3}), .seed = 3};
-  };
-  return std::make_shared<Walled<double>>(scene, wall(-0.5), wall(last + 0.5));
-}
-
-template <class Chain> void fuzz_once(Dice& dice) {
-  double duration = 0;
-  const Scene<double> scene = random_scene(dice, std::same_as<Chain, Unequal>, duration);
-  const std::vector<double> times{0.6 * duration, duration};
-  std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
-  for (auto& [how, workers, observed] : ways) {
-    how.gaps = 1 + dice.below(dice.one_of<std::size_t>({8, 100, 2000}));
-    how.ghosts = 1 + dice.below(80);
-    how.collisions = dice.one_of({0., 0.5, 4., 20.});
-    workers = static_cast<unsigned>(1 + dice.below(3));
-  }
-  // Not what collapses: the plain loop takes minutes for it.
-  const double restitution = dice.one_of({1., 0.999, 0.95, 0.6, 0.4});
-  const double cutoff = restitution > 0.99 ? dice.one_of({0., 1e-5, 0.1}) : dice.one_of({0.01, 0.1});
-  if (std::same_as<Chain, Unequal> && dice.below(3) == 0)
-    expect_same_in_steps<Unequal>(
-        scene, SpeedDependent<double>(std::max(restitution, 0.95), 0.05 + dice.uniform(), 0.1 + dice.uniform()), times,
-        ways);
-  else
-    expect_same_in_steps<Chain>(scene, Inelastic<double>(restitution, cutoff), times, ways);
-}
-
-TEST_F(Steps, RandomScenes) {
-  const char* asked = std::getenv("CRADLE_FUZZ_SECONDS");
-  const auto end =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(asked == nullptr ? 4. : std::atof(asked));
-  const char* first = std::getenv("CRADLE_FUZZ_SEED");
-  std::uint64_t seed = first != nullptr   ? std::strtoull(first, nullptr, 10)
-                       : asked == nullptr ? 1
-                                          : std::random_device()();
-  for (; std::chrono::steady_clock::now() < end && !HasFailure(); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    if (asked != nullptr) std::printf("seed %llu\n", static_cast<unsigned long long>(seed)), std::fflush(stdout);
-    Dice dice(seed);
-    dice.below(2) == 0 ? fuzz_once<Equal>(dice) : fuzz_once<Unequal>(dice);
-  }
-  RecordProperty("seed", std::to_string(seed));
-}
+TEST_F(Steps, RandomScenes) { expect_same_in_random_scenes<Equal, Unequal>(1); }
 
 }  // namespace steps_test

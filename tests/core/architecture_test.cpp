@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -36,10 +37,9 @@ bool is_comment(const std::string& text) {
 
 std::vector<fs::path> headers(const std::string& folder) {
   std::vector<fs::path> files;
+  const std::set<fs::path> extensions{".hpp", ".cpp", ".inl", ".in"};
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_folder) / folder))
-    if (entry.path().extension() == ".hpp" || entry.path().extension() == ".cpp" ||
-        entry.path().extension() == ".inl" || entry.path().extension() == ".in")
-      files.push_back(entry.path());
+    if (extensions.contains(entry.path().extension())) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -60,23 +60,23 @@ std::string place(const Line& line) { return line.file + ':' + std::to_string(li
 TEST(Architecture, CoreIncludesTheStandardLibraryAndItselfOnly) {
   const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
   const std::regex own(R"(cradle/core/.*)"), standard(R"([a-z_]+)"), threads(R"(tbb/.*|oneapi/.*)");
-  const std::vector<std::string> forbidden{"iostream", "fstream", "sstream",      "cstdio",
-                                           "ostream",  "istream", "thread",       "mutex",
-                                           "atomic",   "future",  "shared_mutex", "condition_variable",
-                                           "execution"};
+  const std::set<std::string> forbidden{"iostream", "fstream", "sstream",      "cstdio",
+                                        "ostream",  "istream", "thread",       "mutex",
+                                        "atomic",   "future",  "shared_mutex", "condition_variable",
+                                        "execution"};
   int found = 0;
   for (const Line& line : code("core")) {
     std::smatch match;
     if (!std::regex_search(line.text, match, include)) continue;
     ++found;
     const std::string name = match[1];
-    const bool ensemble = line.file == "core/ensemble/ensemble.hpp" || line.file.starts_with("core/ensemble/");
+    const bool ensemble = line.file.starts_with("core/ensemble/");
     const bool tbb = line.file == "core/ensemble/tbb_executor.hpp";
     const bool highway = line.file == "core/parallel/steps/steps.cpp" && name.starts_with("hwy/");
     EXPECT_TRUE(std::regex_match(name, own) || std::regex_match(name, standard) ||
                 (tbb && std::regex_match(name, threads)) || highway)
         << place(line);
-    EXPECT_TRUE(ensemble || std::find(forbidden.begin(), forbidden.end(), name) == forbidden.end()) << place(line);
+    EXPECT_TRUE(ensemble || !forbidden.contains(name)) << place(line);
   }
   EXPECT_GT(found, 50) << "sources are looked for in " << source_folder;
 }
@@ -130,41 +130,41 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
   const std::regex maths(
       R"(std::(abs|fabs|sqrt|cbrt|pow|exp|exp2|log|log2|log10|log1p|expm1|sin|cos|tan|atan|atan2|hypot|fma|floor|)"
       R"(ceil|round|min|max|isnan|isfinite|ldexp|frexp)\b)");
-  const std::vector<std::string> on_double{"core/certify/certain_power.hpp",  // bounds
-                                           "core/certify/certain_wall.hpp",   // random speeds
-                                           "core/certify/certain_state.hpp",  // sizes
-                                           "core/certify/certain_walls.hpp",  // sizes
-                                           "core/certify/inspection.hpp",     // radii
-                                           "core/chains/configuration.hpp",
-                                           "core/base/counter_rng.hpp",
-                                           "core/base/elementary.hpp",  // exponents
-                                           "core/base/portable_log.hpp",
-                                           "core/base/real.hpp",  // a double, taken apart
-                                           "core/laws/wall.hpp",  // random speeds
-                                           "core/ensemble/histogram.hpp",
-                                           "core/ensemble/moments.hpp",
-                                           "core/queue/event_queue.hpp",
-                                           "core/observe/averages.hpp",
-                                           "core/observe/batch_means.hpp",
-                                           "core/observe/clusters.hpp",
-                                           "core/observe/correlations.hpp",  // turns of a ring
-                                           "core/observe/profile.hpp",
-                                           "core/observe/scenario.hpp",
-                                           "core/observe/structure.hpp",
-                                           "core/laws/turns.hpp",
-                                           "core/observe/zone.hpp",
-                                           "core/initial/ring.hpp",
-                                           "core/initial/rows.hpp",
-                                           "core/parallel/observed.hpp",
-                                           "core/parallel/segments.hpp",
-                                           "core/parallel/steps/steps.cpp",
-                                           "core/theory/blast.hpp",
-                                           "core/theory/domino.hpp",
-                                           "core/theory/free_cooling.hpp",
-                                           "core/theory/splash.hpp"};
+  const std::set<std::string> on_double{"core/certify/certain_power.hpp",  // bounds
+                                        "core/certify/certain_wall.hpp",   // random speeds
+                                        "core/certify/certain_state.hpp",  // sizes
+                                        "core/certify/certain_walls.hpp",  // sizes
+                                        "core/certify/inspection.hpp",     // radii
+                                        "core/chains/configuration.hpp",
+                                        "core/base/counter_rng.hpp",
+                                        "core/base/elementary.hpp",  // exponents
+                                        "core/base/portable_log.hpp",
+                                        "core/base/real.hpp",  // a double, taken apart
+                                        "core/laws/wall.hpp",  // random speeds
+                                        "core/ensemble/histogram.hpp",
+                                        "core/ensemble/moments.hpp",
+                                        "core/queue/event_queue.hpp",
+                                        "core/observe/averages.hpp",
+                                        "core/observe/batch_means.hpp",
+                                        "core/observe/clusters.hpp",
+                                        "core/observe/correlations.hpp",  // turns of a ring
+                                        "core/observe/profile.hpp",
+                                        "core/observe/scenario.hpp",
+                                        "core/observe/structure.hpp",
+                                        "core/laws/turns.hpp",
+                                        "core/observe/zone.hpp",
+                                        "core/initial/ring.hpp",
+                                        "core/initial/rows.hpp",
+                                        "core/parallel/observed.hpp",
+                                        "core/parallel/segments.hpp",
+                                        "core/parallel/steps/steps.cpp",
+                                        "core/theory/blast.hpp",
+                                        "core/theory/domino.hpp",
+                                        "core/theory/free_cooling.hpp",
+                                        "core/theory/splash.hpp"};
   const std::regex known(R"(^\s*using std::|std::(min|max)(<|\()|std::isfinite\(rounded\)|std::frexp\(x, &e\))");
   for (const Line& line : code("core")) {
-    if (std::find(on_double.begin(), on_double.end(), line.file) != on_double.end()) continue;
+    if (on_double.contains(line.file)) continue;
     EXPECT_FALSE(std::regex_search(line.text, maths) && !std::regex_search(line.text, known)) << place(line);
   }
 }

@@ -22,8 +22,9 @@ inline Wide printed_tolerance(const std::string& digits) {
   return pow(Wide(10), -places) * Wide(51) / Wide(100);
 }
 
+#define EXPECT_WITHIN(value, expected, bound) EXPECT_LE(abs(Wide((value) - (expected))), Wide(bound))
 #define EXPECT_DIGITS(value, digits)                                                                                   \
-  EXPECT_LE(abs(Wide((value)-decimal(digits))), printed_tolerance(digits)) << "value " << Wide(value).str(30)
+  EXPECT_WITHIN(value, decimal(digits), printed_tolerance(digits)) << "value " << Wide(value).str(30)
 
 inline void expect_close(const Wide& value, const Wide& expected, const Wide& relative, const std::string& what) {
   EXPECT_LE(abs(Wide(value - expected)), Wide(relative * abs(expected))) << what << ": " << value << " / " << expected;

@@ -7,9 +7,12 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
+#include <vector>
 
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
@@ -34,10 +37,12 @@ inline std::vector<SegmentsAs> segmentations() {
           {{.gaps = 300, .ghosts = 8, .collisions = 8, .anywhere = true}, 8}};
 }
 
+// What runs in segments have made, all of those that are compared.
 struct SlabsMade {
-  std::uint64_t slabs = 0, given_up = 0, again = 0;
-  SlabsMade& operator+=(const SlabsMade& other) {
+  std::uint64_t slabs = 0, given_up = 0, again = 0, collisions = 0, in_steps = 0;
+  template <class Other> SlabsMade& operator+=(const Other& other) {
     slabs += other.slabs, given_up += other.given_up, again += other.again;
+    collisions += other.collisions, in_steps += other.in_steps;
     return *this;
   }
 };
@@ -46,6 +51,14 @@ struct SlabsMade {
 template <class T> Scene<T> gas(ParticleIndex n, const T& circumference = T(0), bool unequal = false) {
   const auto mass = [=](ParticleIndex b) { return unequal ? T(T(1) + T(bits_of(b, 40, 7)) / T(2)) : T(1); };
   return as_list(*rmix<T>(n), mass, circumference);
+}
+
+// Elastic particles, nearly elastic ones, some with a cut-off, soft ones.
+template <class T> std::vector<Inelastic<T>> laws() {
+  const auto law = [](int restitution, int cutoff) {
+    return Inelastic<T>(T(restitution) / T(1000), cutoff > 0 ? T(1) / T(cutoff) : T(0));
+  };
+  return {law(1000, 0), law(999, 100000), law(900, 8), law(300, 2)};
 }
 
 // Every number of every gap, and the accounts of walls.
@@ -105,30 +118,72 @@ template <class T> class Observed {
   std::uint64_t collisions_ = 0, hash_ = 0;
 };
 
-// Advances a run in segments, the same with an observer, and one in the plain loop, through the same times.
-template <class Chain, class T, class Law>
-SlabsMade expect_same_in_segments(const Scene<T>& scene, const Law& law, const SegmentsAs& as,
-                                  const std::vector<T>& times) {
+struct SameState {
+  template <class Run, class T> void operator()(const Run& a, const Run& b, const T& time) const {
+    expect_same_state(a, b, time);
+  }
+};
+struct SameBits {
+  template <class Run, class T> void operator()(const Run& a, const Run& b, const T& time) const {
+    expect_same_state(a, b, time);
+    expect_same_bits(a.chain(), b.chain());
+  }
+};
+
+// Advances a run in the plain loop and, for each way to go in segments, a run and the same with an observer, through
+// the same times.
+template <class Chain, class T = typename Chain::Scalar, class Law, class ExpectSame = SameState>
+SlabsMade expect_same_in_segments(const Scene<std::type_identity_t<T>>& scene, const Law& law,
+                                  const std::vector<SegmentsAs>& ways,
+                                  const std::vector<std::type_identity_t<T>>& times,
+                                  const ExpectSame& expect_same = {}) {
   using Run = Simulation<T, Law, Chain>;
-  Run plain(law, Chain(scene, T(0))), segmented(law, Chain(scene, T(0))), observed(law, Chain(scene, T(0)));
-  Segments<Law, Chain> segments(threads(as.threads), as.how), observed_segments(threads(as.threads), as.how);
-  Observed<T> in_plain, in_segments;
+  struct InSegments {
+    Run run;
+    Segments<Law, Chain> segments;
+    Observed<T> seen;
+  };
+  const auto started = [&] { return Run(law, Chain(scene, T(0))); };
+  Run plain = started();
+  Observed<T> in_plain;
+  std::vector<InSegments> alone, observed;
+  for (const SegmentsAs& as : ways)
+    for (auto* runs : {&alone, &observed})
+      runs->push_back({started(), Segments<Law, Chain>(threads(as.threads), as.how), {}});
   for (const T& time : times) {
-    const Status status = as.observed ? plain.advance(time, in_plain.by(plain)) : plain.advance(time);
-    EXPECT_EQ(segmented.advance(time, segments), status);
-    expect_same_state(plain, segmented, time);
-    if (as.observed) {
-      EXPECT_EQ(observed.advance(time, observed_segments, in_segments.by(observed)), status);
-      expect_same_state(plain, observed, time);
-      EXPECT_TRUE(in_segments == in_plain) << "other collisions, or in another order";
-      EXPECT_EQ(in_plain.collisions(), plain.counts().collisions);
+    const Status status = plain.advance(time, in_plain.by(plain));
+    EXPECT_EQ(in_plain.collisions(), plain.counts().collisions);
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      const Segmentation& how = ways[k].how;
+      SCOPED_TRACE(::testing::Message() << (how.steps ? how.steps->target : "no steps") << ", " << how.gaps << " gaps, "
+                                        << how.ghosts << " ghosts, " << ways[k].threads << " threads, until "
+                                        << to_double(time));
+      auto& [run, segments, nothing] = alone[k];
+      EXPECT_EQ(run.advance(time, segments), status);
+      expect_same(plain, run, time);
+      if (ways[k].observed) {
+        auto& [watched, in_slabs, seen] = observed[k];
+        EXPECT_EQ(watched.advance(time, in_slabs, seen.by(watched)), status);
+        expect_same(plain, watched, time);
+        EXPECT_TRUE(seen == in_plain) << "other collisions, or in another order";
+      }
+      if (::testing::Test::HasFailure()) return {};
     }
     if (status != Status::reached) break;
   }
-  if (as.observed) {
-    EXPECT_EQ(observed_segments.statistics().given_up > 0, segments.statistics().given_up > 0);
+  SlabsMade made;
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    made += alone[k].segments.statistics();
+    // Time slabs that are observed end elsewhere, and steps may give up one where the other run has none to give up.
+    if (!ways[k].observed || ways[k].how.steps != nullptr) continue;
+    EXPECT_EQ(observed[k].segments.statistics().given_up > 0, alone[k].segments.statistics().given_up > 0);
   }
-  return {segments.statistics().slabs, segments.statistics().given_up, segments.statistics().again};
+  return made;
+}
+template <class Chain, class T = typename Chain::Scalar, class Law>
+SlabsMade expect_same_in_segments(const Scene<std::type_identity_t<T>>& scene, const Law& law, const SegmentsAs& as,
+                                  const std::vector<std::type_identity_t<T>>& times) {
+  return expect_same_in_segments<Chain, T>(scene, law, std::vector{as}, times);
 }
 
 }  // namespace cradle::test

@@ -4,13 +4,7 @@
 #include <fstream>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/ring.hpp"
-#include "cradle/core/initial/rows.hpp"
+#include "cradle/tests/fuzz/saved_runs.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -25,13 +19,6 @@ std::filesystem::path folder;
 void put(const char* target, const std::string& name, const std::string& bytes) {
   std::filesystem::create_directories(folder / target);
   std::ofstream(folder / target / name, std::ios::binary) << bytes;
-}
-
-template <class Run> void put_state(char kind, Run&& run) {
-  for (const double time : {0., 2., 9.}) {
-    run.advance(time);
-    put("checkpoint", std::to_string(int{kind}) + "-" + std::to_string(int(time)), kind + SavedState::of(run).bytes());
-  }
 }
 
 }  // namespace
@@ -65,22 +52,12 @@ int main(int argc, char** argv) {
       '\2' + tools::to_bytes(tools::EnsembleRecord{
                  0, tools::ReplicaRecord{state.layout().row(3, run), state.layout().values(run)}}));
 
-  const auto rows =
-      std::make_shared<Rows<double>>(symmetric_rows<double>(12, 0.5, 1, uniform_displacement(0.05, 3, 0)));
-  const auto ring =
-      std::make_shared<Ring<double>>(8, 8., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0));
-  using Dry = Inelastic<double>;
-  const Dry dry(0.9, 1e-3);
-  put_state(0, Simulation<double, Dry, GapChain<double>>(dry, GapChain<double>(rows, 0.)));
-  put_state(1, Simulation<double, Dry, GapChain<double>>(dry, GapChain<double>(ring, 0.)));
-  using Individual = GapChain<double, IndividualMasses<double>>;
-  put_state(2,
-            Simulation<double, ContactTime<double>, Individual>(ContactTime<double>(dry, 1e-3), Individual(rows, 0.)));
-  put_state(3, Simulation<double, Dry, PositionChain<double>>(dry, PositionChain<double>(rows, 0.)));
-  put_state(4,
-            Simulation<double, Wet<double>, ClusterChain<double>>(Wet<double>(0.01), ClusterChain<double>(rows, 0.)));
-  put_state(5,
-            Simulation<double, Wet<double>, ClusterChain<double>>(Wet<double>(0.01), ClusterChain<double>(ring, 0.)));
-  put_state(6, StickyGas<double>(ring, 0.));
-  put_state(13, StickyGas<double>(rows, 0.));
+  for (const int kind : {0, 1, 2, 3, 4, 5, 6, 13})
+    fuzz::with_run(kind, {}, [&](auto saved) {
+      for (const double time : {0., 2., 9.}) {
+        saved.advance(time);
+        put("checkpoint", std::to_string(kind) + "-" + std::to_string(int(time)),
+            static_cast<char>(kind) + SavedState::of(saved).bytes());
+      }
+    });
 }

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include <boost/math/tools/polynomial.hpp>
+
 #include "cradle/core/words/word.hpp"
 #include "cradle/tests/core/rational.hpp"
 
@@ -91,18 +93,13 @@ template <class N> struct Adjugate {
   }
 };
 
-inline Rational value(const std::vector<Rational>& p, const Rational& x) {
-  Rational sum = 0;
-  for (std::size_t k = p.size(); k-- > 0;) sum = sum * x + p[k];
-  return sum;
-}
+using RationalPolynomial = boost::math::tools::polynomial<Rational>;
 
 // Sign changes of Sturm's chain at x.
-inline int changes(const std::vector<std::vector<Rational>>& chain, const Rational& x) {
+inline int changes(const std::vector<RationalPolynomial>& chain, const Rational& x) {
   int count = 0, last = 0;
-  for (const auto& p : chain) {
-    const Rational v = value(p, x);
-    const int sign = v > 0 ? 1 : v < 0 ? -1 : 0;
+  for (const RationalPolynomial& p : chain) {
+    const int sign = p(x).sign();
     if (sign != 0 && last != 0 && sign != last) ++count;
     if (sign != 0) last = sign;
   }
@@ -110,23 +107,15 @@ inline int changes(const std::vector<std::vector<Rational>>& chain, const Ration
 }
 
 // All real roots in (low, high), each in an interval of relative width 2^-250.
-inline std::vector<Rationals> isolated_roots(std::vector<Rational> p, const Rational& low, const Rational& high) {
-  while (!p.empty() && p.back() == 0) p.pop_back();
+inline std::vector<Rationals> isolated_roots(const std::vector<Rational>& coefficients, const Rational& low,
+                                             const Rational& high) {
+  const RationalPolynomial p(coefficients);
   if (p.size() < 2) return {};
-  std::vector<std::vector<Rational>> chain{p, {}};
-  for (std::size_t k = 1; k < p.size(); ++k) chain[1].push_back(p[k] * static_cast<long>(k));
+  std::vector<RationalPolynomial> chain{p, p.prime()};
   for (;;) {
-    std::vector<Rational> rest = chain[chain.size() - 2];
-    const std::vector<Rational>& by = chain.back();
-    while (rest.size() >= by.size()) {
-      const Rational factor = rest.back() / by.back();
-      for (std::size_t k = 0; k < by.size(); ++k) rest[rest.size() - by.size() + k] -= factor * by[k];
-      rest.pop_back();
-    }
-    while (!rest.empty() && rest.back() == 0) rest.pop_back();
-    if (rest.empty()) break;
-    for (Rational& c : rest) c = -c;
-    chain.push_back(rest);
+    const RationalPolynomial rest = chain[chain.size() - 2] % chain.back();
+    if (rest.is_zero()) break;
+    chain.push_back(-rest);
   }
   std::vector<Rationals> found;
   std::vector<std::pair<Rational, Rational>> open{{low, high}};

@@ -9,8 +9,6 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/sample.hpp"
-#include "cradle/core/theory/inelastic_collapse.hpp"
-#include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/strict_real.hpp"
@@ -115,23 +113,6 @@ TEST(StrictScalar, Observers) {
     return seen;
   };
   EXPECT_EQ(observe(StrictReal(0)), observe(0.));
-}
-
-TEST(StrictScalar, Theory) {
-  const auto evaluate = []<class T>(T) {
-    theory::InelasticShock<T> shock{number<T>(0.99)};
-    shock.particles = 400;
-    std::vector<double> values;
-    const T t(100);
-    for (const T& value :
-         {theory::front_position(shock, t), theory::front_position_discrete(shock, t), *theory::turnover_time(shock),
-          *theory::maximal_front(shock), theory::mean_velocity_slope(shock, t), theory::energy(shock, t),
-          *theory::collapse_onset_time(shock), theory::collapse_limit<T>(3), theory::checkerboard_coupling(T(0), 5),
-          *theory::three_particle_collapse_time(number<T>(0.05), T(1), T(1), T(2), T(1))})
-      values.push_back(to_double(value));
-    return values;
-  };
-  EXPECT_EQ(evaluate(StrictReal(0)), evaluate(0.));
 }
 
 }  // namespace strict_scalar_test

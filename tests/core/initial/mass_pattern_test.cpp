@@ -7,7 +7,7 @@
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
-#include "cradle/tests/core/segmented.hpp"
+#include "cradle/tests/core/initial/streamed.hpp"
 
 namespace mass_pattern_test {
 
@@ -112,16 +112,8 @@ TEST(MassPattern, StreamedIsHeldIsListedInAnyCadence) {
   const Inelastic<double> law(0.9, 1e-2);
   for (const auto& scene : {rows(three), rows(three, CentralParticle<double>{20, .125}), cold(1, HotPlace::left),
                             cold(1, HotPlace::middle), cold(32, HotPlace::middle), cold(7, HotPlace::left)}) {
-    auto streamed = mass_run(scene, law), held = mass_run(scene, law, {}, 0., {.hold_all = true}),
-         often = mass_run(scene, law);
-    for (int step = 1; step <= 160; ++step) ASSERT_EQ(often.advance(step), Status::reached);
-    for (const double t : {10., 80., 160.}) {
-      ASSERT_EQ(streamed.advance(t), Status::reached);
-      ASSERT_EQ(held.advance(t), Status::reached);
-      EXPECT_TRUE(identical(configuration_at(streamed, t), configuration_at(held, t)));
-      EXPECT_EQ(streamed.energy_lost(), held.energy_lost());
-    }
-    expect_same_state(streamed, often, 160.);
+    const auto streamed = expect_streamed_is_held(
+        [&](Options options) { return mass_run(scene, law, {}, 0., options); }, {10., 80., 160.});
     EXPECT_GT(streamed.counts().collisions, 40U);
     EXPECT_LT(mass_run(scene, law).chain().last() - mass_run(scene, law).chain().first(), 33U);  // held at the start
     const auto now = configuration_at(streamed, 160.);

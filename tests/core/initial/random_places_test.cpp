@@ -12,7 +12,8 @@
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/poisson.hpp"
-#include "cradle/tests/core/segmented.hpp"
+#include "cradle/tests/core/initial/streamed.hpp"
+#include "cradle/tests/core/observe/placed.hpp"
 
 namespace random_places_test {
 
@@ -260,15 +261,8 @@ TEST(RandomPlaces, StreamedIsHeldInAnyCadence) {
   const Inelastic<double> law(0.9, 1e-2);
   for (const auto& gas : {falling(HotPlace::middle, 0, places), falling(HotPlace::middle, 0.5, places),
                           Scene<double>(std::make_shared<Rows<double>>(poisson_rows(300, 300, false)))}) {
-    auto streamed = gap_run(gas, law), held = gap_run(gas, law, {}, 0., {.hold_all = true}), often = gap_run(gas, law);
-    for (int step = 1; step <= 80; ++step) ASSERT_EQ(often.advance(step), Status::reached);
-    for (const double t : {10., 80.}) {
-      ASSERT_EQ(streamed.advance(t), Status::reached);
-      ASSERT_EQ(held.advance(t), Status::reached);
-      EXPECT_TRUE(identical(configuration_at(streamed, t), configuration_at(held, t)));
-      EXPECT_EQ(streamed.energy_lost(), held.energy_lost());
-    }
-    expect_same_state(streamed, often, 80.);
+    const auto streamed =
+        expect_streamed_is_held([&](Options options) { return gap_run(gas, law, {}, 0., options); }, {10., 80.});
     EXPECT_GT(streamed.counts().collisions, 20U);
   }
 }
@@ -291,11 +285,9 @@ TEST(PoissonPositions, DiffuseAsJepsenComputed) {
       const double moved = std::remainder(now.x[k] - ring->position(p), double(count));
       mean[static_cast<std::size_t>(p) * stretches / count] += moved * moved * stretches / count;
     }
-    double all = 0, square = 0;
-    for (const double one : mean) all += one / stretches;
-    for (const double one : mean) square += (one - all) * (one - all);
-    EXPECT_LT(std::abs(all - exact), deviations * std::sqrt(square / (stretches * (stretches - 1)))) << all;
-    EXPECT_LT(std::sqrt(square / (stretches * (stretches - 1))), 0.03 * exact);  // far from .65
+    const auto [all, error] = mean_of(mean);
+    EXPECT_LT(std::abs(all - exact), deviations * error) << all;
+    EXPECT_LT(error, 0.03 * exact);  // far from .65
   }
 }
 

@@ -1,6 +1,5 @@
 // Particles on a ring: the chains against their slow twin, exactly in rational arithmetic (all laws that need no root)
-// and to what the scene makes of roundings for the wet law; the initial state of free cooling; and its energy against
-// the sticky law.
+// and to what the scene makes of roundings for the wet law; and the initial state of free cooling.
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -184,20 +183,6 @@ TEST(Ring, StartsWithZeroMomentumAndTheRequestedVariance) {
 
 TEST(Ring, PortableLogarithm) {
   for (double x = 1; x > 1e-19; x *= 0.77) EXPECT_NEAR(detail::portable_log(x), std::log(x), 4e-16 * -std::log(x)) << x;
-}
-
-// Sticky free cooling: E/N -> 0.221376226650747359 s^{4/3} t^{-2/3} (Burgers turbulence; validation against an exact
-// solution at N = 2e7 gave 1.0037 of it at worst). At N = 1e5 and t = 30 some 1e4 clusters carry the energy: 2 %.
-TEST(Ring, StickyGasCoolsByTheTwoThirdsLaw) {
-  constexpr ParticleIndex n = 100000;
-  const auto ring =
-      std::make_shared<Ring<double>>(n, double(n), 1.0, gaussian_velocity(1, 0), uniform_displacement(0, 1, 0));
-  Simulation run(Sticky<double>{}, ClusterChain<double>(ring, 0.0));
-  for (const double t : {10.0, 30.0}) {
-    ASSERT_EQ(run.advance(t), Status::reached);
-    const double energy = (ring->kinetic_energy() - run.energy_lost()) / n;
-    EXPECT_NEAR(energy / (0.221376226650747359 * std::pow(t, -2.0 / 3)), 1, 0.02) << t;
-  }
 }
 
 TEST(Ring, RefusesWhatIsNoRing) {

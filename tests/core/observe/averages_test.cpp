@@ -5,35 +5,28 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
-#include <numeric>
 
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/initial/list.hpp"
+#include "cradle/tests/core/observe/placed.hpp"
 #include "cradle/tests/core/saved.hpp"
 
 namespace averages_test {
 
 using namespace cradle;
+using namespace cradle::test;
 
 constexpr std::size_t batches = TimeAverages::batches;
 
-struct Found {
-  std::vector<double> x, v, m;
-};
-
-void add(TimeAverages& averages, const Found& found) {
-  Configuration<double> c;
-  c.x = found.x, c.v = found.v, c.m = found.m;
-  c.to = static_cast<ParticleIndex>(found.x.size()) - 1;
-  averages.find(c, List<double>(found.x, found.v, found.m), 0.);
+void add(TimeAverages& averages, const std::vector<double>& x, const std::vector<double>& v,
+         const std::vector<double>& m) {
+  averages.find(placed(x, v, m), List<double>(x, v, m), 0.);
   averages.add_found();
 }
 
 TEST(TimeAverages, OfAKnownConfiguration) {
   // Bins [0, 2), [2, 4) and [4, 6); the last particle is outside.
   TimeAverages averages({0, 6}, 3, 40);
-  for (int k = 0; k < 40; ++k) add(averages, {{0.5, 1.5, 3, 7}, {3, -1, 4, 9}, {2, 1, 3, 1}});
+  for (int k = 0; k < 40; ++k) add(averages, {0.5, 1.5, 3, 7}, {3, -1, 4, 9}, {2, 1, 3, 1});
   EXPECT_TRUE(averages.complete());
   EXPECT_EQ(averages.centres(), (std::vector<double>{1, 3, 5}));
   const auto bins = averages.averages();
@@ -57,35 +50,29 @@ TEST(TimeAverages, ErrorsAreThoseOfBatchMeans) {
   for (std::size_t b = 0; b < batches; ++b) {
     double count = 0, speed = 0;
     for (std::size_t k = 0; k < 2; ++k) {
-      Found found;
+      std::vector<double> x, v;
       for (std::size_t j = 0; j < 40 + (7 * b + 3 * k) % 5; ++j) {
-        found.x.push_back(0.01 * static_cast<double>(j + 1));
-        found.v.push_back(1 + 0.001 * static_cast<double>((b * b + j) % 11));
-        found.m.push_back(1);
-        speed += found.v.back();
+        x.push_back(0.01 * static_cast<double>(j + 1));
+        v.push_back(1 + 0.001 * static_cast<double>((b * b + j) % 11));
+        speed += v.back();
       }
-      count += static_cast<double>(found.x.size());
-      add(averages, found);
+      count += static_cast<double>(x.size());
+      add(averages, x, v, std::vector<double>(x.size(), 1));
     }
     particles.push_back(count / 2), speeds.push_back(speed / count);
   }
-  const auto error = [](const std::vector<double>& means) {
-    const double mean = std::accumulate(means.begin(), means.end(), 0.) / batches;
-    double squares = 0;
-    for (const double m : means) squares += (m - mean) * (m - mean);
-    return std::sqrt(squares / (batches * (batches - 1)));
-  };
+  const double of_particles = mean_of(particles).error, of_speeds = mean_of(speeds).error;
   const auto bin = averages.averages().front();
-  EXPECT_NEAR(bin.error[0], error(particles), 1e-12 * error(particles));
+  EXPECT_NEAR(bin.error[0], of_particles, 1e-12 * of_particles);
   // The weights of batches differ by a twentieth from 1, and so do their contributions.
-  EXPECT_NEAR(bin.error[5], error(speeds), 0.05 * error(speeds));
+  EXPECT_NEAR(bin.error[5], of_speeds, 0.05 * of_speeds);
   EXPECT_GT(bin.error[0], 0.1);
 }
 
 // Velocities 1e6 + 1e-6 and 1e6 - 1e-6 are rounded to 1e-10, a share of 2e-4 of the squares of their differences.
 TEST(TimeAverages, OfAColdStreamDoNotCancel) {
   TimeAverages averages({0, 1}, 1, batches);
-  for (std::size_t k = 0; k < batches; ++k) add(averages, {{0.2, 0.7}, {1e6 + 1e-6, 1e6 - 1e-6}, {1, 1}});
+  for (std::size_t k = 0; k < batches; ++k) add(averages, {0.2, 0.7}, {1e6 + 1e-6, 1e6 - 1e-6}, {1, 1});
   const auto bin = averages.averages().front();
   EXPECT_NEAR(bin.value[6], 1e-12, 4e-16);
   EXPECT_NEAR(bin.value[8], 0, 1e-21);
@@ -97,8 +84,8 @@ TEST(TimeAverages, OfAColdStreamDoNotCancel) {
 TEST(TimeAverages, ShowBatchesThatAreTooShort) {
   TimeAverages slow({0, 1}, 1, batches), quick({0, 1}, 1, batches);
   for (std::size_t k = 0; k < batches; ++k) {
-    add(slow, {{0.5}, {static_cast<double>((k / 4 * 3) % 8 + 1)}, {1}});
-    add(quick, {{0.5}, {static_cast<double>((k * 11) % 32 + 1)}, {1}});
+    add(slow, {0.5}, {static_cast<double>((k / 4 * 3) % 8 + 1)}, {1});
+    add(quick, {0.5}, {static_cast<double>((k * 11) % 32 + 1)}, {1});
   }
   // With 8 of 32 batches the squares are those of the same numbers, over 7 instead of 31.
   EXPECT_NEAR(slow.error_growth(), std::sqrt(31 / 7.), 1e-12);
@@ -107,9 +94,9 @@ TEST(TimeAverages, ShowBatchesThatAreTooShort) {
 
 TEST(TimeAverages, ContinueFromASavedState) {
   const auto add_sample = [](TimeAverages& averages, std::size_t k) {
-    add(averages, {{0.1 + 0.02 * static_cast<double>(k), 0.9}, {1. + static_cast<double>(k), -2}, {1, 3}});
+    add(averages, {0.1 + 0.02 * static_cast<double>(k), 0.9}, {1. + static_cast<double>(k), -2}, {1, 3});
   };
-  test::expect_continues(TimeAverages({0, 1}, 2, batches), batches, 13, add_sample, {TimeAverages({0, 1}, 3, batches)});
+  expect_continues(TimeAverages({0, 1}, 2, batches), batches, 13, add_sample, {TimeAverages({0, 1}, 3, batches)});
 }
 
 TEST(TimeAverages, WithoutExtentAreRefused) {

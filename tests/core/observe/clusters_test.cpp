@@ -3,25 +3,18 @@
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/observe/placed.hpp"
 
 namespace clusters_test {
 
 using namespace cradle;
+using namespace cradle::test;
 
 Configuration<double> five_clusters() {
-  Configuration<double> c;
-  c.x = {-4, -1, 0, 2, 5};
-  c.v = {1, -1, 0, 2, -1};
-  c.m = {9, 3, 1, 5, 20};
-  c.index = {0, 4, 7, 8, 12};
-  c.collided_from = 0;
+  Configuration<double> c = placed({-4, -1, 0, 2, 5}, {1, -1, 0, 2, -1}, {9, 3, 1, 5, 20});
   c.collided_to = 4;  // the last one has not collided
   return c;
 }
@@ -49,11 +42,9 @@ TEST(Cloud, NoneBeforeTheFirstCollision) {
 
 TEST(Cloud, IndicesFollowTheClustersThroughEachOther) {
   // Two heavy clusters that pass at t = 2: the left one of the pair becomes the other particle.
-  const auto particles = std::make_shared<List<double>>(std::vector<double>{-1, 1}, std::vector<double>{0.5, -0.5},
-                                                        std::vector<double>{10, 7});
-  Simulation run(Wet<double>{0.25}, ClusterChain<double>(particles, 0.0));
+  Simulation run(Wet<double>{0.25}, ClusterChain<double>(list<double>({-1, 1}, {0.5, -0.5}, {10, 7}), 0.0));
   ASSERT_EQ(run.advance(3.0), Status::reached);
-  const auto after = cloud(run.chain().configuration(run.chain().local_time(3.0)));
+  const auto after = cloud(run.configuration(3.0));
   ASSERT_TRUE(after.left && after.right);
   EXPECT_EQ(after.left->index, 1);
   EXPECT_EQ(after.left->mass, 7);
@@ -78,12 +69,13 @@ TEST(Zone, WidthOfALinearFall) {
   for (int k = 0; k < 16; ++k) {
     Configuration<double> c;
     c.to = 1;
+    const auto add = [&](double x, double v, double m) { c.x.push_back(x), c.v.push_back(v), c.m.push_back(m); };
     for (int bin = 0; bin < 32; ++bin) {
-      const double x = -4 + (bin + 0.5) / 4, u = std::clamp(0.5 * (2 - x) / 4, 0.0, 0.5);
-      if (u > 0) c.x.push_back(x), c.v.push_back(u), c.m.push_back(1);
-      const double mirrored = std::clamp(0.5 * (2 + x) / 4, 0.0, 0.5);
-      if (mirrored > 0) c.x.push_back(x), c.v.push_back(-mirrored), c.m.push_back(1);
-      c.x.push_back(x), c.v.push_back(0.01), c.m.push_back(50);  // a cluster is none of them
+      const double x = -4 + (bin + 0.5) / 4, right = std::clamp(0.5 * (2 - x) / 4, 0.0, 0.5),
+                   left = std::clamp(0.5 * (2 + x) / 4, 0.0, 0.5);
+      if (right > 0) add(x, right, 1);
+      if (left > 0) add(x, -left, 1);
+      add(x, 0.01, 50);  // a cluster is none of them
     }
     zone.find(c, nobody, 0.0);
     zone.add_found();
@@ -100,13 +92,8 @@ TEST(Zone, ParticleJustBelowTheEndIsInTheLastBin) {
   const List<double> nobody({-100, 100}, {0, 0});
   for (const double reach : {1., 4., 0.7, 561.862178}) {
     for (std::size_t bins = 4; bins <= 300; ++bins) {
-      Configuration<double> c;
-      c.to = 1;
-      c.x = {-reach, std::nextafter(reach, 0.)};
-      c.v = {1, 1};
-      c.m = {1, 1};
       ZoneAverage zone(reach, bins, 16, 1);
-      zone.find(c, nobody, 0.0);
+      zone.find(placed({-reach, std::nextafter(reach, 0.)}, {1, 1}), nobody, 0.0);
       zone.add_found();
       ASSERT_GT(zone.mass_density().front(), 0) << reach << " in " << bins;
       ASSERT_GT(zone.mass_density().back(), 0) << reach << " in " << bins;
@@ -116,12 +103,13 @@ TEST(Zone, ParticleJustBelowTheEndIsInTheLastBin) {
 
 // Rows that nothing slows down have no zone; and particles that no front has reached are seen.
 TEST(Zone, NoWidthWithoutAFall) {
-  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(200, 0.5, 1.0, test::rshock_displacement));
+  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(200, 0.5, 1.0, rshock_displacement));
   Simulation run(Wet<double>{0.0}, ClusterChain<double>(rows, 0.0));
   ZoneAverage zone(10, 20, 16, 1);
   for (int k = 1; k <= 16; ++k) {
-    ASSERT_EQ(run.advance(5.0 + k / 2.0), Status::reached);
-    zone.find(run.chain().configuration(run.chain().local_time(5.0 + k / 2.0)), *rows, 5.0 + k / 2.0);
+    const double time = 5.0 + k / 2.0;
+    ASSERT_EQ(run.advance(time), Status::reached);
+    zone.find(run.configuration(time), *rows, time);
     zone.add_found();
   }
   EXPECT_TRUE(std::isnan(zone.width(0.5, 0).width));

@@ -5,12 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/observe/placed.hpp"
 #include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
@@ -100,10 +99,7 @@ TEST(Correlator, ErrorsAreThoseOfBatchesOfNeighbours) {
       const double way = sample_of(particles, s + k).x[j] - sample_of(particles, s).x[j];
       means[j / 3] += way * way / (3 * 35.);
     }
-  const double mean = std::accumulate(means.begin(), means.end(), 0.) / mean_batches;
-  double squares = 0;
-  for (const double m : means) squares += (m - mean) * (m - mean);
-  const double error = std::sqrt(squares / (mean_batches * (mean_batches - 1)));
+  const auto [mean, error] = mean_of(means);
   EXPECT_NEAR(found[k].displacement.mean, mean, 1e-12 * mean);
   EXPECT_NEAR(found[k].displacement.error, error, 1e-10 * error);
   EXPECT_TRUE(std::isnan(correlated(1, 40, 20).correlations()[k].displacement.error));

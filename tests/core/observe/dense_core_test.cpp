@@ -8,18 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include "cradle/tests/core/observe/placed.hpp"
+
 namespace dense_core_test {
 
 using namespace cradle;
-
-Configuration<double> placed(const std::vector<double>& x, const std::vector<double>& v, std::vector<double> m = {}) {
-  Configuration<double> c;
-  c.x = x, c.v = v;
-  c.m = m.empty() ? std::vector<double>(x.size(), 1.) : std::move(m);
-  c.collided_to = x.size();
-  for (std::size_t j = 0; j + 1 < x.size(); ++j) c.gap.push_back(x[j + 1] - x[j]);
-  return c;
-}
+using cradle::test::placed;
 
 TEST(DenseCore, IsTheShortestHalfAndAsMuchOnEitherSide) {
   // 15 particles, 8 of which are more than half: 0 to 7 of the eleven that are 1 apart.

@@ -1,16 +1,8 @@
 // Guards are silent in every correct run, also after very many collisions, and each guard reports an error of its own
 // quantity that is far too small to be seen in a result.
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <vector>
-
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
@@ -20,8 +12,7 @@
 namespace guards_test {
 
 using namespace cradle;
-using cradle::test::gaussian_ring;
-using cradle::test::uniform_rows;
+using namespace cradle::test;
 
 using Dry = Inelastic<double>;
 
@@ -57,9 +48,8 @@ TEST(Guards, AreSilentOnRunsThatAreRight) {
 // Three elastic particles of different masses between walls: closing speeds cease to add up to 0 by rounding, so a wall
 // moves, as it were, by d, and does the work (2 E/L) d = 2 E d/3. Without it the guard stopped such runs.
 TEST(Guards, KnowTheWorkOfWallsThatRoundingMoves) {
-  const auto list =
-      std::make_shared<List<double>>(std::vector{1., 2., 2.7}, std::vector{1., 0., -0.3}, std::vector{1., 3., 2.});
-  const auto particles = std::make_shared<Walled<double>>(list, Wall<double>{0}, Wall<double>{3});
+  const auto particles = std::make_shared<Walled<double>>(list<double>({1, 2, 2.7}, {1, 0, -0.3}, {1, 3, 2}),
+                                                          Wall<double>{0}, Wall<double>{3});
   Simulation run(Dry(1), GapChain<double, IndividualMasses<double>>(particles, 0.));
   const double energy = particles->kinetic_energy();
   for (double time = 16000; time < 600000; time *= 2) {
@@ -138,8 +128,7 @@ struct Missed {
   Counts counts() const { return {}; }
 };
 TEST(Guards, FindAParticleBeyondAWall) {
-  const auto list = std::make_shared<List<double>>(std::vector{1., 2.}, std::vector{1., -1.});
-  const Walled<double> particles(list, Wall<double>{0}, Wall<double>{3});
+  const Walled<double> particles(list<double>({1, 2}, {1, -1}), Wall<double>{0}, Wall<double>{3});
   EXPECT_FALSE(beyond_a_wall(Missed{1e-3, 0}, particles, 5., 5.));
   EXPECT_FALSE(beyond_a_wall(Missed{-1e-15, -1e-15}, particles, 5., 5.)) << "by rounding";
   const auto on_left = beyond_a_wall(Missed{-1e-11, 1}, particles, 5., 5.),

@@ -6,18 +6,23 @@
 #include <cmath>
 #include <numeric>
 
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/observe/placed.hpp"
 
 namespace profile_test {
 
 using namespace cradle;
 using namespace cradle::test;
+
+// Of inelastic particles when they start.
+Profile at_start(const Scene<double>& particles, BinRange range, std::size_t bins) {
+  return profile(mass_run(particles, Inelastic(0.5)).configuration(0.), *particles, 0., range, bins);
+}
 
 double total(const std::vector<double>& density, double width) {
   return width * std::accumulate(density.begin(), density.end(), 0.);
@@ -26,8 +31,7 @@ double total(const std::vector<double>& density, double width) {
 TEST(Profile, OfAKnownConfiguration) {
   // Bins [0, 2) and [2, 4); the particle at 5 is outside, the one at rest moves neither way.
   const auto particles = list<double>({0, 0.5, 1.5, 2, 3, 5}, {1, 3, -1, 0, 4, 9}, {1, 2, 1, 6, 2, 1});
-  const MassRun<double> run = mass_run(particles, Inelastic(0.5));
-  const Profile p = profile(configuration_at(run, 0.), *particles, 0., {0, 4}, 2);
+  const Profile p = at_start(particles, {0, 4}, 2);
   EXPECT_EQ(p.x, (std::vector<double>{1, 3}));
   EXPECT_EQ(p.density, (std::vector<double>{1.5, 1}));
   EXPECT_EQ(p.mass_density, (std::vector<double>{2, 4}));
@@ -44,27 +48,24 @@ TEST(Profile, OfAKnownConfiguration) {
 
 TEST(Profile, EmptyBinsHaveNoVelocity) {
   const auto particles = list<double>({0, 1}, {0, 0});
-  const Profile p = profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {10, 20}, 3);
+  const Profile p = at_start(particles, {10, 20}, 3);
   for (std::size_t b = 0; b < 3; ++b) {
     EXPECT_EQ(p.density[b], 0);
     EXPECT_EQ(p.mass_density[b], 0);
     EXPECT_TRUE(std::isnan(p.velocity[b]) && std::isnan(p.temperature[b]));
   }
-  EXPECT_THROW(profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {1, 1}, 3),
-               std::invalid_argument);
-  EXPECT_THROW(profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {0, 1}, 0),
-               std::invalid_argument);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const BinRange range : {BinRange{1, 1}, BinRange{-infinity, infinity}, BinRange{-1.7e308, 1.7e308}})
+    EXPECT_THROW(at_start(particles, range, 3), std::invalid_argument) << range.from;
+  EXPECT_THROW(at_start(particles, {0, 1}, 0), std::invalid_argument);
 }
 
 // The place of a particle in units of bins is rounded, and can come out as their number: not the particle's fault.
 TEST(Profile, ParticleJustBelowTheEndIsInTheLastBin) {
   for (const BinRange range : {BinRange{0, 1}, BinRange{-0.3, .7}, BinRange{-400, 400}, BinRange{1e6, 1e6 + .1}}) {
-    const List<double> particles({range.from, std::nextafter(range.to, range.from)}, {0, 0});
-    Configuration<double> c;
-    c.to = 1;
-    c.x = {particles.position(0), particles.position(1)};
-    c.v = {0, 0};
-    c.m = {1, 1};
+    const std::vector<double> places{range.from, std::nextafter(range.to, range.from)};
+    const List<double> particles(places, {0, 0});
+    const auto c = placed(places, {0, 0});
     for (std::size_t bins = 1; bins <= 300; ++bins) {
       const Profile p = profile(c, particles, 0., range, bins);
       ASSERT_GT(p.density.front(), 0) << range.from << " to " << range.to << " in " << bins;
@@ -80,28 +81,24 @@ TEST(Profile, TemperatureKeepsItsDigitsInAFastFrame) {
     x.push_back(i);
     v.push_back(1e6 + std::ldexp(i % 2 == 0 ? 1 : -1, -20));
   }
-  const auto particles = list(x, v);
-  const Profile p = profile(configuration_at(gap_run(particles, Inelastic(0.5)), 0.), *particles, 0., {0, 100}, 1);
+  const Profile p = at_start(list(x, v), {0, 100}, 1);
   // Differences to the mean are of order 2^-20 and rounded at 2^-33 = 1e6 2^-53.
   EXPECT_NEAR(p.temperature[0], std::ldexp(1, -40), 100 * std::ldexp(1, -40 - 13));
 }
 
 // On a ring of length 4 every place has images 4 apart; a range across the seam or of several turns has them.
 TEST(Profile, OnARingHasTheImagesOfItsParticles) {
-  const List<double> ring({0.5, 1.5, 1.75, 3.5}, {1, 2, 3, 4}, {}, 4.);
-  const auto run = gap_run<double>(std::make_shared<List<double>>(ring), Inelastic(0.5));
-  const auto density = [&](BinRange range, std::size_t bins) {
-    return profile(run.configuration(0.), ring, 0., range, bins).density;
-  };
   using Densities = std::vector<double>;
+  const auto ring =
+      std::make_shared<List<double>>(Densities{0.5, 1.5, 1.75, 3.5}, Densities{1, 2, 3, 4}, Densities{}, 4.);
+  const auto density = [&](BinRange range, std::size_t bins) { return at_start(ring, range, bins).density; };
   EXPECT_EQ(density({0, 4}, 4), (Densities{1, 2, 0, 1}));
   EXPECT_EQ(density({-2, 2}, 4), (Densities{0, 1, 1, 2}));
   EXPECT_EQ(density({-101, -97}, 4), (Densities{1, 1, 2, 0}));
   EXPECT_EQ(density({3, 12}, 9), (Densities{1, 1, 2, 0, 1, 1, 2, 0, 1}));
   EXPECT_EQ(density({1.25, 1.75}, 1), (Densities{2}));  // the end is not in it
   EXPECT_EQ(density({0, 0x1p12}, 1), (Densities{1}));   // N/L
-  const Profile across = profile(run.configuration(0.), ring, 0., {-0.75, -0.25}, 1);
-  EXPECT_EQ(across.velocity, (Densities{4}));
+  EXPECT_EQ(at_start(ring, {-0.75, -0.25}, 1).velocity, (Densities{4}));
   EXPECT_THROW(density({0, 1e300}, 5), std::invalid_argument);
 }
 
@@ -169,14 +166,6 @@ TEST(Profile, OfRowsThatNobodyCanWalk) {
     EXPECT_THROW(zone.find(now, *rows, 0., [&] { return ++calls == 10; }), WalkStopped);
     EXPECT_EQ(SavedState::of(zone), before);
   }
-}
-
-TEST(Profile, OfARangeThatIsNotFinite) {
-  const auto particles = list<double>({0, 1}, {0, 0});
-  const auto now = configuration_at(gap_run(particles, Inelastic(0.5)), 0.);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(profile(now, *particles, 0., {-infinity, infinity}, 2), std::invalid_argument);
-  EXPECT_THROW(profile(now, *particles, 0., {-1.7e308, 1.7e308}, 2), std::invalid_argument);
 }
 
 TEST(Sample, IsConsistentWithTheConfiguration) {

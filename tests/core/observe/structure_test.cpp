@@ -10,6 +10,7 @@
 
 #include "cradle/core/observe/batch_means.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/observe/placed.hpp"
 #include "cradle/tests/core/saved.hpp"
 
 namespace structure_test {
@@ -92,9 +93,7 @@ TEST(StructureFactor, IsThatOfASumOverAllParticles) {
 TEST(StructureFactor, OfALatticeIsItsReciprocal) {
   std::vector<double> x, v(32);
   for (int j = 0; j < 32; ++j) x.push_back(0.5 * j + 0.1);
-  Configuration<double> c;
-  c.x = x, c.v = v, c.m = std::vector<double>(32, 2), c.to = 31;
-  const auto S = StructureFactor(16, 128)(c, *list(x, v), 0.);
+  const auto S = StructureFactor(16, 128)(placed(x, v, std::vector<double>(32, 2)), *list(x, v), 0.);
   const auto waves = octave_steps(128);
   for (std::size_t w = 0; w < waves.size(); ++w) EXPECT_NEAR(S[w], waves[w] % 32 == 0 ? 32 : 0, 1e-12) << waves[w];
 }
@@ -141,13 +140,10 @@ TEST(PairDistribution, IsOneAtIndependentPlaces) {
 }
 
 TEST(PairDistribution, OfFewParticles) {
-  Configuration<double> c;
-  c.x = {1, 9}, c.v = {0, 0}, c.m = {1, 1}, c.to = 1;
-  const auto two = list<double>({1, 9}, {0, 0});
-  const auto g = PairDistribution(5, 5, 10, true)(c, *two, 0.);  // 2 apart over the seam
+  const PairDistribution pairs(5, 5, 10, true);
+  const auto g = pairs(placed({1, 9}, {0, 0}), *list<double>({1, 9}, {0, 0}), 0.);  // 2 apart over the seam
   for (std::size_t bin = 0; bin < 5; ++bin) EXPECT_DOUBLE_EQ(g[bin], bin == 2 ? 5 : 0);
-  c.x = {1}, c.v = {0}, c.m = {1}, c.to = 0;
-  EXPECT_EQ(PairDistribution(5, 5, 10, true)(c, *list<double>({1}, {0}), 0.), std::vector<double>(5));
+  EXPECT_EQ(pairs(placed({1}, {0}), *list<double>({1}, {0}), 0.), std::vector<double>(5));
   EXPECT_THROW(PairDistribution(6, 5, 10, true), std::invalid_argument);
   EXPECT_THROW(PairDistribution(11, 5, 10, false), std::invalid_argument);
   EXPECT_THROW(PairDistribution(5, 0, 10, false), std::invalid_argument);
@@ -172,12 +168,9 @@ TEST(SampledMeans, HaveTheErrorsOfBatchMeans) {
     batches[k / 3] += x / 3;
   }
   EXPECT_TRUE(means.complete());
-  double mean = 0, squares = 0;
-  for (const double b : batches) mean += b / mean_batches;
-  for (const double b : batches) squares += (b - mean) * (b - mean);
   const auto found = means.means();
-  EXPECT_DOUBLE_EQ(found[0].mean, mean);
-  EXPECT_NEAR(found[0].error, std::sqrt(squares / (mean_batches * (mean_batches - 1))), 1e-12);
+  EXPECT_DOUBLE_EQ(found[0].mean, mean_of(batches).mean);
+  EXPECT_NEAR(found[0].error, mean_of(batches).error, 1e-12);
   EXPECT_EQ(found[1].mean, 4);
   EXPECT_NEAR(found[1].error, 0, 1e-14);
 }

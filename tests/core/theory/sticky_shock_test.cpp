@@ -1,18 +1,16 @@
 // Theory of the sticky shock. Proves: its closed forms fulfil the balances they come from and the paper's weak solution
 // (Fig. 1); rows of particles follow them as closely as particles can; a symmetric shock to the particle; the free
-// cooling constants; nothing assumes a built-in scalar.
+// cooling constants.
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/core/theory/sticky_shock.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/strict_real.hpp"
 
 namespace sticky_shock_test {
 
@@ -173,35 +171,6 @@ TEST(StickyCooling, ConstantsAreMomentsOfChernoffsDistribution) {
   const double clusters = static_cast<double>(Wide(8 * v / pow(Wide(2), Wide(2) / 3)));
   EXPECT_NEAR(theory::sticky_cooling_clusters, clusters, 4 * u);
   EXPECT_NEAR(theory::sticky_cooling_energy, clusters / 6, u);
-}
-
-TEST(StickyStrictScalar, BitsOfDouble) {
-  const auto evaluate = []<class T>(T zero) {
-    std::vector<double> values;
-    const auto add = [&](std::shared_ptr<const Particles<T>> particles, const T& t) {
-      StickyGas<T> gas(std::move(particles), T(0));
-      gas.advance(t / T(2));
-      gas.advance(t);
-      const auto c = gas.configuration(t);
-      for (const auto* numbers : {&c.x, &c.v, &c.m, &c.gap, &c.closing_speed})
-        for (const T& value : *numbers) values.push_back(to_double(value));
-      values.push_back(static_cast<double>(gas.counts().merges));  // the ledger is compensated for built-in types only
-    };
-    const auto still = [](ParticleIndex) { return std::int64_t{0}; };
-    for (const int t : {0, 1, 7, 50, 1000}) {
-      add(rmix<T>(100), T(t));
-      add(rshock<T>(100), T(t));
-      add(std::make_shared<Ring<T>>(60, T(60), T(1), gaussian_velocity(2, 0), still), T(t));
-    }
-    const StickyShock<T> shock{T(2), T(1), T(3), zero, T(5), T(1) / T(4)};
-    const auto centre = theory::sticky_centre(shock, T(17));
-    for (const T& value :
-         {centre.mass, centre.position, centre.velocity, centre.from_left, centre.from_right, centre.energy_lost,
-          theory::late_growth(shock), theory::late_velocity(shock), theory::late_power(shock)})
-      values.push_back(to_double(value));
-    return values;
-  };
-  EXPECT_EQ(evaluate(StrictReal(0)), evaluate(0.));
 }
 
 }  // namespace sticky_shock_test

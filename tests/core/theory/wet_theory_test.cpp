@@ -1,7 +1,7 @@
 // The paper's formulas for the front of the wet shock.
 // Proves: the numbers of the validation table to all printed digits (closed forms evaluated elsewhere to 40 digits);
 // that (8) in closed form solves its differential equation; that doubles lose no more than a stated number of roundings
-// down to the smallest losses and up to the threshold; and that the theory of wet shocks assumes no built-in scalar.
+// down to the smallest losses and up to the threshold.
 #include "cradle/core/theory/wet_shock.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,6 @@
 
 #include "cradle/core/theory/wet_energy.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
-#include "cradle/tests/core/strict_real.hpp"
 #include "cradle/tests/core/wet_reference.hpp"
 
 namespace wet_theory_test {
@@ -61,11 +60,11 @@ TEST(WetFront, RecursionIsThePrintedOne) {
       u = (u - shock.speed) / 2 + sqrt(Wide(pow(Wide((u + shock.speed) / 2), 2) - shock.specific_loss()));
       const Wide before = recursion.now().velocity + shock.speed;
       ASSERT_TRUE(recursion.advance());
-      EXPECT_LE(abs(Wide(recursion.now().velocity - u)), tiny) << n;
-      EXPECT_LE(abs(Wide(recursion.now().time - t)), Wide(tiny * t)) << n;
-      EXPECT_LE(abs(Wide(recursion.now().position - x)), Wide(tiny * t)) << n;
+      EXPECT_WITHIN(recursion.now().velocity, u, tiny) << n;
+      EXPECT_WITHIN(recursion.now().time, t, tiny * t) << n;
+      EXPECT_WITHIN(recursion.now().position, x, tiny * t) << n;
       const Wide after = recursion.now().velocity + shock.speed;
-      expect_close(before, Wide(after + shock.specific_loss() / after), tiny, "r_n = r_{n+1} + e/r_{n+1}");
+      expect_close(before, after + shock.specific_loss() / after, tiny, "r_n = r_{n+1} + e/r_{n+1}");
     }
   }
 }
@@ -76,13 +75,12 @@ TEST(WetFront, RecursionStandsBetweenItsCollisions) {
   for (int n = 0; n < 20; ++n) here.advance();
   auto next = here;
   next.advance();
-  EXPECT_LE(abs(Wide(here.next_time() - next.now().time)), Wide(1000 * tiny));
+  EXPECT_WITHIN(here.next_time(), next.now().time, 1000 * tiny);
   const Wide middle = (here.now().time + next.now().time) / 2;
   EXPECT_EQ(front_recursion_at(shock, middle).now().collision, 20U);
   EXPECT_EQ(front_recursion_at(shock, here.now().time).now().collision, 20U);
-  EXPECT_LE(abs(Wide(*front_recursion_at(shock, middle).position_at(middle) -
-                     (here.now().position + next.now().position) / 2)),
-            Wide(1000 * tiny));
+  EXPECT_WITHIN(*front_recursion_at(shock, middle).position_at(middle), (here.now().position + next.now().position) / 2,
+                1000 * tiny);
 }
 
 TEST(WetFront, SticksAtTheThreshold) {
@@ -102,7 +100,7 @@ TEST(WetFront, SticksAtTheThreshold) {
     const auto shock = paper_shock(decimal(loss));
     const WetFront<Wide> wide(shock);
     EXPECT_FALSE(wide.turnover()) << loss;
-    expect_close(Wide(wide.sticking()->velocity + shock.speed), shock.critical_speed(), tiny, loss);
+    expect_close(wide.sticking()->velocity + shock.speed, shock.critical_speed(), tiny, loss);
     EXPECT_FALSE(wide.at_time(Wide(wide.sticking()->time * (1 + tiny)))) << loss;
   }
   // at exactly a quarter it is caught as it comes to rest
@@ -139,14 +137,13 @@ TEST(WetFront, ClosedFormIsThatOfTheTable) {
       const Wide y = y_of(u);
       const auto here = *front.at_velocity(u);
       // the printed differences lose up to y0^2 = 1e4 in n
-      EXPECT_LE(abs(Wide(here.collisions - ((y0 * y0 - y * y) / 2 - log(Wide(y0 / y))))), Wide(tiny * 10000));
-      EXPECT_LE(abs(Wide(here.time - shock.spacing / root * ((y0 - y) - 2 * (atan(y0) - atan(y))))),
-                Wide(tiny * 10000));
-      EXPECT_LE(abs(Wide(here.position - (shock.origin() + here.collisions * shock.spacing - shock.speed * here.time))),
-                Wide(tiny * 10000));
+      EXPECT_WITHIN(here.collisions, (y0 * y0 - y * y) / 2 - log(Wide(y0 / y)), tiny * 10000);
+      EXPECT_WITHIN(here.time, shock.spacing / root * ((y0 - y) - 2 * (atan(y0) - atan(y))), tiny * 10000);
+      EXPECT_WITHIN(here.position, shock.origin() + here.collisions * shock.spacing - shock.speed * here.time,
+                    tiny * 10000);
       const auto again = *front.at_time(here.time);
-      EXPECT_LE(abs(Wide(again.velocity - u)), Wide(tiny * 10000)) << "t -> u is the inverse of u -> t";
-      EXPECT_LE(abs(Wide(again.position - here.position)), Wide(tiny * 10000));
+      EXPECT_WITHIN(again.velocity, u, tiny * 10000) << "t -> u is the inverse of u -> t";
+      EXPECT_WITHIN(again.position, here.position, tiny * 10000);
     }
   }
 }
@@ -163,9 +160,9 @@ TEST(WetFront, ClosedFormSolvesTheDifferentialEquation) {
     const Wide central = 2 * step / (upper.collisions - lower.collisions);
     expect_close(central, slope, pow(Wide(10), -24), "du/dn, to the square of the step");
     const Wide interval = (upper.time - lower.time) / (upper.collisions - lower.collisions);
-    expect_close(interval, Wide(shock.spacing / (u + shock.speed)), pow(Wide(10), -24), "dt/dn = l/(u + u0)");
+    expect_close(interval, shock.spacing / (u + shock.speed), pow(Wide(10), -24), "dt/dn = l/(u + u0)");
     const Wide moved = (upper.position - lower.position) / (upper.time - lower.time);
-    EXPECT_LE(abs(Wide(moved - u)), pow(Wide(10), -24)) << "dx/dt = u";
+    EXPECT_WITHIN(moved, u, pow(Wide(10), -24)) << "dx/dt = u";
   }
 }
 
@@ -187,7 +184,7 @@ TEST(WetFront, DoublesLoseNothingAtSmallLosses) {
       const auto exact = *wide.at_time(Wide(t));
       expect_close(here.collisions, exact.collisions, few, what);
       expect_close(here.velocity, exact.velocity, 4 * few, what);
-      if (part > 0.1) expect_close(here.position - shock.origin(), Wide(exact.position + Wide(0.5)), 4 * few, what);
+      if (part > 0.1) expect_close(here.position - shock.origin(), exact.position + Wide(0.5), 4 * few, what);
     }
   }
 }
@@ -212,9 +209,9 @@ TEST(WetFront, CompensatedSumsKeepTheRecursionInDouble) {
     const auto exact = *turnover_collision(paper_shock(Wide(loss)));
     ASSERT_EQ(last.collision, exact.collision);
     // Each loss rounds e/w twice; errors of u grow by y0/y = 2 up to the turnover, whatever n is.
-    expect_close(last.time, exact.time, Wide(20 * ulp), "t_n");
-    EXPECT_LE(abs(Wide(last.velocity - exact.velocity)), 20 * ulp);
-    expect_close(last.position, exact.position, Wide(40 * ulp), "x_n");
+    expect_close(last.time, exact.time, 20 * ulp, "t_n");
+    EXPECT_WITHIN(last.velocity, exact.velocity, 20 * ulp);
+    expect_close(last.position, exact.position, 40 * ulp, "x_n");
   }
   EXPECT_THROW(turnover_collision(paper_shock(1e-5), 1000), std::overflow_error);
 }
@@ -231,29 +228,6 @@ TEST(WetFront, HasTheScalesOfItsUnits) {
   const WetZone<double> zone(unit), larger(scaled);
   EXPECT_EQ(larger.half_width(), 4 * zone.half_width());
   EXPECT_EQ(larger.force(4 * 0.7), zone.force(0.7) * 2 * 4 / 64);
-}
-
-// ---- scalars ----
-
-TEST(WetTheoryScalars, StrictTypeGivesTheBitsOfDouble) {
-  const auto evaluate = []<class T>(T zero) {
-    WetShock<T> shock{number<T>(0.01)};
-    shock.particles = 40;
-    const T t(30);
-    const WetFront<T> front(shock);
-    const WetZone<T> zone(shock);
-    std::vector<double> values;
-    cross_rows(shock, t, [&](const T& time, int) { values.push_back(cradle::to_double(time)); });
-    for (const T& value :
-         {critical_closing_speed_printed(shock.loss, T(1), T(2)), turnover_collision(shock)->time,
-          *front_recursion_at(shock, t).position_at(t), front.turnover()->position, front.at_time(t)->velocity,
-          front.sticking()->collisions, energy(shock, t), half_width_from_energy(shock, T(2)),
-          collisions_to_rest(shock), zone_speed_lost(shock), zone.width(), zone.force(number<T>(0.3)),
-          zone.force_printed(T(7)), zone.right_mover_force(zero), zone.inner_force(T(9))})
-      values.push_back(cradle::to_double(value));
-    return values;
-  };
-  EXPECT_EQ(evaluate(StrictReal(0)), evaluate(0.));
 }
 
 }  // namespace wet_theory_test

@@ -1,27 +1,20 @@
 // Steps (core/parallel/steps). Proves: with steps, on each kind of vectors, runs in segments have the bits of the plain
 // loop: every gap, closing speed, local time and lag, counts, losses and what walls gave, and every collision that is
-// observed; for all laws that bounce, on
-// lines, rows and rings, with equal and unequal masses, on lattices and through collapses. Nearly all collisions of
-// gases are made in steps.
+// observed; for all laws that bounce, on lines, rows and rings, with equal and unequal masses, on lattices and through
+// collapses. Nearly all collisions of gases are made in steps.
 //
 // The same program is built with errors planted in the vectors (CMakeLists.txt): it must fail with each of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <random>
 #include <string>
 #include <utility>
 
 #include "cradle/core/initial/cold.hpp"
-#include "cradle/core/initial/walled.hpp"
 #include "cradle/core/laws/one_of.hpp"
-#include "cradle/core/parallel/steps/steps.hpp"
-#include "cradle/tests/core/segmented.hpp"
+#include "cradle/tests/core/parallel/steps/ways.hpp"
 
 namespace steps_test {
 
@@ -34,86 +27,6 @@ using Law = Inelastic<double>;
 using Several = OneOf<Law, SpeedDependent<double>>;
 
 std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
-
-// All vectors that this processor has.
-std::vector<const Steps*> targets() {
-  std::vector<const Steps*> all;
-  for (const Steps& steps : all_steps()) all.push_back(&steps);
-  return all;
-}
-
-struct Made {
-  std::uint64_t collisions = 0, in_steps = 0, slabs = 0;
-};
-
-// One run in the plain loop, and one for each way to go in segments, through the same times.
-template <class Chain, class Law>
-Made expect_same(const Scene<double>& scene, const Law& law, const std::vector<double>& times,
-                 const std::vector<SegmentsAs>& ways) {
-  using Run = Simulation<double, Law, Chain>;
-  Made made;
-  std::vector<Run> segmented, watched;
-  std::vector<Segments<Law, Chain>> segments, of_watched;
-  for (const SegmentsAs& as : ways) {
-    for (auto* runs : {&segmented, &watched}) runs->emplace_back(law, Chain(scene, 0.));
-    for (auto* each : {&segments, &of_watched}) each->emplace_back(threads(as.threads), as.how);
-  }
-  std::vector<Observed<double>> observed(ways.size());
-  Observed<double> in_plain;
-  Run plain(law, Chain(scene, 0.));
-  for (const double time : times) {
-    const Status status = plain.advance(time, in_plain.by(plain));
-    for (std::size_t k = 0; k < ways.size(); ++k) {
-      SCOPED_TRACE(std::string(ways[k].how.steps->target) + ", " + std::to_string(ways[k].how.gaps) + " gaps, " +
-                   std::to_string(ways[k].how.ghosts) + " ghosts, " + std::to_string(ways[k].threads) +
-                   " threads, until " + std::to_string(time));
-      EXPECT_EQ(segmented[k].advance(time, segments[k]), status);
-      expect_same_state(plain, segmented[k], time);
-      expect_same_bits(plain.chain(), segmented[k].chain());
-      EXPECT_EQ(watched[k].advance(time, of_watched[k], observed[k].by(watched[k])), status);
-      expect_same_state(plain, watched[k], time);
-      expect_same_bits(plain.chain(), watched[k].chain());
-      EXPECT_TRUE(observed[k] == in_plain) << "other collisions, or in another order";
-      if (::testing::Test::HasFailure()) return made;
-    }
-    if (status != Status::reached) break;
-  }
-  for (const auto& each : {std::cref(segments), std::cref(of_watched)})
-    for (const auto& one : each.get()) {
-      made.collisions += one.statistics().collisions;
-      made.in_steps += one.statistics().in_steps;
-      made.slabs += one.statistics().slabs;
-    }
-  return made;
-}
-
-// Every segmentation, and every kind of vectors, each with a segmentation of its own beside the widest.
-std::vector<SegmentsAs> all_ways() {
-  std::vector<SegmentsAs> ways = segmentations();
-  for (SegmentsAs& as : ways) as.how.steps = targets().front();
-  for (std::size_t k = 1; k < targets().size(); ++k) {
-    ways.push_back(segmentations()[k % segmentations().size()]);
-    ways.back().how.steps = targets()[k];
-  }
-  return ways;
-}
-
-template <class Chain>
-void expect_same_by_all_laws(const Scene<double>& scene, const std::vector<double>& times, double least_in_steps) {
-  Made all;
-  const auto check = [&](const char* name, const auto& law) {
-    SCOPED_TRACE(name);
-    const Made made = expect_same<Chain>(scene, law, times, all_ways());
-    all.collisions += made.collisions, all.in_steps += made.in_steps, all.slabs += made.slabs;
-  };
-  check("elastic", Inelastic<double>(1));
-  check("nearly elastic", Inelastic<double>(0.999, 1e-5));
-  check("with a cut-off", Inelastic<double>(0.9, 0.125));
-  check("soft", Inelastic<double>(0.3, 0.5));
-  if constexpr (std::same_as<Chain, Unequal>) check("of the speed", SpeedDependent<double>(0.8, 0.1, 0.6));
-  EXPECT_GT(all.slabs, 100U);
-  EXPECT_GE(static_cast<double>(all.in_steps), least_in_steps * static_cast<double>(all.collisions));
-}
 
 class Steps : public ::testing::Test {
   void SetUp() override {
@@ -128,11 +41,11 @@ TEST_F(Steps, UnequalMassesOnALine) { expect_same_by_all_laws<Unequal>(gas<doubl
 TEST_F(Steps, UnequalMassesOnARing) { expect_same_by_all_laws<Unequal>(gas<double>(700, 700., true), {10, 60}, 0.5); }
 // One segment goes around: collisions over the seam are made alone, and undone like the others.
 template <class Chain> void expect_same_on_whole_rings(const Law& law, bool unequal) {
-  std::vector<SegmentsAs> ways;
-  for (const cradle::Steps* steps : targets()) ways.push_back({{.anywhere = true, .steps = steps}, 1});
+  const std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
   for (const ParticleIndex n : {520, 641, 900}) {
     SCOPED_TRACE(n);
-    const Made made = expect_same<Chain>(gas<double>(n, static_cast<double>(n), unequal), law, {10, 40}, ways);
+    const SlabsMade made =
+        expect_same_in_steps<Chain>(gas<double>(n, static_cast<double>(n), unequal), law, {10, 40}, ways);
     EXPECT_GT(static_cast<double>(made.in_steps), 0.9 * static_cast<double>(made.collisions));
     EXPECT_GT(made.collisions, 10'000U);
   }
@@ -145,8 +58,7 @@ TEST_F(Steps, RingsWithoutCuts) {
 // Dense and cold around the seam, or at rest there until impulses run over it: what is out of order is found and made
 // again.
 TEST_F(Steps, RingsWithoutCutsThatAreDenseAtTheSeam) {
-  std::vector<SegmentsAs> ways;
-  for (const cradle::Steps* steps : targets()) ways.push_back({{.anywhere = true, .steps = steps}, 1});
+  const std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
   std::uint64_t in_steps = 0;
   for (std::uint64_t seed = 1; seed < 6; ++seed) {
     std::mt19937_64 random(seed);
@@ -159,24 +71,21 @@ TEST_F(Steps, RingsWithoutCutsThatAreDenseAtTheSeam) {
       v.push_back(static_cast<double>(random() >> 40) * (!dense ? 0x1p-23 : seed % 2 == 0 ? 0x1p-27 : 0));
     }
     const Scene<double> scene = std::make_shared<List<double>>(x, v, std::vector<double>{}, place + 0x1p-30);
-    in_steps += expect_same<Equal>(scene, Law(1), {5, 20}, ways).in_steps;
+    in_steps += expect_same_in_steps<Equal>(scene, Law(1), {5, 20}, ways).in_steps;
   }
   EXPECT_GT(in_steps, 10'000U);
 }
 // Restitutions below and above 1/2, any exponents, and speeds over delta that are out of the range of vectors; also as
 // one of several laws, as programs have it.
 TEST_F(Steps, LawsThatAreVectors) {
-  std::vector<SegmentsAs> ways;
-  for (const cradle::Steps* steps : targets()) {
-    ways.push_back({{.anywhere = true, .steps = steps}, 1});
-    ways.push_back({{.gaps = 150, .anywhere = true, .steps = steps}, 2});
-  }
+  std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
+  for (const SegmentsAs& as : on_all_vectors({.gaps = 150, .anywhere = true}, 2)) ways.push_back(as);
   std::uint64_t in_steps = 0;
   const auto check = [&](const auto& law) {
-    in_steps += expect_same<Unequal>(gas<double>(600, 600., true), law, {10, 30}, ways).in_steps;
-    in_steps += expect_same<Unequal>(gas<double>(600, 600., true), Several(law), {30}, ways).in_steps;
-    in_steps += expect_same<Equal>(gas<double>(600), law, {60}, ways).in_steps;
-    in_steps += expect_same<Equal>(gas<double>(600), Several(law), {60}, ways).in_steps;
+    in_steps += expect_same_in_steps<Unequal>(gas<double>(600, 600., true), law, {10, 30}, ways).in_steps;
+    in_steps += expect_same_in_steps<Unequal>(gas<double>(600, 600., true), Several(law), {30}, ways).in_steps;
+    in_steps += expect_same_in_steps<Equal>(gas<double>(600), law, {60}, ways).in_steps;
+    in_steps += expect_same_in_steps<Equal>(gas<double>(600), Several(law), {60}, ways).in_steps;
   };
   for (const Law& law : {Law(1), Law(0.999, 1e-5), Law(0.3, 0.5)}) check(law);
   EXPECT_GT(std::exchange(in_steps, 0), 100'000U);
@@ -189,20 +98,10 @@ TEST_F(Steps, LawsThatAreVectors) {
   EXPECT_GT(in_steps, 500'000U);
 }
 // Collisions are simultaneous all over the line: for the event loop.
-TEST_F(Steps, LatticesFullOfTies) {
-  const auto nowhere = [](ParticleIndex) { return std::int64_t{0}; };
-  expect_same_by_all_laws<Equal>(std::make_shared<Rows<double>>(symmetric_rows<double>(900, 0.5, 1., nowhere)), {310},
-                                 0);
-}
+TEST_F(Steps, LatticesFullOfTies) { expect_same_by_all_laws<Equal>(lattice_rows(900), {310}, 0); }
 TEST_F(Steps, Walls) {
-  const Wall<double> hot{.position = -1, .temperature = 0.4, .seed = 5, .replica = 2};
-  const Wall<double> moving{.position = -1, .speed = 0.1, .restitution = 0.9};
-  const Wall<double> cool{.position = 801, .temperature = 0.1, .seed = 5, .replica = 2};
-  const auto between = [](const Scene<double>& scene, const Wall<double>& left, const Wall<double>& right) {
-    return std::make_shared<Walled<double>>(scene, left, right);
-  };
-  expect_same_by_all_laws<Equal>(between(gas<double>(800), hot, cool), {8, 60}, 0.5);
-  expect_same_by_all_laws<Unequal>(between(gas<double>(800, 0., true), moving, cool), {40}, 0.5);
+  expect_same_between_walls<Equal>({8, 60}, 0.5);
+  expect_same_between_walls<Unequal>({40}, 0.5);
 }
 
 // ---- the vectors alone, on a line whose ends fly apart, against the plainest loop
@@ -267,10 +166,10 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
   constexpr std::size_t gaps = 500;
   constexpr double stop = 6;
   int undone_in_gas = 0, undone_in_core = 0, done = 0;
-  for (const cradle::Steps* steps : targets())
+  for (const cradle::Steps& steps : all_steps())
     for (const double dense : {1., 300.})
       for (std::uint64_t seed = 1; seed < 20; ++seed) {
-        SCOPED_TRACE(std::string(steps->target) + ", seed " + std::to_string(seed));
+        SCOPED_TRACE(std::string(steps.target) + ", seed " + std::to_string(seed));
         Gas plain = random_gas(gaps, dense, seed), gas = plain;
         StepLine line;
         line.take(gas.gaps.data(), gas.lags.data(), gaps);
@@ -278,7 +177,7 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
         NoEdges scalars;
         StepResult result;
         StepPace pace{.length = 0.003};
-        if (!steps->run(line, elastic_until(stop), scalars, pace, result)) {
+        if (!steps.run(line, elastic_until(stop), scalars, pace, result)) {
           ASSERT_GT(dense, 1) << "a gas is for steps";
           continue;  // too few collisions in a step to pay
         }
@@ -292,7 +191,7 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
         }
         (dense > 1 ? undone_in_core : undone_in_gas) += scalars.undone;
       }
-  EXPECT_GT(done, 30 * static_cast<int>(targets().size()));
+  EXPECT_GT(done, 30 * static_cast<int>(all_steps().size()));
   EXPECT_LE(undone_in_gas, 4);
   EXPECT_GT(undone_in_core, 0) << "steps that fail are part of what is to be shown";
 }
@@ -330,98 +229,19 @@ TEST_F(Steps, AnUndoCopyReachesAsFarAsImpulses) {
 
 // Of segments as they are chosen, nearly all collisions are made in steps, and cuts hold.
 TEST_F(Steps, MakeNearlyAllCollisionsOfAGas) {
-  for (const cradle::Steps* steps : targets()) {
-    const Made made = expect_same<Equal>(gas<double>(3000), Inelastic<double>(0.999, 1e-5), {60},
-                                         {{{.gaps = 700, .anywhere = true, .steps = steps}, 2}});
+  for (const SegmentsAs& as : on_all_vectors({.gaps = 700, .anywhere = true}, 2)) {
+    const SlabsMade made = expect_same_in_steps<Equal>(gas<double>(3000), Law(0.999, 1e-5), {60}, {as});
     EXPECT_GT(made.slabs, 4U);
-    EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions)) << steps->target;
+    EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions)) << as.how.steps->target;
   }
 }
 
 TEST_F(Steps, SlowFigure2IntoItsCollapse) {
-  const Made made = expect_same<Equal>(rshock<double>(8000), Inelastic<double>(0.999, 1e-5), {6000, 6500},
-                                       {{{.steps = targets().front()}, 2}});
+  const SlabsMade made = expect_same_in_steps<Equal>(rshock<double>(8000), Inelastic<double>(0.999, 1e-5), {6000, 6500},
+                                                     {{{.steps = &all_steps().front()}, 2}});
   EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions));
 }
 
-// ---- random scenes: seconds here; by hand as many as CRADLE_FUZZ_SECONDS says, from the scene CRADLE_FUZZ_SEED on
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random_(seed) {}
-  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
-  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-  template <class T> T one_of(std::initializer_list<T> all) { return all.begin()[below(all.size())]; }
-
- private:
-  std::mt19937_64 random_;
-};
-
-Scene<double> random_scene(Dice& dice, bool unequal, double& duration) {
-  const auto n = static_cast<ParticleIndex>(20 + 2 * dice.below(dice.one_of<std::size_t>({30, 200, 800})));
-  duration = dice.one_of({1., 20., 60.}) * dice.uniform();
-  if (!unequal && dice.below(4) == 0) {
-    duration += static_cast<double>(n) * 0.2;
-    return std::make_shared<Rows<double>>(
-        symmetric_rows<double>(n, 0.5, 1., uniform_displacement(dice.one_of({0.4, 0.05, 1e-6}), dice.below(1000), 0)));
-  }
-  const bool ring = dice.below(3) == 0, lattice = dice.below(8) == 0;
-  const double still = dice.one_of({0., 0., 0.7}), heavy = dice.one_of({1.0001, 3., 50.});
-  std::vector<double> x, v, m;
-  for (ParticleIndex i = 0; i < n; ++i) {
-    x.push_back(static_cast<double>(i) + (lattice ? 0 : 0.5 * dice.uniform()));
-    v.push_back(dice.uniform() < still ? 0 : lattice ? dice.one_of({-1., 0., 1.}) : 2 * dice.uniform() - 1);
-    if (unequal) m.push_back(dice.below(2) == 0 ? 1 : heavy);
-  }
-  const double last = static_cast<double>(n);
-  const Scene<double> scene = std::make_shared<List<double>>(x, v, m, ring ? last : 0.);
-  if (ring || dice.below(3) > 0) return scene;
-  const auto wall = [&](double at) -> std::optional<Wall<double>> {
-    if (dice.below(3) == 0) return {};
-    return Wall<double>{
-        .position = at, .restitution = dice.uniform(), .temperature = dice.one_of({0., 0.3}), .seed = 3};
-  };
-  return std::make_shared<Walled<double>>(scene, wall(-0.5), wall(last + 0.5));
-}
-
-template <class Chain> void fuzz_once(Dice& dice) {
-  double duration = 0;
-  const Scene<double> scene = random_scene(dice, std::same_as<Chain, Unequal>, duration);
-  const std::vector<double> times{0.6 * duration, duration};
-  std::vector<SegmentsAs> ways;
-  for (const cradle::Steps* steps : targets())
-    ways.push_back({{.gaps = 1 + dice.below(dice.one_of<std::size_t>({8, 100, 2000})),
-                     .ghosts = 1 + dice.below(80),
-                     .collisions = dice.one_of({0., 0.5, 4., 20.}),
-                     .anywhere = true,
-                     .steps = steps},
-                    static_cast<unsigned>(1 + dice.below(3))});
-  // Not what collapses: the plain loop takes minutes for it.
-  const double restitution = dice.one_of({1., 0.999, 0.95, 0.6, 0.4});
-  const double cutoff = restitution > 0.99 ? dice.one_of({0., 1e-5, 0.1}) : dice.one_of({0.01, 0.1});
-  if (std::same_as<Chain, Unequal> && dice.below(3) == 0)
-    expect_same<Unequal>(
-        scene, SpeedDependent<double>(std::max(restitution, 0.95), 0.05 + dice.uniform(), 0.1 + dice.uniform()), times,
-        ways);
-  else
-    expect_same<Chain>(scene, Inelastic<double>(restitution, cutoff), times, ways);
-}
-
-TEST_F(Steps, RandomScenes) {
-  const char* asked = std::getenv("CRADLE_FUZZ_SECONDS");
-  const auto end =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(asked == nullptr ? 4. : std::atof(asked));
-  const char* first = std::getenv("CRADLE_FUZZ_SEED");
-  std::uint64_t seed = first != nullptr   ? std::strtoull(first, nullptr, 10)
-                       : asked == nullptr ? 1
-                                          : std::random_device()();
-  for (; std::chrono::steady_clock::now() < end && !HasFailure(); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    if (asked != nullptr) std::printf("seed %llu\n", static_cast<unsigned long long>(seed)), std::fflush(stdout);
-    Dice dice(seed);
-    dice.below(2) == 0 ? fuzz_once<Equal>(dice) : fuzz_once<Unequal>(dice);
-  }
-  RecordProperty("seed", std::to_string(seed));
-}
+TEST_F(Steps, RandomScenes) { expect_same_in_random_scenes<Equal, Unequal>(1); }
 
 }  // namespace steps_test

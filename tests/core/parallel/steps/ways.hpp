@@ -1,0 +1,164 @@
+#pragma once
+// What the tests of steps share, whatever the numbers: runs in segments with steps, which must have the bits of the
+// plain loop in every gap, closing speed, local time, lag and loss, and in what walls gave.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <concepts>
+#include <cstdio>
+#include <cstdlib>
+#include <initializer_list>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
+#include "cradle/tests/core/segmented.hpp"
+
+namespace cradle::test {
+
+// On each kind of vectors that this processor has.
+inline std::vector<SegmentsAs> on_all_vectors(Segmentation how, unsigned threads) {
+  std::vector<SegmentsAs> ways;
+  for (const Steps& steps : all_steps()) {
+    ways.push_back({how, threads});
+    ways.back().how.steps = &steps;
+  }
+  return ways;
+}
+
+// Every segmentation on the widest vectors, and one on each other kind.
+inline std::vector<SegmentsAs> all_ways() {
+  std::vector<SegmentsAs> ways = segmentations();
+  for (SegmentsAs& as : ways) as.how.steps = &all_steps().front();
+  for (std::size_t k = 1; k < all_steps().size(); ++k) {
+    ways.push_back(segmentations()[k % segmentations().size()]);
+    ways.back().how.steps = &all_steps()[k];
+  }
+  return ways;
+}
+
+template <class Chain, class Law, class Time = int>
+SlabsMade expect_same_in_steps(const Scene<typename Chain::Scalar>& scene, const Law& law,
+                               const std::vector<Time>& times, const std::vector<SegmentsAs>& ways) {
+  const std::vector<typename Chain::Scalar> in_scalar(times.begin(), times.end());
+  return expect_same_in_segments<Chain>(scene, law, ways, in_scalar, SameBits());
+}
+
+template <class Chain>
+void expect_same_by_all_laws(const Scene<typename Chain::Scalar>& scene, const std::vector<int>& times,
+                             double least_in_steps) {
+  SlabsMade all;
+  const auto check = [&](const std::string& name, const auto& law) {
+    SCOPED_TRACE(name);
+    all += expect_same_in_steps<Chain>(scene, law, times, all_ways());
+  };
+  for (const auto& law : laws<typename Chain::Scalar>())
+    check("restitution " + std::to_string(to_double(law.restitution())), law);
+  if constexpr (std::same_as<Chain, GapChain<double, IndividualMasses<double>>>)
+    check("of the speed", SpeedDependent<double>(0.8, 0.1, 0.6));
+  EXPECT_GT(all.slabs, 100U);
+  EXPECT_GE(static_cast<double>(all.in_steps), least_in_steps * static_cast<double>(all.collisions));
+}
+
+// A cool wall on the right, and on the left a heated one or, of unequal particles, one that moves.
+template <class Chain> void expect_same_between_walls(const std::vector<int>& times, double least_in_steps) {
+  using T = typename Chain::Scalar;
+  const bool unequal = !std::same_as<Chain, GapChain<T>>;
+  const Wall<T> hot{.position = T(-1), .temperature = 0.4, .seed = 5, .replica = 2};
+  const Wall<T> moving{.position = T(-1), .speed = T(1) / T(10), .restitution = T(9) / T(10)};
+  const Wall<T> cool{.position = T(801), .temperature = 0.1, .seed = 5, .replica = 2};
+  const auto scene = std::make_shared<Walled<T>>(gas<T>(800, T(0), unequal), unequal ? moving : hot, cool);
+  expect_same_by_all_laws<Chain>(scene, times, least_in_steps);
+}
+
+// ---- random scenes
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : random_(seed) {}
+  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
+  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+  template <class T> T one_of(std::initializer_list<T> all) { return all.begin()[below(all.size())]; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& duration) {
+  const auto n = static_cast<ParticleIndex>(20 + 2 * dice.below(dice.one_of<std::size_t>({30, 200, 800})));
+  duration = dice.one_of({1., 20., 60.}) * dice.uniform();
+  if (!unequal && dice.below(4) == 0) {
+    duration += static_cast<double>(n) * 0.2;
+    return std::make_shared<Rows<T>>(
+        symmetric_rows<T>(n, T(0.5), T(1), uniform_displacement(dice.one_of({0.4, 0.05, 1e-6}), dice.below(1000), 0)));
+  }
+  const bool ring = dice.below(3) == 0, lattice = dice.below(8) == 0;
+  const double still = dice.one_of({0., 0., 0.7}), heavy = dice.one_of({1.0001, 3., 50.});
+  std::vector<T> x, v, m;
+  for (ParticleIndex i = 0; i < n; ++i) {
+    x.push_back(T(static_cast<double>(i) + (lattice ? 0 : 0.5 * dice.uniform())));
+    v.push_back(T(dice.uniform() < still ? 0 : lattice ? dice.one_of({-1., 0., 1.}) : 2 * dice.uniform() - 1));
+    if (unequal) m.push_back(T(dice.below(2) == 0 ? 1 : heavy));
+  }
+  const double last = static_cast<double>(n);
+  const Scene<T> scene = std::make_shared<List<T>>(x, v, m, T(ring ? last : 0.));
+  if (ring || dice.below(3) > 0) return scene;
+  const auto wall = [&](double at) -> std::optional<Wall<T>> {
+    if (dice.below(3) == 0) return {};
+    return Wall<T>{
+        .position = T(at), .restitution = T(dice.uniform()), .temperature = dice.one_of({0., 0.3}), .seed = 3};
+  };
+  return std::make_shared<Walled<T>>(scene, wall(-0.5), wall(last + 0.5));
+}
+
+template <class Chain> void expect_same_in_a_random_scene(Dice& dice) {
+  using T = typename Chain::Scalar;
+  constexpr bool unequal = !std::same_as<Chain, GapChain<T>>;
+  double duration = 0;
+  const Scene<T> scene = random_scene<T>(dice, unequal, duration);
+  const std::vector<double> times{0.6 * duration, duration};
+  std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
+  for (auto& [how, workers, observed] : ways) {
+    how.gaps = 1 + dice.below(dice.one_of<std::size_t>({8, 100, 2000}));
+    how.ghosts = 1 + dice.below(80);
+    how.collisions = dice.one_of({0., 0.5, 4., 20.});
+    workers = static_cast<unsigned>(1 + dice.below(3));
+  }
+  // Not what collapses: the plain loop takes minutes for it.
+  const double restitution = dice.one_of({1., 0.999, 0.95, 0.6, 0.4});
+  const double cutoff = restitution > 0.99 ? dice.one_of({0., 1e-5, 0.1}) : dice.one_of({0.01, 0.1});
+  if constexpr (unequal && std::same_as<T, double>)
+    if (dice.below(3) == 0) {
+      const SpeedDependent<T> law(std::max(restitution, 0.95), 0.05 + dice.uniform(), 0.1 + dice.uniform());
+      expect_same_in_steps<Chain>(scene, law, times, ways);
+      return;
+    }
+  expect_same_in_steps<Chain>(scene, Inelastic<T>(T(restitution), T(cutoff)), times, ways);
+}
+
+// As many as take four seconds, and so many at least; by hand as many as CRADLE_FUZZ_SECONDS says, from the scene
+// CRADLE_FUZZ_SEED on.
+template <class Equal, class Unequal> void expect_same_in_random_scenes(std::uint64_t least) {
+  const char* asked = std::getenv("CRADLE_FUZZ_SECONDS");
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(asked == nullptr ? 4. : std::atof(asked));
+  const char* first = std::getenv("CRADLE_FUZZ_SEED");
+  std::uint64_t seed = first != nullptr   ? std::strtoull(first, nullptr, 10)
+                       : asked == nullptr ? 1
+                                          : std::random_device()();
+  const std::uint64_t last = seed + least;
+  for (; (std::chrono::steady_clock::now() < end || seed < last) && !::testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    if (asked != nullptr) std::printf("seed %llu\n", static_cast<unsigned long long>(seed)), std::fflush(stdout);
+    Dice dice(seed);
+    dice.below(2) == 0 ? expect_same_in_a_random_scene<Equal>(dice) : expect_same_in_a_random_scene<Unequal>(dice);
+  }
+  ::testing::Test::RecordProperty("seed", std::to_string(seed));
+}
+
+}  // namespace cradle::test

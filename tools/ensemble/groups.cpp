@@ -13,22 +13,23 @@ namespace cradle::tools {
 
 namespace {
 
-const Group& get(const Result& result, std::string_view name, const std::string& file) {
+Error lacking(const std::string& file, const std::string& what) {
+  return {{file, 0, ""},
+          "not an ensemble, or a damaged one",
+          "no " + what,
+          "give a file that `cradle ensemble` or `cradle merge` wrote",
+          Exit::io};
+}
+
+const Group& get(const Result& result, const std::string& name, const std::string& file) {
   if (const Group* group = result.find(name)) return *group;
-  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", fmt::format("no {}", name),
-              "give a file that `cradle ensemble` or `cradle merge` wrote", Exit::io);
+  throw lacking(file, name);
 }
 
-template <class T> const std::vector<T>& get(const Group& group, std::string_view name, const std::string& file) {
-  for (const Column& column : group.columns)
-    if (column.name == name)
-      if (const auto* values = std::get_if<std::vector<T>>(&column.values)) return *values;
-  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", fmt::format("no {}/{}", group.name, name),
-              "give a file that `cradle ensemble` or `cradle merge` wrote", Exit::io);
-}
-
-bool has(const Group& group, const std::string& name) {
-  return std::any_of(group.columns.begin(), group.columns.end(), [&](const Column& c) { return c.name == name; });
+template <class T> const std::vector<T>& get(const Group& group, const std::string& name, const std::string& file) {
+  if (const Column* column = group.find(name))
+    if (const auto* values = std::get_if<std::vector<T>>(&column->values)) return *values;
+  throw lacking(file, group.name + "/" + name);
 }
 
 std::string node_name(std::size_t k) { return fmt::format("ensemble/nodes/{:04}", k); }
@@ -55,7 +56,7 @@ TreeNode read_node(const Group& group, const std::string& file) {
   m.squares = get<double>(group, "squares", file);
   m.least = get<double>(group, "least", file);
   m.greatest = get<double>(group, "greatest", file);
-  if (has(group, "counts")) m.counts = get<std::uint64_t>(group, "counts", file);
+  if (group.find("counts") != nullptr) m.counts = get<std::uint64_t>(group, "counts", file);
   return node;
 }
 
@@ -180,7 +181,7 @@ std::vector<Group> EnsembleState::groups() const {
 
 void EnsembleState::read(const Result& result, const std::string& file) {
   for (std::size_t k = 0; const Group* group = result.find(name(node_name(k))); ++k)
-    take_node(read_node(*group, file), file);
+    take(read_node(*group, file), file);
   const Group& table = get(result, name("replicas"), file);
   const auto &index = get<std::uint64_t>(table, "index", file), &outcome = get<std::uint64_t>(table, "outcome", file),
              &collisions = get<std::uint64_t>(table, "collisions", file),
@@ -211,7 +212,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   }
   kept_ = separated_tables(result, name(""), file);
   for (std::size_t k = 0; k < spreads_.size(); ++k)
-    take_counts(k, get<std::uint64_t>(get(result, spread_group(k).name, file), "counts", file), file);
+    take(SpreadRecord{k, get<std::uint64_t>(get(result, spread_group(k).name, file), "counts", file)}, file);
 }
 
 }  // namespace cradle::tools

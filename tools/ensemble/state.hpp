@@ -91,10 +91,6 @@ class EnsembleState {
   const Scene& scene() const { return scene_; }
   const ReplicaLayout& layout() const { return layout_; }
 
-  /// Adds a replica that is not there yet. Both may be called from several threads.
-  void add(const ReplicaRow& row, std::vector<double> values, ReplicaTables kept = {});
-  void fail(ReplicaIndex replica, std::string message);
-
   const MomentTree& replicas() const { return tree_; }
   Outcomes outcomes() const;
   const ReplicaTable& table() const { return table_; }
@@ -110,7 +106,8 @@ class EnsembleState {
 
   /// Puts everything as records, enough to restore this state; `point` is the number of this ensemble.
   void put_records(std::uint64_t point, const JournalWriter::Put& put) const;
-  /// Skips a replica that is there already. Throws Error (Exit::io) for a record of another ensemble.
+  /// Skips a replica that is there already. Throws Error (Exit::io) for a record of another ensemble. Records of one
+  /// replica each may come from several threads.
   void apply(EnsembleRecord&& record);
 
   // ---- as groups of a result file
@@ -126,8 +123,13 @@ class EnsembleState {
 
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
   void check_length(std::size_t entries) const;
-  void take_node(TreeNode node, const std::string& from);
-  void take_counts(std::size_t k, std::vector<std::uint64_t> counts, const std::string& from);
+  void take(ReplicaRecord&& one);
+  void take(FailureRecord&& failure);
+  void take(RowsRecord&& rows);
+  void take(KeptRecord&& kept) { kept_.emplace(kept.replica, std::move(kept.kept)); }
+  // Both check everything in what comes from a file or another process.
+  void take(SpreadRecord&& spread, const std::string& from = "a journal");
+  void take(TreeNode&& node, const std::string& from = "a journal");
   void check_replicas(const std::string& file) const;
   Group quantity_group(const Quantity& quantity, const Moments& total) const;
   Group spread_group(std::size_t k) const;

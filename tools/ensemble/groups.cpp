@@ -47,8 +47,9 @@ Group node_group(const TreeNode& node, std::string name) {
 }
 
 TreeNode read_node(const Group& group, const std::string& file) {
+  const auto level = attribute<std::uint64_t>(group.attributes, "level", file);  // one too large stays too large
   TreeNode node{attribute<std::uint64_t>(group.attributes, "first", file),
-                level_of(attribute<std::uint64_t>(group.attributes, "level", file)),
+                static_cast<unsigned>(std::min<std::uint64_t>(level, 64)),
                 {}};
   Moments& m = node.moments;
   m.replicas = attribute<std::uint64_t>(group.attributes, "replicas", file);
@@ -92,21 +93,20 @@ Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& tot
   return group;
 }
 
-Group EnsembleState::spread_group(std::size_t k) const {
-  const Quantity& quantity = layout_.quantities[spread_of_[k].quantity];
-  const Histograms& spread = spreads_[k];
-  const FixedBins& bins = spread.bins();
+Group EnsembleState::spread_group(const Spread& spread) const {
+  const auto& [quantity, counts] = spread;
+  const FixedBins& bins = counts.bins();
   std::vector<double> edges;
   for (std::size_t e = 0; e <= bins.bins; ++e) edges.push_back(bins.edge(e));
   Group group{
       name("ensemble/spread/" + quantity.group + "/" + quantity.name),
       {{"from", bins.from}, {"to", bins.to}, {"bins", std::uint64_t{bins.bins}}},
       {{"edges", quantity.unit, "edges of the bins", std::move(edges)},
-       {"counts", "1", "replicas below the bins, in each of them, above them", spread.all_counts(), bins.bins + 2}}};
+       {"counts", "1", "replicas below the bins, in each of them, above them", counts.all_counts(), bins.bins + 2}}};
   for (const int percent : {5, 25, 50, 75, 95}) {
     std::vector<double> quantiles;
-    for (std::size_t entry = 0; entry < spread.entries(); ++entry)
-      quantiles.push_back(spread.quantile(entry, percent / 100.0));
+    for (std::size_t entry = 0; entry < counts.entries(); ++entry)
+      quantiles.push_back(counts.quantile(entry, percent / 100.0));
     group.columns.push_back({fmt::format("quantile_{:02}", percent), quantity.unit,
                              fmt::format("{} % of the replicas are below, to the width of a bin", percent),
                              std::move(quantiles), quantity.width});
@@ -156,7 +156,7 @@ std::vector<Group> EnsembleState::groups() const {
     }
     groups.push_back(quantity_group(quantity, total));
   }
-  for (std::size_t k = 0; k < spreads_.size(); ++k) groups.push_back(spread_group(k));
+  for (const Spread& spread : spreads_) groups.push_back(spread_group(spread));
   groups.push_back(replica_group());
   if (!failed.empty()) {
     std::vector<std::uint64_t> index;
@@ -212,7 +212,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   }
   kept_ = separated_tables(result, name(""), file);
   for (std::size_t k = 0; k < spreads_.size(); ++k)
-    take(SpreadRecord{k, get<std::uint64_t>(get(result, spread_group(k).name, file), "counts", file)}, file);
+    take(SpreadRecord{k, get<std::uint64_t>(get(result, spread_group(spreads_[k]).name, file), "counts", file)}, file);
 }
 
 }  // namespace cradle::tools

@@ -41,8 +41,7 @@ EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<S
     if (found == layout_.quantities.end())
       throw Error({"--spread", 0, ""}, "nothing of this name in the series or profiles", request.name,
                   "choose one of those that `cradle info` lists for a result of this scene");
-    spread_of_.push_back({request, static_cast<std::size_t>(found - layout_.quantities.begin())});
-    spreads_.emplace_back(request.bins, found->size());
+    spreads_.push_back({*found, Histograms(request.bins, found->size())});
   }
 }
 
@@ -78,7 +77,7 @@ void EnsembleState::take(EnsembleState& other) {
   for (std::size_t k = 0; k < other.table_.size(); ++k) table_.add(other.table_[k]);
   messages_.merge(other.messages_);
   kept_.merge(other.kept_);
-  for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].add(other.spreads_[k]);
+  for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].counts.add(other.spreads_[k].counts);
   for (TreeNode& node : other.tree_.nodes()) tree_.add(std::move(node));
 }
 
@@ -116,11 +115,12 @@ void EnsembleState::take(TreeNode&& node, const std::string& from) {
 
 void EnsembleState::take(SpreadRecord&& spread, const std::string& from) {
   auto& [k, counts] = spread;
-  if (k >= spreads_.size() || counts.size() != spreads_[k].all_counts().size())
+  if (k >= spreads_.size() || counts.size() != spreads_[k].counts.all_counts().size())
     throw damaged(from, fmt::format("{} counts for the spread {}", counts.size(), k));
-  Histograms other(spreads_[k].bins(), spreads_[k].entries());
+  Histograms& all = spreads_[k].counts;
+  Histograms other(all.bins(), all.entries());
   other.set_all_counts(std::move(counts));
-  spreads_[k].add(other);
+  all.add(other);
 }
 
 // The table of replicas and the statistics must have the same replicas.
@@ -159,7 +159,7 @@ void EnsembleState::put_records(std::uint64_t point, const JournalWriter::Put& p
     }
     put_one(std::move(rows));
   }
-  for (std::size_t k = 0; k < spreads_.size(); ++k) put_one(SpreadRecord{k, spreads_[k].all_counts()});
+  for (std::size_t k = 0; k < spreads_.size(); ++k) put_one(SpreadRecord{k, spreads_[k].counts.all_counts()});
   for (TreeNode& node : tree_.nodes()) put_one(std::move(node));
   for (const auto& [replica, kept] : kept_) put_one(KeptRecord{replica, kept});
 }
@@ -175,10 +175,8 @@ void EnsembleState::take(ReplicaRecord&& one) {
     const std::scoped_lock lock(mutex_);
     table_.add(one.row);
     if (!one.kept.empty()) kept_.emplace(one.row.index, std::move(one.kept));
-    for (std::size_t k = 0; k < spreads_.size(); ++k) {
-      const Quantity& quantity = layout_.quantities[spread_of_[k].quantity];
-      spreads_[k].add(std::span(one.values).subspan(quantity.offset, quantity.size()));
-    }
+    for (auto& [quantity, counts] : spreads_)
+      counts.add(std::span(one.values).subspan(quantity.offset, quantity.size()));
   }
   tree_.add(one.row.index, std::move(one.values));
 }

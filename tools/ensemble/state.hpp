@@ -3,7 +3,6 @@
 // hold it as groups. Both keep every bit, so that ensembles can be continued and merged.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -72,9 +71,6 @@ class ReplicaTable {
   std::vector<double> numbers_;
 };
 
-/// The level of a tree node; a number too large for a level stays too large.
-inline unsigned level_of(std::uint64_t number) { return static_cast<unsigned>(std::min<std::uint64_t>(number, 64)); }
-
 /// Mean, standard error and extremes of a quantity. NaN if no replica has it. Counts the replicas that have it if not
 /// all do.
 Group statistics_group(std::string name, const Quantity& quantity, const Moments& total);
@@ -97,7 +93,6 @@ class EnsembleState {
   /// The replicas that cannot be trusted, each with its reason: what stopped it, or that it lost the order of
   /// collisions or exhausted the resolution.
   std::map<ReplicaIndex, std::string> failures() const;
-  const std::vector<Histograms>& spreads() const { return spreads_; }
 
   bool holds_all_of(const EnsembleState& other) const;
   bool holds_any_of(const EnsembleState& other) const;
@@ -116,9 +111,9 @@ class EnsembleState {
   void read(const Result& result, const std::string& file);
 
  private:
-  struct SpreadOf {
-    SpreadRequest request;
-    std::size_t quantity = 0;  // its number in the layout
+  struct Spread {
+    Quantity quantity;
+    Histograms counts;
   };
 
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
@@ -132,7 +127,7 @@ class EnsembleState {
   void take(TreeNode&& node, const std::string& from = "a journal");
   void check_replicas(const std::string& file) const;
   Group quantity_group(const Quantity& quantity, const Moments& total) const;
-  Group spread_group(std::size_t k) const;
+  Group spread_group(const Spread& spread) const;
   Group replica_group() const;
 
   std::string group_;
@@ -142,8 +137,7 @@ class EnsembleState {
   mutable std::mutex mutex_;  // guards all that follows
   ReplicaTable table_;
   std::map<ReplicaIndex, std::string> messages_;  // of the replicas that failed
-  std::vector<SpreadOf> spread_of_;
-  std::vector<Histograms> spreads_;
+  std::vector<Spread> spreads_;
   KeptReplicas kept_;  // of every replica, if the scene requests it
 };
 

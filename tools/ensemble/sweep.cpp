@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "cradle/tools/ensemble/sweep_points.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -13,23 +13,16 @@ namespace cradle::tools {
 namespace {
 
 // Columns of numbers, one row per point, added in the order of first use; NaN if a point has no value.
-class Table {
- public:
-  explicit Table(std::size_t points) : points_(points) {}
+struct Table {
   void put(std::size_t point, const std::string& name, const std::string& unit, const std::string& description,
            double value) {
-    const auto [place, fresh] = places_.try_emplace(name, columns_.size());
-    if (fresh) {
-      columns_.push_back({name, unit, description, std::vector<double>(points_, missing)});
-    }
-    std::get<std::vector<double>>(columns_[place->second].values)[point] = value;
+    auto at = std::ranges::find(columns, name, &Column::name);
+    if (at == columns.end()) at = columns.insert(at, {name, unit, description, std::vector<double>(points, missing)});
+    std::get<std::vector<double>>(at->values)[point] = value;
   }
-  std::vector<Column> columns() && { return std::move(columns_); }
 
- private:
-  std::size_t points_;
-  std::vector<Column> columns_;
-  std::map<std::string, std::size_t> places_;
+  std::size_t points;
+  std::vector<Column> columns = {};
 };
 
 // Adds in the order of the replicas' indices, so that the bits do not depend on the order of computing.
@@ -50,7 +43,7 @@ void put_mean(Table& table, std::size_t point, const Column& about, const std::v
 
 // `/sweep`: what was varied, how many replicas ended, and means over them with standard errors; a row per point.
 Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates& states) {
-  Table table(points.size());
+  Table table{points.size()};
   Group group{"sweep", {}, {}};
   for (std::size_t p = 0; p < points.size(); ++p) {
     group.attributes.emplace_back(fmt::format("label_{:04}", p), point_label(points[p]));
@@ -76,7 +69,7 @@ Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates&
     for (std::size_t i = 0; i < numbers.size(); ++i)
       mean(numbers[i], [i](const ReplicaRow& row) { return row.numbers[i]; });
   }
-  group.columns = std::move(table).columns();
+  group.columns = std::move(table.columns);
   return group;
 }
 

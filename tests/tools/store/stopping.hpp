@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 

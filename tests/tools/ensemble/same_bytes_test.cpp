@@ -94,15 +94,6 @@ TEST_F(Ensembles, JournalsOfRanksThatAreGoneAreTaken) {
   EXPECT_FALSE(exists("a.h5.part.3"));
 }
 
-TEST_F(Ensembles, OneProgramAtATimeWritesAFile) {
-  const Printed both =
-      shell("cradle ensemble shock.toml --replicas 1000000000000 -o a.h5 & pid=$!; while [ ! -e a.h5.part ]; do sleep "
-            "0.01; done; "
-            "cradle ensemble shock.toml --replicas 10 -o a.h5; status=$?; kill $pid; wait $pid; exit $status");
-  EXPECT_EQ(both.status, 4);
-  EXPECT_TRUE(has(both.err, "another program"));
-}
-
 TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
   const tools::Study study = tools::ensemble_of(scene("shock.toml"));
   run("ensemble shock.toml --replicas 100 -o whole.h5");

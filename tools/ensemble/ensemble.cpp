@@ -16,18 +16,12 @@ namespace cradle::tools {
 
 namespace {
 
-struct Finished {
-  ReplicaRow row;
-  std::vector<double> values;
-  ReplicaTables kept;
-};
-
-Finished run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options,
-                     Interrupt& interrupt) {
+ReplicaRecord run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options,
+                          Interrupt& interrupt) {
   const RunOutcome run =
       options.runner(replica_scene(ensemble.scene(), replica), {ProgressLine::Show::never, nullptr, &interrupt});
   if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
-  Finished done{ensemble.layout().row(replica, run), ensemble.layout().values(run), {}};
+  ReplicaRecord done{ensemble.layout().row(replica, run), ensemble.layout().values(run), {}};
   if (ensemble.scene().output.every_replica) done.kept = kept_tables(replica, run.result);
   if (std::any_of(done.values.begin(), done.values.end(), [](double value) { return std::isinf(value); }))
     throw Error("a number beyond the range of a double, in which statistics are: give other units of length or speed");
@@ -39,12 +33,6 @@ std::vector<JobRange> jobs_left(const EnsembleStore& store, ReplicaRange wanted)
   for (std::size_t point = 0; point < store.states().size(); ++point)
     for (const ReplicaRange& range : store.states()[point]->replicas().missing(wanted)) jobs.push_back({point, range});
   return jobs;
-}
-
-std::uint64_t count(const std::vector<JobRange>& jobs) {
-  std::uint64_t sum = 0;
-  for (const auto& [point, range] : jobs) sum += range.count;
-  return sum;
 }
 
 // A process has one number of MPFR digits at a time.
@@ -95,12 +83,12 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew
   run_jobs(
       Threads(options.threads > 0 ? options.threads : crew.threads()), next,
       [&](const Job& job) { return run_replica(*store.states()[job.point], job.replica, options, crew.interrupt()); },
-      [&](const Job& job, Finished&& done) {
-        store.add(job.point, done.row, std::move(done.values), std::move(done.kept));
+      [&](const Job& job, ReplicaRecord&& done) {
+        store.add({job.point, std::move(done)});
         finished();
       },
       [&](const Job& job, const std::string& message) {
-        store.fail(job.point, job.replica, message);
+        store.add({job.point, FailureRecord{job.replica, message}});
         finished();
       },
       [&] { return crew.interrupt().signal() != 0; });
@@ -118,7 +106,7 @@ EnsembleOutcome outcome_of(const EnsembleStore& store, const std::string& file) 
 // The part of rank 0, which handles the files.
 EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const std::string& file, Crew& crew) {
   const std::vector<JobRange> jobs = jobs_left(store, options.replicas);
-  const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = count(jobs);
+  const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = JobQueue(jobs).left();
   if (fresh > 0) store.start_journal(0, options.replicas, options.journal_bytes);
   ReplicaProgress progress(options.progress, wanted - fresh, wanted);
   const int signal = crew.share(

@@ -10,6 +10,7 @@
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/store/run_journal.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
@@ -18,22 +19,61 @@ namespace {
 
 std::string plural(std::uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
+// What the journal of this result would begin with. `otherwise`: what to do where it holds no ensembles.
+JournalHeader header_in(const Result& result, const std::string& file, const char* otherwise) {
+  const auto& of_file = result.attributes;
+  if (std::ranges::find(of_file, "identity", &Attribute::first) == of_file.end())
+    throw Error({file, 0, ""}, "holds no ensemble", "a single run, or another command's result", otherwise);
+  JournalHeader header{attribute<std::string>(of_file, "kind", file),
+                       attribute<std::uint64_t>(of_file, "identity", file),
+                       attribute<std::string>(of_file, "scene", file), attribute<std::string>(of_file, "name", file)};
+  const std::string spread = "ensemble/spread/", below = "/ensemble";
+  for (const Group& group : result.groups) {
+    const auto& here = group.attributes;
+    if (group.name == "ensemble") {
+      header.points.emplace_back("", header.scene);
+    } else if (group.name.starts_with("points/") && group.name.ends_with(below)) {
+      header.points.emplace_back(group.name.substr(0, group.name.size() - below.size()),
+                                 attribute<std::string>(here, "scene", file));
+    } else if (group.name.starts_with(spread) && !group.columns.empty()) {
+      header.spreads.push_back({group.name.substr(spread.size()),
+                                {attribute<double>(here, "from", file), attribute<double>(here, "to", file),
+                                 attribute<std::uint64_t>(here, "bins", file)}});
+      if (const SpreadRequest& found = header.spreads.back(); !found.bins_are_possible())
+        throw Error({file, 0, group.name}, "no bins", fmt::format("{}", found.bins.bins), "make the file anew",
+                    Exit::io);
+    }
+  }
+  return header;
+}
+
+Study study_described(const JournalHeader& header, const std::string& path, const Error& of_other_scenes) {
+  const Scene scene = scene_of(header, path);
+  const auto scene_at = [&](const std::string& group) {
+    const auto at = std::ranges::find(header.points, group, &std::pair<std::string, std::string>::first);
+    if (at == header.points.end())
+      throw Error({path, 0, ""}, "a sweep without one of its points", group, "make it anew, or remove it", Exit::io);
+    return parse_scene(at->second, path);
+  };
+  Study study = header.kind == "sweep" ? sweep_at(scene, scene_at) : ensemble_of(scene, header.spreads);
+  if (study.identity() != header.identity) throw of_other_scenes;
+  return study;
+}
+
 }  // namespace
 
 Study study_in(const JournalHeader& journal, const std::string& path) {
-  Scene scene = parse_scene(journal.scene, path);
-  scene.name = journal.name;
-  const auto scene_at = [&](const std::string& group) {
-    const auto at = std::find_if(journal.points.begin(), journal.points.end(),
-                                 [&](const auto& point) { return point.first == group; });
-    if (at == journal.points.end())
-      throw Error({path, 0, ""}, "a sweep without one of its points", group, "remove it", Exit::io);
-    return parse_scene(at->second, path);
-  };
-  Study study = journal.kind == "sweep" ? sweep_at(scene, scene_at) : ensemble_of(scene, journal.spreads);
-  if (study.identity() != journal.identity)
-    throw Error({path, 0, ""}, "of other scenes than it names", "", "take it from a copy, or remove it", Exit::io);
-  return study;
+  return study_described(
+      journal, path,
+      {{path, 0, ""}, "of other scenes than it names", "", "take it from a copy, or remove it", Exit::io});
+}
+
+Study study_in(const Result& result, const std::string& file) {
+  return study_described(header_in(result, file, "give a file that `cradle ensemble` or `cradle sweep` wrote"), file,
+                         {{file, 0, ""},
+                          "cannot be merged here",
+                          "another version's file, or a scene that was changed in it",
+                          "use the program that wrote it"});
 }
 
 EnsembleStore::EnsembleStore(Study study, std::string file)
@@ -49,12 +89,12 @@ EnsembleStates EnsembleStore::empty_states() const {
 
 // ---- reading the result and the journals of all ranks
 
-void EnsembleStore::check_identity(std::uint64_t identity, const std::vector<std::string>& scenes,
-                                   const std::string& path) const {
-  if (identity == identity_) return;
-  std::string found = scenes.size() == study_.points.size() ? "" : plural(scenes.size(), "ensemble");
-  for (std::size_t k = 0; k < scenes.size() && found.empty(); ++k)
-    found = scene_difference(parse_scene(scenes[k], path), study_.points[k].scene);
+void EnsembleStore::check_identity(const JournalHeader& there, const std::string& path) const {
+  if (there.identity == identity_) return;
+  const auto& points = there.points;
+  std::string found = points.size() == study_.points.size() ? "" : plural(points.size(), "ensemble");
+  for (std::size_t k = 0; k < points.size() && found.empty(); ++k)
+    found = scene_difference(parse_scene(points[k].second, path), study_.points[k].scene);
   if (found.empty()) found = "another version of the program, other --spread bins or other listed particles";
   throw Error({path, 0, ""}, "holds ensembles of something else", found,
               "give another -o FILE, or --force to replace it");
@@ -62,18 +102,7 @@ void EnsembleStore::check_identity(std::uint64_t identity, const std::vector<std
 
 void EnsembleStore::load_result() {
   const Result result = read_result(file_);
-  const auto is = [&](const auto& attribute) { return attribute.first == "identity"; };
-  if (std::none_of(result.attributes.begin(), result.attributes.end(), is))
-    throw Error({file_, 0, ""}, "holds no ensemble", "a single run, or another command's result",
-                "give another -o FILE, or --force to replace it");
-  std::vector<std::string> scenes;
-  for (const Study::Point& point : study_.points) {
-    const bool alone = point.group.empty();
-    const Group* group = result.find(alone ? "ensemble" : point.group + "/ensemble");
-    if (group == nullptr) break;
-    scenes.push_back(attribute<std::string>(alone ? result.attributes : group->attributes, "scene", file_));
-  }
-  check_identity(attribute<std::uint64_t>(result.attributes, "identity", file_), scenes, file_);
+  check_identity(header_in(result, file_, "give another -o FILE, or --force to replace it"), file_);
   for (const auto& state : states_) state->read(result, file_);
   result_there_ = true;
 }
@@ -126,9 +155,7 @@ std::string EnsembleStore::read_journal(const std::string& path, std::uint64_t& 
   if (header.of_run())
     throw Error({path, 0, ""}, "the journal of a run", "", "continue it by `cradle resume`, or give another -o FILE",
                 Exit::io);
-  std::vector<std::string> scenes;
-  for (const auto& [group, scene] : header.points) scenes.push_back(scene);
-  check_identity(header.identity, scenes, path);
+  check_identity(header, path);
   if (wanted_.count == 0) wanted_ = header.wanted;
   EnsembleStates states = empty_states();
   while (auto record = reader.next<EnsembleRecord>()) {
@@ -188,7 +215,6 @@ void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint6
   wanted_ = wanted;
   largest_ = std::max(largest, largest_);
   if (rank > 0) part_ += fmt::format(".{}", rank);
-  journalling_ = true;
   if (rank > 0) return;
   if (journal_)
     compact();  // so that a program that continues from it reads what is wanted now
@@ -196,21 +222,20 @@ void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint6
     journal_.emplace(part_, header());
 }
 
-void EnsembleStore::journal(const EnsembleRecord& record) {
-  if (!journalling_) return;
-  const std::string bytes = to_bytes(record);
+void EnsembleStore::journal(const EnsembleRecord& replica) {
+  const std::string bytes = to_bytes(replica);
   const std::scoped_lock lock(appending_);
   if (!journal_) journal_.emplace(part_, header());
   journal_->append(bytes);
 }
 
-void EnsembleStore::add(std::size_t point, const ReplicaRow& row, std::vector<double> values, ReplicaTables kept) {
+void EnsembleStore::add(EnsembleRecord&& replica) {
   {
     const std::shared_lock lock(changing_);
-    if (journalling_) journal({point, ReplicaRecord{row, values, kept}});
-    states_.at(point)->add(row, std::move(values), std::move(kept));
+    journal(replica);
+    states_.at(replica.point)->apply(std::move(replica));
   }
-  if (journalling_) keep_safe();
+  keep_safe();
 }
 
 // Syncs the journal from time to time, and rewrites it as nodes of the tree when it has become large.
@@ -231,12 +256,6 @@ void EnsembleStore::keep_safe() {
     const std::shared_lock lock(changing_);
     journal_->sync();
   }
-}
-
-void EnsembleStore::fail(std::size_t point, ReplicaIndex replica, const std::string& message) {
-  const std::shared_lock lock(changing_);
-  journal({point, FailureRecord{replica, message}});
-  states_.at(point)->fail(replica, message);
 }
 
 void EnsembleStore::sync() {

@@ -25,6 +25,8 @@ namespace cradle::tools {
 
 /// The study of a journal of replicas. Throws Error (Exit::io) naming the journal.
 Study study_in(const JournalHeader& journal, const std::string& path);
+/// The study of a result file, once the scenes in it are known to be those of its replicas. Throws Error naming it.
+Study study_in(const Result& result, const std::string& file);
 
 class EnsembleStore {
  public:
@@ -50,9 +52,8 @@ class EnsembleStore {
   /// beginning; another rank writes its own, which appears with its first replica. A journal larger than `largest`
   /// bytes is rewritten.
   void start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest);
-  /// Both may be called from several threads.
-  void add(std::size_t point, const ReplicaRow& row, std::vector<double> values, ReplicaTables kept = {});
-  void fail(std::size_t point, ReplicaIndex replica, const std::string& message);
+  /// Adds a replica, or one that failed. May be called from several threads.
+  void add(EnsembleRecord&& replica);
   /// Syncs the journal to the disk, so that it survives a crash of the machine.
   void sync();
 
@@ -73,10 +74,10 @@ class EnsembleStore {
   std::string read_journal(const std::string& path, std::uint64_t& whole_bytes);
   void take(EnsembleStates& others, const std::string& from);
   bool replaces_another() const;
-  void check_identity(std::uint64_t identity, const std::vector<std::string>& scenes, const std::string& path) const;
+  void check_identity(const JournalHeader& there, const std::string& path) const;
   JournalHeader header() const;
   std::vector<std::string> rank_journals() const;
-  void journal(const EnsembleRecord& record);
+  void journal(const EnsembleRecord& replica);
   void keep_safe();
   void compact();
 
@@ -88,7 +89,6 @@ class EnsembleStore {
   bool result_there_ = false;
 
   std::optional<FileClaim> claim_;  // of FILE and all journals
-  bool journalling_ = false;
   std::optional<JournalWriter> journal_;
   std::mutex appending_;        // to the journal
   std::shared_mutex changing_;  // shared while replicas are added, exclusive while the journal is rewritten

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
@@ -21,22 +22,13 @@ bool is_kept(std::string_view table) {
 
 using Rows = std::vector<std::uint64_t>;
 
-// Appends rows [first, last) of one column to another.
-void append(Column& to, const Column& from, std::size_t first, std::size_t last) {
-  std::visit(
-      [&]<class Values>(const Values& values) {
-        auto& all = std::get<Values>(to.values);
-        const auto at = [&](std::size_t row) { return values.begin() + static_cast<std::ptrdiff_t>(row); };
-        all.insert(all.end(), at(first), at(last));
-      },
-      from.values);
-}
-
-// The table without rows.
-Group emptied(const Group& table, std::string name) {
-  Group empty{std::move(name), table.attributes, table.columns};
-  for (Column& column : empty.columns) std::visit([](auto& values) { values.clear(); }, column.values);
-  return empty;
+// Rows [first, last) of a column.
+Column rows_of(const Column& column, std::size_t first, std::size_t last) {
+  const auto part = [&]<class Values>(const Values& values) -> Numbers {
+    const auto at = [&](std::size_t row) { return values.begin() + static_cast<std::ptrdiff_t>(row); };
+    return Values(at(first), at(last));
+  };
+  return {column.name, column.unit, column.description, std::visit(part, column.values)};
 }
 
 }  // namespace
@@ -59,17 +51,14 @@ ReplicaTables kept_tables(ReplicaIndex replica, const Result& run) {
 }
 
 std::vector<Group> joined_tables(const KeptReplicas& kept, const std::string& folder) {
-  std::map<std::string, Group> joined;
+  GrowingTables joined;
   for (const auto& [replica, tables] : kept)
-    for (const Group& table : tables) {
-      const auto [at, anew] = joined.try_emplace(table.name);
-      if (anew) at->second = emptied(table, folder + table.name);
-      for (std::size_t k = 0; k < table.columns.size(); ++k)
-        append(at->second.columns[k], table.columns[k], 0, table.columns[k].rows());
+    for (Group table : tables) {
+      table.name.insert(0, folder);
+      joined.add(std::move(table));
     }
-  std::vector<Group> all;
-  for (auto& [name, table] : joined) all.push_back(std::move(table));
-  return all;
+  std::ranges::sort(joined.tables(), {}, &Group::name);
+  return std::move(joined.tables());
 }
 
 KeptReplicas separated_tables(const Result& result, const std::string& folder, const std::string& file) {
@@ -85,8 +74,8 @@ KeptReplicas separated_tables(const Result& result, const std::string& folder, c
                   "take it from a copy, or run it again", Exit::io);
     for (std::size_t first = 0, last = 0; first < replica->size(); first = last) {
       while (last < replica->size() && (*replica)[last] == (*replica)[first]) ++last;
-      Group one = emptied(table, table.name.substr(folder.size()));
-      for (std::size_t k = 0; k < table.columns.size(); ++k) append(one.columns[k], table.columns[k], first, last);
+      Group one{table.name.substr(folder.size()), table.attributes, {}};
+      for (const Column& column : table.columns) one.columns.push_back(rows_of(column, first, last));
       kept[(*replica)[first]].push_back(std::move(one));
     }
   }

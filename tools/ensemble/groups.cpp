@@ -13,22 +13,23 @@ namespace cradle::tools {
 
 namespace {
 
-const Group& get(const Result& result, std::string_view name, const std::string& file) {
+Error lacking(const std::string& file, const std::string& what) {
+  return {{file, 0, ""},
+          "not an ensemble, or a damaged one",
+          "no " + what,
+          "give a file that `cradle ensemble` or `cradle merge` wrote",
+          Exit::io};
+}
+
+const Group& get(const Result& result, const std::string& name, const std::string& file) {
   if (const Group* group = result.find(name)) return *group;
-  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", fmt::format("no {}", name),
-              "give a file that `cradle ensemble` or `cradle merge` wrote", Exit::io);
+  throw lacking(file, name);
 }
 
-template <class T> const std::vector<T>& get(const Group& group, std::string_view name, const std::string& file) {
-  for (const Column& column : group.columns)
-    if (column.name == name)
-      if (const auto* values = std::get_if<std::vector<T>>(&column.values)) return *values;
-  throw Error({file, 0, ""}, "not an ensemble, or a damaged one", fmt::format("no {}/{}", group.name, name),
-              "give a file that `cradle ensemble` or `cradle merge` wrote", Exit::io);
-}
-
-bool has(const Group& group, const std::string& name) {
-  return std::any_of(group.columns.begin(), group.columns.end(), [&](const Column& c) { return c.name == name; });
+template <class T> const std::vector<T>& get(const Group& group, const std::string& name, const std::string& file) {
+  if (const Column* column = group.find(name))
+    if (const auto* values = std::get_if<std::vector<T>>(&column->values)) return *values;
+  throw lacking(file, group.name + "/" + name);
 }
 
 std::string node_name(std::size_t k) { return fmt::format("ensemble/nodes/{:04}", k); }
@@ -46,8 +47,9 @@ Group node_group(const TreeNode& node, std::string name) {
 }
 
 TreeNode read_node(const Group& group, const std::string& file) {
+  const auto level = attribute<std::uint64_t>(group.attributes, "level", file);  // one too large stays too large
   TreeNode node{attribute<std::uint64_t>(group.attributes, "first", file),
-                level_of(attribute<std::uint64_t>(group.attributes, "level", file)),
+                static_cast<unsigned>(std::min<std::uint64_t>(level, 64)),
                 {}};
   Moments& m = node.moments;
   m.replicas = attribute<std::uint64_t>(group.attributes, "replicas", file);
@@ -55,7 +57,7 @@ TreeNode read_node(const Group& group, const std::string& file) {
   m.squares = get<double>(group, "squares", file);
   m.least = get<double>(group, "least", file);
   m.greatest = get<double>(group, "greatest", file);
-  if (has(group, "counts")) m.counts = get<std::uint64_t>(group, "counts", file);
+  if (group.find("counts") != nullptr) m.counts = get<std::uint64_t>(group, "counts", file);
   return node;
 }
 
@@ -91,21 +93,20 @@ Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& tot
   return group;
 }
 
-Group EnsembleState::spread_group(std::size_t k) const {
-  const Quantity& quantity = layout_.quantities[spread_of_[k].quantity];
-  const Histograms& spread = spreads_[k];
-  const FixedBins& bins = spread.bins();
+Group EnsembleState::spread_group(const Spread& spread) const {
+  const auto& [quantity, counts] = spread;
+  const FixedBins& bins = counts.bins();
   std::vector<double> edges;
   for (std::size_t e = 0; e <= bins.bins; ++e) edges.push_back(bins.edge(e));
   Group group{
       name("ensemble/spread/" + quantity.group + "/" + quantity.name),
       {{"from", bins.from}, {"to", bins.to}, {"bins", std::uint64_t{bins.bins}}},
       {{"edges", quantity.unit, "edges of the bins", std::move(edges)},
-       {"counts", "1", "replicas below the bins, in each of them, above them", spread.all_counts(), bins.bins + 2}}};
+       {"counts", "1", "replicas below the bins, in each of them, above them", counts.all_counts(), bins.bins + 2}}};
   for (const int percent : {5, 25, 50, 75, 95}) {
     std::vector<double> quantiles;
-    for (std::size_t entry = 0; entry < spread.entries(); ++entry)
-      quantiles.push_back(spread.quantile(entry, percent / 100.0));
+    for (std::size_t entry = 0; entry < counts.entries(); ++entry)
+      quantiles.push_back(counts.quantile(entry, percent / 100.0));
     group.columns.push_back({fmt::format("quantile_{:02}", percent), quantity.unit,
                              fmt::format("{} % of the replicas are below, to the width of a bin", percent),
                              std::move(quantiles), quantity.width});
@@ -155,7 +156,7 @@ std::vector<Group> EnsembleState::groups() const {
     }
     groups.push_back(quantity_group(quantity, total));
   }
-  for (std::size_t k = 0; k < spreads_.size(); ++k) groups.push_back(spread_group(k));
+  for (const Spread& spread : spreads_) groups.push_back(spread_group(spread));
   groups.push_back(replica_group());
   if (!failed.empty()) {
     std::vector<std::uint64_t> index;
@@ -180,7 +181,7 @@ std::vector<Group> EnsembleState::groups() const {
 
 void EnsembleState::read(const Result& result, const std::string& file) {
   for (std::size_t k = 0; const Group* group = result.find(name(node_name(k))); ++k)
-    take_node(read_node(*group, file), file);
+    take(read_node(*group, file), file);
   const Group& table = get(result, name("replicas"), file);
   const auto &index = get<std::uint64_t>(table, "index", file), &outcome = get<std::uint64_t>(table, "outcome", file),
              &collisions = get<std::uint64_t>(table, "collisions", file),
@@ -211,7 +212,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   }
   kept_ = separated_tables(result, name(""), file);
   for (std::size_t k = 0; k < spreads_.size(); ++k)
-    take_counts(k, get<std::uint64_t>(get(result, spread_group(k).name, file), "counts", file), file);
+    take(SpreadRecord{k, get<std::uint64_t>(get(result, spread_group(spreads_[k]).name, file), "counts", file)}, file);
 }
 
 }  // namespace cradle::tools

@@ -14,15 +14,9 @@ namespace {
 
 bool of_series(const std::string& group) { return group == "series" || group.starts_with("series/"); }
 
-const Column* find(const Group* group, const std::string& name) {
-  if (group == nullptr) return nullptr;
-  for (const Column& column : group->columns)
-    if (column.name == name) return &column;
-  return nullptr;
-}
-
 const Column& get(const Result& result, const std::string& group, const std::string& name) {
-  if (const Column* column = find(result.find(group), name)) return *column;
+  const Group* table = result.find(group);
+  if (const Column* column = table == nullptr ? nullptr : table->find(name)) return *column;
   throw std::logic_error(fmt::format("a run recorded no {}/{}, which others of its scene have", group, name));
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "cradle/tools/ensemble/sweep.hpp"
 #include "cradle/tools/result/reader.hpp"
 
 namespace cradle::tools {
@@ -14,16 +13,6 @@ std::string describe(const std::vector<ReplicaRange>& ranges) {
   if (ranges.size() > 1)
     return fmt::format("{} ranges, {} to {}", ranges.size(), ranges[0].first, ranges.back().end() - 1);
   return fmt::format("{} to {}", ranges[0].first, ranges[0].end() - 1);
-}
-
-// Checks that the scene in a file is the one of its replicas before using it.
-Study study_in(const std::string& file) {
-  const Result result = read_result(file);
-  Study study = study_kind(result, file) == "sweep" ? sweep_in(result, file) : ensemble_in(result, file);
-  if (attribute<std::uint64_t>(result.attributes, "identity", file) != study.identity())
-    throw Error({file, 0, ""}, "cannot be merged here", "another version's file, or a scene that was changed in it",
-                "use the program that wrote it");
-  return study;
 }
 
 void take(EnsembleStore& all, EnsembleStore& other, const std::string& file) {
@@ -39,7 +28,7 @@ void take(EnsembleStore& all, EnsembleStore& other, const std::string& file) {
 }  // namespace
 
 std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files) {
-  const Study study = study_in(files.front());
+  const Study study = study_in(read_result(files.front()), files.front());
   auto all = std::make_unique<EnsembleStore>(study, "");
   for (const std::string& file : files) {
     EnsembleStore one(study, file);

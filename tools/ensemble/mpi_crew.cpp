@@ -1,4 +1,7 @@
-#include "cradle/tools/ensemble/mpi_crew.hpp"
+// Rank 0 gives aligned pieces of the remaining replicas to ranks that request them, large pieces first and smaller ones
+// towards the end; the threads of a rank share its pieces. Only the main thread calls MPI, and it does nothing else;
+// other threads do the work. If a rank dies the launcher ends the job; the next job finds the journals of all ranks.
+#include "cradle/tools/ensemble/crew.hpp"
 
 #include <fmt/format.h>
 #include <mpi.h>
@@ -9,7 +12,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -89,7 +91,7 @@ class MpiCrew : public Crew {
   void gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) override;
 
  private:
-  void lead(Workshop& shop, const Workshop::More& piece, const std::function<void(std::uint64_t)>& others_took) const;
+  void lead(Workshop& shop, JobQueue all, const std::function<void(std::uint64_t)>& others_took) const;
   void follow(Workshop& shop) const;
   [[noreturn]] void abandon(const std::exception_ptr& error) const;
 
@@ -148,19 +150,12 @@ void MpiCrew::abandon(const std::exception_ptr& error) const {
 
 int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
                    const std::function<void(std::uint64_t)>& others_took) {
-  if (rank_ == 0) {
-    JobQueue all(jobs);
-    std::mutex mutex;
-    // A piece is a third of an even share of the rest: few messages at first, and no long wait for the last rank.
-    const auto piece = [&] {
-      const std::scoped_lock lock(mutex);
-      return all.take(std::max<std::uint64_t>(1, all.left() / (3 * static_cast<std::uint64_t>(size_))));
-    };
-    Workshop shop(work, piece, interrupt());
-    lead(shop, piece, others_took);
-  } else {
-    Workshop shop(work, {}, interrupt());
-    follow(shop);
+  {
+    Workshop shop(work, interrupt());
+    if (rank_ == 0)
+      lead(shop, JobQueue(jobs), others_took);
+    else
+      follow(shop);
   }
   // Some ranks may have finished before a signal came: all return what rank 0 returns, which waits for all.
   int signal = interrupt().signal();
@@ -174,15 +169,23 @@ int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(c
   return signal;
 }
 
-void MpiCrew::lead(Workshop& shop, const Workshop::More& piece,
-                   const std::function<void(std::uint64_t)>& others_took) const {
+void MpiCrew::lead(Workshop& shop, JobQueue all, const std::function<void(std::uint64_t)>& others_took) const {
+  // A piece is a third of an even share of the rest: few messages at first, and no long wait for the last rank.
+  const auto piece = [&] {
+    return all.take(std::max<std::uint64_t>(1, all.left() / (3 * static_cast<std::uint64_t>(size_))));
+  };
   std::vector<bool> here(static_cast<std::size_t>(size_), true);
   int others = size_ - 1;
   bool stopped = false;
   const auto stop = [this] { return Reply{Order::stop, 0, 0, 0, static_cast<std::uint64_t>(interrupt().signal())}; };
-  for (;;) {
-    const bool idle = shop.idle(false);
+  for (bool closed = false;;) {
+    const bool idle = shop.idle(!closed);
     if (idle && shop.error()) abandon(shop.error());
+    if (!closed && shop.empty()) {
+      const auto own = piece();
+      own ? shop.put(*own) : shop.close();
+      closed = !own;
+    }
     if (interrupt().signal() != 0 && !std::exchange(stopped, true))
       for (int rank = 1; rank < size_; ++rank)
         if (here[static_cast<std::size_t>(rank)]) send(stop(), rank, from_leader);

@@ -41,33 +41,8 @@ EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<S
     if (found == layout_.quantities.end())
       throw Error({"--spread", 0, ""}, "nothing of this name in the series or profiles", request.name,
                   "choose one of those that `cradle info` lists for a result of this scene");
-    spread_of_.push_back({request, static_cast<std::size_t>(found - layout_.quantities.begin())});
-    spreads_.emplace_back(request.bins, found->size());
+    spreads_.push_back({*found, Histograms(request.bins, found->size())});
   }
-}
-
-void EnsembleState::add(const ReplicaRow& row, std::vector<double> values, ReplicaTables kept) {
-  check_length(values.size());
-  {
-    const std::scoped_lock lock(mutex_);
-    table_.add(row);
-    if (!kept.empty()) kept_.emplace(row.index, std::move(kept));
-    for (std::size_t k = 0; k < spreads_.size(); ++k) {
-      const Quantity& quantity = layout_.quantities[spread_of_[k].quantity];
-      spreads_[k].add(std::span(values).subspan(quantity.offset, quantity.size()));
-    }
-  }
-  tree_.add(row.index, std::move(values));
-}
-
-void EnsembleState::fail(ReplicaIndex replica, std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');  // one line each in result files
-  {
-    const std::scoped_lock lock(mutex_);
-    table_.add({replica, RunEnd::failed, 0, 0, {}});
-    messages_.emplace(replica, std::move(message));
-  }
-  tree_.add(replica, std::nullopt);
 }
 
 EnsembleState::Outcomes EnsembleState::outcomes() const {
@@ -102,7 +77,7 @@ void EnsembleState::take(EnsembleState& other) {
   for (std::size_t k = 0; k < other.table_.size(); ++k) table_.add(other.table_[k]);
   messages_.merge(other.messages_);
   kept_.merge(other.kept_);
-  for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].add(other.spreads_[k]);
+  for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].counts.add(other.spreads_[k].counts);
   for (TreeNode& node : other.tree_.nodes()) tree_.add(std::move(node));
 }
 
@@ -120,8 +95,7 @@ Error damaged(const std::string& from, const std::string& found) {
 
 }  // namespace
 
-// Checks everything in a node from a file or another process.
-void EnsembleState::take_node(TreeNode node, const std::string& from) {
+void EnsembleState::take(TreeNode&& node, const std::string& from) {
   const Moments& m = node.moments;
   const auto wrong = [&](const std::string& found) { return damaged(from, found); };
   if (node.level > 62 || m.replicas > node.range().count)
@@ -139,12 +113,14 @@ void EnsembleState::take_node(TreeNode node, const std::string& from) {
   }
 }
 
-void EnsembleState::take_counts(std::size_t k, std::vector<std::uint64_t> counts, const std::string& from) {
-  if (k >= spreads_.size() || counts.size() != spreads_[k].all_counts().size())
+void EnsembleState::take(SpreadRecord&& spread, const std::string& from) {
+  auto& [k, counts] = spread;
+  if (k >= spreads_.size() || counts.size() != spreads_[k].counts.all_counts().size())
     throw damaged(from, fmt::format("{} counts for the spread {}", counts.size(), k));
-  Histograms other(spreads_[k].bins(), spreads_[k].entries());
+  Histograms& all = spreads_[k].counts;
+  Histograms other(all.bins(), all.entries());
   other.set_all_counts(std::move(counts));
-  spreads_[k].add(other);
+  all.add(other);
 }
 
 // The table of replicas and the statistics must have the same replicas.
@@ -183,27 +159,44 @@ void EnsembleState::put_records(std::uint64_t point, const JournalWriter::Put& p
     }
     put_one(std::move(rows));
   }
-  for (std::size_t k = 0; k < spreads_.size(); ++k) put_one(SpreadRecord{k, spreads_[k].all_counts()});
+  for (std::size_t k = 0; k < spreads_.size(); ++k) put_one(SpreadRecord{k, spreads_[k].counts.all_counts()});
   for (TreeNode& node : tree_.nodes()) put_one(std::move(node));
   for (const auto& [replica, kept] : kept_) put_one(KeptRecord{replica, kept});
 }
 
 void EnsembleState::apply(EnsembleRecord&& record) {
-  if (auto* one = std::get_if<ReplicaRecord>(&record.what)) {
-    if (!tree_.contains(one->row.index)) add(one->row, std::move(one->values), std::move(one->kept));
-  } else if (auto* failure = std::get_if<FailureRecord>(&record.what)) {
-    if (!tree_.contains(failure->replica)) fail(failure->replica, std::move(failure->message));
-  } else if (auto* rows = std::get_if<RowsRecord>(&record.what)) {
-    for (auto& [row, message] : *rows) {
-      table_.add(row);
-      if (row.outcome == RunEnd::failed) messages_.emplace(row.index, std::move(message));
-    }
-  } else if (auto* spread = std::get_if<SpreadRecord>(&record.what)) {
-    take_counts(spread->number, std::move(spread->counts), "a journal");
-  } else if (auto* kept = std::get_if<KeptRecord>(&record.what)) {
-    kept_.emplace(kept->replica, std::move(kept->kept));
-  } else {
-    take_node(std::get<TreeNode>(std::move(record.what)), "a journal");
+  std::visit([this](auto& what) { take(std::move(what)); }, record.what);
+}
+
+void EnsembleState::take(ReplicaRecord&& one) {
+  if (tree_.contains(one.row.index)) return;
+  check_length(one.values.size());
+  {
+    const std::scoped_lock lock(mutex_);
+    table_.add(one.row);
+    if (!one.kept.empty()) kept_.emplace(one.row.index, std::move(one.kept));
+    for (auto& [quantity, counts] : spreads_)
+      counts.add(std::span(one.values).subspan(quantity.offset, quantity.size()));
+  }
+  tree_.add(one.row.index, std::move(one.values));
+}
+
+void EnsembleState::take(FailureRecord&& failure) {
+  auto& [replica, message] = failure;
+  if (tree_.contains(replica)) return;
+  std::replace(message.begin(), message.end(), '\n', ' ');  // one line each in result files
+  {
+    const std::scoped_lock lock(mutex_);
+    table_.add({replica, RunEnd::failed, 0, 0, {}});
+    messages_.emplace(replica, std::move(message));
+  }
+  tree_.add(replica, std::nullopt);
+}
+
+void EnsembleState::take(RowsRecord&& rows) {
+  for (auto& [row, message] : rows) {
+    table_.add(row);
+    if (row.outcome == RunEnd::failed) messages_.emplace(row.index, std::move(message));
   }
 }
 

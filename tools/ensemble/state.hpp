@@ -3,7 +3,6 @@
 // hold it as groups. Both keep every bit, so that ensembles can be continued and merged.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -72,9 +71,6 @@ class ReplicaTable {
   std::vector<double> numbers_;
 };
 
-/// The level of a tree node; a number too large for a level stays too large.
-inline unsigned level_of(std::uint64_t number) { return static_cast<unsigned>(std::min<std::uint64_t>(number, 64)); }
-
 /// Mean, standard error and extremes of a quantity. NaN if no replica has it. Counts the replicas that have it if not
 /// all do.
 Group statistics_group(std::string name, const Quantity& quantity, const Moments& total);
@@ -91,17 +87,12 @@ class EnsembleState {
   const Scene& scene() const { return scene_; }
   const ReplicaLayout& layout() const { return layout_; }
 
-  /// Adds a replica that is not there yet. Both may be called from several threads.
-  void add(const ReplicaRow& row, std::vector<double> values, ReplicaTables kept = {});
-  void fail(ReplicaIndex replica, std::string message);
-
   const MomentTree& replicas() const { return tree_; }
   Outcomes outcomes() const;
   const ReplicaTable& table() const { return table_; }
   /// The replicas that cannot be trusted, each with its reason: what stopped it, or that it lost the order of
   /// collisions or exhausted the resolution.
   std::map<ReplicaIndex, std::string> failures() const;
-  const std::vector<Histograms>& spreads() const { return spreads_; }
 
   bool holds_all_of(const EnsembleState& other) const;
   bool holds_any_of(const EnsembleState& other) const;
@@ -110,7 +101,8 @@ class EnsembleState {
 
   /// Puts everything as records, enough to restore this state; `point` is the number of this ensemble.
   void put_records(std::uint64_t point, const JournalWriter::Put& put) const;
-  /// Skips a replica that is there already. Throws Error (Exit::io) for a record of another ensemble.
+  /// Skips a replica that is there already. Throws Error (Exit::io) for a record of another ensemble. Records of one
+  /// replica each may come from several threads.
   void apply(EnsembleRecord&& record);
 
   // ---- as groups of a result file
@@ -119,18 +111,23 @@ class EnsembleState {
   void read(const Result& result, const std::string& file);
 
  private:
-  struct SpreadOf {
-    SpreadRequest request;
-    std::size_t quantity = 0;  // its number in the layout
+  struct Spread {
+    Quantity quantity;
+    Histograms counts;
   };
 
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
   void check_length(std::size_t entries) const;
-  void take_node(TreeNode node, const std::string& from);
-  void take_counts(std::size_t k, std::vector<std::uint64_t> counts, const std::string& from);
+  void take(ReplicaRecord&& one);
+  void take(FailureRecord&& failure);
+  void take(RowsRecord&& rows);
+  void take(KeptRecord&& kept) { kept_.emplace(kept.replica, std::move(kept.kept)); }
+  // Both check everything in what comes from a file or another process.
+  void take(SpreadRecord&& spread, const std::string& from = "a journal");
+  void take(TreeNode&& node, const std::string& from = "a journal");
   void check_replicas(const std::string& file) const;
   Group quantity_group(const Quantity& quantity, const Moments& total) const;
-  Group spread_group(std::size_t k) const;
+  Group spread_group(const Spread& spread) const;
   Group replica_group() const;
 
   std::string group_;
@@ -140,8 +137,7 @@ class EnsembleState {
   mutable std::mutex mutex_;  // guards all that follows
   ReplicaTable table_;
   std::map<ReplicaIndex, std::string> messages_;  // of the replicas that failed
-  std::vector<SpreadOf> spread_of_;
-  std::vector<Histograms> spreads_;
+  std::vector<Spread> spreads_;
   KeptReplicas kept_;  // of every replica, if the scene requests it
 };
 

@@ -50,33 +50,10 @@ Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads) {
   return {.scene = scene, .points = {{"", scene}}, .spreads = std::move(spreads)};
 }
 
-std::string study_kind(const Result& result, const std::string& file) {
-  for (const auto& [name, value] : result.attributes)
-    if (name == "kind") return attribute<std::string>(result.attributes, name, file);
-  throw Error({file, 0, ""}, "holds no ensemble", "a single run, or another command's result",
-              "give a file that `cradle ensemble` or `cradle sweep` wrote");
-}
-
 std::uint64_t replicas_in(const EnsembleStates& states) {
   std::uint64_t sum = 0;
   for (const auto& state : states) sum += state->replicas().size();
   return sum;
-}
-
-Study ensemble_in(const Result& result, const std::string& file) {
-  std::vector<SpreadRequest> spreads;
-  const std::string under = "ensemble/spread/";
-  for (const Group& group : result.groups)
-    if (group.name.starts_with(under) && !group.columns.empty())
-      spreads.push_back(
-          {group.name.substr(under.size()),
-           {attribute<double>(group.attributes, "from", file), attribute<double>(group.attributes, "to", file),
-            attribute<std::uint64_t>(group.attributes, "bins", file)}});
-  for (const SpreadRequest& spread : spreads)
-    if (!spread.bins_are_possible())
-      throw Error({file, 0, under + spread.name}, "no bins", fmt::format("{}", spread.bins.bins), "make the file anew",
-                  Exit::io);
-  return ensemble_of(scene_in(result.attributes, file), std::move(spreads));
 }
 
 }  // namespace cradle::tools

@@ -41,10 +41,5 @@ std::uint64_t replicas_in(const EnsembleStates& states);
 
 /// The study of one ensemble.
 Study ensemble_of(const Scene& scene, std::vector<SpreadRequest> spreads = {});
-/// "ensemble" or "sweep". Throws Error (Exit::bad_input) for other files.
-std::string study_kind(const Result& result, const std::string& file);
-
-/// The study of the one ensemble in a file, with the scene stored there.
-Study ensemble_in(const Result& result, const std::string& file);
 
 }  // namespace cradle::tools

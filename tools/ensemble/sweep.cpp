@@ -2,12 +2,76 @@
 
 #include <fmt/format.h>
 
-#include "cradle/tools/ensemble/sweep_summary.hpp"
+#include <algorithm>
+#include <cmath>
+
+#include "cradle/tools/ensemble/sweep_points.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
 
 namespace {
+
+// Columns of numbers, one row per point, added in the order of first use; NaN if a point has no value.
+struct Table {
+  void put(std::size_t point, const std::string& name, const std::string& unit, const std::string& description,
+           double value) {
+    auto at = std::ranges::find(columns, name, &Column::name);
+    if (at == columns.end()) at = columns.insert(at, {name, unit, description, std::vector<double>(points, missing)});
+    std::get<std::vector<double>>(at->values)[point] = value;
+  }
+
+  std::size_t points;
+  std::vector<Column> columns = {};
+};
+
+// Adds in the order of the replicas' indices, so that the bits do not depend on the order of computing.
+void put_mean(Table& table, std::size_t point, const Column& about, const std::vector<double>& values) {
+  double n = 0, mean = 0, squares = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    n += 1;
+    const double before = value - mean;
+    mean += before / n;
+    squares += before * (value - mean);
+  }
+  table.put(point, about.name, about.unit, "mean over replicas: " + about.description, n > 0 ? mean : missing);
+  table.put(point, about.name + "_error", about.unit, "standard error of that mean",
+            n > 1 ? std::sqrt(squares / (n * (n - 1))) : missing);
+  table.put(point, about.name + "_replicas", "1", "replicas that have this number", n);
+}
+
+// `/sweep`: what was varied, how many replicas ended, and means over them with standard errors; a row per point.
+Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates& states) {
+  Table table{points.size()};
+  Group group{"sweep", {}, {}};
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    group.attributes.emplace_back(fmt::format("label_{:04}", p), point_label(points[p]));
+    for (const auto& [key, value] : points[p])
+      if (const auto number = to_number(value)) table.put(p, key, "", "varied", *number);
+  }
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const EnsembleState& state = *states[p];
+    const auto& replicas = state.table();
+    table.put(p, "replicas", "1", "replicas that ended", static_cast<double>(replicas.size()));
+    table.put(p, "failed", "1", "replicas that failed, lost the order of collisions or exhausted the resolution",
+              static_cast<double>(state.failures().size()));
+    const auto order = replicas.order();
+    const auto mean = [&](const Column& about, auto of) {
+      std::vector<double> values;
+      for (const std::size_t k : order) values.push_back(of(replicas[k]));
+      put_mean(table, p, about, values);
+    };
+    mean({"collisions", "1", "collisions", {}},
+         [](const ReplicaRow& row) { return static_cast<double>(row.collisions); });
+    mean({"merges", "1", "merges", {}}, [](const ReplicaRow& row) { return static_cast<double>(row.merges); });
+    const auto& numbers = state.layout().numbers;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      mean(numbers[i], [i](const ReplicaRow& row) { return row.numbers[i]; });
+  }
+  group.columns = std::move(table.columns);
+  return group;
+}
 
 // The study of a scene that names the sweep; scene_at(point) gives the scene of each point.
 template <class SceneAt> Study study_of(Scene scene, SceneAt scene_at) {
@@ -44,15 +108,6 @@ Study sweep_at(const Scene& scene, const std::function<Scene(const std::string& 
     Scene at = scene_at(group);
     at.name = scene.name;
     return at;
-  });
-}
-
-Study sweep_in(const Result& result, const std::string& file) {
-  return sweep_at(scene_in(result.attributes, file), [&](const std::string& group) {
-    const Group* ensemble = result.find(group + "/ensemble");
-    if (ensemble == nullptr)
-      throw Error({file, 0, ""}, "a sweep without one of its points", group, "make the file anew", Exit::io);
-    return scene_in(ensemble->attributes, file);
   });
 }
 

@@ -21,7 +21,4 @@ Study sweep_of(const std::string& scene, const std::vector<std::string>& overrid
 /// The study of a scene that names its points; `scene_at` gives the scene of each group in the file.
 Study sweep_at(const Scene& scene, const std::function<Scene(const std::string& group)>& scene_at);
 
-/// The sweep in a file, with the scenes stored there. Throws Error (Exit::io) if it is damaged.
-Study sweep_in(const Result& result, const std::string& file);
-
 }  // namespace cradle::tools

@@ -17,12 +17,9 @@ namespace cradle::tools {
 
 class Workshop {
  public:
-  using More = std::function<std::optional<JobRange>()>;
-
-  /// Begins work(next) at once. `more` gives the next jobs; without it `put` adds jobs until the workshop is closed. An
-  /// interrupt ends the work early.
-  Workshop(const std::function<void(const NextJob&)>& work, More more, const Interrupt& interrupt)
-      : more_(std::move(more)), interrupt_(interrupt), thread_([this, work] { run(work); }) {}
+  /// Begins work(next) at once. `put` adds jobs until the workshop is closed. An interrupt ends the work early.
+  Workshop(const std::function<void(const NextJob&)>& work, const Interrupt& interrupt)
+      : interrupt_(interrupt), thread_([this, work] { run(work); }) {}
   ~Workshop() { thread_.join(); }
   Workshop(const Workshop&) = delete;
   Workshop& operator=(const Workshop&) = delete;
@@ -78,18 +75,11 @@ class Workshop {
         changed_.notify_all();
         return Job{piece->point, piece->replicas.first};
       }
-      if (more_) {
-        const auto piece = more_();
-        if (!piece) return std::nullopt;
-        jobs_.put(*piece);
-        continue;
-      }
       if (closed_) return std::nullopt;
       changed_.wait_for(lock, std::chrono::milliseconds(10));  // wakes for signals, which notify nobody
     }
   }
 
-  More more_;
   const Interrupt& interrupt_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

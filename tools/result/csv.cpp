@@ -35,12 +35,6 @@ std::string heading(const std::string& name) {
   return quoted + '"';
 }
 
-const std::string* scene_in(const std::vector<Attribute>& attributes) {
-  for (const auto& [name, value] : attributes)
-    if (name == "scene") return std::get_if<std::string>(&value);
-  return nullptr;
-}
-
 // The folder holds a list of what was written there, which begins with the name of the result: so that another export
 // of it leaves nothing of this one behind.
 constexpr const char* list_of_files = "files.txt";
@@ -134,11 +128,12 @@ std::vector<std::string> export_csv(const Result& result, const std::string& fol
   std::vector<std::string> names{"scene.toml"};
   for (const Group& group : result.groups) names.push_back(group.name + ".csv");
   files.clear(of, names, forced);
-  if (const auto* scene = scene_in(result.attributes)) files.write("scene.toml", comments(result.attributes) + *scene);
+  if (const auto* scene = find_attribute<std::string>(result.attributes, "scene"))
+    files.write("scene.toml", comments(result.attributes) + *scene);
   for (const Group& group : result.groups) {
     files.write(group.name + ".csv", csv(group));
     const auto above = std::filesystem::path(group.name).parent_path();  // "points/0003"
-    if (const auto* scene = scene_in(group.attributes); scene != nullptr && !above.empty())
+    if (const auto* scene = find_attribute<std::string>(group.attributes, "scene"); scene != nullptr && !above.empty())
       files.write((above / "scene.toml").string(), *scene);
   }
   return std::move(files).written();

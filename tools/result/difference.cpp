@@ -48,10 +48,6 @@ std::string size_of(std::uint64_t a, std::uint64_t b) {
   return fmt::format(" (by {})", std::max(a, b) - std::min(a, b));
 }
 
-std::string shown(double value) { return fmt::format("{}", value); }
-std::string shown(std::uint64_t value) { return fmt::format("{}", value); }
-std::string shown(const std::string& value) { return value; }
-
 // The first line in which two texts differ.
 std::string first_line(std::string_view a, std::string_view b) {
   const auto [at, other] = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
@@ -123,16 +119,15 @@ class Comparison {
 
   void attribute(const std::string& where, const decltype(Attribute::second)& a, const decltype(Attribute::second)& b) {
     if (a.index() != b.index()) return report(where, "text, real or whole number against another of these");
-    if (const auto* text = std::get_if<std::string>(&a)) {
-      if (*text != std::get<std::string>(b)) report(where, first_line(*text, std::get<std::string>(b)));
-    } else if (const auto* real = std::get_if<double>(&a)) {
-      number(where, *real, std::get<double>(b));
-    } else {
-      number(where, std::get<std::uint64_t>(a), std::get<std::uint64_t>(b));
-    }
-  }
-  template <class Number> void number(const std::string& where, Number a, Number b) {
-    if (differ(a, b)) report(where, fmt::format("{} against {}{}", shown(a), shown(b), size_of(a, b)), relative(a, b));
+    const auto value = [&]<class Value>(const Value& x) {
+      const Value& y = std::get<Value>(b);
+      if constexpr (std::is_same_v<Value, std::string>) {
+        if (x != y) report(where, first_line(x, y));
+      } else if (differ(x, y)) {
+        report(where, fmt::format("{} against {}{}", x, y, size_of(x, y)), relative(x, y));
+      }
+    };
+    std::visit(value, a);
   }
 
   template <class Number>
@@ -149,8 +144,8 @@ class Comparison {
         largest = std::max(largest, relative(a[i], b[i]));
       }
     if (!first) return;
-    std::string line = fmt::format("first in row {}: {} against {}{}", *first / width, shown(a[*first]),
-                                   shown(b[*first]), size_of(a[*first], b[*first]));
+    std::string line = fmt::format("first in row {}: {} against {}{}", *first / width, a[*first], b[*first],
+                                   size_of(a[*first], b[*first]));
     if (count > 1) line += fmt::format("; {} of {} numbers differ", count, both);
     if (count > 1 && std::isfinite(largest)) line += fmt::format(", by up to {:.2g} relative", largest);
     report(where, line, largest);

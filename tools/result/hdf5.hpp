@@ -37,20 +37,13 @@ class Handle {
   Close close_;
 };
 
-/// UTF-8 text of any length.
-inline Handle text_type(const std::string& path) {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, path + ": no text type");
-  check(H5Tset_size(type, H5T_VARIABLE), path + ": no text type");
-  check(H5Tset_cset(type, H5T_CSET_UTF8), path + ": no text type");
-  return type;
-}
-
-/// UTF-8 text of at most so many bytes.
-inline Handle text_type(std::size_t bytes, const std::string& path) {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, path + ": no text type");
-  check(H5Tset_size(type, bytes), path + ": no text type");
-  check(H5Tset_strpad(type, H5T_STR_NULLPAD), path + ": no text type");
-  check(H5Tset_cset(type, H5T_CSET_UTF8), path + ": no text type");
+/// UTF-8 text of at most so many bytes, or of any length.
+inline Handle text_type(const std::string& path, std::size_t bytes = H5T_VARIABLE) {
+  const std::string none = path + ": no text type";
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, none);
+  check(H5Tset_size(type, bytes), none);
+  if (bytes != H5T_VARIABLE) check(H5Tset_strpad(type, H5T_STR_NULLPAD), none);
+  check(H5Tset_cset(type, H5T_CSET_UTF8), none);
   return type;
 }
 

@@ -97,11 +97,6 @@ Values values_of(const Source& source, hid_t data, hid_t memory, hsize_t rows, C
   return values;
 }
 
-template <class Number>
-std::vector<Number> numbers(const Source& source, hid_t data, hid_t memory, hsize_t rows, Column& column) {
-  return values_of<std::vector<Number>>(source, data, memory, rows, column);
-}
-
 std::vector<std::string> texts(const Source& source, hid_t data, hid_t type, hsize_t rows, Column& column) {
   const std::size_t bytes = H5Tget_size(type);
   const auto all = values_of<std::string>(source, data, type, rows, column, bytes);
@@ -151,11 +146,11 @@ Column column(const Source& source, hid_t data, const std::string& name, const s
   const hsize_t rows = shape(source, data, where, column);
   check_size(source, data, type, rows, column.width, where);
   if (kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_NONE)
-    column.values = numbers<std::uint64_t>(source, data, H5T_NATIVE_UINT64, rows, column);
+    column.values = values_of<std::vector<std::uint64_t>>(source, data, H5T_NATIVE_UINT64, rows, column);
   else if (kind == H5T_STRING)
     column.values = texts(source, data, type, rows, column);
   else
-    column.values = numbers<double>(source, data, H5T_NATIVE_DOUBLE, rows, column);
+    column.values = values_of<std::vector<double>>(source, data, H5T_NATIVE_DOUBLE, rows, column);
   return column;
 }
 

@@ -37,12 +37,23 @@ struct Column {
 
 using Attribute = std::pair<std::string, std::variant<std::string, double, std::uint64_t>>;
 
+/// The attribute of this name; null if it is missing or of another type.
+template <class T> const T* find_attribute(const std::vector<Attribute>& attributes, std::string_view name) {
+  for (const auto& [key, value] : attributes)
+    if (key == name) return std::get_if<T>(&value);
+  return nullptr;
+}
+/// The same. Throws Error (Exit::io), naming `where`, if there is none.
+template <class T>
+const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where);
+
 /// "series", "snapshots/0000", ...; a group may hold attributes only.
 struct Group {
   std::string name;
   std::vector<Attribute> attributes;
   std::vector<Column> columns;
 
+  const Column* find(std::string_view column) const;
   static auto state(auto& self) { return std::tie(self.name, self.attributes, self.columns); }
 };
 
@@ -52,10 +63,6 @@ struct Result {
 
   const Group* find(std::string_view name) const;
 };
-
-/// The attribute of this name. Throws Error (Exit::io), naming `where`, if it is missing or of another type.
-template <class T>
-const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where);
 
 /// The folder of decimals: numbers of types wider than double.
 inline constexpr std::string_view exact_folder = "exact/";

@@ -6,7 +6,6 @@
 #include <exception>
 #include <filesystem>
 #include <map>
-#include <memory>
 
 #include "cradle/tools/result/hdf5.hpp"
 #include "cradle/tools/result/seal.hpp"
@@ -76,7 +75,7 @@ Handle make_column(hid_t group, const Column& column, std::uint64_t rows, const 
                   H5Dclose, no_room);
   };
   if (const auto* texts = std::get_if<Texts>(&column.values))
-    return make(hdf5::text_type(std::max(longest(*texts), column.longest), column.name));
+    return make(hdf5::text_type(column.name, std::max(longest(*texts), column.longest)));
   return make(std::holds_alternative<std::vector<double>>(column.values) ? H5T_IEEE_F64LE : H5T_STD_U64LE);
 }
 
@@ -93,7 +92,7 @@ void write_rows(hid_t data, const Column& column, std::uint64_t from) {
   };
   if (const auto* texts = std::get_if<Texts>(&column.values)) {
     const std::size_t bytes = longest(*texts);
-    write(hdf5::text_type(bytes, column.name), padded(*texts, bytes).data());
+    write(hdf5::text_type(column.name, bytes), padded(*texts, bytes).data());
   } else if (const auto* reals = std::get_if<std::vector<double>>(&column.values)) {
     write(H5T_NATIVE_DOUBLE, reals->data());
   } else {
@@ -132,36 +131,25 @@ template <class Each> void write_groups(hid_t file, const Result& result, const 
   }
 }
 
-// The bytes of a file, its seal included. (A string would be filled with zeros first.)
-class Image {
- public:
-  explicit Image(const Result& result) {
-    hdf5::silence();
-    const Handle file = file_in_memory();
-    const Common common;
-    write_groups(file, result, common, [&](hid_t group, const Group& table) {
-      for (const auto& column : table.columns) write_column(group, column, common);
-    });
-    check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
-    const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-    if (size <= 0) throw hdf5::failure(no_room);
-    const auto length = static_cast<std::size_t>(size);
-    memory_ = std::make_unique_for_overwrite<char[]>(length + seal_size);
-    if (H5Fget_file_image(file, memory_.get(), length) != size) throw hdf5::failure(no_room);
-    const std::string seal = seal_of({memory_.get(), length});
-    std::copy(seal.begin(), seal.end(), memory_.get() + length);
-    bytes_ = {memory_.get(), length + seal_size};
-  }
-  std::string_view bytes() const { return bytes_; }
-
- private:
-  std::unique_ptr<char[]> memory_;
-  std::string_view bytes_;
-};
-
 }  // namespace
 
-std::string file_image(const Result& result) { return std::string(Image(result).bytes()); }
+std::string file_image(const Result& result) {
+  hdf5::silence();
+  const Handle file = file_in_memory();
+  const Common common;
+  write_groups(file, result, common, [&](hid_t group, const Group& table) {
+    for (const auto& column : table.columns) write_column(group, column, common);
+  });
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size <= 0) throw hdf5::failure(no_room);
+  const auto length = static_cast<std::size_t>(size);
+  std::string bytes;
+  bytes.reserve(length + seal_size);
+  bytes.resize(length);
+  if (H5Fget_file_image(file, bytes.data(), length) != size) throw hdf5::failure(no_room);
+  return bytes += seal_of(bytes);
+}
 
 void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string& path) {
   hdf5::silence();
@@ -202,13 +190,13 @@ void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string
   whole.put_in_place();
 }
 
-void write_result(const Result& result, const std::string& path) { replace_file(path, Image(result).bytes()); }
+void write_result(const Result& result, const std::string& path) { replace_file(path, file_image(result)); }
 
 void write_or_keep(const Result& result, const std::string& path) {
-  const Image image(result);
+  const std::string image = file_image(result);
   std::string trouble;
   try {
-    return replace_file(path, image.bytes());
+    return replace_file(path, image);
   } catch (const Error& error) {
     trouble = error.what();
   }
@@ -217,7 +205,7 @@ void write_or_keep(const Result& result, const std::string& path) {
     if (::mkdtemp(folder.data()) == nullptr)
       throw Error({folder, 0, ""}, "could not be made", "", "make room", Exit::io);
     const auto elsewhere = (folder / std::filesystem::path(path).filename()).string();
-    replace_file(elsewhere, image.bytes());
+    replace_file(elsewhere, image);
     trouble += "; what was computed is in " + elsewhere + ", move it from there";
   } catch (const std::exception& error) {
     trouble += std::string("; it could not be kept elsewhere either: ") + error.what();

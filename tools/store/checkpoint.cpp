@@ -1,11 +1,9 @@
 #include "cradle/tools/store/checkpoint.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
 #include "cradle/tools/support/checksum.hpp"
@@ -36,8 +34,7 @@ void StateWriter::flush() {
 
 void StateWriter::finish() {
   flush();
-  const std::uint64_t check = check_;
-  file_.write({std::string_view(reinterpret_cast<const char*>(&check), sizeof check)});
+  file_.write({to_bytes(check_)});
   file_.put_in_place();
 }
 
@@ -52,15 +49,14 @@ Error StateReader::damaged(const std::string& what) const {
           Exit::io};
 }
 
-StateReader::StateReader(const std::string& path)
-    : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+StateReader::StateReader(const std::string& path) : path_(path) {
   stored_in(path);  // throws for other formats
-  struct stat found {};
-  if (file_ < 0 || ::fstat(file_, &found) != 0)
+  if (!instead_of_file(path).empty()) throw damaged("no file");
+  file_.open(path, std::ios::binary);
+  if (!file_)
     throw Error({path, 0, ""}, "could not be read", std::strerror(errno), "check its name and rights", Exit::io);
-  if (!S_ISREG(found.st_mode)) throw damaged("no file");
   constexpr std::uint64_t frame = begin.size() + sizeof(std::uint64_t);
-  const auto size = static_cast<std::uint64_t>(found.st_size);
+  const std::uint64_t size = std::filesystem::file_size(path);
   if (size < frame) throw damaged("too short");
   std::uint64_t check = 0;
   for (after_buffer_ = size - sizeof check; after_buffer_ > 0;) {
@@ -68,10 +64,9 @@ StateReader::StateReader(const std::string& path)
     check = crc64(buffer_, check);
   }
   std::uint64_t wanted = 0;
-  if (::pread(file_, &wanted, sizeof wanted, static_cast<off_t>(size - sizeof wanted)) != sizeof wanted ||
-      wanted != check)
+  if (!file_.read(reinterpret_cast<char*>(&wanted), sizeof wanted) || wanted != check)
     throw damaged("its checksum is wrong");
-  if (::lseek(file_, 0, SEEK_SET) != 0) throw damaged("it cannot be read twice");
+  file_.seekg(0);
   after_buffer_ = size - sizeof check;
   fill();
   if (!std::string_view(buffer_).starts_with(begin)) throw damaged("of another kind");
@@ -89,12 +84,7 @@ StateReader::StateReader(const std::string& path)
 void StateReader::fill() {
   constexpr std::uint64_t at_once = std::uint64_t{1} << 18;
   buffer_.resize(std::min(after_buffer_, at_once));
-  for (std::size_t got = 0; got < buffer_.size();) {
-    const ssize_t more = ::read(file_, buffer_.data() + got, buffer_.size() - got);
-    if (more < 0 && errno == EINTR) continue;
-    if (more <= 0) throw damaged("it has become shorter");
-    got += static_cast<std::size_t>(more);
-  }
+  if (!file_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) throw damaged("it has become shorter");
   after_buffer_ -= buffer_.size();
   at_ = 0;
 }

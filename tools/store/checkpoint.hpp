@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <tuple>
 
@@ -56,7 +57,7 @@ class StateReader final : public StateSource {
 
   std::string path_;
   CheckpointHeader header_;
-  Descriptor file_;
+  std::ifstream file_;
 };
 
 }  // namespace cradle::tools

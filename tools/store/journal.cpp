@@ -25,18 +25,12 @@ constexpr std::uint64_t frame = 16;  // bytes that a record takes besides its co
   throw Error({path, 0, ""}, what, std::strerror(errno), "check the folder and the space on its disk", Exit::io);
 }
 
-std::string_view bytes_of(const std::uint64_t& number) {
-  return {reinterpret_cast<const char*>(&number), sizeof number};
-}
-
-std::uint64_t checksum(const std::uint64_t& length, std::string_view record) {
-  return crc64(record, crc64(bytes_of(length)));
-}
+std::uint64_t checksum(std::uint64_t length, std::string_view record) { return crc64(record, crc64(to_bytes(length))); }
 
 // Writes length, record and the checksum of both; returns the number of bytes.
 std::uint64_t write_record(int file, std::string_view record, const std::string& path) {
-  const std::uint64_t length = record.size(), check = checksum(length, record);
-  write_all(file, {bytes_of(length), record, bytes_of(check)}, path);
+  const std::uint64_t length = record.size();
+  write_all(file, {to_bytes(length), record, to_bytes(checksum(length, record))}, path);
   return length + frame;
 }
 

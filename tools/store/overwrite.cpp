@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "cradle/tools/result/reader.hpp"
@@ -13,17 +12,12 @@ namespace cradle::tools {
 
 namespace {
 
-const std::string* text_of(const std::vector<Attribute>& attributes, std::string_view name) {
-  const auto at = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.first == name; });
-  return at == attributes.end() ? nullptr : std::get_if<std::string>(&at->second);
-}
-
 // The words after `cradle` without the scene: a plain run has no attributes that say so.
 std::string command_of(const Result& result) {
-  if (const auto* command = text_of(result.attributes, "command")) return *command;
+  if (const auto* command = find_attribute<std::string>(result.attributes, "command")) return *command;
   if (const Group* words = result.find("words"))
-    if (const auto* command = text_of(words->attributes, "command")) return *command;
-  if (const auto* kind = text_of(result.attributes, "kind")) return *kind;
+    if (const auto* command = find_attribute<std::string>(words->attributes, "command")) return *command;
+  if (const auto* kind = find_attribute<std::string>(result.attributes, "kind")) return *kind;
   return "run";
 }
 
@@ -46,7 +40,7 @@ bool nothing_to_lose(const std::string& file) {
 }  // namespace
 
 void say_how_made(Result& result, const std::string& command, const Scene& requested) {
-  const auto* precision = text_of(result.attributes, "precision");
+  const auto* precision = find_attribute<std::string>(result.attributes, "precision");
   const bool raised = precision != nullptr && *precision != precision_name(requested.run);
   result.attributes.emplace_back("command", command + (raised ? precision_words(requested.run) : ""));
 }

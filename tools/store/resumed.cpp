@@ -184,9 +184,7 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
                 Exit::io);
   Result result = read_result(file_, Reading::ends);
   scene_ = scene_in(result.attributes, file_);
-  const bool ensemble = std::any_of(result.attributes.begin(), result.attributes.end(),
-                                    [](const Attribute& attribute) { return attribute.first == "kind"; });
-  if (ensemble && until)
+  if (find_attribute<std::string>(result.attributes, "kind") != nullptr && until)
     throw Error({"--until", 0, ""}, "an ensemble has no later end", *until, "give it a file of its own");
   const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
   if (!until || Decimal(*until) == scene_.run.until || outcome != end_row(RunEnd::reached).text) {

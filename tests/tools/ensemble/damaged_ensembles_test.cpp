@@ -1,5 +1,6 @@
 // Ensembles whose parts contradict each other: merging or continuing them would give wrong numbers, so it is refused.
 
+#include <algorithm>
 #include <functional>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
@@ -61,59 +62,53 @@ TEST(DamagedRecords, AreRefused) {
 }
 
 TEST_F(DamagedEnsembles, AreRefused) {
-  const std::string damaged = path("b.h5") + ": a damaged ensemble (found ", node = "ensemble/nodes/0000";
   EXPECT_EQ(merging([](Result&) {}), "nothing was refused");
-  for (const auto* name : {"squares", "least", "greatest"})
-    EXPECT_TRUE(begins(merging([&](Result& r) { values<double>(r, node, name).resize(5); }),
-                       damaged + "statistics of different lengths)"))
-        << name;
-  EXPECT_TRUE(has(merging([&](Result& r) { values<double>(r, node, "mean").pop_back(); }), "other quantities"));
-  EXPECT_TRUE(begins(merging([&](Result& r) { set(r, node, "replicas", std::uint64_t{1} << 60); }),
-                     damaged + "1152921504606846976 replicas in a node of level 1)"));
-  EXPECT_TRUE(begins(merging([&](Result& r) { set(r, node, "level", std::uint64_t{1} << 60); }),
-                     damaged + "2 replicas in a node of level 64)"));
-  EXPECT_TRUE(begins(merging([&](Result& r) {
-                       set(r, node, "replicas", std::uint64_t{1} << 60);
-                       set(r, node, "level", 62);
-                     }),
-                     damaged));
-  EXPECT_TRUE(has(merging([&](Result& r) { set(r, node, "first", 1); }), damaged + "no node of the tree"));
-  EXPECT_TRUE(has(merging([&](Result& r) { set(r, node, "first", 2); }), "are there already"));
-  const std::string listed = path("b.h5") + ": replicas: a damaged ensemble (found 3 replicas listed, statistics of ";
-  EXPECT_TRUE(begins(merging([&](Result& r) { set(r, node, "first", 4); }), listed)) << "others than those listed";
-  EXPECT_TRUE(begins(merging([&](Result& r) { set(r, node, "replicas", 1); }), damaged + "counts that cannot be)"));
-  EXPECT_TRUE(begins(merging([&](Result& r) { values<std::uint64_t>(r, "replicas", "outcome")[1] = 4; }), listed))
-      << "listed as failed";
-  EXPECT_TRUE(begins(merging([&](Result& r) { values<std::uint64_t>(r, "replicas", "index")[1] = 0; }), listed));
-  EXPECT_TRUE(has(merging([&](Result& r) { values<std::uint64_t>(r, "replicas", "collisions").pop_back(); }),
-                  "columns of /replicas of different lengths"));
-  EXPECT_TRUE(has(merging([&](Result& r) { set(r, "ensemble/spread/series/energy", "bins", std::uint64_t{1} << 60); }),
-                  "ensemble/spread/series/energy: no bins (found 1152921504606846976)"));
-  EXPECT_TRUE(has(merging([&](Result& r) {
-                    values<std::uint64_t>(r, "ensemble/spread/series/energy", "counts").resize(7);
-                    for (Column& c : group(r, "ensemble/spread/series/energy").columns) c.width = 1;
-                  }),
-                  "7 counts"));
+  constexpr std::uint64_t many = std::uint64_t{1} << 60;
+  const std::string file = path("b.h5") + ": ", damaged = file + "a damaged ensemble (found ",
+                    node = "ensemble/nodes/0000",
+                    listed = file + "replicas: a damaged ensemble (found 3 replicas listed, statistics of ",
+                    spread = "ensemble/spread/series/energy";
+  const auto node_has = [&](const std::string& name, std::uint64_t value) {
+    return [=](Result& r) { set(r, node, name, value); };
+  };
+  const auto replica_has = [](const char* name, std::uint64_t value) {
+    return [=](Result& r) { values<std::uint64_t>(r, "replicas", name)[1] = value; };
+  };
+  const auto shorter = [&](const char* name) { return [=](Result& r) { values<double>(r, node, name).pop_back(); }; };
+  const std::pair<std::function<void(Result&)>, std::string> damages[] = {
+      {shorter("squares"), damaged + "statistics of different lengths)"},
+      {shorter("least"), damaged + "statistics of different lengths)"},
+      {shorter("greatest"), damaged + "statistics of different lengths)"},
+      {shorter("mean"), "an ensemble of other quantities"},
+      {node_has("replicas", many), damaged + "1152921504606846976 replicas in a node of level 1)"},
+      {node_has("level", many), damaged + "2 replicas in a node of level 64)"},
+      {[&](Result& r) { node_has("replicas", many)(r), node_has("level", 62)(r); }, damaged},
+      {node_has("first", 1), damaged + "no node of the tree"},
+      {node_has("first", 2), damaged + "replicas 2 to 2: some of them are there already"},
+      {node_has("first", 4), listed},  // others than those listed
+      {node_has("replicas", 1), damaged + "counts that cannot be)"},
+      {replica_has("outcome", 4), listed},  // listed as failed
+      {replica_has("index", 0), listed},
+      {[](Result& r) { values<std::uint64_t>(r, "replicas", "collisions").pop_back(); },
+       damaged + "columns of /replicas of different lengths"},
+      {[&](Result& r) { set(r, spread, "bins", many); }, file + spread + ": no bins (found 1152921504606846976)"},
+      {[&](Result& r) {
+         values<std::uint64_t>(r, spread, "counts").resize(7);
+         for (Column& c : group(r, spread).columns) c.width = 1;
+       },
+       damaged + "7 counts"},
+      {[](Result& r) { std::ranges::find(r.attributes, "kind", &tools::Attribute::first)->second = 1.0; },
+       file + "not a result of this program (found no attribute kind"}};
+  for (const auto& [how, message] : damages) EXPECT_TRUE(begins(merging(how), message));
 }
 
 TEST_F(DamagedEnsembles, ScenesAreNotRunBeforeTheyAreKnownToBeTheRightOnes) {
   Result changed = read("a.h5");
-  for (auto& [name, value] : changed.attributes)
-    if (name == "scene") {
-      auto& scene = std::get<std::string>(value);
-      scene.replace(scene.find("particles = 300"), 15, "particles = 9000000000000");
-    }
+  auto& scene = const_cast<std::string&>(attribute<std::string>(changed.attributes, "scene", "a.h5"));
+  scene.replace(scene.find("particles = 300"), 15, "particles = 9000000000000");
   tools::write_result(changed, path("b.h5"));
   const Printed merge = shell("timeout 300 cradle merge b.h5 -o c.h5", 2);
   EXPECT_TRUE(has(merge.err, "b.h5: "));
-}
-
-TEST_F(DamagedEnsembles, KindIsText) {
-  EXPECT_TRUE(has(merging([](Result& r) {
-                    for (auto& [name, value] : r.attributes)
-                      if (name == "kind") value = 1.0;
-                  }),
-                  "no attribute kind"));
 }
 
 }  // namespace cradle::tests::damaged_ensembles_test

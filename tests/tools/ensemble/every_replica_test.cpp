@@ -1,5 +1,5 @@
-// The snapshots and profiles of every replica: those of the runs, to the last bit; the same file for any history; and
-// nothing of it where the scene does not ask for it.
+// The snapshots and profiles of every replica: those of the runs, to the last bit; the same file after a kill (for any
+// other history: same_bytes_test.cpp); and nothing of it where the scene does not ask for it.
 #include <cmath>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
@@ -38,28 +38,11 @@ TEST_F(Ensembles, KeepWhatEveryReplicaRecords) {
     EXPECT_FALSE(has(group.name, "replicas/snapshots") || has(group.name, "replicas/profiles")) << group.name;
 }
 
-TEST_F(Ensembles, KeepTheSameBytesForAnyHistory) {
-  const std::string keep = " --set output.every_replica=true -o ", shock_of = "ensemble shock.toml --replicas ";
-  run(shock_of + "12 --threads 1" + keep + "whole.h5");
-  run(shock_of + "12 --threads 3" + keep + "threads.h5");
-  expect_same("whole.h5", "threads.h5");
-  run(shock_of + "5" + keep + "grown.h5");
-  run(shock_of + "12" + keep + "grown.h5");
-  expect_same("whole.h5", "grown.h5");
-  run("ensemble shock.toml --first 5 --replicas 7" + keep + "b.h5");
-  run(shock_of + "5" + keep + "a.h5");
-  run("merge b.h5 a.h5 -o merged.h5");
-  expect_same("whole.h5", "merged.h5");
-}
-
 // The first kill leaves records of replicas, which the second call rewrites as statistics and tables of replicas.
 TEST_F(Ensembles, KeepEveryReplicaWhereTheyAreKilled) {
   write("shock.toml", std::string(shock) + "every_replica = true\n");
   for (int kill = 0; kill < 2; ++kill) shell(until_journalled("killed.h5", "KILL"), 137);
-  const std::string all = enough_for("killed.h5");
-  run("ensemble shock.toml --replicas " + all + " -o whole.h5");
-  run("ensemble shock.toml --replicas " + all + " --threads 2 -o killed.h5");
-  expect_same("whole.h5", "killed.h5");
+  expect_continued("killed.h5");
 }
 
 TEST_F(Ensembles, OfASweepKeepEveryReplicaToo) {

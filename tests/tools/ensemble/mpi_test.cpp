@@ -6,26 +6,11 @@
 #include <algorithm>
 #include <string>
 
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
 
 namespace cradle::tests::mpi_test {
 
-constexpr const char* scene = R"(
-[law]
-type = "wet"
-loss = 0.05
-[initial]
-type = "rows"
-particles = 1000
-speed = 0.5
-perturbation = 0.05
-[run]
-until = 900
-[output]
-series = { points = 60 }
-)";
-
-class Mpi : public ProgramTest {
+class Mpi : public Ensembles {
  protected:
   void SetUp() override {
 #ifndef CRADLE_WITH_MPI
@@ -35,7 +20,6 @@ class Mpi : public ProgramTest {
     GTEST_SKIP() << "MPI libraries are not instrumented";
 #endif
     if (shell("command -v mpirun").status != 0) GTEST_SKIP() << "no mpirun";
-    write("wet.toml", scene);
   }
 
   // As any user, on any machine, all ranks on all processors. Open MPI takes these; others do without.
@@ -46,7 +30,6 @@ class Mpi : public ProgramTest {
                        "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe mpirun -n {} {}",
                        ranks, command);
   }
-  void run(const std::string& command) const { shell(command, 0); }
   void expect_no_journals() const {
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       EXPECT_FALSE(has(entry.path().string(), ".part")) << entry.path();
@@ -72,19 +55,19 @@ class Mpi : public ProgramTest {
 };
 
 TEST_F(Mpi, AnyNumberOfRanksGivesTheSameBytes) {
-  run("cradle ensemble wet.toml --replicas 200 -o one.h5");
+  run("ensemble wet.toml --replicas 200 -o one.h5");
   for (const int ranks : {1, 2, 3})
     for (const int threads : {1, 2}) {
       const std::string file = fmt::format("{}-{}.h5", ranks, threads);
-      run(job(ranks, fmt::format("ensemble wet.toml --replicas 200 --threads {} -o {}", threads, file)));
+      shell(job(ranks, fmt::format("ensemble wet.toml --replicas 200 --threads {} -o {}", threads, file)), 0);
       expect_same("one.h5", file);
     }
   expect_no_journals();
 }
 
 TEST_F(Mpi, FewerReplicasThanRanks) {
-  run("cradle ensemble wet.toml --replicas 2 -o one.h5");
-  run(job(3, "ensemble wet.toml --replicas 2 -o three.h5"));
+  run("ensemble wet.toml --replicas 2 -o one.h5");
+  shell(job(3, "ensemble wet.toml --replicas 2 -o three.h5"), 0);
   expect_same("one.h5", "three.h5");
   const Printed nothing = shell(job(3, "ensemble wet.toml --replicas 2 -o three.h5"), 0);
   EXPECT_TRUE(has(nothing.out, "nothing to do"));
@@ -101,7 +84,7 @@ TEST_F(Mpi, KilledJobIsContinuedOnAnyNumberOfRanks) {
     replicas = wanted;
   }
   const std::string ensemble = "ensemble wet.toml --replicas " + replicas + " -o ";
-  run("cradle " + ensemble + "whole.h5");
+  run(ensemble + "whole.h5");
   const Printed go_on = shell(job(2, ensemble + "killed.h5"), 0);
   EXPECT_TRUE(has(go_on.err, "killed.h5.part.2: "));
   expect_same("whole.h5", "killed.h5");
@@ -113,7 +96,7 @@ TEST_F(Mpi, SignalToOneRankStopsAllAndLosesNothing) {
       stopped_job(2, "stopped.h5", "kill -TERM $(ps -o pid= --ppid $pid | sed -n 2p); wait $pid");
   EXPECT_EQ(stopped.status, 143) << stopped.err;
   EXPECT_TRUE(has(stopped.err, "stopped.h5.part"));
-  const std::string ensemble = "cradle ensemble wet.toml --replicas " + replicas + " -o ";
+  const std::string ensemble = "ensemble wet.toml --replicas " + replicas + " -o ";
   run(ensemble + "whole.h5");
   run(ensemble + "stopped.h5");  // without ranks
   expect_same("whole.h5", "stopped.h5");
@@ -139,12 +122,12 @@ TEST_F(Mpi, WhatIsWrongIsReportedOnce) {
   ASSERT_NE(first, std::string::npos) << scene_error.err;
   EXPECT_EQ(scene_error.err.find("cradle: ", first + 1), std::string::npos) << scene_error.err;
 
-  run("cradle ensemble wet.toml --replicas 2 -o other.h5");
+  run("ensemble wet.toml --replicas 2 -o other.h5");
   shell(job(2, "ensemble wet.toml --replicas 5 --seed 9 -o other.h5"), 2);
 }
 
 TEST_F(Mpi, RankThatCannotWriteItsJournalEndsTheJob) {
-  run("mkdir -p bad.h5.part.1/in.the.way");
+  shell("mkdir -p bad.h5.part.1/in.the.way", 0);
   const Printed bad = shell(job(2, "ensemble wet.toml --replicas 3000 -o bad.h5"), 4);
   EXPECT_TRUE(has(bad.err, "cradle: "));
 }

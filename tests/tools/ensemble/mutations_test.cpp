@@ -10,9 +10,9 @@
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/mutator.hpp"
+#include "cradle/tests/tools/result/result_files.hpp"
 #include "cradle/tools/commands/listing.hpp"
 #include "cradle/tools/ensemble/merge.hpp"
-#include "cradle/tools/result/csv.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/errors.hpp"
 
@@ -27,12 +27,6 @@ double processor_seconds() {
       sum += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   }
   return sum;
-}
-
-std::string all_of(const Result& result) {
-  std::string text;
-  for (const auto& group : result.groups) text += "/" + group.name + "\n" + tools::csv(group);
-  return text;
 }
 
 class Mutations : public Ensembles {

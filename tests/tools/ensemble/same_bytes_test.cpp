@@ -6,13 +6,19 @@
 
 namespace cradle::tests::same_bytes_test {
 
-TEST_F(Ensembles, SameBytesOnAnyNumberOfThreads) {
-  run("ensemble shock.toml --replicas 60 --threads 1 -o one.h5");
-  for (const auto* threads : {"2", "3", "8"}) {
-    run(std::string("ensemble shock.toml --replicas 60 -o other.h5 --threads ") + threads);
-    expect_same("one.h5", "other.h5");
-    std::filesystem::remove(folder / "other.h5");
-  }
+TEST_F(Ensembles, SameBytesForAnyHistory) {
+  expect_same_for_any_history("ensemble shock.toml", 60);
+  expect_same_for_any_history("ensemble shock.toml --spread energy=0:40:4000 --spread profiles/0000/density=0:4:8", 25);
+  expect_same_for_any_history("ensemble shock.toml --set output.every_replica=true", 12);
+  expect_same_for_any_history("ensemble collapse.toml", 40);
+  for (const std::string precision : {"double-double", "mpfr --set run.digits=40"})
+    expect_same_for_any_history("ensemble shock.toml --set initial.particles=60 --set run.until=50 --set "
+                                "output.profiles.times=[] --set run.precision=" +
+                                    precision,
+                                6);
+  expect_same_for_any_history("sweep fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
+                              "--vary law.loss=0.01,0.02,0.03",
+                              7);
 }
 
 TEST_F(Ensembles, MoreReplicasAreAddedToAFinishedFile) {
@@ -25,23 +31,8 @@ TEST_F(Ensembles, MoreReplicasAreAddedToAFinishedFile) {
   EXPECT_TRUE(has(nothing.out, "nothing to do"));
   expect_same("whole.h5", "grown.h5");
   EXPECT_FALSE(exists("grown.h5.part"));
-}
-
-TEST_F(Ensembles, SplitAndMergedInAnyOrder) {
-  run("ensemble shock.toml --replicas 60 -o whole.h5");
-  run("ensemble shock.toml --replicas 21 -o a.h5");
-  run("ensemble shock.toml --first 21 --replicas 19 -o b.h5");
-  run("ensemble shock.toml --first 40 --replicas 20 -o c.h5");
-  run("merge a.h5 b.h5 c.h5 -o abc.h5");
-  run("merge c.h5 a.h5 -o ca.h5");
-  run("merge ca.h5 b.h5 -o cab.h5");
-  expect_same("whole.h5", "abc.h5");
-  expect_same("whole.h5", "cab.h5");
-  // A gap filled later.
-  run("ensemble shock.toml --replicas 60 -o ca.h5");
-  expect_same("whole.h5", "ca.h5");
-  const Printed overlap = shell("cradle merge a.h5 ca.h5 -o d.h5", 2);
-  EXPECT_TRUE(has(overlap.err, "ca.h5: has replicas that another of the files has too"));
+  const Printed overlap = shell("cradle merge whole.h5 grown.h5 -o d.h5", 2);
+  EXPECT_TRUE(has(overlap.err, "grown.h5: has replicas that another of the files has too"));
   EXPECT_FALSE(exists("d.h5"));
 }
 
@@ -52,12 +43,9 @@ TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
     EXPECT_FALSE(exists("killed.h5"));
   }
   const std::string all = enough_for("killed.h5");
-  run("ensemble shock.toml --replicas " + all + " -o whole.h5");
-  const Printed go_on = shell("cradle ensemble shock.toml --replicas " + all + " --threads 2 -o killed.h5", 0);
+  const Printed go_on = expect_continued("killed.h5");
   EXPECT_TRUE(has(go_on.err, "killed.h5.part: ")) << "says what it took from there";
   EXPECT_FALSE(has(go_on.out, all + " of them now")) << "not all of them again";
-  expect_same("whole.h5", "killed.h5");
-  EXPECT_FALSE(exists("killed.h5.part"));
 }
 
 TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {
@@ -66,10 +54,7 @@ TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {
     EXPECT_TRUE(has(stopped.err, "stopped.h5.part"));
     EXPECT_FALSE(exists("stopped.h5"));
   }
-  const std::string all = " --replicas " + enough_for("stopped.h5");
-  run("ensemble shock.toml -o whole.h5" + all);
-  run("ensemble shock.toml -o stopped.h5" + all);
-  expect_same("whole.h5", "stopped.h5");
+  expect_continued("stopped.h5");
 }
 
 TEST_F(Ensembles, DamagedJournalLosesOnlyWhatIsDamaged) {
@@ -105,21 +90,8 @@ TEST_F(Ensembles, JournalsOfRanksThatAreGoneAreTaken) {
   shell(until_journalled("a.h5", "KILL"), 137);
   shell(until_journalled("b.h5", "KILL", " --first " + enough_for("a.h5")), 137);
   std::filesystem::rename(folder / "b.h5.part", folder / "a.h5.part.3");
-  const std::string all = " --replicas " + enough_for("a.h5");
-  run("ensemble shock.toml -o whole.h5" + all);
-  const Printed go_on = shell("cradle ensemble shock.toml -o a.h5" + all);
-  EXPECT_TRUE(has(go_on.err, "a.h5.part.3: "));
-  expect_same("whole.h5", "a.h5");
+  EXPECT_TRUE(has(expect_continued("a.h5").err, "a.h5.part.3: "));
   EXPECT_FALSE(exists("a.h5.part.3"));
-}
-
-TEST_F(Ensembles, OneProgramAtATimeWritesAFile) {
-  const Printed both =
-      shell("cradle ensemble shock.toml --replicas 1000000000000 -o a.h5 & pid=$!; while [ ! -e a.h5.part ]; do sleep "
-            "0.01; done; "
-            "cradle ensemble shock.toml --replicas 10 -o a.h5; status=$?; kill $pid; wait $pid; exit $status");
-  EXPECT_EQ(both.status, 4);
-  EXPECT_TRUE(has(both.err, "another program"));
 }
 
 TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
@@ -132,25 +104,12 @@ TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
     for (std::uint64_t k = 0; k < 64; ++k) {
       const tools::RunOutcome end =
           tools::run_scene(tools::replica_scene(study.scene, k), {tools::ProgressLine::Show::never});
-      store.add(0, layout.row(k, end), layout.values(end));
+      store.add({0, tools::ReplicaRecord{layout.row(k, end), layout.values(end)}});
     }
     EXPECT_LT(std::filesystem::file_size(folder / "anew.h5.part"), 32 * 8 * layout.entries) << "64 vectors otherwise";
   }
   run("ensemble shock.toml --replicas 100 -o anew.h5");
   expect_same("whole.h5", "anew.h5");
-}
-
-TEST_F(Ensembles, WideTypesOnSeveralThreads) {
-  for (const auto* precision : {"double-double", "mpfr --set run.digits=40"}) {
-    const std::string scene = std::string("ensemble shock.toml --replicas 6 --set initial.particles=60 --set "
-                                          "run.until=50 --set output.profiles.times=[] --set run.precision=") +
-                              precision;
-    run(scene + " --threads 1 -o a.h5");
-    run(scene + " --threads 2 -o b.h5");
-    expect_same("a.h5", "b.h5");
-    std::filesystem::remove(folder / "a.h5");
-    std::filesystem::remove(folder / "b.h5");
-  }
 }
 
 }  // namespace cradle::tests::same_bytes_test

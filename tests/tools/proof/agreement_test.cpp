@@ -1,5 +1,6 @@
 // A proof and its run that do not agree: an error planted in any quantity that the run reports, in every precision,
 // ends the program with the name of the quantity, and never gives a certificate.
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -84,85 +85,65 @@ TEST(Agreement, OfAProofAndItsRun) {
   EXPECT_GT(run.certificate.collisions, 50U);
 }
 
-TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
-  const std::pair<const char*, Plant> plants[] = {
-      {"front_left",
-       [](RunSample& at) {
-         if (!at.front_left.empty()) at.front_left = moved(at.front_left, 1e-9);
-       }},
-      {"front_right",
-       [](RunSample& at) {
-         if (at.time.value > 11) at.front_right = moved(at.front_right, -1e-9);
-       }},
-      {"front_left",
-       [](RunSample& at) {
-         if (at.time.value > 11) at.front_left.clear();
-       }},
-      {"front_right",
-       [](RunSample& at) {
-         if (at.time.value == 0) at.front_right = "1";
-       }},
-      {"energy", [](RunSample& at) { at.energy = moved(at.energy, 1e-10); }},
-      {"energy",
-       [](RunSample& at) {
-         if (at.time.value > 3) at.energy = "nan";
-       }},
-      {"collisions", [](RunSample& at) { at.counts.collisions += at.time.value > 11; }},
-      {"collisions_below_cutoff", [](RunSample& at) { at.counts.below_cutoff += at.time.value > 11; }},
-      {"merges", [](RunSample& at) { at.counts.merges += 1; }},
-      {"time of the sample",
-       [](RunSample& at) {
-         if (at.time.value > 3) at.time.text = moved(at.time.text, 1e-12);
-       }},
-      {"x of particle 7 in the snapshot",
-       [](RunSample& at) {
-         for (std::size_t j = 0; j < at.particles.x.size(); ++j)
-           if (at.particles.index[j] == 7) at.particles.x[j] = moved(at.particles.x[j], 1e-9);
-       }},
-      {"v of particle 12 in the snapshot",
-       [](RunSample& at) {
-         for (std::size_t j = 0; j < at.particles.v.size(); ++j)
-           if (at.time.value > 9 && at.particles.index[j] == 12) at.particles.v[j] = moved(at.particles.v[j], 1e-10);
-       }},
-      {"m of particle 9 in the snapshot",
-       [](RunSample& at) {
-         for (std::size_t j = 0; j < at.particles.m.size(); ++j)
-           if (at.particles.index[j] == 9) at.particles.m[j] = "1.0000000001";
-       }},
-      {"of particle 8 in the snapshot",
-       [](RunSample& at) {
-         for (ParticleIndex& particle : at.particles.index) particle = particle == 8 ? -1 : particle;
-       }},
-      {"in one cluster", [](RunSample& at) {
-         for (ParticleIndex& particle : at.particles.index) particle = particle == 8 ? 7 : particle;
-       }}};
-  for (const auto& [quantity, plant] : plants) {
-    const std::string message = cradle::tests::refusal(Exit::lost, [&plant = plant] { certified(shock, plant); });
-    EXPECT_TRUE(has(message, "do not agree")) << quantity;
-    EXPECT_TRUE(has(message, quantity));
-  }
+// Errors in one decimal of the samples after a time.
+Plant in_sample(std::string RunSample::*decimal, double by, double after = -1) {
+  return [=](RunSample& at) {
+    if (at.time.value > after && !(at.*decimal).empty()) at.*decimal = moved(at.*decimal, by);
+  };
+}
+Plant in_wall(std::size_t side, std::string SampledWall::*decimal, double by) {
+  return [=](RunSample& at) {
+    if (at.time.value > 19) at.walls[side].*decimal = moved(at.walls[side].*decimal, by);
+  };
+}
+Plant in_snapshot(ParticleIndex particle, std::vector<std::string> SampledParticles::*decimals, double by) {
+  return [=](RunSample& at) {
+    for (std::size_t j = 0; j < (at.particles.*decimals).size(); ++j)
+      if (at.particles.index[j] == particle) (at.particles.*decimals)[j] = moved((at.particles.*decimals)[j], by);
+  };
+}
+Plant in_count(std::uint64_t Counts::*count) {
+  return [=](RunSample& at) { at.counts.*count += at.time.value > 11; };
+}
+Plant another_index(ParticleIndex index) {
+  return [=](RunSample& at) { std::ranges::replace(at.particles.index, 8, index); };
 }
 
-TEST(Agreement, WhateverIsPlantedInTheAccountsOfWallsIsFoundAndNamed) {
+TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
   EXPECT_TRUE(certified(between_walls, [](RunSample&) {}).proved());
-  const auto of_wall = [](std::size_t side, std::string SampledWall::*which, double by) {
-    return [=](RunSample& at) {
-      if (at.time.value > 19) at.walls[side].*which = moved(at.walls[side].*which, by);
-    };
-  };
-  const std::pair<const char*, Plant> plants[] = {
-      {"energy given by the left wall", of_wall(0, &SampledWall::given, 1e-9)},
-      {"momentum given by the left wall", of_wall(0, &SampledWall::momentum, 1e-9)},
-      {"energy given by the right wall", of_wall(1, &SampledWall::given, -1e-9)},
-      {"momentum given by the right wall", of_wall(1, &SampledWall::momentum, 1e-9)},
-      {"energy lost in the right wall", of_wall(1, &SampledWall::dissipated, 1e-9)},
-      {"energy lost in the left wall", of_wall(0, &SampledWall::dissipated, 1e-9)},
-      {"collisions with the right wall", [](RunSample& at) { at.walls[1].collisions += at.time.value > 19; }}};
-  for (const auto& [quantity, plant] : plants) {
+  const struct {
+    const char *scene, *quantity;
+    Plant plant;
+  } plants[] = {
+      {shock, "front_left", in_sample(&RunSample::front_left, 1e-9)},
+      {shock, "front_right", in_sample(&RunSample::front_right, -1e-9, 11)},
+      {shock, "front_left", [](RunSample& at) { at.front_left = at.time.value > 11 ? "" : at.front_left; }},
+      {shock, "front_right", [](RunSample& at) { at.front_right = at.time.value == 0 ? "1" : at.front_right; }},
+      {shock, "energy", in_sample(&RunSample::energy, 1e-10)},
+      {shock, "energy", [](RunSample& at) { at.energy = at.time.value > 3 ? "nan" : at.energy; }},
+      {shock, "collisions", in_count(&Counts::collisions)},
+      {shock, "collisions_below_cutoff", in_count(&Counts::below_cutoff)},
+      {shock, "merges", in_count(&Counts::merges)},
+      {shock, "time of the sample",
+       [](RunSample& at) { at.time.text = moved(at.time.text, 1e-12 * (at.time.value > 3)); }},
+      {shock, "x of particle 7 in the snapshot", in_snapshot(7, &SampledParticles::x, 1e-9)},
+      {shock, "v of particle 12 in the snapshot", in_snapshot(12, &SampledParticles::v, 1e-10)},
+      {shock, "m of particle 9 in the snapshot", in_snapshot(9, &SampledParticles::m, 1e-10)},
+      {shock, "of particle 8 in the snapshot", another_index(-1)},
+      {shock, "in one cluster", another_index(7)},
+      {between_walls, "energy given by the left wall", in_wall(0, &SampledWall::given, 1e-9)},
+      {between_walls, "momentum given by the left wall", in_wall(0, &SampledWall::momentum, 1e-9)},
+      {between_walls, "energy given by the right wall", in_wall(1, &SampledWall::given, -1e-9)},
+      {between_walls, "momentum given by the right wall", in_wall(1, &SampledWall::momentum, 1e-9)},
+      {between_walls, "energy lost in the right wall", in_wall(1, &SampledWall::dissipated, 1e-9)},
+      {between_walls, "energy lost in the left wall", in_wall(0, &SampledWall::dissipated, 1e-9)},
+      {between_walls, "collisions with the right wall",
+       [](RunSample& at) { at.walls[1].collisions += at.time.value > 19; }}};
+  for (const auto& [scene, quantity, plant] : plants) {
     const std::string message =
-        cradle::tests::refusal(Exit::lost, [&plant = plant] { certified(between_walls, plant); });
+        cradle::tests::refusal(Exit::lost, [&scene = scene, &plant = plant] { certified(scene, plant); });
     EXPECT_TRUE(has(message, "do not agree")) << quantity;
-    EXPECT_TRUE(has(message, quantity)) << message;
+    EXPECT_TRUE(has(message, quantity));
   }
 }
 
@@ -186,8 +167,7 @@ TEST(Agreement, WhateverIsPlantedInTheFileIsFoundAndNamed) {
         for (Group& group : result.groups)
           for (Column& column : group.columns)
             if (group.name + '/' + column.name == path)
-              if (auto& numbers = std::get<std::vector<double>>(column.values); !numbers.empty())
-                for (double& number : numbers) number += 1e-10;
+              for (double& number : std::get<std::vector<double>>(column.values)) number += 1e-10;
       };
       const std::string message = cradle::tests::refusal(Exit::lost, [&] {
         certified(
@@ -220,11 +200,7 @@ TEST(Agreement, SmallGapsFarFromTheOriginAreWhatIsProved) {
                                   "snapshots = [0]}\n",
                                   [](RunSample&) {});
   ASSERT_TRUE(run.proved());
-  const Group& snapshot = *run.outcome.result.find("snapshots/0000");
-  for (const Column& column : snapshot.columns)
-    if (column.name == "gap") {
-      EXPECT_EQ(std::get<std::vector<double>>(column.values)[1], 1e-13);
-    }
+  EXPECT_EQ(cradle::tests::numbers(run.outcome.result, "snapshots/0000", "gap")[1], 1e-13);
   EXPECT_EQ(run.attempts.size(), 1U);
 }
 
@@ -239,15 +215,10 @@ TEST(Agreement, TheFileHasTheProvedNumbers) {
       [](RunSample&) {}, [](Result&) {}, cradle::tools::rising_digits());
   ASSERT_TRUE(run.proved());
   const Result result = certified_result(run);
-  const auto numbers = [&](const char* group, const char* name) {
-    for (const Column& column : result.find(group)->columns)
-      if (column.name == name) return std::get<std::vector<double>>(column.values);
-    return std::vector<double>();
-  };
-  for (const char* name : {"gap", "closing_speed"}) {
-    const auto number = numbers("snapshots/0000", name),
-               low = numbers("certificate/snapshots/0000", (name + std::string("_low")).c_str()),
-               high = numbers("certificate/snapshots/0000", (name + std::string("_high")).c_str());
+  for (const std::string name : {"gap", "closing_speed"}) {
+    const auto number = cradle::tests::numbers(result, "snapshots/0000", name),
+               low = cradle::tests::numbers(result, "certificate/snapshots/0000", name + "_low"),
+               high = cradle::tests::numbers(result, "certificate/snapshots/0000", name + "_high");
     ASSERT_EQ(number.size(), 4U);
     for (std::size_t j = 0; j < number.size(); ++j) {
       EXPECT_LE(low[j], number[j]) << name << ' ' << j;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/result/csv.hpp"
 #include "cradle/tools/result/seal.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/version.hpp"
@@ -29,6 +30,13 @@ inline tools::Result small_result() {
   result.groups.push_back({"snapshots/0000", {{"time", 3.0}}, {{"v", "l/t", "v", std::vector<double>{1, -1}}}});
   result.groups.push_back({"snapshots/0001", {{"time", 3.5}}, {{"v", "l/t", "v", std::vector<double>{}}}});
   return result;
+}
+
+// All tables as text: CSV has every digit.
+inline std::string all_of(const tools::Result& result) {
+  std::string text;
+  for (const tools::Group& group : result.groups) text += "/" + group.name + "\n" + tools::csv(group);
+  return text;
 }
 
 // Changes a file through HDF5, as h5py or a user's own program would.

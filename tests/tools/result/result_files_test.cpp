@@ -3,7 +3,6 @@
 
 #include "cradle/tests/tools/result/result_files.hpp"
 #include "cradle/tools/commands/listing.hpp"
-#include "cradle/tools/result/csv.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests::result_files_test {
@@ -11,12 +10,6 @@ namespace cradle::tests::result_files_test {
 class ResultFiles : public ProgramTest {
  protected:
   ResultFiles() { write("a.h5", tools::file_image(small_result())); }
-  // As text: CSV has every digit.
-  static std::string all_of(const tools::Result& result) {
-    std::string text;
-    for (const auto& group : result.groups) text += "/" + group.name + "\n" + tools::csv(group);
-    return text;
-  }
 };
 
 TEST_F(ResultFiles, ComeBackAsTheyWere) {

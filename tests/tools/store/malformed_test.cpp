@@ -6,13 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <functional>
 
 #include "cradle/tests/tools/mutator.hpp"
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/store/stopping.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/checksum.hpp"
 
@@ -50,33 +48,12 @@ class MalformedFiles : public ProgramTest {
                               "output = { series.points = 9, snapshots = [5] }\nrun.until = 30\n",
                           "malformed.toml"));
   }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-
   // Leaves the files of a run that was stopped.
   void begin(const Scene& scene) {
     const std::string name = "run" + std::to_string(runs_++) + ".h5";
     Interrupt interrupt;
     RunFiles files(path(name), scene);
-    class Stopping final : public Sink {
-     public:
-      Stopping(RunFiles& files, Interrupt& interrupt) : Sink(Tables::for_file), files_(files), interrupt_(interrupt) {}
-      void add(Group&& rows) override { files_.add(std::move(rows)); }
-      void end(std::vector<Attribute>&&, RunEnd) override {}
-      void count(std::uint64_t collisions) override { files_.count(collisions); }
-      void check_clock() override {
-        if (++checks_ == 5) interrupt_.note(SIGTERM);
-      }
-      bool due() const override { return false; }
-      void keep(const RunStatus& status, const std::function<void(cradle::StateSink&)>& save, RunIs now) override {
-        files_.keep(status, save, now);
-      }
-      cradle::StateSource* loaded_from() override { return nullptr; }
-
-     private:
-      RunFiles& files_;
-      Interrupt& interrupt_;
-      int checks_ = 0;
-    } store(files, interrupt);
+    Stopping store(files, interrupt, {.checks = 5});
     ASSERT_EQ(run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, store).end, RunEnd::interrupted);
   }
   static constexpr int resumed = 0, refusal = 1;

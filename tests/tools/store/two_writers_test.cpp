@@ -25,8 +25,7 @@ TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
   };
   EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("a.h5")).status, Exit::done);
   EXPECT_EQ(second.status, 4);
-  EXPECT_EQ(second.err.rfind("cradle: a.h5: another program is writing this file (found process ", 0), 0U)
-      << second.err;
+  EXPECT_TRUE(begins(second.err, "cradle: a.h5: another program is writing this file (found process "));
   // It comes again when the first one is done: nothing is lost.
   run("ensemble shock.toml --first 4 --replicas 4 -o a.h5");
   EXPECT_EQ(result("a.h5").find("replicas")->columns.front().rows(), 8U);
@@ -38,11 +37,8 @@ TEST_F(Ensembles, OneRunAtATimeWritesToAName) {
   {
     const tools::FileClaim first(path("a.h5"));
     for (const auto* command : {"run shock.toml -o a.h5", "trust shock.toml --digits 16,31 -o a.h5",
-                                "merge a.h5 a.h5 -o a.h5", "sweep shock.toml --vary law.cutoff=0,1 -o a.h5"}) {
-      const Printed second = shell(std::string("cradle ") + command);
-      EXPECT_EQ(second.status, 4) << command;
-      EXPECT_NE(second.err.find("a.h5: another program is writing this file"), std::string::npos) << second.err;
-    }
+                                "merge a.h5 a.h5 -o a.h5", "sweep shock.toml --vary law.cutoff=0,1 -o a.h5"})
+      EXPECT_TRUE(has(shell(std::string("cradle ") + command, 4).err, "a.h5: another program is writing this file"));
     EXPECT_TRUE(contents(folder / "a.h5") == "old");
   }
   run("run shock.toml --quiet --force -o a.h5");
@@ -52,13 +48,12 @@ TEST_F(Ensembles, OneRunAtATimeWritesToAName) {
 
 TEST_F(Ensembles, FifosAreRefusedByNameAndLinksFollowed) {
   for (const auto* command : {"run shock.toml -o fifo", "ensemble shock.toml --replicas 2 -o fifo"}) {
-    const Printed refused = shell(std::string("test -p fifo || mkfifo fifo; cradle ") + command);
-    EXPECT_EQ(refused.status, 4) << command;
-    EXPECT_NE(refused.err.find(": cannot be written (found a FIFO"), std::string::npos) << refused.err;
+    const Printed refused = shell(std::string("test -p fifo || mkfifo fifo; cradle ") + command, 4);
+    EXPECT_TRUE(has(refused.err, ": cannot be written (found a FIFO"));
     EXPECT_TRUE(std::filesystem::is_fifo(folder / "fifo"));
   }
   for (const auto* command : {"info fifo", "export fifo --to csv", "merge fifo fifo -o a.h5"})
-    EXPECT_EQ(shell(std::string("timeout 300 cradle ") + command).status, 4) << command;
+    shell(std::string("timeout 300 cradle ") + command, 4);
   write("a.h5", "old");
   std::filesystem::create_symlink("a.h5", folder / "link.h5");
   run("run shock.toml --quiet --force -o link.h5");

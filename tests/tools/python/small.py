@@ -1,8 +1,52 @@
-"""Small results for the tests, made once by the program in the working folder."""
+"""What the tests share: small results, made once by the program in the working folder, and how errors are checked."""
 import functools
+import subprocess
+import unittest
 
 import cradle
-from cradle import program
+from cradle import program, simulation
+
+
+class Case(unittest.TestCase):
+    def refused(self, status, message, call, *arguments, **keys):
+        """The cradle.Error that call(...) raises: of this status, with a message in which the expression is found."""
+        with self.assertRaisesRegex(cradle.Error, message) as raised:
+            call(*arguments, **keys)
+        self.assertEqual(raised.exception.status, status, raised.exception.message)
+        return raised.exception
+
+
+def called(*words, status=0):
+    """What the program prints, by a call of its own; `status` is the one it must end with."""
+    done = subprocess.run([program.find(), *words], capture_output=True, text=True)
+    assert done.returncode == status, f"{' '.join(words)}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def set_words(settings):
+    """The same settings as words for the program."""
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+
+
+def live():
+    """Why there can be no live simulations; "" where the module for them is built."""
+    try:
+        simulation.module()
+        return ""
+    except cradle.Error as error:
+        return error.message
+
+
+def read(path, mode="r"):
+    with open(path, mode, encoding=None if "b" in mode else "utf-8") as file:
+        return file.read()
+
+
+def written(path, content):
+    """A file with these bytes; its path."""
+    with open(path, "wb") as file:
+        file.write(content)
+    return path
 
 SHOCK = {"initial.particles": 200, "run.until": 60, "output.snapshots": [20, 60], "output.profiles.times": [30, 60],
          "output.series.points": 20}
@@ -86,8 +130,7 @@ def threshold():
 @functools.cache
 def page(make):
     """The text of the report of one of these, beside it with .html."""
-    with open(cradle.report(make()), encoding="utf-8") as file:
-        return file.read()
+    return read(cradle.report(make()))
 
 
 ALL = (shock, ensemble, sweep, collapse, trust, tagged, tagged_ensemble, words, threshold)

@@ -117,15 +117,17 @@ class Browser:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def photograph(self, path, most=12000):
-        """The whole page as PNG, its upper part where it is longer than so many pixels; returns its size."""
+    def shot(self, name, most=12000):
+        """For who wants to look: the page as PNG, its upper part where it is longer than so many pixels, in the folder
+        $CRADLE_SHOTS if that is set."""
+        if not os.environ.get("CRADLE_SHOTS"):
+            return
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]
         width, height = size["width"], min(size["height"], most)
         shot = self.call("Page.captureScreenshot", captureBeyondViewport=True,
                          clip={"x": 0, "y": 0, "width": width, "height": height, "scale": 1})
-        with open(path, "wb") as file:
+        with open(os.path.join(os.environ["CRADLE_SHOTS"], f"{name}.png"), "wb") as file:
             file.write(base64.b64decode(shot["data"]))
-        return width, height
 
     def print_to(self, path):
         """As PDF; returns its number of pages."""

@@ -1,6 +1,5 @@
 """What the tests share: small results, made once by the program in the working folder, and how errors are checked."""
 import functools
-import subprocess
 import unittest
 
 import cradle
@@ -14,13 +13,6 @@ class Case(unittest.TestCase):
             call(*arguments, **keys)
         self.assertEqual(raised.exception.status, status, raised.exception.message)
         return raised.exception
-
-
-def called(*words, status=0):
-    """What the program prints, by a call of its own; `status` is the one it must end with."""
-    done = subprocess.run([program.find(), *words], capture_output=True, text=True)
-    assert done.returncode == status, f"{' '.join(words)}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout
 
 
 def set_words(settings):

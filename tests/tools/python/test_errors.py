@@ -32,7 +32,8 @@ class Files(small.Case):
                 file.attrs["format_version"], file.attrs["scene"] = version, ""
         for path, wrong in (("nothing.h5", "No such file"), ("folder.h5", "directory"), ("empty.h5", "empty file"),
                             ("foreign.h5", "no HDF5"), ("head.h5", "cannot be read|can be read"),
-                            ("other.h5", "no result"), ("later.h5", "later version"), ("earlier.h5", "earlier version")):
+                            ("other.h5", "no result"), ("later.h5", "later version"),
+                            ("earlier.h5", "earlier version")):
             self.refused(path, wrong)
         for call, made in ((cradle.plot.save, {"output": "foreign.png"}), (cradle.report, {})):
             self.refused("foreign.h5", "no HDF5", call, **made)
@@ -156,7 +157,7 @@ class InProgress(small.Case):
                     self.assertEqual(result.outcome, "in progress")
                     self.assertLess(result.series.time[-1], 1e7)
                     page = cradle.report(result, "way.html")
-                    self.assertEqual(small.called("plot", "way.h5.part").split()[0], "way.png")
+                    self.assertEqual(program.call(["plot", "way.h5.part"]).out.split()[0], "way.png")
                     break
             except cradle.Error as error:  # not there yet, or over
                 self.assertEqual(error.status, 4)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Time = Union[float, int, str, decimal.Decimal]
 MODULE = f"{__package__}._live"
 REACHED = "reached the end"
-COLUMNS = ("x", "v", "m", "gap", "closing_speed")
+DIGITS = ("time", "energy", "x", "v", "m", "gap", "closing_speed")  # quantities that decimals() has
 MOST_COLLISIONS = 2 ** 64 - 1  # in a call of step: as many as a run can count
 PART, MOST_EVENTS, EVENT = 2 ** 20, 10 ** 7, 56  # collisions; bytes of one event
 MOST_CALLS, MOST_THREADS = 1e9, 4096
@@ -44,6 +44,11 @@ class Collision(NamedTuple):
     time: float
     interval: float
     closing_speed: float
+
+
+def of_run(name: str, text: str, convert: Callable[[Any], Any] = lambda value: value) -> Any:
+    """A property of a simulation, read from the run that it holds."""
+    return property(lambda simulation: convert(getattr(simulation._run, name)), doc=text)
 
 
 class Simulation:
@@ -192,86 +197,37 @@ class Simulation:
 
     # ---- the state
 
-    @property
-    def time(self) -> float:
-        """In t."""
-        return self._run.time
-
-    @property
-    def until(self) -> float:
-        """The end, run.until, in t."""
-        return float(self._run.until)
-
-    @property
-    def collisions(self) -> int:
-        """Since the start, all, those below the cut-off and merges included."""
-        return self._run.collisions
-
-    @property
-    def merges(self) -> int:
-        """Since the start."""
-        return self._run.merges
-
-    @property
-    def energy(self) -> float:
-        """Kinetic, in m l^2/t^2, of all particles of the scene, also those that the front has not reached."""
-        return self._run.energy
-
-    @property
-    def outcome(self) -> str:
-        """"in progress", then how the run ended, as in results: "reached the end", "inelastic collapse", ..."""
-        over = self._run.over
-        return "in progress" if over is None else over[0]
-
-    @property
-    def over(self) -> bool:
-        """Whether the run has ended, so that write() has a result."""
-        return self._run.over is not None
-
-    @property
-    def x(self) -> np.ndarray:
-        """Positions in l, shape (n,)."""
-        return self._column("x")
-
-    @property
-    def v(self) -> np.ndarray:
-        """Velocities in l/t, shape (n,)."""
-        return self._column("v")
-
-    @property
-    def m(self) -> np.ndarray:
-        """Masses in m, shape (n,)."""
-        return self._column("m")
-
-    @property
-    def gap(self) -> np.ndarray:
-        """Distances between neighbours in l, exact however small: shape (n - 1,), on a ring (n,)."""
-        return self._column("gap")
-
-    @property
-    def closing_speed(self) -> np.ndarray:
-        """Velocity of the left minus that of the right neighbour, in l/t: shape (n - 1,), on a ring (n,)."""
-        return self._column("closing_speed")
-
-    @property
-    def index(self) -> np.ndarray:
-        """Numbers of the particles at the start, from 0, as int64 of shape (n,); of merged ones the first."""
-        return self._run.index
-
-    def _column(self, name: str) -> np.ndarray:
-        return self._run.column(getattr(module().Column, name))
+    time: float = of_run("time", "In t.")
+    until: float = of_run("until", "The end, run.until, in t.", float)
+    collisions: int = of_run("collisions", "Since the start, all, those below the cut-off and merges included.")
+    merges: int = of_run("merges", "Since the start.")
+    energy: float = of_run("energy", """Kinetic, in m l^2/t^2, of all particles of the scene, also those that the front
+        has not reached.""")
+    outcome: str = of_run("over", """"in progress", then how the run ended, as in results: "reached the end",
+        "inelastic collapse", ...""", lambda over: over[0] if over else "in progress")
+    over: bool = of_run("over", "Whether the run has ended, so that write() has a result.", bool)
+    x: np.ndarray = of_run("x", "Positions in l, shape (n,).")
+    v: np.ndarray = of_run("v", "Velocities in l/t, shape (n,).")
+    m: np.ndarray = of_run("m", "Masses in m, shape (n,).")
+    gap: np.ndarray = of_run("gap", """Distances between neighbours in l, exact however small: shape (n - 1,), on a ring
+        (n,).""")
+    closing_speed: np.ndarray = of_run("closing_speed", """Velocity of the left minus that of the right neighbour, in
+        l/t: shape (n - 1,), on a ring (n,).""")
+    index: np.ndarray = of_run("index", """Numbers of the particles at the start, from 0, as int64 of shape (n,); of
+        merged ones the first.""")
+    name: str = of_run("name", "The scene's name.")
+    precision: str = of_run("precision", """The type of the numbers, "double", "mpfr, 50 digits", ...""")
+    scene_text: str = of_run("scene", "The effective scene, as TOML.")
+    scene: dict[str, Any] = of_run("scene", "The same as nested dicts, numbers as floats.", parse_toml)
 
     def decimals(self, name: str) -> str | list[str]:
         """The same with all digits of the run's type, as decimal texts.
 
         name: "time" or "energy": one text; "x", "v", "m", "gap" or "closing_speed": a list.
         """
-        if name in ("time", "energy"):
-            return getattr(self._run, f"{name}_text")
-        if name not in COLUMNS:
-            raise Error(f"decimals: no such quantity (found {name}): give time, energy, {', '.join(COLUMNS)}",
-                        BAD_INPUT)
-        return self._run.decimals(getattr(module().Column, name))
+        if name not in DIGITS:
+            raise Error(f"decimals: no such quantity (found {name}): give {', '.join(DIGITS)}", BAD_INPUT)
+        return getattr(self._run, f"{name}_text")
 
     def mpmath(self, name: str, digits: int | None = None):
         """The same as mpmath.mpf (one, or a list) with the given digits, by default those of the longest text."""
@@ -283,26 +239,6 @@ class Simulation:
         one = isinstance(texts, str)
         with mpmath.workdps(digits or max((len(text) for text in ([texts] if one else texts)), default=17)):
             return mpmath.mpf(texts) if one else [mpmath.mpf(text) for text in texts]
-
-    @property
-    def name(self) -> str:
-        """The scene's name."""
-        return self._run.name
-
-    @property
-    def precision(self) -> str:
-        """The type of the numbers, "double", "mpfr, 50 digits", ..."""
-        return self._run.precision
-
-    @property
-    def scene_text(self) -> str:
-        """The effective scene, as TOML."""
-        return self._run.scene
-
-    @property
-    def scene(self) -> dict[str, Any]:
-        """The same as nested dicts, numbers as floats."""
-        return parse_toml(self.scene_text)
 
     # ---- files
 

@@ -3,7 +3,6 @@
 What it logs, what it throws and what it asks any network for is in `complaints` and `requests`.
 """
 import base64
-import fcntl
 import json
 import os
 import select
@@ -27,21 +26,14 @@ class Browser:
         self.folder = tempfile.mkdtemp()
         ours_read, theirs_write = os.pipe()
         theirs_read, ours_write = os.pipe()
-        # Chromium reads from 3 and writes to 4: others first out of the way.
-        ends = [fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, 20) for end in (theirs_read, theirs_write)]
-        os.close(theirs_read), os.close(theirs_write)
-
-        def connect():
-            os.dup2(ends[0], 3), os.dup2(ends[1], 4)
-
+        # Chromium reads from 3 and writes to 4.
         self.process = subprocess.Popen(
-            [find(), "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage",
-             "--disable-background-networking", "--no-first-run", "--remote-debugging-pipe",
-             f"--user-data-dir={self.folder}", "about:blank"],
-            preexec_fn=connect, pass_fds=(3, 4), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            ["bash", "-c", f'exec "$0" "$@" 3<&{theirs_read} 4>&{theirs_write}', find(), "--headless", "--no-sandbox",
+             "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", "--disable-background-networking",
+             "--no-first-run", "--remote-debugging-pipe", f"--user-data-dir={self.folder}", "about:blank"],
+            pass_fds=(theirs_read, theirs_write), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL)
-        for end in ends:
-            os.close(end)
+        os.close(theirs_read), os.close(theirs_write)
         self.reading, self.writing = os.fdopen(ours_read, "rb"), os.fdopen(ours_write, "wb")
         self.number, self.left, self.session = 0, b"", None
         self.complaints, self.requests, self.seen = [], [], []

@@ -275,6 +275,10 @@ class InBrowser(unittest.TestCase):
         up = (x - Fraction(view["V"]) * tau - Fraction(view["xi"])) / Fraction(view["X"])
         return box["left"] + box["width"] * float(across), box["top"] + box["height"] * float(Fraction(1, 2) - up)
 
+    def assert_at(self, drawn, x, y):
+        self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
+        self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
+
     def assert_exact(self, view, least=3):
         """Every collision in sight, of both its particles, and points of all lines between, are where they should
         be."""
@@ -285,9 +289,7 @@ class InBrowser(unittest.TestCase):
                 continue
             seen += 1
             for particle in (left, left + 1):
-                drawn = self.position(particle, event)
-                self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
-                self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
+                self.assert_at(self.position(particle, event), x, y)
         self.assertGreaterEqual(seen, least)
         last = self.collisions[-1][1]
         for particle, part in itertools.product(range(3), (0.03, 0.21, 0.4, 0.55, 0.7)):
@@ -390,9 +392,7 @@ class InBrowser(unittest.TestCase):
         self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
         self.browser.mouse("mouseMoved", x + 37, y - 21, button="left", buttons=1)
         self.browser.mouse("mouseReleased", x + 37, y - 21, button="left", clickCount=1)
-        after = self.position(0, 0)
-        self.assertAlmostEqual(after["x"] - before["x"], 37, delta=HUNDREDTH)
-        self.assertAlmostEqual(after["y"] - before["y"], -21, delta=HUNDREDTH)
+        self.assert_at(self.position(0, 0), before["x"] + 37, before["y"] - 21)
 
     def test_keys(self):
         self.clicked()
@@ -530,9 +530,7 @@ class InBrowser(unittest.TestCase):
                 x = box["left"] + box["width"] * ((moments[other] - moments[event] - view["tau"]) / view["T"] + 0.5)
                 y = box["top"] + box["height"] * (0.5 - (places[other] - places[event] - view["V"] *
                                                          (moments[other] - moments[event]) - view["xi"]) / view["X"])
-                drawn = self.position(left[other], other)
-                self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
-                self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
+                self.assert_at(self.position(left[other], other), x, y)
                 seen += 1
             self.assertGreater(seen, 8)
 

@@ -13,6 +13,9 @@ from cradle import program
 
 
 class Pictures(small.Case):
+    def tearDown(self):
+        plt.close("all")
+
     def test_are_those_of_the_program_to_the_byte(self):
         for make in small.ALL:
             for extension in (".png", ".svg"):
@@ -28,7 +31,6 @@ class Pictures(small.Case):
                 for name in cradle.plot.names(result):
                     figure = getattr(cradle.plot, name)(result)
                     self.assertGreater(len(figure.axes), 0, name)
-                    plt.close(figure)
 
     def test_the_module_is_the_main_picture_and_completes_to_pictures(self):
         figure = cradle.plot(small.shock())
@@ -38,7 +40,6 @@ class Pictures(small.Case):
         self.assertEqual(len(cradle.plot(small.shock(), "energy").axes), len(cradle.plot.energy(small.shock()).axes))
         self.refused(2, "no domino picture", cradle.plot, small.shock(), "domino")
         self.refused(2, "found shock", cradle.plot.scenarios, small.shock())
-        plt.close("all")
         self.assertEqual(set(dir(cradle.plot)), {"names", "save", *cradle.plot.PICTURES})
 
     def test_all_have_a_text_and_the_same_arguments(self):
@@ -65,7 +66,6 @@ class Pictures(small.Case):
         self.assertNotIn("cooling", cradle.plot.names(small.tagged()))
         figure = cradle.plot.ensemble(small.tagged_ensemble())
         self.assertEqual([text for ax in figure.axes for text in ax.get_legend_handles_labels()[1]], ["mean"] * 2)
-        plt.close(figure)
 
     def test_draw_into_given_axes(self):
         figure, axes = plt.subplots(2, 2)
@@ -75,14 +75,12 @@ class Pictures(small.Case):
         self.assertGreater(len(axes[0, 1].get_lines()), 0)
         self.assertGreater(len(axes[1, 1].get_lines()), 0)
         self.refused(2, r"found 3\): give 2", cradle.plot.energy, small.shock(), axes=axes.ravel()[:3])
-        plt.close(figure)
 
     def test_are_drawn_for_dark_pages_too(self):
         from cradle.drawing.style import BLUE, DARK, LIGHT
         for dark, colours in ((False, LIGHT), (True, DARK)):
             figure = cradle.plot.drawings(small.shock())["energy"](dark=dark)
             self.assertEqual(matplotlib.colors.to_hex(figure.get_facecolor()), colours["white"])
-            plt.close(figure)
         self.assertEqual(matplotlib.colors.to_hex(BLUE), LIGHT[BLUE])  # after it
 
     def test_have_the_title_and_name_the_paper(self):
@@ -91,7 +89,6 @@ class Pictures(small.Case):
         self.assertIn("inelastic shock, Fig. 2", texts)
         self.assertTrue(any(text.startswith("front, Eqs. (4), (5)") for text in texts))
         self.assertTrue(any("Zaburdaev and Herminghaus" in text for text in texts))
-        plt.close(figure)
 
     def test_no_axis_has_a_single_label(self):
         from cradle.drawing.finish import label_ticks
@@ -103,7 +100,6 @@ class Pictures(small.Case):
             labels = [label.get_text() for label, place in zip(axes.get_yticklabels(), axes.get_yticks())
                       if low <= place <= high and label.get_text()]
             self.assertGreater(len(labels), 1, (low, high))
-            plt.close(figure)
 
     def test_a_collapse_is_shown_against_the_time_that_is_left(self):
         from cradle.drawing.particles import time_to_collapse
@@ -115,11 +111,10 @@ class Pictures(small.Case):
             self.assertAlmostEqual(left[-1] / result.events["interval"][-1], 5 / 11, delta=1e-9)
             figure = cradle.plot.particles(result)
             self.assertEqual([ax.get_xscale() for ax in figure.axes], ["linear", "log", "log"])
-            plt.close(figure)
 
     def test_leave_the_settings_of_the_caller(self):
         with matplotlib.rc_context({"lines.linewidth": 7}):
-            plt.close(cradle.plot.energy(small.shock()))
+            cradle.plot.energy(small.shock())
             self.assertEqual(matplotlib.rcParams["lines.linewidth"], 7)
 
     def test_places_that_cannot_be_written(self):
@@ -136,7 +131,6 @@ class Pictures(small.Case):
         labels = [line.get_label() for ax in figure.axes for line in ax.get_lines()]
         self.assertIn("right-movers", labels)
         self.assertFalse(any("Eq." in label for label in labels), labels)  # no model before there is a zone
-        plt.close(figure)
         cradle.plot.save("early.h5", "early.png")
         cradle.sweep("scenarios", output="few.h5", replicas=2, set={"initial.particles": 200, "run.until": 100}).close()
         self.assertEqual(cradle.plot.names("few.h5")[0], "regimes")

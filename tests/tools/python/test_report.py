@@ -107,7 +107,8 @@ class Reports(small.Case):
                   "The left wall is at x = 0 l, is shaken as a sine of amplitude 0.01 l and angular frequency 10 1/t, "
                   "reflects without loss and holds what comes more slowly than 0.001 l/t.",
                   "The right wall is at x = 7 l and has the temperature 2.5 m l²/t²."), []),
-                ("piston", {"initial": list_of, "walls": {"right": {"position": 3, "speed": -0.25, "restitution": 0.5}}},
+                ("piston", {"initial": list_of,
+                            "walls": {"right": {"position": 3, "speed": -0.25, "restitution": 0.5}}},
                  ("The right wall starts at x = 3 l and moves at −0.25 l/t and reflects with the restitution 0.5.",),
                  ["left"]),
                 ("gas", {"initial": {"type": "gas", "particles": 20, "random_masses": [1, 3]}},

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from . import program
 from .commands import Scene, Settings, assignments, text_or_path
-from .errors import BAD_FILE, BAD_INPUT, Error, callable_of, missing, path_of
+from .errors import BAD_FILE, BAD_INPUT, Error, callable_of, path_of
+from .frames import imported
 from .result import Result, open
 from .scene import parse_toml
 
@@ -231,10 +232,7 @@ class Simulation:
 
     def mpmath(self, name: str, digits: int | None = None):
         """The same as mpmath.mpf (one, or a list) with the given digits, by default those of the longest text."""
-        try:
-            import mpmath
-        except ImportError:
-            raise missing("mpmath") from None
+        mpmath = imported("mpmath")
         texts = self.decimals(name)
         one = isinstance(texts, str)
         with mpmath.workdps(digits or max((len(text) for text in ([texts] if one else texts)), default=17)):

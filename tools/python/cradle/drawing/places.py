@@ -1,9 +1,7 @@
 """The places of particles: structure factor and pair distribution, averaged with standard errors and at times; of a
 sweep those of all points, a panel for each time. The line is that of independent places, 1, of which identical elastic
 particles in equilibrium are an example."""
-import numpy as np
-
-from .averages import with_error
+from .averages import draw_points as draw_mean
 from .style import ORANGE, beside, distinct, shades, stacked, subplots, thinned
 from .sweep import label_of
 
@@ -31,9 +29,7 @@ def draw(result, axes, group, name, along, xlabel, ylabel, log):
     for table, colour in zip(at, shades(len(at))):
         ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=f"$t={table['time']:.5g}$")
     if mean := getattr(result, group + "_average"):
-        y, error = (np.asarray(numbers, float) for numbers in with_error(mean, name))
-        ax.errorbar(mean[along], y, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, lw=0.9, color="k",
-                    label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")
+        draw_mean(ax, mean[along], mean, name, color="k", label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")
     ax.axhline(1, color=ORANGE, lw=1, ls="--", label="independent")
     if log:
         ax.set(xscale="log", yscale="log")

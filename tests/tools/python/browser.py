@@ -43,9 +43,10 @@ class Browser:
             self.call(f"{domain}.enable")
         self.resize(width, height)
 
-    def resize(self, width, height=900):
-        """The size of the window in pixels."""
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+    def resize(self, width, height=900, ratio=1):
+        """The size of the window in pixels, and those of the screen in each of them."""
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
+                  mobile=False)
 
     def __enter__(self):
         return self

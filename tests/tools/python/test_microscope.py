@@ -37,8 +37,8 @@ class Microscope(browser.Browser):
 
     run = browser.Browser.evaluate
 
-    def open(self, path, dark=False):
-        self.dark(dark)
+    def open(self, path):
+        self.emulate()
         self.complaints.clear()
         self.requests.clear()
         self.load(path)
@@ -51,13 +51,6 @@ class Microscope(browser.Browser):
             if time.monotonic() > end:
                 raise TimeoutError(f"never came true: {condition}")
             time.sleep(0.05)
-
-    def dark(self, dark):
-        self.emulate("dark" if dark else "light")
-
-    def resolution(self, ratio, width=1100, height=760):
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
-                  mobile=False)
 
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
@@ -226,7 +219,7 @@ class InBrowser(unittest.TestCase):
         shutil.rmtree(cls.folder)
 
     def setUp(self):
-        self.browser.resolution(1)
+        self.browser.resize(1100, 760)
         self.browser.open(self.page)
 
     def tearDown(self):
@@ -479,7 +472,7 @@ class InBrowser(unittest.TestCase):
 
     def test_dark_and_light(self):
         self.assertGreater(min(self.pixel(3, 3)), 200)
-        self.browser.dark(True)
+        self.browser.emulate("dark")
         while max(self.pixel(3, 3)) >= 60:
             time.sleep(0.05)
         # A dot of a collision stands out in both.
@@ -490,7 +483,7 @@ class InBrowser(unittest.TestCase):
         self.assertTrue(view["exact"])
 
     def test_high_resolution(self):
-        self.browser.resolution(2)
+        self.browser.resize(1100, 760, 2)
         self.browser.open(self.page)
         sizes = self.browser.run("""(c => [c.width, c.clientWidth, c.height, c.clientHeight])(
             document.querySelector('canvas'))""")

@@ -9,13 +9,8 @@ function microscopeCamera(world) {
 
   camera.home = () => {
     const span = Math.max(world.end - world.start, Number.MIN_VALUE);
-    let low = Infinity, high = -Infinity;
-    for (let e = 0; e < world.n; ++e) {
-      low = Math.min(low, world.x[e]);
-      high = Math.max(high, world.x[e]);
-    }
-    low = Math.min(low, world.x0[0]);
-    high = Math.max(high, world.x0[world.particles - 1]);
+    const low = world.x.reduce((least, x) => Math.min(least, x), world.x0[0]);
+    const high = world.x.reduce((most, x) => Math.max(most, x), world.x0[world.particles - 1]);
     const anchor = world.n ? { e: 0, a: world.left[0] } : { e: -1, a: Math.floor((world.particles - 1) / 2) };
     const { t, x } = microscopeOrigin(world, anchor), lab = microscopeAnchor(world, anchor).lab;
     limits.T = 1.06 * span;

@@ -58,10 +58,9 @@ def draw_zone(result, units, axes=None):
                    model=2 * half, top=top)
     velocity.set_yticks([-speed / units.v, 0, speed / units.v])
     velocity.set_ylabel(units.velocity_label())
-    density.set_ylabel(units.label("density $n$", r"density $n\,/\,n_0$"))
-    density.set_ylim(bottom=0)
-    mass.set_ylabel(units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"))
-    mass.set_xlabel(units.position_label())
+    density.set(ylabel=units.label("density $n$", r"density $n\,/\,n_0$"), ylim=(0, None))
+    mass.set(ylabel=units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"),
+             xlabel=units.position_label())
     beside(velocity), beside(density)
     begin, end = zone["from"] / units.t, zone["until"] / units.t
     velocity.set_title(f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples", loc="right",

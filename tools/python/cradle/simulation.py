@@ -15,7 +15,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from . import program
-from .commands import Scene, Settings, assignments, text_or_path
+from .commands import Scene, Settings, assignments, source_of
 from .errors import BAD_FILE, BAD_INPUT, Error, callable_of, path_of
 from .frames import imported
 from .result import Result, open
@@ -78,11 +78,11 @@ class Simulation:
 
     def __init__(self, scene: Scene, set: Settings = None, *, seed: int | None = None, threads: int | None = None,
                  restitution: Callable[[float], float] | None = None):
-        source, is_text, name = source_of(scene)
+        source, name = source_of(scene)
         settings = assignments(set) + ([] if seed is None else [f"initial.seed={seed}"])
         if restitution is not None:
             callable_of(restitution, "restitution")
-        held = module().Run(source, is_text, name, settings, threads_of(threads), restitution is not None)
+        held = module().Run(source, "\n" in source, name, settings, threads_of(threads), restitution is not None)
         self._begin(held, restitution)
 
     def _begin(self, run, restitution=None) -> None:
@@ -321,14 +321,6 @@ def threads_of(threads: int | None) -> int:
     return operator.index(threads)
 
 
-def source_of(scene: Scene) -> tuple[str, bool, str]:
-    """A text or what names a scene, whether it is a text, and the name of one."""
-    if isinstance(scene, Result):
-        return scene.scene_text, True, str(scene.attributes.get("name", "scene"))
-    text = text_or_path(scene)
-    return text, "\n" in text, "scene"
-
-
 def module() -> ModuleType:
     """The compiled part: beside this package where it is installed, or beside the program in its build folder.
 
@@ -341,28 +333,23 @@ def module() -> ModuleType:
         folders.append(os.path.dirname(os.path.realpath(program.find())))
     except Error:
         pass  # reported by who calls the program
-    for folder in folders:
-        for ending in importlib.machinery.EXTENSION_SUFFIXES:
-            path = os.path.join(folder, "_live" + ending)
-            if os.path.isfile(path):
-                return loaded_from(path)
-    others = [os.path.basename(path) for folder in folders for path in glob.glob(os.path.join(folder, "_live*.so"))]
-    raise Error(f"the module for live simulations is missing (found {', '.join(others) or 'none'} in "
-                f"{' and '.join(folders)}, for {sys.executable} {sys.version.split()[0]}): install Debian's "
-                "python3-dev and pybind11-dev and build with tools/quickstart.sh, with CRADLE_PYTHON set to this "
-                "Python; cradle.run() does without", BAD_FILE)
-
-
-def loaded_from(path: str) -> ModuleType:
+    importlib.invalidate_caches()  # it may have been built just now
+    spec = importlib.machinery.PathFinder.find_spec(MODULE, folders)
+    if spec is None:
+        others = [os.path.basename(path) for folder in folders for path in glob.glob(os.path.join(folder, "_live*.so"))]
+        raise Error(f"the module for live simulations is missing (found {', '.join(others) or 'none'} in "
+                    f"{' and '.join(folders)}, for {sys.executable} {sys.version.split()[0]}): install Debian's "
+                    "python3-dev and pybind11-dev and build with tools/quickstart.sh, with CRADLE_PYTHON set to this "
+                    "Python; cradle.run() does without", BAD_FILE)
     from . import __version__
-    spec = importlib.util.spec_from_file_location(MODULE, path)
     try:
         found = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(found)
     except ImportError as error:
-        raise Error(f"{path}: cannot be loaded ({error}): build it on this machine, for this Python",
+        raise Error(f"{spec.origin}: cannot be loaded ({error}): build it on this machine, for this Python",
                     BAD_FILE) from None
     if found.version != __version__:
-        raise Error(f"{path}: of another version (found {found.version}, here {__version__}): build it again", BAD_FILE)
+        raise Error(f"{spec.origin}: of another version (found {found.version}, here {__version__}): build it again",
+                    BAD_FILE)
     sys.modules[MODULE] = found
     return found

@@ -255,7 +255,7 @@ class InBrowser(unittest.TestCase):
     # Where things are, exactly
 
     def exact_place(self, view, particle, time):
-        """Pixels of a particle at a time (a fraction), in fractions until the last step."""
+        """Pixels of a particle at a time (a fraction)."""
         event = view["anchor"]["e"]
         left, origin, _, places, after = self.collisions[event]
         frame = (after[left] + after[left + 1]) / 2  # of the pair at the anchor
@@ -263,7 +263,11 @@ class InBrowser(unittest.TestCase):
         since, at, speed = (earlier[-1][1], earlier[-1][3][particle], earlier[-1][4][particle]) if earlier else \
             (Fraction(0), self.start[0][particle], self.start[1][particle])
         x = at + speed * (time - since) - places[left] - frame * (time - origin)
-        tau, box = time - origin, view["box"]
+        return self.pixels_of(view, time - origin, x)
+
+    def pixels_of(self, view, tau, x):
+        """Pixels of what is tau after the anchor's collision and x from it, in fractions until the last step."""
+        box = view["box"]
         across = (tau - Fraction(view["tau"])) / Fraction(view["T"]) + Fraction(1, 2)
         up = (x - Fraction(view["V"]) * tau - Fraction(view["xi"])) / Fraction(view["X"])
         return box["left"] + box["width"] * float(across), box["top"] + box["height"] * float(Fraction(1, 2) - up)
@@ -502,12 +506,11 @@ class InBrowser(unittest.TestCase):
         self.assertFalse(self.view()["exact"])
         # What is drawn of the whole: collisions in the lens where the rows overlap, nothing beside them.
         view = self.view()
-        box, anchor = view["box"], view["anchor"]["e"]
+        anchor = view["anchor"]["e"]
 
         def colourful(t, x):  # the home view's frame is the lab's
-            across = (t - moments[anchor] - view["tau"]) / view["T"] + 0.5
-            up = (x - places[anchor] - view["xi"]) / view["X"]
-            colour = self.pixel(box["left"] + box["width"] * across, box["top"] + box["height"] * (0.5 - up))
+            at = self.pixels_of(view, Fraction(t - moments[anchor]), Fraction(x - places[anchor]))
+            colour = self.pixel(*at)
             return max(colour) - min(colour)
         self.assertGreater(colourful(1000, 3.3), 30)
         self.assertGreater(colourful(1000, -333.7), 30)
@@ -517,13 +520,12 @@ class InBrowser(unittest.TestCase):
         for event in (12345, 500_000, 777_777):
             view = self.m(f"zoomTo({{event: {event}, depth: 4, time: 6}})")
             self.assertTrue(view["exact"])
-            box, seen = view["box"], 0
+            seen = 0
             for other in np.flatnonzero((np.abs(moments - moments[event]) < 3) & (np.abs(places - places[event]) < 2)):
                 # Pairs of equal elastic particles: the frame at any collision is the lab's.
-                x = box["left"] + box["width"] * ((moments[other] - moments[event] - view["tau"]) / view["T"] + 0.5)
-                y = box["top"] + box["height"] * (0.5 - (places[other] - places[event] - view["V"] *
-                                                         (moments[other] - moments[event]) - view["xi"]) / view["X"])
-                self.assert_at(self.position(left[other], other), x, y)
+                at = self.pixels_of(view, Fraction(moments[other] - moments[event]),
+                                    Fraction(places[other] - places[event]))
+                self.assert_at(self.position(left[other], other), *at)
                 seen += 1
             self.assertGreater(seen, 8)
 

@@ -24,7 +24,8 @@ class Files(small.Case):
 
     def test_what_is_no_result(self):
         os.makedirs("folder.h5", exist_ok=True)
-        written("empty.h5", b""), written("foreign.h5", b"not HDF5 at all"), written("head.h5", b"\x89HDF\r\n\x1a\n")
+        for name, content in (("empty.h5", b""), ("foreign.h5", b"not HDF5 at all"), ("head.h5", b"\x89HDF\r\n\x1a\n")):
+            written(name, content)
         with h5py.File("other.h5", "w") as file:
             file["x"] = [1.0, 2.0]
         for name, version in (("later.h5", 7), ("earlier.h5", 1)):
@@ -171,7 +172,8 @@ class InProgress(small.Case):
             time.sleep(0.01)
         running.terminate()
         running.wait()
-        written("a.h5.checkpoint", b"CRADLEC4" + bytes(100)), written("b.h5.part", b"CRADLER2" + bytes(100))
+        written("a.h5.checkpoint", b"CRADLEC4" + bytes(100))
+        written("b.h5.part", b"CRADLER2" + bytes(100))
         written("half.h5.part", b"CRADLEJ4" + bytes(5))
         for name, wrong in (("a.h5.part", "resume a.h5"), ("a.h5.checkpoint", "checkpoint"),
                             ("b.h5.part", "found format 2, here 4"), ("half.h5.part", "half.h5.part")):

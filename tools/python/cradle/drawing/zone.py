@@ -39,10 +39,10 @@ def draw_zone(result, units, axes=None):
             density.plot(outer, np.ones(2), line, color="k", lw=0.9)
             density.plot(inside, n, line, color="k", lw=0.9, label=f"$n_{index}$, Eq. (10)")
         moving = zone[f"density_{name}"] > 0
-        velocity.plot(x[moving], zone[f"velocity_{name}"][moving] / units.v, "o" if sign > 0 else "s", ms=3.2,
-                      color=colour, mfc=colour if sign > 0 else "none", label=f"{name}-movers")
-        density.plot(x, zone[f"density_{name}"] * spacing, "o" if sign > 0 else "s", ms=3.2, color=colour,
-                     mfc=colour if sign > 0 else "none", label=f"{name}-movers")
+        dots = {"marker": "o" if sign > 0 else "s", "ls": "none", "ms": 3.2, "color": colour,
+                "mfc": colour if sign > 0 else "none", "label": f"{name}-movers"}
+        velocity.plot(x[moving], zone[f"velocity_{name}"][moving] / units.v, **dots)
+        density.plot(x, zone[f"density_{name}"] * spacing, **dots)
     mass.plot(x, zone["mass_density"] * spacing, drawstyle="steps-mid", color=BLUE)
     mass.set_yscale("log")
     mass.set_title("peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else

@@ -3,7 +3,6 @@
 What it logs, what it throws and what it asks any network for is in `complaints` and `requests`.
 """
 import base64
-import fcntl
 import json
 import os
 import select
@@ -27,21 +26,14 @@ class Browser:
         self.folder = tempfile.mkdtemp()
         ours_read, theirs_write = os.pipe()
         theirs_read, ours_write = os.pipe()
-        # Chromium reads from 3 and writes to 4: others first out of the way.
-        ends = [fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, 20) for end in (theirs_read, theirs_write)]
-        os.close(theirs_read), os.close(theirs_write)
-
-        def connect():
-            os.dup2(ends[0], 3), os.dup2(ends[1], 4)
-
+        # Chromium reads from 3 and writes to 4.
         self.process = subprocess.Popen(
-            [find(), "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage",
-             "--disable-background-networking", "--no-first-run", "--remote-debugging-pipe",
-             f"--user-data-dir={self.folder}", "about:blank"],
-            preexec_fn=connect, pass_fds=(3, 4), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            ["bash", "-c", f'exec "$0" "$@" 3<&{theirs_read} 4>&{theirs_write}', find(), "--headless", "--no-sandbox",
+             "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", "--disable-background-networking",
+             "--no-first-run", "--remote-debugging-pipe", f"--user-data-dir={self.folder}", "about:blank"],
+            pass_fds=(theirs_read, theirs_write), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL)
-        for end in ends:
-            os.close(end)
+        os.close(theirs_read), os.close(theirs_write)
         self.reading, self.writing = os.fdopen(ours_read, "rb"), os.fdopen(ours_write, "wb")
         self.number, self.left, self.session = 0, b"", None
         self.complaints, self.requests, self.seen = [], [], []
@@ -51,9 +43,10 @@ class Browser:
             self.call(f"{domain}.enable")
         self.resize(width, height)
 
-    def resize(self, width, height=900):
-        """The size of the window in pixels."""
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+    def resize(self, width, height=900, ratio=1):
+        """The size of the window in pixels, and those of the screen in each of them."""
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
+                  mobile=False)
 
     def __enter__(self):
         return self
@@ -117,15 +110,17 @@ class Browser:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def photograph(self, path, most=12000):
-        """The whole page as PNG, its upper part where it is longer than so many pixels; returns its size."""
+    def shot(self, name, most=12000):
+        """For who wants to look: the page as PNG, its upper part where it is longer than so many pixels, in the folder
+        $CRADLE_SHOTS if that is set."""
+        if not os.environ.get("CRADLE_SHOTS"):
+            return
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]
         width, height = size["width"], min(size["height"], most)
         shot = self.call("Page.captureScreenshot", captureBeyondViewport=True,
                          clip={"x": 0, "y": 0, "width": width, "height": height, "scale": 1})
-        with open(path, "wb") as file:
+        with open(os.path.join(os.environ["CRADLE_SHOTS"], f"{name}.png"), "wb") as file:
             file.write(base64.b64decode(shot["data"]))
-        return width, height
 
     def print_to(self, path):
         """As PDF; returns its number of pages."""

@@ -7,8 +7,6 @@ import browser
 import cradle
 import small
 
-SHOTS = os.environ.get("CRADLE_SHOTS")  # a folder: screenshots stay there
-
 BRIGHTNESS = """(() => {
   const rgb = getComputedStyle(document.body).%s.match(/[\\d.]+/g).slice(0, 3).map(Number);
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
@@ -41,8 +39,7 @@ class Reader(unittest.TestCase):
                 self.assertEqual(outside, [])
                 files = [url for url in self.browser.requests if url.startswith("file://")]
                 self.assertEqual(len(files), 1, "the page itself, and nothing beside it")
-                if SHOTS:
-                    self.browser.photograph(os.path.join(SHOTS, f"{make.__name__}-{scheme}.png"))
+                self.browser.shot(f"{make.__name__}-{scheme}")
 
     def test_no_page_is_wider_than_the_window_or_a_telephone(self):
         for width in (1200, 390):

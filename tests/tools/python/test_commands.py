@@ -1,11 +1,13 @@
 """cradle.run and its like: the program's results to the byte, its messages and statuses as exceptions, its progress."""
+import contextlib
 import filecmp
+import io
 import os
 import signal
 import subprocess
 import sys
 import time
-import unittest
+from unittest import mock
 
 import cradle
 import small
@@ -13,11 +15,10 @@ from cradle import program, progress
 from cradle.scene import parse_toml, scene_text
 
 
-class Runs(unittest.TestCase):
+class Runs(small.Case):
     def test_a_run_has_the_bytes_of_the_command_line(self):
-        words = [word for key, value in small.SHOCK.items() for word in ("--set", f"{key}={value}")]
-        subprocess.run([program.find(), "run", "fig2", "--quiet", "-o", "line.h5", *words,
-                        "--set", "output.events=true"], check=True)
+        words = small.set_words(small.SHOCK | {"output.events": "true"})
+        subprocess.run([program.find(), "run", "fig2", "--quiet", "-o", "line.h5", *words], check=True)
         self.assertTrue(filecmp.cmp("line.h5", small.shock(), shallow=False))
 
     def test_scenes_are_names_files_texts_dicts_and_results(self):
@@ -42,29 +43,20 @@ class Runs(unittest.TestCase):
             self.assertEqual(result.path, "collapse3.h5")
 
     def test_bad_input_has_the_message_and_status_of_the_program(self):
-        with self.assertRaisesRegex(cradle.Error, "^no_such_scene: no such scene"):
-            cradle.run("no_such_scene")
-        for call, message in ((lambda: cradle.run("fig2", set={"law.restitution": 2}), "law.restitution"),
-                              (lambda: cradle.run({"law": {"type": "wet"}}), "law.loss"),
-                              (lambda: cradle.ensemble("fig2", 0), "replicas: not a whole number")):
-            with self.assertRaises(cradle.Error) as raised:
-                call()
-            self.assertEqual(raised.exception.status, 2)
-            self.assertIn(message, raised.exception.message)
-            self.assertNotIn("Traceback", raised.exception.message)
+        for status, message, call, *arguments in ((4, "^no_such_scene: no such scene", cradle.run, "no_such_scene"),
+                                                  (2, "law.restitution", cradle.run, "fig2", {"law.restitution": 2}),
+                                                  (2, "law.loss", cradle.run, {"law": {"type": "wet"}}),
+                                                  (2, "replicas: not a whole number", cradle.ensemble, "fig2", 0)):
+            self.assertNotIn("Traceback", self.refused(status, message, call, *arguments).message)
 
     def test_files_that_cannot_be_written(self):
-        with self.assertRaises(cradle.Error) as raised:
-            cradle.run("fig5", output="no/such/folder.h5")
-        self.assertEqual(raised.exception.status, 4)
+        self.refused(4, "", cradle.run, "fig5", output="no/such/folder.h5")
 
     def test_lost_order_carries_what_there_is(self):
-        with self.assertRaises(cradle.Error) as raised:
-            cradle.run("collapse3", set={"run.coordinates": "absolute"}, output="lost.h5")
-        self.assertEqual(raised.exception.status, 5)
-        self.assertIn("lost", raised.exception.result.outcome + raised.exception.message + " lost")
-        self.assertGreater(len(raised.exception.result.series.time), 2)
-        raised.exception.result.close()
+        error = self.refused(5, "", cradle.run, "collapse3", {"run.coordinates": "absolute"}, output="lost.h5")
+        with error.result as result:
+            self.assertEqual(result.outcome, "resolution exhausted")
+            self.assertGreater(len(result.series.time), 2)
 
     def test_resume_goes_further(self):
         with cradle.run("fig2", set=small.SHOCK, output="further.h5") as result:
@@ -82,18 +74,13 @@ class Runs(unittest.TestCase):
         self.assertFalse({"importlib", "annotations", "TYPE_CHECKING"} & set(dir(cradle)))
 
     def test_without_the_program(self):
-        kept = os.environ["CRADLE_PROGRAM"]
-        os.environ["CRADLE_PROGRAM"] = "/no/such/cradle"
-        try:
-            with self.assertRaisesRegex(cradle.Error, "CRADLE_PROGRAM"):
-                cradle.run("fig2")
-            with cradle.open(small.shock()) as result, self.assertWarnsRegex(UserWarning, "without predictions"):
+        with cradle.open(small.shock()) as result, mock.patch.dict(os.environ, CRADLE_PROGRAM="/no/such/cradle"):
+            self.refused(4, "CRADLE_PROGRAM", cradle.run, "fig2")
+            with self.assertWarnsRegex(UserWarning, "without predictions"):
                 cradle.plot.energy(result)
-        finally:
-            os.environ["CRADLE_PROGRAM"] = kept
 
 
-class Progress(unittest.TestCase):
+class Progress(small.Case):
     def test_shares_rise_and_lines_are_the_programs(self):
         seen = []
 
@@ -111,27 +98,11 @@ class Progress(unittest.TestCase):
             self.assertRegex(text, r"^t = .* of 1e\+15, .* collisions, .* million/s(, .* left)?$")
 
     def test_a_terminal_is_left_as_it_was(self):
-        class Terminal:
-            def __init__(self):
-                self.text = ""
-
-            def write(self, text):
-                self.text += text
-
-            def flush(self):
-                pass
-
-            def isatty(self):
-                return True
-
-        kept, sys.stderr = sys.stderr, Terminal()
-        try:
-            with progress.shown(None) as show:
-                show(0.5, "half")
-            text = sys.stderr.text
-        finally:
-            sys.stderr = kept
-        self.assertEqual(text, "\r\033[K[" + "#" * 15 + " " * 15 + "] half\r\033[K")
+        terminal = io.StringIO()
+        terminal.isatty = lambda: True
+        with contextlib.redirect_stderr(terminal), progress.shown(None) as show:
+            show(0.5, "half")
+        self.assertEqual(terminal.getvalue(), "\r\033[K[" + "#" * 15 + " " * 15 + "] half\r\033[K")
 
     def test_nothing_is_shown_without_a_terminal(self):
         with progress.shown(False) as show:

@@ -5,14 +5,11 @@ high resolution do what they should.
 Exact: collapse of three particles in fractions; two rows of elastic particles, whose world lines are straight lines
 that cross (a million collisions). Twin: gaps against those of the program's snapshots. Bound of positions: a hundredth
 of a pixel, where doubles that are sums of local terms are good to 1e-9 of one.
-
-`CRADLE_MICROSCOPE_PICTURES=FOLDER` writes screenshots and `CRADLE_MICROSCOPE_SPEED=1` prints frames per second.
 """
 import base64
 import itertools
 import json
 import math
-import os
 import pathlib
 import shutil
 import subprocess
@@ -40,8 +37,8 @@ class Microscope(browser.Browser):
 
     run = browser.Browser.evaluate
 
-    def open(self, path, dark=False):
-        self.dark(dark)
+    def open(self, path):
+        self.emulate()
         self.complaints.clear()
         self.requests.clear()
         self.load(path)
@@ -54,13 +51,6 @@ class Microscope(browser.Browser):
             if time.monotonic() > end:
                 raise TimeoutError(f"never came true: {condition}")
             time.sleep(0.05)
-
-    def dark(self, dark):
-        self.emulate("dark" if dark else "light")
-
-    def resolution(self, ratio, width=1100, height=760):
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
-                  mobile=False)
 
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
@@ -84,14 +74,6 @@ class Microscope(browser.Browser):
             self.call("Input.dispatchTouchEvent", type=kind,
                       touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
         self.call("Emulation.setTouchEmulationEnabled", enabled=False)
-
-    def picture(self, name):
-        folder = os.environ.get("CRADLE_MICROSCOPE_PICTURES")
-        if not folder:
-            return
-        time.sleep(0.4)
-        image = self.call("Page.captureScreenshot", format="png")["data"]
-        (pathlib.Path(folder) / f"microscope-{name}.png").write_bytes(base64.b64decode(image))
 
 
 # Results
@@ -237,7 +219,7 @@ class InBrowser(unittest.TestCase):
         shutil.rmtree(cls.folder)
 
     def setUp(self):
-        self.browser.resolution(1)
+        self.browser.resize(1100, 760)
         self.browser.open(self.page)
 
     def tearDown(self):
@@ -273,7 +255,7 @@ class InBrowser(unittest.TestCase):
     # Where things are, exactly
 
     def exact_place(self, view, particle, time):
-        """Pixels of a particle at a time (a fraction), in fractions until the last step."""
+        """Pixels of a particle at a time (a fraction)."""
         event = view["anchor"]["e"]
         left, origin, _, places, after = self.collisions[event]
         frame = (after[left] + after[left + 1]) / 2  # of the pair at the anchor
@@ -281,10 +263,18 @@ class InBrowser(unittest.TestCase):
         since, at, speed = (earlier[-1][1], earlier[-1][3][particle], earlier[-1][4][particle]) if earlier else \
             (Fraction(0), self.start[0][particle], self.start[1][particle])
         x = at + speed * (time - since) - places[left] - frame * (time - origin)
-        tau, box = time - origin, view["box"]
+        return self.pixels_of(view, time - origin, x)
+
+    def pixels_of(self, view, tau, x):
+        """Pixels of what is tau after the anchor's collision and x from it, in fractions until the last step."""
+        box = view["box"]
         across = (tau - Fraction(view["tau"])) / Fraction(view["T"]) + Fraction(1, 2)
         up = (x - Fraction(view["V"]) * tau - Fraction(view["xi"])) / Fraction(view["X"])
         return box["left"] + box["width"] * float(across), box["top"] + box["height"] * float(Fraction(1, 2) - up)
+
+    def assert_at(self, drawn, x, y):
+        self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
+        self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
 
     def assert_exact(self, view, least=3):
         """Every collision in sight, of both its particles, and points of all lines between, are where they should
@@ -296,9 +286,7 @@ class InBrowser(unittest.TestCase):
                 continue
             seen += 1
             for particle in (left, left + 1):
-                drawn = self.position(particle, event)
-                self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
-                self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
+                self.assert_at(self.position(particle, event), x, y)
         self.assertGreaterEqual(seen, least)
         last = self.collisions[-1][1]
         for particle, part in itertools.product(range(3), (0.03, 0.21, 0.4, 0.55, 0.7)):
@@ -313,18 +301,13 @@ class InBrowser(unittest.TestCase):
             self.assertAlmostEqual(drawn, y, delta=HUNDREDTH + 1e-9 * abs(y))
 
     def test_drawn_positions_are_exact_at_any_depth(self):
-        for depth, name in (("1", "1"), ("1e-10", ""), ("1e-100", "1e-100"), ("1e-200", ""), ("1e-287", ""),
-                            ("1e-290", "1e-290")):
+        for depth in ("1", "1e-10", "1e-100", "1e-200", "1e-287", "1e-290"):
             with self.subTest(depth=depth):
                 view = self.m(f"zoomTo({{depth: {depth}}})")
                 self.assertEqual(view["X"], float(depth))
                 self.assertTrue(view["exact"])
                 self.assert_exact(view, 1 if depth == "1e-290" else 3)
-                if name:
-                    self.browser.picture(f"collapse3-{name}-light")
-                    self.browser.dark(True)
-                    self.browser.picture(f"collapse3-{name}-dark")
-                    self.browser.dark(False)
+                self.browser.shot(f"microscope-{depth}")
 
     def test_what_doubles_do_not_hold_is_left_out_and_reported(self):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
@@ -406,9 +389,7 @@ class InBrowser(unittest.TestCase):
         self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
         self.browser.mouse("mouseMoved", x + 37, y - 21, button="left", buttons=1)
         self.browser.mouse("mouseReleased", x + 37, y - 21, button="left", clickCount=1)
-        after = self.position(0, 0)
-        self.assertAlmostEqual(after["x"] - before["x"], 37, delta=HUNDREDTH)
-        self.assertAlmostEqual(after["y"] - before["y"], -21, delta=HUNDREDTH)
+        self.assert_at(self.position(0, 0), before["x"] + 37, before["y"] - 21)
 
     def test_keys(self):
         self.clicked()
@@ -495,7 +476,7 @@ class InBrowser(unittest.TestCase):
 
     def test_dark_and_light(self):
         self.assertGreater(min(self.pixel(3, 3)), 200)
-        self.browser.dark(True)
+        self.browser.emulate("dark")
         while max(self.pixel(3, 3)) >= 60:
             time.sleep(0.05)
         # A dot of a collision stands out in both.
@@ -506,7 +487,7 @@ class InBrowser(unittest.TestCase):
         self.assertTrue(view["exact"])
 
     def test_high_resolution(self):
-        self.browser.resolution(2)
+        self.browser.resize(1100, 760, 2)
         self.browser.open(self.page)
         sizes = self.browser.run("""(c => [c.width, c.clientWidth, c.height, c.clientHeight])(
             document.querySelector('canvas'))""")
@@ -518,21 +499,18 @@ class InBrowser(unittest.TestCase):
     def test_a_million_collisions(self):
         result, moments, places, left = rows_result(self.folder, 1000)
         with result:
-            begun = time.monotonic()
             page, data = write_page(self.folder, result, "million")
-            took = time.monotonic() - begun
         self.assertEqual(data["collisions"], 1_000_000)
         self.assertLess(page.stat().st_size, 15e6)
         self.browser.open(page)
         self.assertFalse(self.view()["exact"])
         # What is drawn of the whole: collisions in the lens where the rows overlap, nothing beside them.
         view = self.view()
-        box, anchor = view["box"], view["anchor"]["e"]
+        anchor = view["anchor"]["e"]
 
         def colourful(t, x):  # the home view's frame is the lab's
-            across = (t - moments[anchor] - view["tau"]) / view["T"] + 0.5
-            up = (x - places[anchor] - view["xi"]) / view["X"]
-            colour = self.pixel(box["left"] + box["width"] * across, box["top"] + box["height"] * (0.5 - up))
+            at = self.pixels_of(view, Fraction(t - moments[anchor]), Fraction(x - places[anchor]))
+            colour = self.pixel(*at)
             return max(colour) - min(colour)
         self.assertGreater(colourful(1000, 3.3), 30)
         self.assertGreater(colourful(1000, -333.7), 30)
@@ -542,32 +520,14 @@ class InBrowser(unittest.TestCase):
         for event in (12345, 500_000, 777_777):
             view = self.m(f"zoomTo({{event: {event}, depth: 4, time: 6}})")
             self.assertTrue(view["exact"])
-            box, seen = view["box"], 0
+            seen = 0
             for other in np.flatnonzero((np.abs(moments - moments[event]) < 3) & (np.abs(places - places[event]) < 2)):
                 # Pairs of equal elastic particles: the frame at any collision is the lab's.
-                x = box["left"] + box["width"] * ((moments[other] - moments[event] - view["tau"]) / view["T"] + 0.5)
-                y = box["top"] + box["height"] * (0.5 - (places[other] - places[event] - view["V"] *
-                                                         (moments[other] - moments[event]) - view["xi"]) / view["X"])
-                drawn = self.position(left[other], other)
-                self.assertAlmostEqual(drawn["x"], x, delta=HUNDREDTH)
-                self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
+                at = self.pixels_of(view, Fraction(moments[other] - moments[event]),
+                                    Fraction(places[other] - places[event]))
+                self.assert_at(self.position(left[other], other), *at)
                 seen += 1
             self.assertGreater(seen, 8)
-        if os.environ.get("CRADLE_MICROSCOPE_SPEED"):
-            self.report_speed(page, took)
-
-    def report_speed(self, page, took):
-        print(f"\ndata and page {took:.1f} s, {page.stat().st_size / 1e6:.1f} MB")
-        self.m("actions.home()")
-        for name, act in (("moving the whole", "m.pan(n % 40 < 20 ? -6 : 6, 0)"),
-                          ("zooming in", "m.zoom(1.02, {x: 500, y: 230})"), ("moving there", "m.pan(-6, 1)")):
-            print(name, self.browser.run("""new Promise(done => { const m = cradleMicroscopeTest, spent = [];
-                let n = 0; const begun = performance.now(), step = () => { const t = performance.now();
-                %s; spent.push(m.state.drawn); ++n; if (t - begun < 4000) requestAnimationFrame(step);
-                else { spent.sort((a, b) => a - b); done(
-                    `${(n / (t - begun) * 1000).toFixed(1)} frames/s, drawing takes ` +
-                  `${spent[n >> 1].toFixed(1)} ms (median), ${spent[Math.floor(n * 0.95)].toFixed(1)} (95 %%)`); } };
-                requestAnimationFrame(step); })""" % act))
 
     # With the program
 
@@ -582,9 +542,6 @@ class InBrowser(unittest.TestCase):
 
     def assert_gaps_of_snapshots(self, result, bound):
         """The gaps right after the collision before a snapshot, flown until then, are the snapshot's."""
-        page, data = write_page(self.folder, result, "snapshots")
-        self.assertEqual(data["kind"], "collisions")
-        self.browser.open(page)
         moments = result.file["events/time"][:] + result.file["events/time_low"][:]
         compared = 0
         for shot in result.file["snapshots"].values():
@@ -604,8 +561,6 @@ class InBrowser(unittest.TestCase):
     def assert_charts_are_where_positions_are(self, result):
         """Collisions and lines of charts with some width, against places in the lab: every particle that is drawn at a
         time is there once, and where it should be."""
-        page, _ = write_page(self.folder, result, "charts")
-        self.browser.open(page)
         count, compared = len(result.file["events/left"]), 0
         for event in (0, count // 3, count // 2, count - 2):
             for span, depth in ((8, 4), (30, 10), (1, 12)):
@@ -635,35 +590,25 @@ class InBrowser(unittest.TestCase):
                 compared += seen > 3
         self.assertGreaterEqual(compared, 8)
 
-    def test_charts_are_where_positions_are(self):
-        rows = {"initial.particles": 200, "output.events": "true", "output.snapshots": "[]",
-                "output.profiles.times": "[10]", "run.until": 120}
-        ring = {"initial.particles": 100, "initial.perturbation": 0.2, "run.until": 15, "output.events": "true"}
-        for name, scene, keys in (
-                ("inelastic rows", "fig2", rows | {"law.restitution": 0.95}), ("wet rows", "fig6", rows),
-                ("inelastic ring", "cooling", ring | {"law.type": "inelastic", "law.restitution": 0.8}),
-                ("sticky ring", "cooling", ring),
-                ("wet ring", "cooling", ring | {"law.type": "wet", "law.loss": 0.03})):
+    def test_gaps_are_those_of_snapshots_and_charts_are_where_positions_are(self):
+        rows = {"run.until": 250, "output.snapshots": "[0, 50, 150, 250]", "output.profiles.times": "[10]"}
+        ring = {"initial.particles": 200, "initial.perturbation": 0.2, "run.until": 20,
+                "output.snapshots": "[0, 1, 5, 20]"}
+        inelastic = {"law.type": "inelastic", "law.restitution": 0.8}
+        for name, scene, bound, keys in (
+                ("inelastic-rows", "fig2", 1e-9, rows | {"initial.particles": 400, "law.restitution": 0.98}),
+                ("wet-rows", "fig6", 1e-7, rows | {"initial.particles": 300}),
+                ("inelastic-ring", "cooling", 1e-8, ring | inelastic),
+                ("cut-off-ring", "cooling", 1e-8, ring | inelastic | {"law.cutoff": 0.01}),
+                ("sticky-ring", "cooling", 1e-8, ring),
+                ("wet-ring", "cooling", 1e-8, ring | {"law.type": "wet", "law.loss": 0.03})):
             with self.subTest(name):
-                self.assert_charts_are_where_positions_are(self.program_result(name.replace(" ", "-"), scene, **keys))
-
-    def test_gaps_are_those_of_snapshots_rows(self):
-        self.assert_gaps_of_snapshots(self.program_result("rows", "fig2", **{
-            "initial.particles": 400, "law.restitution": 0.98, "run.until": 250, "output.events": "true",
-            "output.snapshots": "[0, 50, 150, 250]", "output.profiles.times": "[10]"}), 1e-9)
-
-    def test_gaps_are_those_of_snapshots_wet(self):
-        self.assert_gaps_of_snapshots(self.program_result("wet", "fig6", **{
-            "initial.particles": 300, "run.until": 250, "output.events": "true",
-            "output.snapshots": "[0, 50, 150, 250]", "output.profiles.times": "[10]"}), 1e-7)
-
-    def test_gaps_are_those_of_snapshots_ring(self):
-        for law in ({"law.type": "inelastic", "law.restitution": 0.8, "law.cutoff": 0.01}, {"law.type": "sticky"},
-                    {"law.type": "wet", "law.loss": 0.03}):
-            with self.subTest(law=law["law.type"]):
-                self.assert_gaps_of_snapshots(self.program_result("ring" + law["law.type"], "cooling", **law, **{
-                    "initial.particles": 200, "initial.perturbation": 0.2, "run.until": 20, "output.events": "true",
-                    "output.snapshots": "[0, 1, 5, 20]"}), 1e-8)
+                result = self.program_result(name, scene, **keys, **{"output.events": "true"})
+                page, data = write_page(self.folder, result, name)
+                self.assertEqual(data["kind"], "collisions")
+                self.browser.open(page)
+                self.assert_gaps_of_snapshots(result, bound)
+                self.assert_charts_are_where_positions_are(result)
 
     def test_snapshots_alone(self):
         result = self.program_result("shots", "fig2", **{
@@ -672,7 +617,7 @@ class InBrowser(unittest.TestCase):
         page, data = write_page(self.folder, result, "shots")
         self.assertEqual(data["kind"], "snapshots")
         self.browser.open(page)
-        self.browser.picture("snapshots")
+        self.browser.shot("microscope-snapshots")
         shot = result.file["snapshots/0000"]
         found = self.browser.run("""(() => { const w = cradleMicroscopeTest.world();
             return [[...w.x0], [...w.v0], w.start]; })()""")
@@ -687,15 +632,12 @@ class InBrowser(unittest.TestCase):
         for key in ("n, p:", "d:", "c:"):
             self.assertNotIn(key, offered, "of collisions, which snapshots do not have")
 
-    def test_pictures_of_a_core(self):
-        if not os.environ.get("CRADLE_MICROSCOPE_PICTURES"):
-            self.skipTest("no pictures wanted (CRADLE_MICROSCOPE_PICTURES)")
+    def test_a_core_is_drawn_from_gaps_where_positions_do_not_serve(self):
         result = self.program_result("core", "fig2", **{
             "initial.particles": 400, "law.restitution": 0.98, "run.until": 325, "output.events": "true",
             "output.profiles.times": "[10]"})
         page, _ = write_page(self.folder, result, "core")
         self.browser.open(page)
-        self.browser.picture("core-whole")
         count = len(result.file["events/left"])
         for depth in (1e-3, 1e-9):
             event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.9 * count} && x > -12 &&
@@ -704,8 +646,4 @@ class InBrowser(unittest.TestCase):
             span = 0.06 * view["T"]
             self.m(f"zoomTo({{event: {event}, depth: {depth}, time: {span}}})")
             self.assertEqual(self.view()["exact"], depth < 1e-6)  # where positions serve, they do
-            self.browser.picture(f"core-{depth:.0e}".replace("-0", "-"))
-
-
-if __name__ == "__main__":
-    unittest.main()
+            self.browser.shot(f"microscope-core-{depth:.0e}")

@@ -3,14 +3,8 @@ import json
 import os
 import unittest
 
-import cradle
 import notebooks
-from cradle import simulation
-
-try:
-    LIVE = bool(simulation.module())
-except cradle.Error as error:
-    LIVE, REASON = False, error.message
+import small
 
 
 class Notebooks(unittest.TestCase):
@@ -18,17 +12,15 @@ class Notebooks(unittest.TestCase):
         self.assertEqual(sorted(f"{name}.ipynb" for name in notebooks.NAMES),
                          sorted(name for name in os.listdir(notebooks.FOLDER) if name.endswith(".ipynb")))
         for name in notebooks.NAMES:
-            with open(notebooks.path(name, ".ipynb"), encoding="utf-8") as file:
-                self.assertEqual(file.read(), notebooks.from_script(name),
-                                 f"{name}: write it again with tools/python/notebooks.py")
+            self.assertEqual(small.read(notebooks.path(name, ".ipynb")), notebooks.from_script(name),
+                             f"{name}: write it again with tools/python/notebooks.py")
 
     def test_every_cell_runs(self):
         for name in notebooks.NAMES:
             with self.subTest(name):
-                if name.startswith("live_") and not LIVE:
-                    self.skipTest(REASON)
-                with open(notebooks.path(name, ".ipynb"), encoding="utf-8") as file:
-                    cells = json.load(file)["cells"]
+                if name.startswith("live_") and small.live():
+                    self.skipTest(small.live())
+                cells = json.loads(small.read(notebooks.path(name, ".ipynb")))["cells"]
                 names = {}
                 for k, cell in enumerate(cells):
                     text = "".join(cell["source"])
@@ -36,7 +28,3 @@ class Notebooks(unittest.TestCase):
                         exec(compile(text, f"{name}.ipynb, cell {k}", "exec"), names)
                     else:
                         self.assertNotIn("# %%", text)
-
-
-if __name__ == "__main__":
-    unittest.main()

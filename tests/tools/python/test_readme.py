@@ -6,22 +6,13 @@ import re
 import unittest
 
 import cradle
-from cradle import simulation
+import small
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
 
 
 def blocks(name):
-    with open(os.path.join(ROOT, name), encoding="utf-8") as file:
-        return [part.split("```", 1)[0] for part in file.read().split("```python\n")[1:]]
-
-
-def live():
-    """Whether the module for live simulations is built."""
-    try:
-        return bool(simulation.module())
-    except cradle.Error:
-        return False
+    return [part.split("```", 1)[0] for part in small.read(os.path.join(ROOT, name)).split("```python\n")[1:]]
 
 
 class Readme(unittest.TestCase):
@@ -32,7 +23,7 @@ class Readme(unittest.TestCase):
         if not importlib.util.find_spec("pandas"):
             found = [re.sub(".*to_pandas.*\n", "", text) for text in found]
         for text in found:
-            if "cradle.Simulation" in text and not live():
+            if "cradle.Simulation" in text and small.live():
                 continue
             with self.subTest(text):
                 exec(compile(text, "README.md", "exec"), {})

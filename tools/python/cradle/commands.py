@@ -155,11 +155,7 @@ def called(words: list[str], output: str, threads: int | None, progress: bool | 
 @contextlib.contextmanager
 def scene_file(scene) -> Iterator[tuple[str, str]]:
     """What to give the program as SCENE, and the name for its results."""
-    if isinstance(scene, Result):
-        scene, name = scene.scene_text, str(scene.attributes.get("name", "scene"))
-    else:
-        name = "scene"
-    scene = text_or_path(scene)
+    scene, name = source_of(scene)
     if "\n" not in scene:
         yield scene, os.path.splitext(os.path.basename(scene))[0]
         return
@@ -170,12 +166,15 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
         yield path, name
 
 
-def text_or_path(scene) -> str:
-    """A scene file, the name of a bundled scene, or the text of one. Raises Error for what is none."""
+def source_of(scene) -> tuple[str, str]:
+    """A scene file, the name of a bundled scene, or the text of one, which has line breaks; and what to call the text.
+    Raises Error for what is none."""
+    if isinstance(scene, Result):
+        return scene.scene_text, str(scene.attributes.get("name", "scene"))
     if isinstance(scene, (str, os.PathLike)):
-        return path_of(scene, "scene")
+        return path_of(scene, "scene"), "scene"
     if isinstance(scene, Mapping):
-        return scene_text(scene)
+        return scene_text(scene), "scene"
     raise Error(f"not a scene (found {scene!r}): give a file, the name of a bundled scene, a text with line breaks, "
                 "nested dicts or a result", BAD_INPUT)
 

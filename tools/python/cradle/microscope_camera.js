@@ -9,13 +9,8 @@ function microscopeCamera(world) {
 
   camera.home = () => {
     const span = Math.max(world.end - world.start, Number.MIN_VALUE);
-    let low = Infinity, high = -Infinity;
-    for (let e = 0; e < world.n; ++e) {
-      low = Math.min(low, world.x[e]);
-      high = Math.max(high, world.x[e]);
-    }
-    low = Math.min(low, world.x0[0]);
-    high = Math.max(high, world.x0[world.particles - 1]);
+    const low = world.x.reduce((least, x) => Math.min(least, x), world.x0[0]);
+    const high = world.x.reduce((most, x) => Math.max(most, x), world.x0[world.particles - 1]);
     const anchor = world.n ? { e: 0, a: world.left[0] } : { e: -1, a: Math.floor((world.particles - 1) / 2) };
     const { t, x } = microscopeOrigin(world, anchor), lab = microscopeAnchor(world, anchor).lab;
     limits.T = 1.06 * span;
@@ -112,18 +107,11 @@ function microscopeCamera(world) {
   // The collision that sets the span of space for the visible span of time: near a point, but not so near that it
   // belongs to the next scale of a collapse.
   camera.guide = ([tau, xi]) => {
-    const { view, chart } = camera;
-    if (!chart) return camera.nearestInPositions()?.e ?? view.anchor.e;
-    let best = view.anchor.e, least = Infinity;
-    for (let i = 0; i < chart.collisions.length; ++i) {
-      const apart = Math.abs(chart.tau[i] - tau) / view.T;
-      const distance = Math.hypot(apart, (chart.xi[i] - view.V * chart.tau[i] - xi) / view.X) + (apart < 0.1 ? 10 : 0);
-      if (distance < least) {
-        least = distance;
-        best = chart.collisions[i];
-      }
-    }
-    return best;
+    const { view, chart } = camera, found = !chart ? camera.nearestInPositions() : camera.least((t, x) => {
+      const apart = Math.abs(t - tau) / view.T;
+      return Math.hypot(apart, (x - xi) / view.X) + (apart < 0.1 ? 10 : 0);
+    });
+    return found?.e ?? view.anchor.e;
   };
 
   camera.pan = (byTime, bySpace) => {
@@ -144,40 +132,42 @@ function microscopeCamera(world) {
     camera.reanchor(to);
   };
 
-  // {e, tau, xi, distance} of the collision of the chart nearest to a point, null if there is none.
-  camera.nearest = (tau, xi, spanTau, spanXi) => {
-    const { chart, view } = camera, { best, distance } = microscopeNearest(chart, tau, xi, spanTau, spanXi, view.V);
-    return best < 0 ? null : { e: chart.collisions[best], tau: chart.tau[best], xi: chart.xi[best], distance };
+  // {e, tau, xi, distance} of the collision of the chart with the least cost(tau, xi in the view's frame, collision);
+  // null if none is finite.
+  camera.least = cost => {
+    const { chart: { collisions, tau, xi }, view: { V } } = camera;
+    const { best, least } = microscopeLeast(0, collisions.length, i => cost(tau[i], xi[i] - V * tau[i], collisions[i]));
+    return best < 0 ? null : { e: collisions[best], tau: tau[best], xi: xi[best], distance: least };
   };
+  // The one nearest to a point, in spans of time and space.
+  camera.nearest = (tau, xi, spanTau, spanXi) =>
+    camera.least((t, x) => Math.hypot((t - tau) / spanTau, (x - xi) / spanXi));
   // The deepest collision near a point, within given parts of the picture. It stays in place on zooming in, so that the
   // wheel over the tip of a collapse follows it.
   camera.deepest = ([tau, xi], partOfT, partOfX) => {
-    const { chart, view } = camera;
-    let best = -1;
-    for (let i = 0; i < chart.collisions.length; ++i) {
-      if (Math.abs(chart.tau[i] - tau) > partOfT * view.T) continue;
-      if (Math.abs(chart.xi[i] - view.V * chart.tau[i] - xi) > partOfX * view.X) continue;
-      if (best < 0 || world.depth[chart.collisions[i]] < world.depth[chart.collisions[best]]) best = i;
-    }
-    return best < 0 ? null : { e: chart.collisions[best], tau: chart.tau[best], xi: chart.xi[best] };
+    const { T, X } = camera.view;
+    return camera.least((t, x, e) =>
+      Math.abs(t - tau) > partOfT * T || Math.abs(x - xi) > partOfX * X ? Infinity : world.depth[e]);
   };
   camera.nearestInPositions = () => {
     const { view } = camera, { e } = view.anchor, { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
     const middle = microscopeFirstAfter(world.time, t0 + view.tau);
-    let best = null;
-    for (let k = Math.max(0, middle - 3000); k < Math.min(world.n, middle + 3000); ++k) {
-      const tau = e < 0 ? world.time[k] - t0 : microscopeBetween(world, e, k), xi = world.x[k] - x0 - view.lab * tau;
-      const distance = Math.hypot((tau - view.tau) / view.T, (xi - view.V * tau - view.xi) / view.X);
-      if (!best || distance < best.distance) best = { e: k, tau, xi, distance };
-    }
-    return best;
+    const after = k => e < 0 ? world.time[k] - t0 : microscopeBetween(world, e, k);
+    const beside = (k, tau) => world.x[k] - x0 - view.lab * tau;
+    const { best, least } = microscopeLeast(Math.max(0, middle - 3000), Math.min(world.n, middle + 3000), k => {
+      const tau = after(k);
+      return Math.hypot((tau - view.tau) / view.T, (beside(k, tau) - view.V * tau - view.xi) / view.X);
+    });
+    return best < 0 ? null : { e: best, tau: after(best), xi: beside(best, after(best)), distance: least };
   };
 
   // Keeps the picture but makes another collision, at (tau, xi), the anchor.
   camera.reanchor = ({ e, tau, xi }) => {
     const { view, chart } = camera, anchor = { e, a: world.left[e] }, pair = microscopeAnchor(world, anchor);
-    // The velocity of the new pair's frame in the old one: from the chart, or from the lab if there is no chart.
-    const u = chart ? microscopeSpeedAt(chart, world, anchor, pair) : pair.lab - view.lab;
+    // The velocity of the new pair's frame in the old one: in the chart that of one of its particles right after the
+    // collision, minus the velocity of this particle relative to the pair; or from the lab if there is no chart.
+    const [line, at] = chart ? microscopeThrough(chart, pair.a, e) : [];
+    const u = chart ? line.speeds[at] - pair.speedA : pair.lab - view.lab;
     camera.view = { anchor, lab: pair.lab, T: view.T, X: view.X, V: view.V - u,
                     tau: view.tau - tau, xi: view.xi - (xi - view.V * tau) };
     camera.chart = null;
@@ -216,7 +206,6 @@ function microscopeCamera(world) {
       microscopeChart(world, view.anchor, next.early, next.late, next.low, next.high, next.V);
   };
 
-  camera.limits = limits;
   camera.home();
   return camera;
 }
@@ -233,11 +222,4 @@ function microscopeAlong(chart, line, tau) {
   const before = next > 0 ? point(next - 1) : from, behind = next < points.length ? point(next) : to;
   const span = behind[0] - before[0];
   return span > 0 ? before[1] + (behind[1] - before[1]) * ((tau - before[0]) / span) : before[1];
-}
-
-// The velocity of the pair of another collision, in the chart's frame: that of one of its particles right after it,
-// minus the velocity of this particle relative to the pair.
-function microscopeSpeedAt(chart, world, anchor, pair) {
-  const [line, at] = microscopeThrough(chart, pair.a, anchor.e);
-  return line.speeds[at] - pair.speedA;
 }

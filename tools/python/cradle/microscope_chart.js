@@ -87,7 +87,7 @@ function microscopeTimes(world, e, collisions) {
 //   collisions    Int32Array, rising; tau, xi of each
 //   lines         [{particle, points: [index in collisions], speeds: [velocity after each], from: [tau, xi],
 //                 to: [tau, xi]}]
-//   byParticle    the lines of the particles around the anchor, by particle
+//   around        the particles around the anchor; byParticle: their lines, by particle
 function microscopeChart(world, anchor, from, to, low, high, drift) {
   const begins = -microscopeFlight(world, -1, anchor.e);
   const final = world.n - 1, beyond = world.end - (final < 0 ? world.start : world.time[final]);
@@ -112,7 +112,7 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
     const left = !ring && order.previous(around[0].particle) >= 0 && comesIn(outer(around[0].particle), -1);
     const right = !ring && order.next(around[around.length - 1].particle) >= 0 &&
                   comesIn(outer(around[around.length - 1].particle), 1);
-    if (!left && !right) return Object.assign(chart, { around, low, high, drift, begins, ends });
+    if (!left && !right) return { ...chart, around };
     if (left) more[0] = 2 * more[0] + around.length;
     if (right) more[1] = 2 * more[1] + around.length;
   }
@@ -218,7 +218,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
     one.points.push(...ahead[k].points);
     one.speeds.push(...ahead[k].speeds);
   });
-  return { anchor, from, to, collisions, tau, xi, lines, byParticle: new Map(middle.map(one => [one.particle, one])) };
+  return { collisions, tau, xi, lines, byParticle: new Map(middle.map(one => [one.particle, one])) };
 }
 
 // The line of a chart through collision k of a particle, and the index of k in its points: [line, index].
@@ -228,19 +228,4 @@ function microscopeThrough(chart, particle, k) {
     if (place >= 0) return [line, place];
   }
   return null;
-}
-
-// The collision of a chart that is nearest to a point, in spans of time and space; its number there, -1 for none.
-function microscopeNearest(chart, tau, place, spanTau, spanXi, drift) {
-  let best = -1, least = Infinity;
-  for (let i = 0; i < chart.collisions.length; ++i) {
-    const across = (chart.tau[i] - tau) / spanTau;
-    if (Math.abs(across) > least) continue;
-    const distance = Math.hypot(across, (chart.xi[i] - drift * chart.tau[i] - place) / spanXi);
-    if (distance < least) {
-      least = distance;
-      best = i;
-    }
-  }
-  return { best, distance: least };
 }

@@ -5,9 +5,9 @@ const MICROSCOPE_STEPS = 20000;  // the most collisions that are searched for a 
 // Gap and closing speed of neighbours a (left) and b right after collision e (-1: the start), and `path`, the change of
 // the gap since or until the collision from which it is known: the rounding error of the gap is 1e-16 path.
 function microscopeRelative(world, a, b, e) {
-  const past = microscopeFromPast(world, a, b, e);
+  const past = microscopeKnownFrom(world, a, b, e, -1);
   if (past && past.path === 0) return past;
-  const future = microscopeFromFuture(world, a, b, e);
+  const future = microscopeKnownFrom(world, a, b, e, 1);
   if (past && future) return past.path <= future.path ? past : future;
   if (past || future) return past || future;
   const apart = microscopeAhead(world, microscopePlace(world, b, e) - microscopePlace(world, a, e));
@@ -20,22 +20,33 @@ function microscopeAhead({ ring }, distance) {
   return ring ? distance - ring * Math.floor(distance / ring) : distance;
 }
 
-function microscopeFromPast(world, a, b, e) {
-  const { list, begin } = world, kicks = [];
-  let i = microscopeSlotAfter(world, a, e) - 1, j = microscopeSlotAfter(world, b, e) - 1, from = -1;
-  let gap = 0, w = 0;
+// The same from the last collision of the two with each other until e, or the start (step -1), or from their next one
+// (step 1); null if there is none, or if they have too many with others between.
+function microscopeKnownFrom(world, a, b, e, step) {
+  const { list, begin } = world, kicks = [], none = step < 0 ? -1 : Infinity;
+  const slotOf = particle => microscopeSlotAfter(world, particle, e) - (step < 0 ? 1 : 0);
+  const at = (particle, slot) => slot < begin[particle] || slot >= begin[particle + 1] ? none : list[slot];
+  let i = slotOf(a), j = slotOf(b), met = none;
   for (;;) {
-    const ofA = i >= begin[a] ? list[i] : -1, ofB = j >= begin[b] ? list[j] : -1;
+    const ofA = at(a, i), ofB = at(b, j);
     if (ofA === ofB) {
-      from = ofA;
+      met = ofA;
       break;
     }
     if (kicks.length >= MICROSCOPE_STEPS) return null;
-    if (ofA > ofB) kicks.push([ofA, microscopeKick(world, a, list[i--])]);
-    else kicks.push([ofB, -microscopeKick(world, b, list[j--])]);
+    const isA = step * ofA < step * ofB, [next, particle] = isA ? [ofA, a] : [ofB, b];
+    kicks.push([next, isA ? microscopeKick(world, a, next) : -microscopeKick(world, b, next)]);
+    if (isA) i += step; else j += step;
+    if (step > 0 && world.event[next] === MICROSCOPE.merge && microscopeGone(world, next) === particle) {
+      // The particle that it merged into replaces it.
+      const heir = microscopeOther(world, particle, next), slot = microscopeSlotAfter(world, heir, next);
+      if (isA) { a = heir; i = slot; } else { b = heir; j = slot; }
+    }
   }
-  if (from >= 0) {
-    w = world.left[from] === a ? world.after[from] : -world.after[from];
+  if (met === Infinity) return null;
+  let gap = 0, w = 0;
+  if (met >= 0) {
+    w = (world.left[met] === a ? 1 : -1) * (step < 0 ? world.after : world.speed)[met];
   } else if (b === a + 1 || (world.ring && b === 0 && a === world.particles - 1)) {
     gap = world.gap0[a];
     w = world.w0[a];
@@ -43,7 +54,8 @@ function microscopeFromPast(world, a, b, e) {
     gap = microscopeAhead(world, world.x0[b] - world.x0[a]);
     w = world.v0[a] - world.v0[b];
   }
-  return microscopeFlown(world, { gap, w, path: from < 0 && !kicks.length && e < 0 ? 0 : gap }, from, kicks, e, 1);
+  const path = met < 0 && !kicks.length && e < 0 ? 0 : gap;
+  return microscopeFlown(world, { gap, w, path }, met, kicks, e, -step);
 }
 
 // Gap, closing speed and path at collision e from those at collision `at`, using the kicks between, the last one first;
@@ -57,30 +69,6 @@ function microscopeFlown(world, { gap, w, path }, at, kicks, e, sign) {
     at = until;
   }
   return { gap, w, path };
-}
-
-function microscopeFromFuture(world, a, b, e) {
-  const { list, begin } = world, kicks = [];
-  let i = microscopeSlotAfter(world, a, e), j = microscopeSlotAfter(world, b, e), w = 0, at = -1;
-  for (;;) {
-    const ofA = i < begin[a + 1] ? list[i] : Infinity, ofB = j < begin[b + 1] ? list[j] : Infinity;
-    if (ofA === ofB) {
-      if (ofA === Infinity) return null;
-      at = ofA;
-      w = world.left[at] === a ? world.speed[at] : -world.speed[at];
-      break;
-    }
-    if (kicks.length >= MICROSCOPE_STEPS) return null;
-    const next = Math.min(ofA, ofB), isA = ofA < ofB, particle = isA ? a : b;
-    kicks.push([next, isA ? microscopeKick(world, a, next) : -microscopeKick(world, b, next)]);
-    if (isA) ++i; else ++j;
-    if (world.event[next] === MICROSCOPE.merge && microscopeGone(world, next) === particle) {
-      // The particle that it merged into replaces it.
-      const heir = microscopeOther(world, particle, next), slot = microscopeSlotAfter(world, heir, next);
-      if (isA) { a = heir; i = slot; } else { b = heir; j = slot; }
-    }
-  }
-  return microscopeFlown(world, { gap: 0, w, path: 0 }, at, kicks, e, -1);
 }
 
 // Position and velocity of a particle right after collision e, in the lab, with the accuracy of positions.

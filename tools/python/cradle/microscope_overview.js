@@ -138,20 +138,16 @@ function microscopeVisible(world, view, row, height) {
 function microscopeStrip(pen, world, view, box, colours, store) {
   const { n, depth } = world, columns = Math.max(1, Math.floor(box.width));
   if (store.columns !== columns) {
-    const low = new Float32Array(columns).fill(Infinity), high = new Float32Array(columns).fill(-Infinity);
-    const deepest = new Int32Array(columns).fill(-1);
+    const deepest = new Int32Array(columns).fill(-1), high = new Float32Array(columns).fill(-Infinity);
     for (let e = 0; e < n; ++e) {
       if (depth[e] < -330) continue;  // two collisions within rounding
       const column = Math.min(columns - 1, Math.floor(e / n * columns));
-      if (depth[e] < low[column]) {
-        low[column] = depth[e];
-        deepest[column] = e;
-      }
+      if (deepest[column] < 0 || depth[e] < depth[deepest[column]]) deepest[column] = e;
       if (depth[e] > high[column]) high[column] = depth[e];
     }
-    const finite = low.filter(Number.isFinite);
-    const least = finite.reduce((a, b) => Math.min(a, b), 0), most = high.reduce((a, b) => Math.max(a, b), -400);
-    Object.assign(store, { columns, low, high, deepest, range: [Math.floor(least), Math.max(1, Math.ceil(most))] });
+    const least = deepest.reduce((a, e) => e < 0 ? a : Math.min(a, depth[e]), 0);
+    const most = high.reduce((a, b) => Math.max(a, b), -400);
+    Object.assign(store, { columns, high, deepest, range: [Math.floor(least), Math.max(1, Math.ceil(most))] });
   }
   const [least, most] = store.range, y = value => box.top + box.height * (most - value) / (most - least);
   const step = microscopeStep(most - least, 3);
@@ -165,7 +161,7 @@ function microscopeStrip(pen, world, view, box, colours, store) {
   for (let column = 0; column < columns; ++column)
     if (store.deepest[column] >= 0)
       pen.fillRect(box.left + column, y(store.high[column]) - 0.75, Math.max(1, 1.2 * columns / n),
-                   Math.max(1.5, y(store.low[column]) - y(store.high[column])));
+                   Math.max(1.5, y(depth[store.deepest[column]]) - y(store.high[column])));
   // The position of the view: its collision and its span of space.
   const at = box.left + box.width * Math.max(0, view.anchor.e + 0.5) / n;
   const level = Math.min(box.top + box.height, Math.max(box.top, y(Math.log10(view.X))));

@@ -1,6 +1,7 @@
 """Scenes: the text in a result as nested dicts, and nested dicts as text for the program."""
 from __future__ import annotations
 
+import json
 import re
 from typing import Any, Mapping
 
@@ -31,10 +32,8 @@ def parse_toml(text: str) -> dict[str, Any]:
 def value_text(value: Any) -> str:
     """A value as TOML: numbers with all their digits (a Decimal too, not a Fraction), texts quoted, lists in
     brackets."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+    if isinstance(value, (bool, str)):
+        return json.dumps(value, ensure_ascii=False)  # written as in TOML
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{key} = {value_text(inner)}" for key, inner in given(value)) + " }"
     if hasattr(value, "tolist"):  # numpy's

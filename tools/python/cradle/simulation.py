@@ -15,8 +15,9 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from . import program
-from .commands import Scene, Settings, assignments, text_or_path
-from .errors import BAD_FILE, BAD_INPUT, Error, callable_of, missing, path_of
+from .commands import Scene, Settings, assignments, source_of
+from .errors import BAD_FILE, BAD_INPUT, Error, callable_of, path_of
+from .frames import imported
 from .result import Result, open
 from .scene import parse_toml
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 Time = Union[float, int, str, decimal.Decimal]
 MODULE = f"{__package__}._live"
 REACHED = "reached the end"
-COLUMNS = ("x", "v", "m", "gap", "closing_speed")
+DIGITS = ("time", "energy", "x", "v", "m", "gap", "closing_speed")  # quantities that decimals() has
 MOST_COLLISIONS = 2 ** 64 - 1  # in a call of step: as many as a run can count
 PART, MOST_EVENTS, EVENT = 2 ** 20, 10 ** 7, 56  # collisions; bytes of one event
 MOST_CALLS, MOST_THREADS = 1e9, 4096
@@ -44,6 +45,11 @@ class Collision(NamedTuple):
     time: float
     interval: float
     closing_speed: float
+
+
+def of_run(name: str, text: str, convert: Callable[[Any], Any] = lambda value: value) -> Any:
+    """A property of a simulation, read from the run that it holds."""
+    return property(lambda simulation: convert(getattr(simulation._run, name)), doc=text)
 
 
 class Simulation:
@@ -72,11 +78,11 @@ class Simulation:
 
     def __init__(self, scene: Scene, set: Settings = None, *, seed: int | None = None, threads: int | None = None,
                  restitution: Callable[[float], float] | None = None):
-        source, is_text, name = source_of(scene)
+        source, name = source_of(scene)
         settings = assignments(set) + ([] if seed is None else [f"initial.seed={seed}"])
         if restitution is not None:
             callable_of(restitution, "restitution")
-        held = module().Run(source, is_text, name, settings, threads_of(threads), restitution is not None)
+        held = module().Run(source, "\n" in source, name, settings, threads_of(threads), restitution is not None)
         self._begin(held, restitution)
 
     def _begin(self, run, restitution=None) -> None:
@@ -192,117 +198,45 @@ class Simulation:
 
     # ---- the state
 
-    @property
-    def time(self) -> float:
-        """In t."""
-        return self._run.time
-
-    @property
-    def until(self) -> float:
-        """The end, run.until, in t."""
-        return float(self._run.until)
-
-    @property
-    def collisions(self) -> int:
-        """Since the start, all, those below the cut-off and merges included."""
-        return self._run.collisions
-
-    @property
-    def merges(self) -> int:
-        """Since the start."""
-        return self._run.merges
-
-    @property
-    def energy(self) -> float:
-        """Kinetic, in m l^2/t^2, of all particles of the scene, also those that the front has not reached."""
-        return self._run.energy
-
-    @property
-    def outcome(self) -> str:
-        """"in progress", then how the run ended, as in results: "reached the end", "inelastic collapse", ..."""
-        over = self._run.over
-        return "in progress" if over is None else over[0]
-
-    @property
-    def over(self) -> bool:
-        """Whether the run has ended, so that write() has a result."""
-        return self._run.over is not None
-
-    @property
-    def x(self) -> np.ndarray:
-        """Positions in l, shape (n,)."""
-        return self._column("x")
-
-    @property
-    def v(self) -> np.ndarray:
-        """Velocities in l/t, shape (n,)."""
-        return self._column("v")
-
-    @property
-    def m(self) -> np.ndarray:
-        """Masses in m, shape (n,)."""
-        return self._column("m")
-
-    @property
-    def gap(self) -> np.ndarray:
-        """Distances between neighbours in l, exact however small: shape (n - 1,), on a ring (n,)."""
-        return self._column("gap")
-
-    @property
-    def closing_speed(self) -> np.ndarray:
-        """Velocity of the left minus that of the right neighbour, in l/t: shape (n - 1,), on a ring (n,)."""
-        return self._column("closing_speed")
-
-    @property
-    def index(self) -> np.ndarray:
-        """Numbers of the particles at the start, from 0, as int64 of shape (n,); of merged ones the first."""
-        return self._run.index
-
-    def _column(self, name: str) -> np.ndarray:
-        return self._run.column(getattr(module().Column, name))
+    time: float = of_run("time", "In t.")
+    until: float = of_run("until", "The end, run.until, in t.", float)
+    collisions: int = of_run("collisions", "Since the start, all, those below the cut-off and merges included.")
+    merges: int = of_run("merges", "Since the start.")
+    energy: float = of_run("energy", """Kinetic, in m l^2/t^2, of all particles of the scene, also those that the front
+        has not reached.""")
+    outcome: str = of_run("over", """"in progress", then how the run ended, as in results: "reached the end",
+        "inelastic collapse", ...""", lambda over: over[0] if over else "in progress")
+    over: bool = of_run("over", "Whether the run has ended, so that write() has a result.", bool)
+    x: np.ndarray = of_run("x", "Positions in l, shape (n,).")
+    v: np.ndarray = of_run("v", "Velocities in l/t, shape (n,).")
+    m: np.ndarray = of_run("m", "Masses in m, shape (n,).")
+    gap: np.ndarray = of_run("gap", """Distances between neighbours in l, exact however small: shape (n - 1,), on a ring
+        (n,).""")
+    closing_speed: np.ndarray = of_run("closing_speed", """Velocity of the left minus that of the right neighbour, in
+        l/t: shape (n - 1,), on a ring (n,).""")
+    index: np.ndarray = of_run("index", """Numbers of the particles at the start, from 0, as int64 of shape (n,); of
+        merged ones the first.""")
+    name: str = of_run("name", "The scene's name.")
+    precision: str = of_run("precision", """The type of the numbers, "double", "mpfr, 50 digits", ...""")
+    scene_text: str = of_run("scene", "The effective scene, as TOML.")
+    scene: dict[str, Any] = of_run("scene", "The same as nested dicts, numbers as floats.", parse_toml)
 
     def decimals(self, name: str) -> str | list[str]:
         """The same with all digits of the run's type, as decimal texts.
 
         name: "time" or "energy": one text; "x", "v", "m", "gap" or "closing_speed": a list.
         """
-        if name in ("time", "energy"):
-            return getattr(self._run, f"{name}_text")
-        if name not in COLUMNS:
-            raise Error(f"decimals: no such quantity (found {name}): give time, energy, {', '.join(COLUMNS)}",
-                        BAD_INPUT)
-        return self._run.decimals(getattr(module().Column, name))
+        if name not in DIGITS:
+            raise Error(f"decimals: no such quantity (found {name}): give {', '.join(DIGITS)}", BAD_INPUT)
+        return getattr(self._run, f"{name}_text")
 
     def mpmath(self, name: str, digits: int | None = None):
         """The same as mpmath.mpf (one, or a list) with the given digits, by default those of the longest text."""
-        try:
-            import mpmath
-        except ImportError:
-            raise missing("mpmath") from None
+        mpmath = imported("mpmath")
         texts = self.decimals(name)
         one = isinstance(texts, str)
         with mpmath.workdps(digits or max((len(text) for text in ([texts] if one else texts)), default=17)):
             return mpmath.mpf(texts) if one else [mpmath.mpf(text) for text in texts]
-
-    @property
-    def name(self) -> str:
-        """The scene's name."""
-        return self._run.name
-
-    @property
-    def precision(self) -> str:
-        """The type of the numbers, "double", "mpfr, 50 digits", ..."""
-        return self._run.precision
-
-    @property
-    def scene_text(self) -> str:
-        """The effective scene, as TOML."""
-        return self._run.scene
-
-    @property
-    def scene(self) -> dict[str, Any]:
-        """The same as nested dicts, numbers as floats."""
-        return parse_toml(self.scene_text)
 
     # ---- files
 
@@ -387,14 +321,6 @@ def threads_of(threads: int | None) -> int:
     return operator.index(threads)
 
 
-def source_of(scene: Scene) -> tuple[str, bool, str]:
-    """A text or what names a scene, whether it is a text, and the name of one."""
-    if isinstance(scene, Result):
-        return scene.scene_text, True, str(scene.attributes.get("name", "scene"))
-    text = text_or_path(scene)
-    return text, "\n" in text, "scene"
-
-
 def module() -> ModuleType:
     """The compiled part: beside this package where it is installed, or beside the program in its build folder.
 
@@ -407,28 +333,23 @@ def module() -> ModuleType:
         folders.append(os.path.dirname(os.path.realpath(program.find())))
     except Error:
         pass  # reported by who calls the program
-    for folder in folders:
-        for ending in importlib.machinery.EXTENSION_SUFFIXES:
-            path = os.path.join(folder, "_live" + ending)
-            if os.path.isfile(path):
-                return loaded_from(path)
-    others = [os.path.basename(path) for folder in folders for path in glob.glob(os.path.join(folder, "_live*.so"))]
-    raise Error(f"the module for live simulations is missing (found {', '.join(others) or 'none'} in "
-                f"{' and '.join(folders)}, for {sys.executable} {sys.version.split()[0]}): install Debian's "
-                "python3-dev and pybind11-dev and build with tools/quickstart.sh, with CRADLE_PYTHON set to this "
-                "Python; cradle.run() does without", BAD_FILE)
-
-
-def loaded_from(path: str) -> ModuleType:
+    importlib.invalidate_caches()  # it may have been built just now
+    spec = importlib.machinery.PathFinder.find_spec(MODULE, folders)
+    if spec is None:
+        others = [os.path.basename(path) for folder in folders for path in glob.glob(os.path.join(folder, "_live*.so"))]
+        raise Error(f"the module for live simulations is missing (found {', '.join(others) or 'none'} in "
+                    f"{' and '.join(folders)}, for {sys.executable} {sys.version.split()[0]}): install Debian's "
+                    "python3-dev and pybind11-dev and build with tools/quickstart.sh, with CRADLE_PYTHON set to this "
+                    "Python; cradle.run() does without", BAD_FILE)
     from . import __version__
-    spec = importlib.util.spec_from_file_location(MODULE, path)
     try:
         found = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(found)
     except ImportError as error:
-        raise Error(f"{path}: cannot be loaded ({error}): build it on this machine, for this Python",
+        raise Error(f"{spec.origin}: cannot be loaded ({error}): build it on this machine, for this Python",
                     BAD_FILE) from None
     if found.version != __version__:
-        raise Error(f"{path}: of another version (found {found.version}, here {__version__}): build it again", BAD_FILE)
+        raise Error(f"{spec.origin}: of another version (found {found.version}, here {__version__}): build it again",
+                    BAD_FILE)
     sys.modules[MODULE] = found
     return found

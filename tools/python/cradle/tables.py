@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from .errors import BAD_FILE, BAD_INPUT, Error, missing
+from .errors import BAD_FILE, BAD_INPUT, Error
 from .frames import data_frame, data_set, imported
 
 if TYPE_CHECKING:
@@ -114,10 +114,7 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
 
         They are rounded here; mpmath rounds sums and products to mpmath.mp.dps, which is not changed.
         """
-        try:
-            import mpmath
-        except ImportError:
-            raise missing("mpmath") from None
+        mpmath = imported("mpmath")
         if digits is None:
             digits = max((len(text) for text in self.values.ravel().tolist()), default=17) if self.is_text else 17
         with mpmath.workdps(digits):
@@ -247,12 +244,12 @@ class Tables(Sequence):
 
     def to_pandas(self) -> pandas.DataFrame:
         """A pandas.DataFrame of all tables, one below the other, with the column `time` first."""
-        module = imported("pandas")
+        pandas = imported("pandas")
         frames = [table.to_pandas() for table in self]
         for frame, time in zip(frames, self.times):
             if "time" not in frame:
                 frame.insert(0, "time", time)
-        return module.concat(frames, ignore_index=True) if frames else module.DataFrame()
+        return pandas.concat(frames, ignore_index=True) if frames else pandas.DataFrame()
 
     def __getitem__(self, index):
         """By number, slice or, `tables["0001/gap"]`, path."""

@@ -151,15 +151,8 @@ class HeldRun {
   bool observed_ = false, in_use_ = false;
 };
 
-py::array_t<double> column_of(HeldRun& held, SceneRun::Column which) {
-  const std::vector<double> numbers = held.use([&](LiveRun& live) { return live.run().column(which); });
-  py::array_t<double> array(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-  array.attr("setflags")(py::arg("write") = false);
-  return array;
-}
-py::array_t<ParticleIndex> index_of(HeldRun& held) {
-  const std::vector<ParticleIndex> numbers = held.use([](LiveRun& live) { return live.run().index(); });
-  py::array_t<ParticleIndex> array(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+template <class Number> py::array_t<Number> read_only(const std::vector<Number>& numbers) {
+  py::array_t<Number> array(static_cast<py::ssize_t>(numbers.size()), numbers.data());
   array.attr("setflags")(py::arg("write") = false);
   return array;
 }
@@ -200,30 +193,20 @@ PYBIND11_MODULE(_live, module) {
   const py::object collision = py::module_::import("cradle.simulation").attr("Collision");
   collision_type = reinterpret_cast<PyTypeObject*>(py::object(collision).release().ptr());
   py::register_local_exception_translator(translate);
-  py::enum_<SceneRun::Column>(module, "Column")
-      .value("x", SceneRun::Column::x)
-      .value("v", SceneRun::Column::v)
-      .value("m", SceneRun::Column::m)
-      .value("gap", SceneRun::Column::gap)
-      .value("closing_speed", SceneRun::Column::closing_speed);
-  py::class_<HeldRun>(module, "Run")
+  py::class_<HeldRun> run_class(module, "Run");
+  run_class
       .def(py::init<const std::string&, bool, const std::string&, const std::vector<std::string>&, unsigned, bool>())
       .def(py::init<const std::string&, unsigned>())
       .def("advance", &HeldRun::advance)
       .def("step", &HeldRun::step)
       .def("stop", [](HeldRun& held) { held.use([](LiveRun& live) { live.run().stop(); }); })
-      .def("column", &column_of)
-      .def("decimals",
-           [](HeldRun& held, SceneRun::Column which) {
-             return held.use([which](LiveRun& live) { return live.run().column_text(which); });
-           })
       .def("save", [](HeldRun& held, const std::string& path) { held.use([&](LiveRun& run) { run.save(path); }); })
       // With the lock: HDF5 may be the one of h5py.
       .def("write",
            [](HeldRun& held, const std::string& path, bool force) {
              held.use([&](LiveRun& run) { run.write(path, force ? Force::yes : Force::no); });
            })
-      .def_property_readonly("index", &index_of)
+      .def_property_readonly("index", reads([](SceneRun& run) { return read_only(run.index()); }))
       .def_property_readonly("name", reads([](SceneRun& run) { return run.scene().name; }))
       .def_property_readonly("scene", reads([](SceneRun& run) { return effective_toml(run.scene()); }))
       .def_property_readonly("until", reads([](SceneRun& run) { return run.scene().run.until.text; }))
@@ -243,4 +226,13 @@ PYBIND11_MODULE(_live, module) {
                                return py::make_tuple(std::string(end.text), static_cast<int>(end.status), over->report,
                                                      over->warning);
                              }));
+  using Column = SceneRun::Column;
+  for (const auto& [name, column] :
+       {std::pair("x", Column::x), std::pair("v", Column::v), std::pair("m", Column::m), std::pair("gap", Column::gap),
+        std::pair("closing_speed", Column::closing_speed)}) {
+    run_class.def_property_readonly(name,
+                                    reads([which = column](SceneRun& run) { return read_only(run.column(which)); }));
+    run_class.def_property_readonly((std::string(name) + "_text").c_str(),
+                                    reads([which = column](SceneRun& run) { return run.column_text(which); }));
+  }
 }

@@ -18,6 +18,12 @@ def with_error(table, name):
     return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table[name + "_sem"])
 
 
+def draw_points(ax, x, table, name, shown=slice(None), **how):
+    """The values of a quantity at these x, with bars for standard errors that are known."""
+    value, error = (np.asarray(numbers, float)[shown] for numbers in with_error(table, name))
+    ax.errorbar(x[shown], value, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, lw=0.9, **how)
+
+
 def exact_current(result):
     """The heat current of identical elastic particles between thermal walls at rest; without gravity. Else None."""
     temperatures = [result.setting("walls", f"{side}.temperature") for side in ("left", "right")]
@@ -38,8 +44,7 @@ def draw(result, axes):
     x = np.asarray(table["x"])
     figure, axes = stacked(axes, len(PANELS), height=1.9, sharex=True)
     for ax, (name, label) in zip(axes, PANELS):
-        value, error = (np.asarray(numbers) for numbers in with_error(table, name))
-        ax.errorbar(x, value, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, color=BLUE, lw=0.9)
+        draw_points(ax, x, table, name, color=BLUE)
         ax.set_ylabel(label)
     if (current := exact_current(result)) is not None:
         axes[-1].axhline(current, color=ORANGE, lw=1, ls="--", label=f"exact, {current:.4g}")

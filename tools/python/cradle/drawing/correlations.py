@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from .averages import with_error
+from .averages import draw_points
 from .style import BLUE, ORANGE, stacked
 
 PANELS = (("msd", r"mean-square displacement ($l^2$)"),
@@ -68,8 +68,7 @@ def draw(result, axes):
     figure, axes = stacked(axes, len(PANELS), height=2.6, sharex=True)
     shown = lag > 0
     for ax, (name, label) in zip(axes, PANELS):
-        value, error = (np.asarray(numbers, float)[shown] for numbers in with_error(table, name))
-        ax.errorbar(lag[shown], value, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, color=BLUE, lw=0.9)
+        draw_points(ax, lag, table, name, shown, color=BLUE)
         ax.set(xscale="log", ylabel=label)
     axes[0].set_yscale("log")
     axes[1].axhline(0, color="0.6", lw=0.7)

@@ -40,8 +40,7 @@ def draw_series(result, theory, units, axes=None):
     replicas = len(result.replicas.get("index", ()))
     axes[0].set_title((f"{replicas} replicas; " if replicas else "") + "bands: standard error, extremes", loc="right",
                       fontsize=8)
-    axes[-1].set_xlabel(units.time_label())
-    axes[-1].set_xlim(time[0], time[-1])
+    axes[-1].set(xlabel=units.time_label(), xlim=(time[0], time[-1]))
     for ax, (name, label) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2, label="mean")
         ax.set_ylabel(units.energy_label() if name == "energy" else
@@ -83,9 +82,8 @@ def draw_profiles(result, theory, units, axes=None):
         band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
     draw_slope(velocity, profiles, theory, units)
     velocity.set_ylabel(units.mean_velocity_label())
-    density.set(ylabel=("mass " if name == "mass_density" else "") + units.density_label(),
+    density.set(ylabel=("mass " if name == "mass_density" else "") + units.density_label(), ylim=(0, None),
                 xlabel=units.position_label())
-    density.set_ylim(bottom=0)
     beside(velocity)
     return figure
 

@@ -46,8 +46,7 @@ def draw_particles(result, units, axes=None):
         falling = "potential_energy" in series  # then energy changes between collisions too
         axes[1].plot(time, series["energy"] / units.energy, color=BLUE,
                      drawstyle="default" if falling else "steps-post")
-        axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label())
-        axes[1].set_ylim(bottom=0)
+        axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label(), ylim=(0, None))
         if "collisions" in series:
             other = axes[1].twinx()
             other.plot(time, series["collisions"], color=RED, ls="--", drawstyle="steps-post")

@@ -1,15 +1,14 @@
 """The places of particles: structure factor and pair distribution, averaged with standard errors and at times; of a
 sweep those of all points, a panel for each time. The line is that of independent places, 1, of which identical elastic
 particles in equilibrium are an example."""
-import numpy as np
-
-from .averages import with_error
+from .averages import draw_points as draw_mean
 from .style import ORANGE, beside, distinct, shades, stacked, subplots, thinned
 from .sweep import label_of
 
-PICTURES = (("structure_factor", "structure", "s", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$", True),
+PICTURES = (("structure_factor", "structure", "s", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$",
+             {"xscale": "log", "yscale": "log"}),
             ("pair_distribution", "pair_distribution", "pair_distribution", "distance", "distance $r$ ($l$)",
-             "pair distribution $g(r)$", False))
+             "pair distribution $g(r)$", {}))
 
 
 def pictures(result, _theory, _units):
@@ -25,24 +24,20 @@ def mean_of(quantity):
     return quantity["mean"] if "mean" in quantity else quantity
 
 
-def draw(result, axes, group, name, along, xlabel, ylabel, log):
+def draw(result, axes, group, name, along, xlabel, ylabel, scales):
     figure, ax = subplots(axes, figsize=(5.6, 3.2))
     at = thinned(getattr(result, group))
     for table, colour in zip(at, shades(len(at))):
         ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=f"$t={table['time']:.5g}$")
     if mean := getattr(result, group + "_average"):
-        y, error = (np.asarray(numbers, float) for numbers in with_error(mean, name))
-        ax.errorbar(mean[along], y, yerr=np.where(np.isfinite(error), error, 0), fmt="o", ms=3, lw=0.9, color="k",
-                    label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")
+        draw_mean(ax, mean[along], mean, name, color="k", label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")
     ax.axhline(1, color=ORANGE, lw=1, ls="--", label="independent")
-    if log:
-        ax.set(xscale="log", yscale="log")
-    ax.set(xlabel=xlabel, ylabel=ylabel)
+    ax.set(**scales, xlabel=xlabel, ylabel=ylabel)
     beside(ax)
     return figure
 
 
-def draw_points(result, axes, group, name, along, xlabel, ylabel, log):
+def draw_points(result, axes, group, name, along, xlabel, ylabel, scales):
     points = [p for p in result.points if len(getattr(p, group))]
     times = thinned(getattr(points[0], group).times)
     figure, panels = stacked(axes, len(times), height=2.4, sharex=True)
@@ -51,9 +46,7 @@ def draw_points(result, axes, group, name, along, xlabel, ylabel, log):
             table = getattr(point, group).at(time, "nearest")
             ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label)
         ax.axhline(1, color=ORANGE, lw=1, ls="--")
-        ax.set(ylabel=ylabel, title=f"$t={time:.5g}$")
-        if log:
-            ax.set(xscale="log", yscale="log")
+        ax.set(**scales, ylabel=ylabel, title=f"$t={time:.5g}$")
     panels[0].legend(loc="best", fontsize=7)
     panels[-1].set_xlabel(xlabel)
     return figure

@@ -24,8 +24,7 @@ def draw_trust(result, axes=None):
             ax.plot(run["time"], run[f"{name}_digits"], line, color=colour, label=label)
             if not run["right_to_end"]:
                 ax.axvline(run["collisions_right_until"], color=colour, linestyle=line, linewidth=0.8)
-        ax.set_ylabel(f"digits of the {name}")
-        ax.set_ylim(bottom=0)
+        ax.set(ylabel=f"digits of the {name}", ylim=(0, None))
     panels[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
     panels[1].set_xlabel("time ($t$)   (vertical lines: until when the sequence of collisions is right)")
     return figure

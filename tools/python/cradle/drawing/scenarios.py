@@ -66,16 +66,12 @@ def draw_scenarios(result, axes=None):
             loss, value, low, high = estimated(points, name, estimate)
             ax.errorbar(loss, value, yerr=[value - low, high - value], fmt=mark + "-", ms=4, lw=0.9, capsize=2,
                         color=colour, label=f"perturbation {size:g} $l$")
-    axes[0].set_ylabel("first meeting\nis a pass")
-    axes[1].set_ylabel("passing through\nat the end")
-    for ax in axes[:2]:
-        ax.set_ylim(-0.03, 1.03)
-    axes[2].set_ylabel("times stuck")
+    axes[0].set(ylabel="first meeting\nis a pass", ylim=(-0.03, 1.03))
+    axes[1].set(ylabel="passing through\nat the end", ylim=(-0.03, 1.03))
     axes[2].set_yscale("symlog", linthresh=1)
-    axes[2].set_ylim(bottom=0)
+    axes[2].set(ylabel="times stuck", ylim=(0, None))
     axes[3].axhline(1 / 3, color=GREY, lw=0.8, zorder=0)
-    axes[3].set_ylabel("exponent of\nseparation")
-    axes[3].set(xscale="log", xlabel=r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
+    axes[3].set(ylabel="exponent of\nseparation", xscale="log", xlabel=r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
     axes[0].legend(loc="best")
     axes[0].set_title("95 % confidence", loc="right", fontsize=7)
     return figure
@@ -85,18 +81,16 @@ def draw_regimes(result, axes=None):
     """The outcomes of the replicas as shares, for each loss and size of perturbation."""
     groups = curves(result)
     figure, axes = stacked(axes, len(groups), height=1.9, sharex=True)
-    for ax, (size, points) in zip(np.atleast_1d(axes), groups.items()):
+    for ax, (size, points) in zip(axes, groups.items()):
         below = np.zeros(len(points))
         places = np.arange(len(points))
         for regime, name in REGIMES.items():
             share = np.array([np.mean(point.replicas["regime"] == regime) for point in points])
             ax.bar(places, share, bottom=below, width=0.85, color=COLOURS[regime], label=name)
             below += share
-        ax.set(ylim=(0, 1))
-        ax.set_ylabel(f"perturbation {size:g} $l$")
+        ax.set(ylim=(0, 1), ylabel=f"perturbation {size:g} $l$")
         losses = [f"{point.setting('law', 'loss'):.2g}" for point in points]
         ax.set_xticks(places, losses, fontsize=7, rotation=90 if len(points) > 13 else 0)
-    axes = np.atleast_1d(axes)
     axes[-1].set_xlabel(r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
     return figure
@@ -119,7 +113,6 @@ def draw_collapse(result, axes=None):
                 label=rf"$r={restitution:g}$: {times.mean():.4f} $\pm$ {times.std(ddof=1):.4f}, "
                       f"{len(times)} replicas")
     ax.axvline(1, color=GREY, lw=0.8, zorder=0)
-    ax.set_xlabel(r"collapse time $t_c\,/\,(N_c/2u_0)$")
-    ax.set_ylabel("probability density")
+    ax.set(xlabel=r"collapse time $t_c\,/\,(N_c/2u_0)$", ylabel="probability density")
     ax.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
     return figure

@@ -87,8 +87,7 @@ def draw_shock(result, theory, units, axes=None):
         beside(axes[0])
         filled = np.concatenate([p[density][p[density] > 0] for p in profiles])
         if len(filled) and filled.max() > 30 * np.median(filled):
-            axes[1].set_yscale("log")
-            axes[1].set_ylim(bottom=0.5 * filled.min())
+            axes[1].set(yscale="log", ylim=(0.5 * filled.min(), None))
         else:
             axes[1].set_ylim(bottom=0)
     return figure

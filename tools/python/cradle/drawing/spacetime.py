@@ -69,8 +69,8 @@ def draw_paths(ax, result, units, heaviest):
                 meetings.append((x[0] / units.x, time[0] / units.t))
     if meetings:
         ax.plot(*np.array(meetings).T, "o", ms=9, mfc="none", color=RED, mew=1.2, label="collision", zorder=5)
-    ax.set(xlabel=units.position_label(), ylabel=units.time_label())
-    ax.set_ylim(result.snapshots[0]["time"] / units.t, result.snapshots[-1]["time"] / units.t)
+    ax.set(xlabel=units.position_label(), ylabel=units.time_label(),
+           ylim=(result.snapshots[0]["time"] / units.t, result.snapshots[-1]["time"] / units.t))
     ax.legend(loc="upper left")
 
 
@@ -98,8 +98,8 @@ def draw_cradle(ax, snapshots, units):
                 tip = (previous + 0.7 * size, row) if v > 0 else (left - 0.7 * size, row)
                 ax.annotate("", (tip[0] + np.sign(v) * 2 * size, row), tip, arrowprops={"arrowstyle": "->", "lw": 0.9})
     ax.set_yticks(range(len(snapshots)), [f"$t={s['time'] / units.t:.4g}$" for s in snapshots])
-    ax.set_ylim(-0.7, len(snapshots) - 0.3)
-    ax.set_xlabel("the same as single particles, which never change places (sizes not to scale)")
+    ax.set(xlabel="the same as single particles, which never change places (sizes not to scale)",
+           ylim=(-0.7, len(snapshots) - 0.3))
     ax.tick_params(axis="y", length=0)
 
 

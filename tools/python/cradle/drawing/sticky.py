@@ -106,5 +106,5 @@ def draw_mass(ax, result, units, formula, core, growth):
             label="heaviest particle of the snapshots")
     off = np.abs(cloud - core - growth * time)[collided]
     ax.legend(loc="upper left", title=f"largest difference {off.max():.2g}" if off.size else None, title_fontsize=7.5)
-    ax.set(xlabel=units.time_label(), ylabel="mass of the cluster $M$", ylim=(0, None), xlim=(time[0], time[-1]))
-    ax.set_xlim(time[0] / units.t, time[-1] / units.t)
+    ax.set(xlabel=units.time_label(), ylabel="mass of the cluster $M$", ylim=(0, None),
+           xlim=(time[0] / units.t, time[-1] / units.t))

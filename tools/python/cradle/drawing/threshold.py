@@ -28,8 +28,7 @@ def draw(table, axes=None):
             if (side & which).any():
                 ax.plot(tried[side & which], distance[side & which], "o", ms=5, color=colour, mfc=fill, zorder=2,
                         label=f"{label}{how}")
-    ax.set_yscale("log")
-    ax.set(xlabel="value tried", ylabel="distance from the threshold")
+    ax.set(yscale="log", xlabel="value tried", ylabel="distance from the threshold")
     ax.legend(loc="lower left")
     lines = "\n" if len(about["low_digits"]) > 20 else " "
     ax.set_title(f"{about['key']} = {about['low_digits']}{lines}to {about['high_digits']}", fontsize="medium")

@@ -35,14 +35,12 @@ def draw(result, axes):
     axes[0].legend(loc="lower left", ncol=3, fontsize=7)
     axes[1].plot(times, share, "o-", color=ORANGE, ms=3, lw=0.8)
     axes[1].axhline(1 / len(snapshots[-1]["x"]), color=GREY, lw=0.8, ls="--", label="equal shares")
-    axes[1].set_ylabel("share of the energy\nthat one particle has")
-    axes[1].set_ylim(0, 1.05)
+    axes[1].set(ylabel="share of the energy\nthat one particle has", ylim=(0, 1.05))
     axes[1].legend(loc="center right", fontsize=7)
     positive = series["energy"] > 0
     axes[2].semilogy(series["time"][positive], series["energy"][positive], color=BLUE, lw=0.8, label="energy")
     given = sum(np.asarray(series[name]) for name in given_by(series))
     axes[2].semilogy(series["time"][given > 0], given[given > 0], color=ORANGE, lw=1.2, label="given by the walls")
-    axes[2].set_ylabel(r"energy ($m\,l^2/t^2$)")
-    axes[2].set_xlabel("time ($t$)")
+    axes[2].set(xlabel="time ($t$)", ylabel=r"energy ($m\,l^2/t^2$)")
     axes[2].legend(loc="lower right", fontsize=7)
     return figure

@@ -39,10 +39,10 @@ def draw_zone(result, units, axes=None):
             density.plot(outer, np.ones(2), line, color="k", lw=0.9)
             density.plot(inside, n, line, color="k", lw=0.9, label=f"$n_{index}$, Eq. (10)")
         moving = zone[f"density_{name}"] > 0
-        velocity.plot(x[moving], zone[f"velocity_{name}"][moving] / units.v, "o" if sign > 0 else "s", ms=3.2,
-                      color=colour, mfc=colour if sign > 0 else "none", label=f"{name}-movers")
-        density.plot(x, zone[f"density_{name}"] * spacing, "o" if sign > 0 else "s", ms=3.2, color=colour,
-                     mfc=colour if sign > 0 else "none", label=f"{name}-movers")
+        dots = {"marker": "o" if sign > 0 else "s", "ls": "none", "ms": 3.2, "color": colour,
+                "mfc": colour if sign > 0 else "none", "label": f"{name}-movers"}
+        velocity.plot(x[moving], zone[f"velocity_{name}"][moving] / units.v, **dots)
+        density.plot(x, zone[f"density_{name}"] * spacing, **dots)
     mass.plot(x, zone["mass_density"] * spacing, drawstyle="steps-mid", color=BLUE)
     mass.set_yscale("log")
     mass.set_title("peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else
@@ -58,10 +58,9 @@ def draw_zone(result, units, axes=None):
                    model=2 * half, top=top)
     velocity.set_yticks([-speed / units.v, 0, speed / units.v])
     velocity.set_ylabel(units.velocity_label())
-    density.set_ylabel(units.label("density $n$", r"density $n\,/\,n_0$"))
-    density.set_ylim(bottom=0)
-    mass.set_ylabel(units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"))
-    mass.set_xlabel(units.position_label())
+    density.set(ylabel=units.label("density $n$", r"density $n\,/\,n_0$"), ylim=(0, None))
+    mass.set(ylabel=units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"),
+             xlabel=units.position_label())
     beside(velocity), beside(density)
     begin, end = zone["from"] / units.t, zone["until"] / units.t
     velocity.set_title(f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples", loc="right",

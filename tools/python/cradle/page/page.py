@@ -9,7 +9,9 @@ import os
 import shlex
 import re
 
+from .. import microscope as canvas
 from .. import program
+from ..commands import scene_file
 from ..errors import Error
 from ..files import made_from
 from ..plot import PICTURES, drawings
@@ -98,12 +100,11 @@ def pictures(result: Result) -> str:
 
 def microscope(result: Result) -> str:
     """The canvas in which world lines are explored, if the result has the data."""
-    from .. import microscope as module
-    data = module.data(result)
+    data = canvas.data(result)
     if data is None:
         return ""
     style, script = ("\n".join(beside(os.path.join("..", name)) for name in names)
-                     for names in (("microscope.css",), module.SCRIPTS))
+                     for names in (("microscope.css",), canvas.SCRIPTS))
     content = json.dumps(data, separators=(",", ":"), sort_keys=True).replace("<", "\\u003c")
     return ("<p>The paths of the particles, position against time. Zoom in to see collisions that no picture resolves: "
             "each gap is drawn from its own number, not from a difference of positions.</p>\n"
@@ -173,7 +174,6 @@ def cost(result: Result) -> list[tuple[str, str, str]]:
         entries += [(text(line[:24].strip()), text(line[24:]), "when this page was made") for line in lines
                     if line.startswith(("time ", "collisions/s ", "computing ", "smallest gap ", "checkpoint "))]
     if result.kind == "run":
-        from ..commands import scene_file
         with scene_file(result) as (path, _):
             expected = of_program(["check", path]).splitlines()
         entries += [(f"{text(line.split(': ', 1)[0])} expected", text(line.split(": ", 1)[1]), "by cradle check")

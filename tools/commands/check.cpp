@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/run/run.hpp"
@@ -47,9 +45,8 @@ Exit check(const CommonOptions& options) {
 void add_check(CommandLine& program) {
   Command command =
       program.add("check", "validate a scene without running it: effective values, expected cost", "cradle check fig2");
-  const auto options = std::make_shared<CommonOptions>();
-  add_common_options(command, *options);
-  command.does([options] { return check(*options); });
+  auto& options = command.runs<CommonOptions>(check);
+  add_common_options(command, options);
 }
 
 }  // namespace cradle::tools

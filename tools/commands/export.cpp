@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/csv.hpp"
@@ -42,12 +41,11 @@ Exit export_result(const ExportArguments& options) {
 
 void add_export(CommandLine& program) {
   Command command = program.add("export", "a result as CSV, one file per group", "cradle export fig2.h5 --to fig2");
-  const auto options = std::make_shared<ExportArguments>();
-  command.argument("FILE", options->file, "result file, or FILE.part of a run in progress");
-  command.option("--to", options->folder, "folder to write to; made where it is missing");
-  command.option("--result", options->result, "result file to write: of FILE.part what is recorded so far");
-  command.flag("--force", options->forced, "replace what is there, also what was not exported from FILE");
-  command.does([options] { return export_result(*options); });
+  auto& options = command.runs<ExportArguments>(export_result);
+  command.argument("FILE", options.file, "result file, or FILE.part of a run in progress");
+  command.option("--to", options.folder, "folder to write to; made where it is missing");
+  command.option("--result", options.result, "result file to write: of FILE.part what is recorded so far");
+  command.flag("--force", options.forced, "replace what is there, also what was not exported from FILE");
 }
 
 }  // namespace cradle::tools

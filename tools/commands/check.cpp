@@ -3,7 +3,7 @@
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
+#include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
@@ -18,10 +18,7 @@ Exit check(const CommonOptions& options) {
     fmt::print("\na model of two clusters: no particles, no collisions; below a second\n");
     return Exit::done;
   }
-  if (scene.run.precision == Precision::double_)
-    initial_particles<double>(scene);  // refuses what cannot be set up
-  else
-    initial_particles<long double>(scene);
+  check_particles(scene);
 
   const Cost cost = expected_cost(scene);
   fmt::print("\nparticles in the active zone at the end: {:.3g} at most\n", cost.particles);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/theory/table.hpp"
+#include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {
 

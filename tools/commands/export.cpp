@@ -15,8 +15,6 @@ namespace {
 struct ExportArguments {
   std::string file, folder, result;
   bool forced = false;
-
-  Force force() const { return forced ? Force::yes : Force::no; }
 };
 
 Exit export_result(const ExportArguments& options) {
@@ -26,7 +24,7 @@ Exit export_result(const ExportArguments& options) {
   const Result result =
       in_progress ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   if (!options.result.empty()) {
-    check_overwrite(options.result, result, options.force());
+    check_overwrite(options.result, result, options.forced ? Force::yes : Force::no);
     write_result(result, options.result);
     fmt::print("{}\n", options.result);
   }

@@ -4,11 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/proof/replicas.hpp"
-#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/notify.hpp"
@@ -42,21 +40,19 @@ Exit run_certify(const CertifyArguments& options) {
     const CertifiedReplicas run = certify_replicas(scene, options.replicas, options.threads, how);
     Result result = replicas_result(run);
     say_how_made(result, options.command(), scene);
-    write_or_keep(result, output);
-    fmt::print("{}", replicas_text(run));
-    if (!options.quiet) fmt::print("wrote {}\n", output);
+    put_result(result, output, replicas_text(run), options.quiet);
     const bool all = std::all_of(run.replicas.begin(), run.replicas.end(), [](const auto& r) { return r.proved; });
     return all ? Exit::done : Exit::lost;
   }
   Certified run = certify(scene, how);
-  const std::string text = certificate_text(run), report = run.outcome.report, warning = run.outcome.warning;
+  const std::string &report = run.outcome.report,
+                    text = certificate_text(run) + (report.empty() ? "" : "estimated by the run:\n" + report),
+                    warning = run.outcome.warning;
   const bool proved = run.proved();
   Result result = certified_result(std::move(run));
   say_how_made(result, options.command(), scene);
-  write_or_keep(result, output);
-  fmt::print("{}{}{}", text, report.empty() ? "" : "estimated by the run:\n", report);
+  put_result(result, output, text, options.quiet);
   notify(warning);
-  if (!options.quiet) fmt::print("wrote {}\n", output);
   return proved ? Exit::done : Exit::lost;
 }
 
@@ -65,16 +61,15 @@ Exit run_certify(const CertifyArguments& options) {
 void add_certify(CommandLine& program) {
   Command command = program.add("certify", "the run with a proof of its collisions, and bounds of its results",
                                 "cradle certify fig2 --set run.until=2000 -o fig2.h5");
-  const auto options = std::make_shared<CertifyArguments>();
-  add_common_options(command, *options);
-  command.list("--digits", options->digits, {31, 1000},
+  auto& options = command.runs<CertifyArguments>(run_certify);
+  add_common_options(command, options);
+  command.list("--digits", options.digits, {31, 1000},
                "digits of the proof, tried one after the other, 31 to 1000; 31 is double-double, others mpfr (default: "
                "31,50,100,200,400,800)");
-  command.option("--replicas", options->replicas, {1, 1'000'000},
+  command.option("--replicas", options.replicas, {1, 1'000'000},
                  "prove so many replicas with different perturbations, and give statistics of those that are");
-  add_output_options(command, *options, "result file (default: the scene's name with -certified.h5)");
+  add_output_options(command, options, "result file (default: the scene's name with -certified.h5)");
   command.note("exit status: 0 proved, 5 undecided");
-  command.does([options] { return run_certify(*options); });
 }
 
 }  // namespace cradle::tools

@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
+#include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
@@ -20,10 +18,7 @@ Exit check(const CommonOptions& options) {
     fmt::print("\na model of two clusters: no particles, no collisions; below a second\n");
     return Exit::done;
   }
-  if (scene.run.precision == Precision::double_)
-    initial_particles<double>(scene);  // refuses what cannot be set up
-  else
-    initial_particles<long double>(scene);
+  check_particles(scene);
 
   const Cost cost = expected_cost(scene);
   fmt::print("\nparticles in the active zone at the end: {:.3g} at most\n", cost.particles);
@@ -47,9 +42,8 @@ Exit check(const CommonOptions& options) {
 void add_check(CommandLine& program) {
   Command command =
       program.add("check", "validate a scene without running it: effective values, expected cost", "cradle check fig2");
-  const auto options = std::make_shared<CommonOptions>();
-  add_common_options(command, *options);
-  command.does([options] { return check(*options); });
+  auto& options = command.runs<CommonOptions>(check);
+  add_common_options(command, options);
 }
 
 }  // namespace cradle::tools

@@ -13,6 +13,9 @@
 
 namespace cradle::tools {
 
+class Interrupt;
+class RunFiles;
+
 /// How a command computes.
 struct RunningOptions {
   unsigned threads = 0;
@@ -49,6 +52,13 @@ struct CommonOptions : RunningOptions {
   std::string left_out() const;
 };
 void add_common_options(Command& command, CommonOptions& options);
+
+/// What `run` and `resume` share: runs the scene of the files into `output`, which the caller has claimed, and reports
+/// how it ended.
+Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt);
+
+/// Writes what a command has made, then prints `text` and, unless it is to be quiet, the name of the file.
+void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet);
 
 /// The commands: each adds itself. Help lists them in this order.
 using AddCommand = void(CommandLine& program);

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
+
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/scene/overrides.hpp"
+#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/notify.hpp"
 
@@ -18,6 +20,12 @@ Scene CommonOptions::read() const {
 }
 
 std::string CommonOptions::left_out() const { return times_left_out(scene, all_overrides()); }
+
+void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet) {
+  write_or_keep(result, output);
+  fmt::print("{}", text);
+  if (!quiet) fmt::print("wrote {}\n", output);
+}
 
 void add_output_options(Command& command, OutputOptions& options, const std::string& what, Needed needed) {
   command.option("-o,--output", options.output, what, needed);

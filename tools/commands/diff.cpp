@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/difference.hpp"
@@ -98,14 +97,13 @@ void add_diff(CommandLine& program) {
   Command command = program.add(
       "diff", "in what two results differ: keys of their scenes, parts of the files, columns, and by how much",
       "cradle diff today.h5 yesterday.h5");
-  const auto options = std::make_shared<DiffArguments>();
-  command.argument("A", options->first, "result file");
-  command.argument("B", options->second, "result file");
-  command.flag("--all", options->all, "lists every place that differs, however many there are");
-  command.option("--rtol", options->rtol, "numbers that differ by at most this, relatively, are the same (default 0)");
+  auto& options = command.runs<DiffArguments>(diff);
+  command.argument("A", options.first, "result file");
+  command.argument("B", options.second, "result file");
+  command.flag("--all", options.all, "lists every place that differs, however many there are");
+  command.option("--rtol", options.rtol, "numbers that differ by at most this, relatively, are the same (default 0)");
   command.note(
       "Status 1 where they differ. Everything in the files is compared, attributes, units and shapes included.");
-  command.does([options] { return diff(*options); });
 }
 
 }  // namespace cradle::tools

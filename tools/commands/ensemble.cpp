@@ -1,6 +1,3 @@
-
-#include <memory>
-
 #include "cradle/precision/read_number.hpp"
 #include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -49,22 +46,22 @@ StudyPlan plan(const EnsembleArguments& options) {
 void add_ensemble(CommandLine& program) {
   Command command = program.add("ensemble", "replicas of a scene with different perturbations, and statistics",
                                 "cradle ensemble fig4 --replicas 100");
-  const auto options = std::make_shared<EnsembleArguments>();
-  add_common_options(command, *options);
-  command.option("--replicas", options->replicas, {1, most_replicas},
+  auto& options = command.runs<EnsembleArguments>(
+      [](const EnsembleArguments& given) { return run_study_command(given, [&] { return plan(given); }); });
+  add_common_options(command, options);
+  command.option("--replicas", options.replicas, {1, most_replicas},
                  "how many; those that FILE has already are not run again", Needed::yes);
-  command.option("--first", options->first, {0, most_replicas},
+  command.option("--first", options.first, {0, most_replicas},
                  "number of the first one (default 0): initial.replica of its run");
-  command.repeated("--spread", options->spreads,
+  command.repeated("--spread", options.spreads,
                    "count the values of a quantity in bins, and give quantiles; NAME as in series/; may be repeated",
                    "NAME=FROM:TO:BINS");
-  add_output_options(command, *options,
+  add_output_options(command, options,
                      "result file (default: the scene's name with -ensemble.h5); an ensemble of this scene that is "
                      "there is continued");
   command.note(
       "Snapshots, masses and events of the scene are left out. Finished replicas are kept in FILE.part: the same "
       "command continues from there.");
-  command.does([options] { return run_study_command(*options, [&] { return plan(*options); }); });
 }
 
 }  // namespace cradle::tools

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/csv.hpp"
@@ -16,8 +15,6 @@ namespace {
 struct ExportArguments {
   std::string file, folder, result;
   bool forced = false;
-
-  Force force() const { return forced ? Force::yes : Force::no; }
 };
 
 Exit export_result(const ExportArguments& options) {
@@ -27,7 +24,7 @@ Exit export_result(const ExportArguments& options) {
   const Result result =
       in_progress ? result_so_far(read_run_journal(options.file), options.file) : read_result(options.file);
   if (!options.result.empty()) {
-    check_overwrite(options.result, result, options.force());
+    check_overwrite(options.result, result, options.forced ? Force::yes : Force::no);
     write_result(result, options.result);
     fmt::print("{}\n", options.result);
   }
@@ -42,12 +39,11 @@ Exit export_result(const ExportArguments& options) {
 
 void add_export(CommandLine& program) {
   Command command = program.add("export", "a result as CSV, one file per group", "cradle export fig2.h5 --to fig2");
-  const auto options = std::make_shared<ExportArguments>();
-  command.argument("FILE", options->file, "result file, or FILE.part of a run in progress");
-  command.option("--to", options->folder, "folder to write to; made where it is missing");
-  command.option("--result", options->result, "result file to write: of FILE.part what is recorded so far");
-  command.flag("--force", options->forced, "replace what is there, also what was not exported from FILE");
-  command.does([options] { return export_result(*options); });
+  auto& options = command.runs<ExportArguments>(export_result);
+  command.argument("FILE", options.file, "result file, or FILE.part of a run in progress");
+  command.option("--to", options.folder, "folder to write to; made where it is missing");
+  command.option("--result", options.result, "result file to write: of FILE.part what is recorded so far");
+  command.flag("--force", options.forced, "replace what is there, also what was not exported from FILE");
 }
 
 }  // namespace cradle::tools

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <thread>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -146,11 +145,11 @@ void add_info(CommandLine& program) {
   Command command =
       program.add("info", "what a result file, journal or checkpoint holds: scene, precision, times, counts",
                   "cradle info fig2.h5");
-  const auto options = std::make_shared<InfoArguments>();
-  command.argument("FILE", options->file, "result file, FILE.part or FILE.checkpoint");
-  command.flag("--all", options->all, "also what does not differ from the defaults");
-  command.flag("--follow", options->follow, "of a run in progress: again every two seconds, until it is over");
-  command.does([options] { return options->follow ? follow(*options) : info(*options); });
+  auto& options = command.runs<InfoArguments>(
+      [](const InfoArguments& given) { return given.follow ? follow(given) : info(given); });
+  command.argument("FILE", options.file, "result file, FILE.part or FILE.checkpoint");
+  command.flag("--all", options.all, "also what does not differ from the defaults");
+  command.flag("--follow", options.follow, "of a run in progress: again every two seconds, until it is over");
 }
 
 }  // namespace cradle::tools

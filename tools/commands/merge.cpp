@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/merge.hpp"
 #include "cradle/tools/result/writer.hpp"
@@ -32,11 +30,10 @@ Exit merge(const MergeArguments& options) {
 void add_merge(CommandLine& program) {
   Command command = program.add("merge", "ensembles (or sweeps) of the same scene with different replicas, as one",
                                 "cradle merge first.h5 second.h5 -o all.h5");
-  const auto options = std::make_shared<MergeArguments>();
-  command.arguments("FILE", options->files, "result files of `cradle ensemble` or `cradle sweep`");
-  add_output_options(command, *options, "result file", Needed::yes);
-  command.flag("--quiet", options->quiet, "no message about the file");
-  command.does([options] { return merge(*options); });
+  auto& options = command.runs<MergeArguments>(merge);
+  command.arguments("FILE", options.files, "result files of `cradle ensemble` or `cradle sweep`");
+  add_output_options(command, options, "result file", Needed::yes);
+  command.flag("--quiet", options.quiet, "no message about the file");
 }
 
 }  // namespace cradle::tools

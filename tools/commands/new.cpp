@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -68,10 +67,9 @@ Exit make(const NewArguments& options) {
 
 void add_new(CommandLine& program) {
   Command command = program.add("new", "a commented scene to start from", "cradle new my.toml --from fig6");
-  const auto options = std::make_shared<NewArguments>();
-  command.argument("FILE", options->file, "the scene file to write (default: shock.toml)", Needed::no);
-  command.option("--from", options->from, "the scene whose values it has: a file, or the name of a bundled scene");
-  command.does([options] { return make(*options); });
+  auto& options = command.runs<NewArguments>(make);
+  command.argument("FILE", options.file, "the scene file to write (default: shock.toml)", Needed::no);
+  command.option("--from", options.from, "the scene whose values it has: a file, or the name of a bundled scene");
 }
 
 }  // namespace cradle::tools

@@ -54,6 +54,12 @@ class Command {
 
   void note(const std::string& text);
   void does(Action action);
+  /// Runs the command with its arguments, to whose members options are bound.
+  template <class Arguments> Arguments& runs(Exit (*run)(const Arguments&)) {
+    const auto arguments = std::make_shared<Arguments>();
+    does([arguments, run] { return run(*arguments); });
+    return *arguments;
+  }
 
  private:
   CLI::App& command_;

@@ -1,3 +1,5 @@
+// What the program does in Python: pictures and reports. The program contains the package tools/python/cradle, so both
+// work wherever the program is installed.
 #include "cradle/tools/commands/python.hpp"
 
 #include <fcntl.h>
@@ -11,6 +13,7 @@
 #include <fstream>
 #include <vector>
 
+#include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
@@ -18,6 +21,11 @@
 namespace cradle::tools {
 
 namespace {
+
+struct PageArguments {
+  std::string file, output;
+  bool forced = false;
+};
 
 // A temporary folder, removed with its files by the destructor. Throws Error (Exit::io) if it cannot be made.
 class TemporaryFolder {
@@ -93,8 +101,9 @@ std::string output_beside(std::filesystem::path file, const char* extension) {
   return file.replace_extension(extension).string();
 }
 
-}  // namespace
-
+// Runs the package's `cradle COMMAND FILE -o OUTPUT [--force]` from a temporary folder. Returns its status if that is
+// one of bad input or files. The default output is FILE without .part and with another extension. `what` names the
+// product ("the picture"). Throws Error (Exit::io) if FILE is damaged or no suitable Python is found.
 Exit run_python(const std::string& command, const PageArguments& arguments, const char* extension,
                 std::string_view what) {
   const auto& [file, wanted, forced] = arguments;
@@ -113,6 +122,39 @@ Exit run_python(const std::string& command, const PageArguments& arguments, cons
     throw Error({file, 0, ""}, fmt::format("{} could not be made", what), fmt::format("status {}", status),
                 "see the message above", Exit::io);
   return static_cast<Exit>(status);
+}
+
+void add_page_options(Command& command, PageArguments& arguments, const std::string& output) {
+  command.argument("FILE", arguments.file, "result file, or FILE.part of a run in progress");
+  command.option("-o,--output", arguments.output, output);
+  command.flag("--force", arguments.forced, "replace what is there, also what was not made from FILE");
+}
+
+}  // namespace
+
+void add_plot(CommandLine& program) {
+  Command command = program.add("plot", "the pictures of a result file; PNG, PDF or SVG by extension",
+                                "cradle plot fig2.h5 -o fig2.pdf");
+  const auto plot = [](const PageArguments& given) { return run_python("plot", given, ".png", "the picture"); };
+  add_page_options(command, command.runs<PageArguments>(plot), "picture (default: FILE with .png)");
+}
+
+void add_report(CommandLine& program) {
+  Command command = program.add("report", "one page about a result: pictures, numbers, provenance, how to run it again",
+                                "cradle report fig2.h5 -o fig2.html");
+  const auto report = [](const PageArguments& given) { return run_python("report", given, ".html", "the report"); };
+  add_page_options(command, command.runs<PageArguments>(report), "the page (default: FILE with .html)");
+  command.note("One HTML file with everything in it: it needs no network, and can be sent.");
+}
+
+// Reports quote this file, too.
+void add_cite(CommandLine& program) {
+  Command command = program.add("cite", "the paper and the program as BibTeX", "cradle cite >> my.bib");
+  command.does([] {
+    for (const EmbeddedFile& file : python_package())
+      if (file.name == "cradle/cite.bib") fmt::print("{}", file.text);
+    return Exit::done;
+  });
 }
 
 }  // namespace cradle::tools

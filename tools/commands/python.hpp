@@ -1,12 +1,8 @@
-// What the program does in Python: pictures and reports. The program contains the package tools/python/cradle, so both
-// work wherever the program is installed.
+// The Python package that the program contains.
 #pragma once
 
 #include <span>
-#include <string>
 #include <string_view>
-
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -16,16 +12,5 @@ struct EmbeddedFile {
 
 /// The package, written by embed.cmake.
 std::span<const EmbeddedFile> python_package();
-
-struct PageArguments {
-  std::string file, output;
-  bool forced = false;
-};
-
-/// Runs the package's `cradle COMMAND FILE -o OUTPUT [--force]` from a temporary folder. Returns its status if that is
-/// one of bad input or files. The default output is FILE without .part and with another extension. `what` names the
-/// product ("the picture"). Throws Error (Exit::io) if FILE is damaged or no suitable Python is found.
-Exit run_python(const std::string& command, const PageArguments& arguments, const char* extension,
-                std::string_view what);
 
 }  // namespace cradle::tools

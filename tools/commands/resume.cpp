@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <memory>
-
-#include "cradle/tools/commands/run_command.hpp"
 #include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
+#include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
+#include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
@@ -52,12 +51,11 @@ void add_resume(CommandLine& program) {
   Command command =
       program.add("resume", "continue a run or an ensemble that was stopped; the result is byte-identical",
                   "cradle resume fig2.h5 --until 8000");
-  const auto options = std::make_shared<ResumeArguments>();
-  command.argument("FILE", options->file,
+  auto& options = command.runs<ResumeArguments>(resume);
+  command.argument("FILE", options.file,
                    "its result file, there or not yet; FILE.part and FILE.checkpoint are beside it");
-  command.option("--until", options->until, "a later end, also of a run that is finished; samples keep their spacing");
-  add_running_options(command, *options);
-  command.does([options] { return resume(*options); });
+  command.option("--until", options.until, "a later end, also of a run that is finished; samples keep their spacing");
+  add_running_options(command, options);
 }
 
 }  // namespace cradle::tools

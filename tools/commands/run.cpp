@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 
-#include "cradle/tools/commands/run_command.hpp"
+#include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/notify.hpp"
@@ -68,10 +68,9 @@ Exit run(const RunArguments& options) {
 
 void add_run(CommandLine& program) {
   Command command = program.add("run", "run a scene", "cradle run fig2 --set run.until=2000 -o fig2.h5");
-  const auto options = std::make_shared<RunArguments>();
-  add_common_options(command, *options);
-  add_output_options(command, *options, "result file (default: the scene's name with .h5, in this folder)");
-  command.does([options] { return run(*options); });
+  auto& options = command.runs<RunArguments>(run);
+  add_common_options(command, options);
+  add_output_options(command, options, "result file (default: the scene's name with .h5, in this folder)");
 }
 
 }  // namespace cradle::tools

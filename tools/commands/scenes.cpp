@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -40,10 +39,9 @@ Exit scenes(const ScenesArguments& options) {
 
 void add_scenes(CommandLine& program) {
   Command command = program.add("scenes", "list the bundled scenes; print one", "cradle scenes fig2 > my.toml");
-  const auto options = std::make_shared<ScenesArguments>();
-  command.argument("NAME", options->name, "the scene to print", Needed::no);
-  command.flag("--keys", options->keys, "every key of a scene file: type, unit, default, range, meaning");
-  command.does([options] { return scenes(*options); });
+  auto& options = command.runs<ScenesArguments>(scenes);
+  command.argument("NAME", options.name, "the scene to print", Needed::no);
+  command.flag("--keys", options.keys, "every key of a scene file: type, unit, default, range, meaning");
 }
 
 }  // namespace cradle::tools

@@ -1,7 +1,5 @@
 #include "cradle/tools/ensemble/sweep.hpp"
 
-#include <memory>
-
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -37,21 +35,21 @@ StudyPlan plan(const SweepArguments& options) {
 void add_sweep(CommandLine& program) {
   Command command = program.add("sweep", "a scene at many points: one ensemble each, one file",
                                 "cradle sweep fig4 --vary law.restitution=0.9:0.999:10 --replicas 10");
-  const auto options = std::make_shared<SweepArguments>();
-  add_common_options(command, *options);
-  command.repeated("--vary", options->sweep.vary,
+  auto& options = command.runs<SweepArguments>(
+      [](const SweepArguments& given) { return run_study_command(given, [&] { return plan(given); }); });
+  add_common_options(command, options);
+  command.repeated("--vary", options.sweep.vary,
                    "or KEY=FROM:TO:COUNT:log, or KEY=VALUE,VALUE,...; of several, all combinations",
                    "KEY=FROM:TO:COUNT");
-  command.flag("--cuts", options->sweep.cuts, "vary one key at a time, the others as in the scene");
-  command.repeated("--point", options->sweep.points, "one point; may be repeated", "\"KEY=VALUE KEY=VALUE\"");
-  command.option("--replicas", options->sweep.replicas, {1, most_replicas},
+  command.flag("--cuts", options.sweep.cuts, "vary one key at a time, the others as in the scene");
+  command.repeated("--point", options.sweep.points, "one point; may be repeated", "\"KEY=VALUE KEY=VALUE\"");
+  command.option("--replicas", options.sweep.replicas, {1, most_replicas},
                  "replicas of every point (default: the scene's, or 1)");
-  command.option("--first", options->first, {0, most_replicas}, "number of the first replica (default 0)");
-  add_output_options(command, *options,
+  command.option("--first", options.first, {0, most_replicas}, "number of the first replica (default 0)");
+  add_output_options(command, options,
                      "result file (default: the scene's name with -sweep.h5); one of this sweep that is there is "
                      "continued");
   command.note("Without --vary and --point the sweep is the one that the scene names in its table [sweep].");
-  command.does([options] { return run_study_command(*options, [&] { return plan(*options); }); });
 }
 
 }  // namespace cradle::tools

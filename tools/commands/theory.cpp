@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/theory/table.hpp"
+#include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {
 
@@ -46,10 +45,9 @@ Exit theory(const TheoryArguments& options) {
 void add_theory(CommandLine& program) {
   Command command =
       program.add("theory", "the paper's predictions for a scene, with equation numbers", "cradle theory fig2");
-  const auto options = std::make_shared<TheoryArguments>();
-  add_common_options(command, *options);
-  command.flag("--csv", options->csv, "all curves, as CSV: quantity,equation,form,t,value");
-  command.does([options] { return theory(*options); });
+  auto& options = command.runs<TheoryArguments>(theory);
+  add_common_options(command, options);
+  command.flag("--csv", options.csv, "all curves, as CSV: quantity,equation,form,t,value");
 }
 
 }  // namespace cradle::tools

@@ -1,12 +1,8 @@
 #include "cradle/tools/threshold/threshold.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
-#include <memory>
-
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
@@ -29,10 +25,9 @@ Exit run_threshold(const ThresholdArguments& options) {
   note_signals(interrupt);
   const Threshold found = find_threshold(
       question, output, {interrupt, options.show(), options.threads, !options.no_proof, options.force()});
-  write_or_keep(threshold_result(question, found, question.command(options.scene)), output);
+  put_result(threshold_result(question, found, question.command(options.scene)), output,
+             threshold_text(question, found), options.quiet);
   ::unlink((output + ".part").c_str());
-  fmt::print("{}", threshold_text(question, found));
-  if (!options.quiet) fmt::print("wrote {}\n", output);
   return Exit::done;
 }
 
@@ -41,17 +36,16 @@ Exit run_threshold(const ThresholdArguments& options) {
 void add_threshold(CommandLine& program) {
   Command command = program.add("threshold", "the value of a key at which the outcome of a run changes",
                                 "cradle threshold collapse3 --vary law.restitution=0.05:0.1");
-  const auto options = std::make_shared<ThresholdArguments>();
-  add_common_options(command, *options);
-  command.option("--vary", options->vary, "KEY=LOW:HIGH, or KEY[I]=LOW:HIGH for number I of a list, from 0",
+  auto& options = command.runs<ThresholdArguments>(run_threshold);
+  add_common_options(command, options);
+  command.option("--vary", options.vary, "KEY=LOW:HIGH, or KEY[I]=LOW:HIGH for number I of a list, from 0",
                  Needed::yes);
-  command.option("--outcome", options->outcome,
+  command.option("--outcome", options.outcome,
                  "what is compared: collapse, gap, collisions, merges or pair (default: what suits the scene)");
-  command.option("--digits", options->digits, {1, 900}, "digits of the value (default: 12)");
-  command.flag("--no-proof", options->no_proof, "does not prove the outcomes of the last two runs");
-  add_output_options(command, *options, "result file (default: the scene's name with -threshold.h5)");
+  command.option("--digits", options.digits, {1, 900}, "digits of the value (default: 12)");
+  command.flag("--no-proof", options.no_proof, "does not prove the outcomes of the last two runs");
+  add_output_options(command, options, "result file (default: the scene's name with -threshold.h5)");
   command.note("An interrupted search is continued by the same command.");
-  command.does([options] { return run_threshold(*options); });
 }
 
 }  // namespace cradle::tools

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
-
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
@@ -34,9 +31,7 @@ Exit run_trust(const TrustArguments& options) {
   const auto runs = trust(scene, {options.digits, options.both, options.show(), &interrupt});
   Result result = trust_result(scene, runs);
   result.attributes.emplace_back("command", options.command());
-  write_or_keep(result, output);
-  fmt::print("{}", trust_table(runs));
-  if (!options.quiet) fmt::print("wrote {}\n", output);
+  put_result(result, output, trust_table(runs), options.quiet);
   return Exit::done;
 }
 
@@ -45,14 +40,13 @@ Exit run_trust(const TrustArguments& options) {
 void add_trust(CommandLine& program) {
   Command command = program.add("trust", "the same run at rising precision: which numbers are right, and until when",
                                 "cradle trust fig2 --set run.until=1000 --digits 16,50");
-  const auto options = std::make_shared<TrustArguments>();
-  add_common_options(command, *options);
-  command.list("--digits", options->digits, {10, 1000},
+  auto& options = command.runs<TrustArguments>(run_trust);
+  add_common_options(command, options);
+  command.list("--digits", options.digits, {10, 1000},
                "digits to compare, 10 to 1000, the reference last; 16 is double, 31 double-double, others mpfr "
                "(default: rising until two runs agree)");
-  command.flag("--both", options->both, "in absolute coordinates too");
-  add_output_options(command, *options, "result file (default: the scene's name with -trust.h5)");
-  command.does([options] { return run_trust(*options); });
+  command.flag("--both", options.both, "in absolute coordinates too");
+  add_output_options(command, options, "result file (default: the scene's name with -trust.h5)");
 }
 
 }  // namespace cradle::tools

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <memory>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
@@ -75,8 +73,7 @@ Exit run_words(const WordsArguments& options) {
     reports = search_words(particles, options.search, print, tried);
     fmt::print("{} of {} words up to {} letters exist for some restitution\n", reports.size(), tried, options.search);
   }
-  write_or_keep(words_result(particles, reports, tried, command_of(options)), output);
-  if (!options.quiet) fmt::print("wrote {}\n", output);
+  put_result(words_result(particles, reports, tried, command_of(options)), output, "", options.quiet);
   return Exit::done;
 }
 
@@ -85,18 +82,16 @@ Exit run_words(const WordsArguments& options) {
 void add_words(CommandLine& program) {
   Command command = program.add("words", "for which restitutions a few particles repeat a word of collisions for ever",
                                 "cradle words 4 ababcb");
-  const auto options = std::make_shared<WordsArguments>();
-  command.argument("N", options->particles, "number of particles, 3 to 6");
-  command.argument("WORD", options->word, "letters are gaps from the left: a, b, ...", Needed::no);
-  command.option("--masses", options->masses, "masses from the left, with commas between (default: equal)");
-  command.option("--walls", options->walls,
-                 "left, right or both: walls at rest, with the restitution of the particles");
-  command.option("--at", options->at, "restitution of the state that is printed (default: the middle)");
-  command.option("--search", options->search, {2, 16}, "all words up to so many letters instead of one");
-  command.option("--digits", options->digits, {10, 250}, "digits to which ends are proved (default: 30)");
-  command.flag("--quiet", options->quiet, "no message about the file");
-  add_output_options(command, *options, "result file (default: WORD.h5, or words-N.h5)");
-  command.does([options] { return run_words(*options); });
+  auto& options = command.runs<WordsArguments>(run_words);
+  command.argument("N", options.particles, "number of particles, 3 to 6");
+  command.argument("WORD", options.word, "letters are gaps from the left: a, b, ...", Needed::no);
+  command.option("--masses", options.masses, "masses from the left, with commas between (default: equal)");
+  command.option("--walls", options.walls, "left, right or both: walls at rest, with the restitution of the particles");
+  command.option("--at", options.at, "restitution of the state that is printed (default: the middle)");
+  command.option("--search", options.search, {2, 16}, "all words up to so many letters instead of one");
+  command.option("--digits", options.digits, {10, 250}, "digits to which ends are proved (default: 30)");
+  command.flag("--quiet", options.quiet, "no message about the file");
+  add_output_options(command, options, "result file (default: WORD.h5, or words-N.h5)");
 }
 
 }  // namespace cradle::tools

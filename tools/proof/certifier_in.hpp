@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -184,68 +185,55 @@ template <class M> class CertifierIn final : public Certifier {
       errors.of_radius = sample.epsilon / of_balls() * (static_cast<long double>(state.sizes.particles) + 64);
     if (!in_gaps_) errors.gap += 2 * errors.place;
     errors_ = errors, since_ = since;
+    // Each is compared with the run's and, where the series has a sample, with the row of the file, later.
     Agreement<N> run(errors);
-    run.count("collisions", sample.counts.collisions, proved.collisions);
-    run.count("merges", sample.counts.merges, proved.merges);
+    const auto of_file = [&](const std::string& column, std::optional<N> of_proof, long double bound) {
+      if (of_series) tables_.add("series/" + column, series_rows_, std::move(of_proof), bound);
+    };
+    const auto same_count = [&](const std::string& name, const std::string& column, std::uint64_t of_run,
+                                std::uint64_t of_proof) {
+      run.count(name, of_run, of_proof);
+      of_file(column, N(static_cast<std::int64_t>(of_proof)), 0);
+    };
+    const auto same_number = [&](const std::string& name, const std::string& column, const std::string& of_run,
+                                 const std::optional<N>& of_proof, long double bound) {
+      run.number(name, of_run, of_proof, bound);
+      of_file(column, of_proof, bound);
+    };
+    same_count("collisions", "collisions", sample.counts.collisions, proved.collisions);
+    same_count("merges", "merges", sample.counts.merges, proved.merges);
     // To elastic particles a cut-off does nothing, and without gravity none of them is counted here.
     if (!law_.elastic || particles_->fall())
-      run.count("collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
+      same_count("collisions_below_cutoff", "collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
     if (sample.at_collision)
-      run.number("time of the last collision", sample.time.text, start_ + state.time,
-                 time_error(errors, since, static_cast<long double>(state.closing.least_size())));
+      same_number("time of the last collision", "time", sample.time.text, start_ + state.time,
+                  time_error(errors, since, static_cast<long double>(state.closing.least_size())));
     else
-      run.number("time of the sample", sample.time.text, number<N>(asked.time), 8 * sample.epsilon * since);
-    run.number("energy", sample.energy, state.energy, errors.energy);
-    run.place("front_left", sample.front_left, state.front_left);
-    run.place("front_right", sample.front_right, state.front_right);
-    compare_wall(sample.walls[0], state.walls[0], "left", run);
-    compare_wall(sample.walls[1], state.walls[1], "right", run);
-    if (asked.of_snapshots) compare_particles(sample.particles, time, run);
-    if (of_series) add_series(sample, asked, state);
-    if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time.value);
-  }
-
-  // The rows of the file's tables that are proved at this time.
-  void add_series(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
-    const RunErrors& errors = errors_;
-    const std::size_t row = series_rows_;
-    const auto& proved = checker_.proved();
-    const auto count = [](std::uint64_t number) { return N(static_cast<std::int64_t>(number)); };
-    if (sample.at_collision)
-      tables_.add("series/time", row, start_ + state.time,
-                  time_error(errors, since_, static_cast<long double>(state.closing.least_size())));
-    else
-      tables_.add("series/time", row, number<N>(asked.time), 8 * sample.epsilon * since_);
-    tables_.add("series/energy", row, state.energy, errors.energy);
-    tables_.add("series/collisions", row, count(proved.collisions), 0);
-    tables_.add("series/merges", row, count(proved.merges), 0);
-    if (!law_.elastic || particles_->fall())
-      tables_.add("series/collisions_below_cutoff", row, count(proved.below_cutoff), 0);
+      same_number("time of the sample", "time", sample.time.text, number<N>(asked.time), 8 * sample.epsilon * since);
+    same_number("energy", "energy", sample.energy, state.energy, errors.energy);
     if (!particles_->walled() && !particles_->fall())
-      tables_.add("series/energy_lost", row, particles_->kinetic_energy() - state.energy, 2 * errors.energy);
-    if (!particles_->on_ring()) {
-      tables_.add("series/front_left", row, state.front_left, errors.place);
-      tables_.add("series/front_right", row, state.front_right, errors.place);
+      of_file("energy_lost", particles_->kinetic_energy() - state.energy, 2 * errors.energy);
+    for (const auto& [name, of_run, of_proof] : {std::tuple("front_left", &sample.front_left, &state.front_left),
+                                                 std::tuple("front_right", &sample.front_right, &state.front_right)}) {
+      run.place(name, *of_run, *of_proof);
+      if (!particles_->on_ring()) of_file(name, *of_proof, errors.place);
     }
     for (const End end : {End::left, End::right}) {
-      if (particles_->wall(end) == nullptr) continue;
-      const CertainAccount<N>& wall = state.walls[static_cast<std::size_t>(end)];
-      const std::string name = end == End::left ? "series/wall_left_" : "series/wall_right_";
-      const auto collisions = static_cast<long double>(wall.collisions);
-      tables_.add(name + "energy", row, wall.given, collisions * errors.wall_energy);
-      tables_.add(name + "momentum", row, wall.momentum, collisions * errors.wall_momentum);
-      tables_.add(name + "collisions", row, count(wall.collisions), 0);
+      const auto k = static_cast<std::size_t>(end);
+      const SampledWall& of_run = sample.walls[k];
+      const CertainAccount<N>& wall = state.walls[k];
+      const char* const which = end == End::left ? "left" : "right";
+      const std::string name = fmt::format(" the {} wall", which), column = fmt::format("wall_{}_", which);
+      const long double collisions = static_cast<long double>(wall.collisions);
+      same_count("collisions with" + name, column + "collisions", of_run.collisions, wall.collisions);
+      same_number("energy given by" + name, column + "energy", of_run.given, wall.given,
+                  collisions * errors.wall_energy);
+      same_number("momentum given by" + name, column + "momentum", of_run.momentum, wall.momentum,
+                  collisions * errors.wall_momentum);
+      run.number("energy lost in" + name, of_run.dissipated, wall.dissipated, collisions * errors.wall_energy);
     }
-  }
-  static void compare_wall(const SampledWall& of_run, const CertainAccount<N>& proved, const char* which,
-                           Agreement<N>& run) {
-    const auto name = [&](const char* what) { return fmt::format("{} {} wall", what, which); };
-    const long double collisions = static_cast<long double>(proved.collisions);
-    run.count(name("collisions with the"), of_run.collisions, proved.collisions);
-    run.number(name("energy given by the"), of_run.given, proved.given, collisions * run.errors().wall_energy);
-    run.number(name("momentum given by the"), of_run.momentum, proved.momentum,
-               collisions * run.errors().wall_momentum);
-    run.number(name("energy lost in the"), of_run.dissipated, proved.dissipated, collisions * run.errors().wall_energy);
+    if (asked.of_snapshots) compare_particles(sample.particles, time, run);
+    if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time.value);
   }
   static long double time_error(const RunErrors& errors, long double since, long double closing) {
     return closing > 0 ? 2 * (errors.place + since * errors.speed) / closing + errors.place

@@ -1,11 +1,23 @@
-// Checks that involve several keys: rows that do not meet, particles out of order, two settings for the same thing,
-// numbers beyond the range of the working precision.
+// What a scene must be like. Keys: those that are known and apply to its law, initial state and policy (keys.cpp). What
+// several keys say together (checks.cpp): rows that do not meet, particles out of order, two settings for the same
+// thing, numbers beyond the range of the working precision.
 #pragma once
 
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/scene/source.hpp"
 
 namespace cradle::tools {
+
+/// Makes one entry, a table, of all entries inside what is a key: it is refused where the key is read, when the numbers
+/// that its range depends on are known. Ranges of times are lists already.
+void gather_tables(Entries& entries);
+
+/// Throws Error for the first unknown key, with the most similar known one.
+void refuse_unknown_keys(const Entries& entries);
+
+/// Throws Error for the first key that does not apply to this scene, with the reason. Checks the keys that depend on
+/// `decider`, or all keys if it is empty.
+void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::string_view decider = {});
 
 /// Throws Error at the place of the wrong key. `entries` give the places of keys; `scene_file` names the file for keys
 /// that are missing.

@@ -22,6 +22,28 @@ std::size_t count_digits(std::string_view text) {
   return static_cast<std::size_t>(end - text.begin());
 }
 
+// The digits as they are written, and the power of ten of the last one.
+struct Literal {
+  bool negative = false;
+  std::string digits;
+  std::int64_t power = 0;
+};
+
+Literal literal_of(std::string_view text) {
+  Literal literal{text.starts_with('-'), {}, 0};
+  if (literal.negative) text.remove_prefix(1);
+  if (const auto e = text.find_first_of("eE"); e != text.npos) {
+    std::from_chars(text.data() + e + 1, text.data() + text.size(), literal.power);
+    text = text.substr(0, e);
+  }
+  literal.digits = text;
+  if (const auto point = text.find('.'); point != text.npos) {
+    literal.digits.erase(point, 1);
+    literal.power -= static_cast<std::int64_t>(text.size() - point - 1);
+  }
+  return literal;
+}
+
 // The number 0.d1 d2 d3 ... times 10^exponent; d1 and the last digit are not 0; zero has no digits.
 struct Parts {
   bool negative = false;
@@ -30,27 +52,11 @@ struct Parts {
 };
 
 Parts parts_of(std::string_view text) {
-  Parts parts;
-  if (text.starts_with('-')) {
-    parts.negative = true;
-    text.remove_prefix(1);
-  }
-  if (const auto e = text.find_first_of("eE"); e != text.npos) {
-    auto power = text.substr(e + 1);
-    if (power.starts_with('+')) power.remove_prefix(1);
-    std::from_chars(power.data(), power.data() + power.size(), parts.exponent);
-    text = text.substr(0, e);
-  }
-  const std::size_t point = std::min(text.find('.'), text.size());
-  parts.digits = text.substr(0, point);
-  if (point < text.size()) parts.digits += text.substr(point + 1);
-  parts.exponent += static_cast<std::int64_t>(point);
-
-  const std::size_t first = parts.digits.find_first_not_of('0');
+  auto [negative, digits, power] = literal_of(text);
+  const std::size_t first = digits.find_first_not_of('0');
   if (first == std::string::npos) return {};
-  parts.exponent -= static_cast<std::int64_t>(first);
-  parts.digits = parts.digits.substr(first, parts.digits.find_last_not_of('0') + 1 - first);
-  return parts;
+  return {negative, digits.substr(first, digits.find_last_not_of('0') + 1 - first),
+          power + static_cast<std::int64_t>(digits.size() - first)};
 }
 
 std::strong_ordering compare_magnitudes(const Parts& a, const Parts& b) {
@@ -142,27 +148,36 @@ Decimal::Decimal(std::string_view literal) {
   }
 }
 
+Scaled scaled(std::string_view decimal) {
+  const Parts parts = parts_of(decimal);
+  if (parts.digits.empty()) return {};
+  const Whole digits(parts.digits);
+  return {parts.negative ? Whole(-digits) : digits, parts.exponent - static_cast<std::int64_t>(parts.digits.size())};
+}
+
+std::string decimal_text(Scaled number, bool (*with_power)(std::int64_t power, std::int64_t digits)) {
+  auto& [integer, power] = number;
+  if (integer == 0) return "0";
+  std::string digits = Whole(abs(integer)).str();
+  const std::size_t last = digits.find_last_not_of('0') + 1;
+  power += static_cast<std::int64_t>(digits.size() - last);
+  digits.resize(last);
+  const std::string sign = integer < 0 ? "-" : "";
+  if (with_power(power, static_cast<std::int64_t>(last)))
+    return sign + digits + (power == 0 ? "" : "e" + std::to_string(power));
+  if (power >= 0) return sign + digits + std::string(static_cast<std::size_t>(power), '0');
+  const auto places = static_cast<std::size_t>(-power);
+  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
+  return sign + digits.insert(digits.size() - places, ".");
+}
+
 namespace {
 
 using Integer = Whole;
+using Exact = Scaled;
 
 // Float128 has numbers from 1e-4966 to 1e4932.
 constexpr std::int64_t most_digits_of_sum = 20'000;
-
-// An integer times a power of ten.
-struct Exact {
-  Integer integer;
-  std::int64_t power = 0;
-
-  explicit Exact(const Decimal& decimal) : Exact(decimal.text) {}
-  explicit Exact(std::string_view decimal) {
-    const Parts parts = parts_of(decimal);
-    if (parts.digits.empty()) return;
-    integer = Integer(parts.digits);
-    if (parts.negative) integer = -integer;
-    power = parts.exponent - static_cast<std::int64_t>(parts.digits.size());
-  }
-};
 
 // The lowest and the highest power of ten.
 std::pair<std::int64_t, std::int64_t> powers(std::initializer_list<Exact*> numbers) {
@@ -181,20 +196,10 @@ void align(std::initializer_list<Exact*> numbers) {
   }
 }
 
-// Without zeros at its end and, unless it is very long, without a power of ten.
+// Without a power of ten unless it is very long.
 std::string text_of(const Integer& integer, std::int64_t power) {
-  constexpr std::int64_t longest = 64;
-  if (integer == 0) return "0";
-  std::string digits = Integer(abs(integer)).str();
-  const std::size_t last = digits.find_last_not_of('0') + 1;
-  power += static_cast<std::int64_t>(digits.size() - last);
-  digits.resize(last);
-  const std::string sign = integer < 0 ? "-" : "";
-  if (power > longest || power < -longest) return sign + digits + "e" + std::to_string(power);
-  if (power >= 0) return sign + digits + std::string(static_cast<std::size_t>(power), '0');
-  const auto places = static_cast<std::size_t>(-power);
-  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
-  return sign + digits.insert(digits.size() - places, ".");
+  return decimal_text({integer, power},
+                      [](std::int64_t of_last, std::int64_t) { return of_last > 64 || of_last < -64; });
 }
 
 // integer 10^power/parts; see decimals_by_parts.
@@ -228,26 +233,11 @@ struct Short {
 };
 
 std::optional<Short> short_number(std::string_view text) {
-  Short number;
-  const bool negative = text.starts_with('-');
-  int digits = 0;
-  std::size_t i = negative ? 1 : 0;
-  bool fraction = false;
-  for (; i < text.size() && (is_digit(text[i]) || text[i] == '.'); ++i) {
-    if (text[i] == '.') {
-      fraction = true;
-      continue;
-    }
-    if (number.digits != 0 || text[i] != '0')
-      if (++digits > 18) return {};
-    number.digits = 10 * number.digits + (text[i] - '0');
-    number.unit -= fraction;
-  }
-  if (i < text.size()) {
-    std::int64_t power = 0;
-    std::from_chars(text.data() + i + 1, text.data() + text.size(), power);
-    number.unit += power;
-  }
+  const auto [negative, digits, power] = literal_of(text);
+  const std::size_t first = std::min(digits.find_first_not_of('0'), digits.size());
+  if (digits.size() - first > 18) return {};
+  Short number{0, power};
+  std::from_chars(digits.data() + first, digits.data() + digits.size(), number.digits);
   if (negative) number.digits = -number.digits;
   return number;
 }
@@ -269,7 +259,7 @@ std::optional<std::string> short_sum(std::string_view a_text, std::string_view b
 
 std::optional<std::string> exact_sum(std::string_view a_text, std::string_view b_text, int sign) {
   if (auto quick = short_sum(a_text, b_text, sign)) return quick;
-  Exact a(a_text), b(b_text);
+  Exact a = scaled(a_text), b = scaled(b_text);
   const auto [low, high] = powers({&a, &b});
   if (high - low > most_digits_of_sum) return {};
   align({&a, &b});
@@ -281,7 +271,7 @@ std::string difference(std::string_view a, std::string_view b) {
   // What is left of the smaller one is its sign: it decides a number that would be in the middle between two others.
   const Parts of_a = parts_of(a), of_b = parts_of(b);
   const bool first = of_a.exponent > of_b.exponent;
-  Exact large(first ? a : b);
+  Exact large = scaled(first ? a : b);
   const std::int64_t power = std::min(large.power, (first ? of_a : of_b).exponent - most_digits_of_sum);
   large.integer *= power_of_ten(large.power - power);
   const Integer small = (first ? of_b : of_a).negative ? -1 : 1;
@@ -300,28 +290,28 @@ std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColu
 
 bool of_one_scale(const Decimal& a, const Decimal& b, const Decimal& c) {
   constexpr std::int64_t most_digits = 4000;
-  Exact first(a), second(b), third(c);
+  Exact first = scaled(a.text), second = scaled(b.text), third = scaled(c.text);
   const auto [low, high] = powers({&first, &second, &third});
   return high - low <= most_digits;
 }
 
 DecimalColumn decimals_by_step(const Decimal& from, const Decimal& step, const Decimal& until) {
-  Exact first(from), by(step), last(until);
+  Exact first = scaled(from.text), by = scaled(step.text), last = scaled(until.text);
   align({&first, &by, &last});
   return spaced(first, by, 1, last, 0);
 }
 
 DecimalColumn decimals_by_parts(const Decimal& from, const Decimal& to, std::uint64_t parts, const Decimal& until,
                                 std::size_t digits) {
-  Exact first(from), end(to), last(until);
+  Exact first = scaled(from.text), end = scaled(to.text), last = scaled(until.text);
   align({&first, &end, &last});
   end.integer -= first.integer;
   return spaced(first, end, parts, last, digits + 5);
 }
 
 Decimal decimal_between(const Decimal& from, const Decimal& to, const Decimal& share) {
-  Exact first(from), way(to);
-  const Exact part(share);
+  Exact first = scaled(from.text), way = scaled(to.text);
+  const Exact part = scaled(share.text);
   align({&first, &way});
   way.integer = (way.integer - first.integer) * part.integer, way.power += part.power;
   align({&first, &way});
@@ -355,10 +345,9 @@ std::optional<std::string> sum_of_products(const DecimalColumn& a, const Decimal
     std::int64_t power = 0;
     for (const DecimalColumn* column : {&a, &b}) {
       if (column->empty()) continue;
-      const Parts parts = parts_of((*column)[i]);
-      product *= parts.digits.empty() ? Integer(0) : Integer(parts.digits);
-      if (parts.negative) product = -product;
-      power += parts.exponent - static_cast<std::int64_t>(parts.digits.size());
+      const Exact factor = scaled((*column)[i]);
+      product *= factor.integer;
+      power += factor.power;
     }
     if (product != 0) sums[power] += product;
   }

@@ -257,6 +257,11 @@ void store_default(const Field& field, Scene& scene) {
   }
 }
 
+bool same_value(const Field& field, const Scene& a, const Scene& b) {
+  return std::visit([&]<class T>(Member<T> access) { return member_of(access, a) == member_of(access, b); },
+                    field.storage);
+}
+
 std::optional<std::string> value_text(const Field& field, const Scene& scene) {
   return std::visit([&]<class T>(Member<T> access) { return written(field, member_of(access, scene)); }, field.storage);
 }

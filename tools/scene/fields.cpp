@@ -1,6 +1,11 @@
 // The table of keys. To add a key, add a member in scene.hpp and a row here.
 #include "cradle/tools/scene/fields.hpp"
 
+#include <fmt/format.h>
+
+#include <deque>
+#include <iterator>
+
 #include "cradle/precision/bin_float.hpp"
 
 namespace cradle::tools {
@@ -61,33 +66,6 @@ constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" 
 
 const When may_have_walls{other_law, "law.type", that_bounce,
                           [](const Scene& s) { return !law_row(s).merges && s.initial.type != InitialType::gas; }};
-constexpr std::string_view no_wall = "key of a wall that is not there";
-constexpr When left_wall{no_wall, "walls.left.position", "a left wall",
-                         [](const Scene& s) { return s.walls.left.position.has_value(); }};
-constexpr When right_wall{no_wall, "walls.right.position", "a right wall",
-                          [](const Scene& s) { return s.walls.right.position.has_value(); }};
-constexpr std::string_view thermal = "key of a wall that reflects";
-constexpr When left_reflects{thermal, "walls.left.temperature", "a left wall without temperature", [](const Scene& s) {
-                               return s.walls.left.position.has_value() && !s.walls.left.temperature;
-                             }};
-constexpr When right_reflects{
-    thermal, "walls.right.temperature", "a right wall without temperature",
-    [](const Scene& s) { return s.walls.right.position.has_value() && !s.walls.right.temperature; }};
-
-constexpr std::string_view still = "key of a wall that is shaken";
-constexpr When left_shaken{still, "walls.left.motion", "a shaken left wall",
-                           [](const Scene& s) { return s.walls.left.position && s.walls.left.shaken(); }};
-constexpr When right_shaken{still, "walls.right.motion", "a shaken right wall",
-                            [](const Scene& s) { return s.walls.right.position && s.walls.right.shaken(); }};
-constexpr std::string_view no_hold = "key of a wall on which particles can rest";
-constexpr auto may_hold = +[](const Scene& s, const WallAt& wall) {
-  return wall.position && !wall.temperature && (wall.shaken() || s.gravity.acts());
-};
-constexpr When left_holds{no_hold, "gravity.acceleration", "a left wall without temperature, shaken or with gravity",
-                          [](const Scene& s) { return may_hold(s, s.walls.left); }};
-constexpr When right_holds{no_hold, "gravity.acceleration", "a right wall without temperature, shaken or with gravity",
-                           [](const Scene& s) { return may_hold(s, s.walls.right); }};
-
 const When may_fall{other_law, "law.type", that_bounce, [](const Scene& s) { return !law_row(s).merges; }};
 
 constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
@@ -176,8 +154,56 @@ const std::string scalar_names = names_of(scalar_rows), law_names = names_of(law
 constexpr std::string_view any = "(-inf, inf)";
 constexpr std::string_view within_run = "[run.start, run.until]";
 
+// A text with the name of a wall in it; it stays where it is.
+std::string_view of_side(std::string_view text, std::string_view side) {
+  static std::deque<std::string> texts;
+  return texts.emplace_back(fmt::format(fmt::runtime(text), side));
+}
+
+// The keys of one of the two walls. `of_gas`: the row of its position where it ends a gas.
+template <WallAt WallPair::*Wall> std::vector<Field> wall_fields(std::string_view side, const Field& of_gas) {
+  const auto text = [&](std::string_view with_side) { return of_side(with_side, side); };
+  static const When there{"key of a wall that is not there", text("walls.{}.position"), text("a {} wall"),
+                          [](const Scene& s) { return (s.walls.*Wall).position.has_value(); }};
+  static const When reflects{"key of a wall that reflects", text("walls.{}.temperature"),
+                             text("a {} wall without temperature"),
+                             [](const Scene& s) { return (s.walls.*Wall).position && !(s.walls.*Wall).temperature; }};
+  static const When shaken{"key of a wall that is shaken", text("walls.{}.motion"), text("a shaken {} wall"),
+                           [](const Scene& s) { return (s.walls.*Wall).position && (s.walls.*Wall).shaken(); }};
+  static const When holds{"key of a wall on which particles can rest", "gravity.acceleration",
+                          text("a {} wall without temperature, shaken or with gravity"), [](const Scene& s) {
+                            const WallAt& wall = s.walls.*Wall;
+                            return wall.position && !wall.temperature && (wall.shaken() || s.gravity.acts());
+                          }};
+  return {
+      {text("walls.{}.position"), walls_of<Wall, &WallAt::position>, "l", "", any, &may_have_walls,
+       text("position of a wall at the {} end of the line, at run.start; without it, none. A wall is a particle of "
+            "infinite mass")},
+      of_gas,
+      {text("walls.{}.speed"), walls_of<Wall, &WallAt::speed>, "l/t", "0", any, &there,
+       text("constant velocity of the {} wall, positive to the right: a piston")},
+      {text("walls.{}.temperature"), walls_of<Wall, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)", &there,
+       text("particles leave the {} wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, "
+            "it reflects them")},
+      {text("walls.{}.restitution"), walls_of<Wall, &WallAt::restitution>, "", "1", "[0, 1]", &reflects,
+       text("factor by which a collision with the {} wall reduces the closing speed; 1 is elastic")},
+      {text("walls.{}.motion"), walls_of<Wall, &WallAt::motion>, "", "\"none\"", "none | sawtooth | parabola | sine",
+       &there,
+       text("how the {} wall is shaken about its place, beginning in the middle, towards the particles: at a constant "
+            "speed, jumping back; in parabolic arcs; as a sine")},
+      {text("walls.{}.amplitude"), walls_of<Wall, &WallAt::amplitude>, "l", "required", "(0, inf)", &shaken,
+       "how far it is shaken from its place at most"},
+      {text("walls.{}.frequency"), walls_of<Wall, &WallAt::frequency>, "1/t", "required", "(0, inf)", &shaken,
+       "angular frequency: 2 pi over the period"},
+      {text("walls.{}.phase"), walls_of<Wall, &WallAt::phase>, "", "0", any, &shaken, "angle at run.start"},
+      {text("walls.{}.rest_speed"), walls_of<Wall, &WallAt::rest_speed>, "l/t", "", "(0, inf)", &holds,
+       text("a particle that meets the {} wall, or others that rest on it, more slowly stays there for as long as the "
+            "wall presses it; without it, none stays")},
+  };
+}
+
 // key, member, unit, default, range, applies when, documentation
-const Field all_fields[] = {
+const Field fields_before_walls[] = {
     {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
 
     {"law.type", law_type, "", "required", law_names, &always, "what happens at a collision"},
@@ -283,58 +309,9 @@ const Field all_fields[] = {
     {"gravity.acceleration", member<&Scene::gravity, &GravityOf::acceleration>, "l/t^2", "", any, &may_fall,
      "constant acceleration of all particles, positive to the right; walls do not fall. The one that particles fall "
      "towards is a floor. Collisions with walls slower than law.cutoff are elastic then; without it, no gravity"},
+};
 
-    {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "", any, &may_have_walls,
-     "position of a wall at the left end of the line, at run.start; without it, none. A wall is a particle of infinite "
-     "mass"},
-    {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l", "0", any, &gas,
-     "where the gas begins: the left one of its two walls"},
-    {"walls.left.speed", walls_of<&WallPair::left, &WallAt::speed>, "l/t", "0", any, &left_wall,
-     "constant velocity of the left wall, positive to the right: a piston"},
-    {"walls.left.temperature", walls_of<&WallPair::left, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)", &left_wall,
-     "particles leave the left wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
-     "reflects them"},
-    {"walls.left.restitution", walls_of<&WallPair::left, &WallAt::restitution>, "", "1", "[0, 1]", &left_reflects,
-     "factor by which a collision with the left wall reduces the closing speed; 1 is elastic"},
-    {"walls.left.motion", walls_of<&WallPair::left, &WallAt::motion>, "", "\"none\"",
-     "none | sawtooth | parabola | sine", &left_wall,
-     "how the left wall is shaken about its place, beginning in the middle, towards the particles: at a constant "
-     "speed, jumping back; in parabolic arcs; as a sine"},
-    {"walls.left.amplitude", walls_of<&WallPair::left, &WallAt::amplitude>, "l", "required", "(0, inf)", &left_shaken,
-     "how far it is shaken from its place at most"},
-    {"walls.left.frequency", walls_of<&WallPair::left, &WallAt::frequency>, "1/t", "required", "(0, inf)", &left_shaken,
-     "angular frequency: 2 pi over the period"},
-    {"walls.left.phase", walls_of<&WallPair::left, &WallAt::phase>, "", "0", any, &left_shaken, "angle at run.start"},
-    {"walls.left.rest_speed", walls_of<&WallPair::left, &WallAt::rest_speed>, "l/t", "", "(0, inf)", &left_holds,
-     "a particle that meets the left wall, or others that rest on it, more slowly stays there for as long as the wall "
-     "presses it; without it, none stays"},
-    {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "", any, &may_have_walls,
-     "position of a wall at the right end of the line, at run.start; without it, none. A wall is a particle of "
-     "infinite mass"},
-    {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>, "l", "initial.particles/initial.density on",
-     any, &gas, "where the gas ends: the right one of its two walls", end_of_gas},
-    {"walls.right.speed", walls_of<&WallPair::right, &WallAt::speed>, "l/t", "0", any, &right_wall,
-     "constant velocity of the right wall, positive to the right: a piston"},
-    {"walls.right.temperature", walls_of<&WallPair::right, &WallAt::temperature>, "m l^2/t^2", "", "(0, inf)",
-     &right_wall,
-     "particles leave the right wall at speeds v, against it, of the density (m v/T) exp(-m v^2/2T); without it, it "
-     "reflects them"},
-    {"walls.right.restitution", walls_of<&WallPair::right, &WallAt::restitution>, "", "1", "[0, 1]", &right_reflects,
-     "factor by which a collision with the right wall reduces the closing speed; 1 is elastic"},
-    {"walls.right.motion", walls_of<&WallPair::right, &WallAt::motion>, "", "\"none\"",
-     "none | sawtooth | parabola | sine", &right_wall,
-     "how the right wall is shaken about its place, beginning in the middle, towards the particles: at a constant "
-     "speed, jumping back; in parabolic arcs; as a sine"},
-    {"walls.right.amplitude", walls_of<&WallPair::right, &WallAt::amplitude>, "l", "required", "(0, inf)",
-     &right_shaken, "how far it is shaken from its place at most"},
-    {"walls.right.frequency", walls_of<&WallPair::right, &WallAt::frequency>, "1/t", "required", "(0, inf)",
-     &right_shaken, "angular frequency: 2 pi over the period"},
-    {"walls.right.phase", walls_of<&WallPair::right, &WallAt::phase>, "", "0", any, &right_shaken,
-     "angle at run.start"},
-    {"walls.right.rest_speed", walls_of<&WallPair::right, &WallAt::rest_speed>, "l/t", "", "(0, inf)", &right_holds,
-     "a particle that meets the right wall, or others that rest on it, more slowly stays there for as long as the wall "
-     "presses it; without it, none stays"},
-
+const Field fields_after_walls[] = {
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},
     {"run.precision", run_of<&Run::precision>, "", "\"double\"", scalar_names, &always, "the working precision"},
@@ -470,6 +447,21 @@ const Field all_fields[] = {
      "points of a sweep, one text each: KEY=VALUE KEY=VALUE ..."},
     {"sweep.replicas", sweep_of<&Sweep::replicas>, "", "1", "[1, 1e15]", &always, "replicas of every point of a sweep"},
 };
+
+std::vector<Field> joined() {
+  std::vector<Field> all;
+  for (const std::vector<Field>& some :
+       {std::vector<Field>(std::begin(fields_before_walls), std::end(fields_before_walls)),
+        wall_fields<&WallPair::left>("left", {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l",
+                                              "0", any, &gas, "where the gas begins: the left one of its two walls"}),
+        wall_fields<&WallPair::right>("right", {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>,
+                                                "l", "initial.particles/initial.density on", any, &gas,
+                                                "where the gas ends: the right one of its two walls", end_of_gas}),
+        std::vector<Field>(std::begin(fields_after_walls), std::end(fields_after_walls))})
+    all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+const std::vector<Field> all_fields = joined();
 
 }  // namespace
 

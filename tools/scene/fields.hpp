@@ -65,6 +65,9 @@ void store(const Field& field, const Value& value, Scene& scene);
 /// Stores the default; without one the member keeps its value.
 void store_default(const Field& field, Scene& scene);
 
+/// Whether two scenes have equal values there: 1.0 is equal to 1.
+bool same_value(const Field& field, const Scene& a, const Scene& b);
+
 /// The value in TOML syntax; nothing if there is none.
 std::optional<std::string> value_text(const Field& field, const Scene& scene);
 

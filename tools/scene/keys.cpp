@@ -1,4 +1,4 @@
-#include "cradle/tools/scene/keys.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -7,6 +7,19 @@
 
 namespace cradle::tools {
 
+void NumberRange::check(std::string_view literal, const Place& place) const {
+  const auto size = literal.substr(literal.starts_with('-') ? 1 : 0);
+  if (type_.largest.empty() || std::is_lteq(compare_decimals(size, type_.largest))) return;
+  throw Error(place, "too large for the precision", fmt::format("{} with \"{}\"", literal, type_.name),
+              "give a smaller number or another run.precision");
+}
+
+void NumberRange::check_positive(std::string_view literal, const Place& place) const {
+  if (type_.least.empty() || std::is_gteq(compare_decimals(literal, type_.least))) return;
+  throw Error(place, "too small for the precision", fmt::format("{} with \"{}\"", literal, type_.name),
+              "give a larger number or another run.precision");
+}
+
 void check_neighbours(const Listed& left, const Listed& right, const NumberRange& range, const Place& place) {
   const auto order = compare_decimals(right.x, left.x);
   if (std::is_gt(order)) return range.check_positive(difference(right.x, left.x), place);

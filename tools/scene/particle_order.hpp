@@ -1,14 +1,28 @@
-// Particles of a list, and whether they are in order.
+// Particles of a list: whether the working precision of a run can hold their numbers, and whether they are in order.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <string_view>
 
-#include "cradle/tools/scene/number_range.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
+
+/// The numbers that the working precision of a run can hold. A larger number would become infinite and spoil the run; a
+/// smaller one becomes 0, which is not allowed for masses.
+class NumberRange {
+ public:
+  explicit NumberRange(const Run& run) : type_(scalar_row(run.precision)) {}
+
+  /// Throws Error at `place` if a canonical decimal is too large.
+  void check(std::string_view literal, const Place& place) const;
+  /// The same if a positive one is too small.
+  void check_positive(std::string_view literal, const Place& place) const;
+
+ private:
+  const ScalarRow& type_;
+};
 
 /// Positions are increasing; only neighbours that do not approach may be at one place. Masses are positive, or empty if
 /// all are 1.

@@ -12,23 +12,10 @@ constexpr long most_exponent = 5000;
 Whole power_of_ten(long exponent) { return pow(Whole(10), static_cast<unsigned>(exponent)); }
 
 std::optional<Rational> rational(std::string_view decimal) {
-  std::string text(decimal);
-  long exponent = 0;
-  if (const auto e = text.find_first_of("eE"); e != text.npos) {
-    exponent = std::stol(text.substr(e + 1));
-    text.resize(e);
-  }
-  if (const auto point = text.find('.'); point != text.npos) {
-    exponent -= static_cast<long>(text.size() - point - 1);
-    text.erase(point, 1);
-  }
-  if (std::abs(exponent) > most_exponent) return {};
-  const bool negative = text.starts_with('-');
-  const auto first = text.find_first_not_of("-0");
-  const Whole digits(first == text.npos ? "0" : text.substr(first));
-  const Whole scale = power_of_ten(std::abs(exponent));
-  const Rational number = exponent < 0 ? Rational(digits, scale) : Rational(digits * scale);
-  return negative ? Rational(-number) : number;
+  const auto [digits, power] = scaled(decimal);
+  if (std::abs(power) > most_exponent) return {};
+  const Whole scale = power_of_ten(std::abs(power));
+  return power < 0 ? Rational(digits, scale) : Rational(digits * scale);
 }
 
 std::string decimal_text(const Rational& number, unsigned digits) {

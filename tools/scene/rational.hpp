@@ -2,6 +2,7 @@
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,18 @@ namespace cradle::tools {
 
 using Rational = boost::multiprecision::cpp_rational;
 using Whole = boost::multiprecision::cpp_int;
+
+/// An integer times a power of ten.
+struct Scaled {
+  Whole integer;
+  std::int64_t power = 0;
+};
+/// The value of a canonical decimal, without zeros at the end of the integer; 0 has the power 0.
+Scaled scaled(std::string_view decimal);
+
+/// A decimal without zeros at its end; with a power of ten where `with_power`, which gets that of the last digit and
+/// the number of digits, says so.
+std::string decimal_text(Scaled number, bool (*with_power)(std::int64_t power, std::int64_t digits));
 
 /// For exponents of 0 and more.
 Whole power_of_ten(long exponent);

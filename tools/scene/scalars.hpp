@@ -26,32 +26,15 @@ struct ScalarRow {
   std::string_view largest, least;
 };
 
+// Largest and least numbers of types whose exponents have so many bits.
+inline constexpr std::string_view of_11_bits[] = {"1.7976931348623157e308", "2.2250738585072014e-308"},
+                                  of_15_bits[] = {"1.18973149535723176502e4932", "3.3621031431120935063e-4932"};
+
 inline constexpr ScalarRow scalar_rows[] = {
-    {Precision::double_, "double", 15, {1}, {1.2}, {8}, "1.7976931348623157e308", "2.2250738585072014e-308"},
-    {Precision::long_double,
-     "long double",
-     18,
-     {5.3},
-     {4},
-     {16},
-     "1.18973149535723176502e4932",
-     "3.3621031431120935063e-4932"},
-    {Precision::double_double,
-     "double-double",
-     31,
-     {2.6},
-     {6.6},
-     {16},
-     "1.7976931348623157e308",
-     "2.2250738585072014e-308"},
-    {Precision::float128,
-     "float128",
-     33,
-     {10},
-     {30},
-     {16},
-     "1.18973149535723176502e4932",
-     "3.3621031431120935063e-4932"},
+    {Precision::double_, "double", 15, {1}, {1.2}, {8}, of_11_bits[0], of_11_bits[1]},
+    {Precision::long_double, "long double", 18, {5.3}, {4}, {16}, of_15_bits[0], of_15_bits[1]},
+    {Precision::double_double, "double-double", 31, {2.6}, {6.6}, {16}, of_11_bits[0], of_11_bits[1]},
+    {Precision::float128, "float128", 33, {10}, {30}, {16}, of_15_bits[0], of_15_bits[1]},
     // The exponent has 32 bits.
     {Precision::cpp_bin_float, "cpp_bin_float", 100, {41}, {104}, {64}, "1e323228496", "1e-323228496"},
     {Precision::mpfr, "mpfr", 0, {6.3, 0.112}, {22, 0.4}, {48, 1 / 2.4}, "", ""},

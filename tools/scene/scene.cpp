@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cradle/precision/bin_float.hpp"
+#include "cradle/tools/scene/fields.hpp"
 
 namespace cradle::tools {
 
@@ -13,6 +14,20 @@ bool Output::has_histogram(std::string_view name) const {
 bool Output::observes_collisions() const {
   const auto of_collisions = [](const std::string& name) { return name != "gap" && name != "cluster"; };
   return events || word || std::ranges::any_of(histograms, of_collisions);
+}
+
+const LawRow& law_row(const Scene& scene) { return law_rows[static_cast<std::size_t>(scene.law.type)]; }
+
+bool particles_merge(const Scene& scene) {
+  return law_row(scene).merges || scene.run.collapse == scene::CollapsePolicy::merge;
+}
+
+bool stops_at_collapse(const Scene& scene) {
+  return !law_row(scene).merges && scene.run.collapse == scene::CollapsePolicy::stop;
+}
+
+bool without_collisions(const Scene& scene) {
+  return !law_row(scene).needs_events && !scene.output.observes_collisions();
 }
 
 bool unequal_masses(const Scene& scene) {
@@ -37,8 +52,7 @@ std::string collapsing_floor(const Scene& scene) {
 }
 
 bool operator==(const Scene& a, const Scene& b) {
-  return a.title == b.title && a.law == b.law && a.initial == b.initial && a.walls == b.walls &&
-         a.gravity == b.gravity && a.run == b.run && a.output == b.output && a.sweep == b.sweep;
+  return std::ranges::all_of(scene_fields(), [&](const Field& field) { return same_value(field, a, b); });
 }
 
 Place Scene::place(std::string_view key) const {

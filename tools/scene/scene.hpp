@@ -42,7 +42,6 @@ struct Row {
   std::uint64_t particles = 0;
   Decimal speed;  // velocity of the row: positive to the right
   Decimal density;
-  bool operator==(const Row&) const = default;
 };
 
 }  // namespace scene
@@ -51,7 +50,6 @@ struct Row {
 struct Centre {
   Decimal mass;
   Decimal speed;
-  bool operator==(const Centre&) const = default;
 };
 
 struct Initial {
@@ -86,7 +84,6 @@ struct Initial {
   /// Rows given by [initial.left] and [initial.right] instead of particles, speed and spacing.
   bool general_rows() const { return left.particles > 0; }
   bool on_ring() const { return type == InitialType::ring || (type == InitialType::list && length > Decimal("0")); }
-  bool operator==(const Initial&) const = default;
 };
 
 /// A wall at one end of the line; without a position there is none.
@@ -100,20 +97,17 @@ struct WallAt {
   std::optional<Decimal> rest_speed;    // below it particles rest on it
   bool shaken() const { return motion != scene::Motion::none; }
   bool dissipates() const { return position && !temperature && restitution < Decimal("1"); }
-  bool operator==(const WallAt&) const = default;
 };
 
 struct WallPair {
   WallAt left, right;
   bool any() const { return left.position || right.position; }
   bool shaken() const { return left.shaken() || right.shaken(); }
-  bool operator==(const WallPair&) const = default;
 };
 
 struct GravityOf {
   std::optional<Decimal> acceleration;  // of all particles, positive to the right
   bool acts() const { return acceleration && *acceleration != Decimal("0"); }
-  bool operator==(const GravityOf&) const = default;
 };
 
 struct Run {
@@ -132,7 +126,6 @@ struct Run {
     const unsigned own = scalar_row(precision).digits;
     return own > 0 ? own : static_cast<unsigned>(digits);
   }
-  bool operator==(const Run&) const = default;
 };
 
 /// When samples are taken; exactly one of points, every and times is given.
@@ -142,14 +135,12 @@ struct Series {
   std::optional<Decimal> over;        // of points: end of the range in which they are spread; none: end of the run
   std::optional<Decimal> every;
   std::vector<Decimal> times;
-  bool operator==(const Series&) const = default;
 };
 
 struct Profiles {
   std::vector<Decimal> times;
   std::uint64_t bins = 0;
   std::vector<Decimal> range;  // {from, to}; empty: the interaction zone at that time
-  bool operator==(const Profiles&) const = default;
 };
 
 /// Average over the interaction zone of a wet shock, from a given time on; without one there is no average.
@@ -158,62 +149,52 @@ struct Zone {
   std::uint64_t samples = 0;
   std::uint64_t bins = 0;
   std::optional<Decimal> reach;
-  bool operator==(const Zone&) const = default;
 };
 
-/// Averages over time in bins, at `from`, `from` + `every` and so on up to `until`; without `every` there are none.
-struct Averages {
+/// Samples at `from`, `from` + `every` and so on up to `until`; without `every` there are none.
+struct Samples {
   std::optional<Decimal> every;
   Decimal from, until;
+};
+
+/// Averages over time in bins.
+struct Averages : Samples {
   std::uint64_t bins = 0;
   std::vector<Decimal> range;  // {from, to}
-  bool operator==(const Averages&) const = default;
 };
 
-/// What histograms count: collisions at `from` to `until`; gaps and clusters at `from`, `from` + `every` and so on.
-struct Counting {
-  Decimal from, until;
-  std::optional<Decimal> every, cluster_gap;
+/// What histograms count: collisions at `from` to `until`; gaps and clusters in samples.
+struct Counting : Samples {
+  std::optional<Decimal> cluster_gap;
   std::vector<Decimal> range;  // of the bins
-  bool operator==(const Counting&) const = default;
 };
 
-/// Correlations of every `tag_every`-th particle, from samples at `from`, `from` + `every` and so on up to `until`;
-/// without `every` there are none.
-struct Correlations {
-  std::optional<Decimal> every;
-  Decimal from, until;
+/// Correlations of every `tag_every`-th particle.
+struct Correlations : Samples {
   std::optional<Decimal> longest;  // time between the two states that are compared; none: all there is
   std::uint64_t tag_every = 0;
-  bool operator==(const Correlations&) const = default;
 };
 
-/// When the places of particles are measured: at times, and on the average over samples as above.
-struct PlaceTimes {
+/// When the places of particles are measured: at times, and on the average over samples.
+struct PlaceTimes : Samples {
   std::vector<Decimal> times;
-  std::optional<Decimal> every;
-  Decimal from, until;
   bool any() const { return !times.empty() || every; }
-  bool operator==(const PlaceTimes&) const = default;
 };
 
 /// The structure factor at wave numbers 2 pi n/length.
 struct Structure : PlaceTimes {
   std::uint64_t waves = 0;        // the largest n
   std::optional<Decimal> length;  // none: that of the system
-  bool operator==(const Structure&) const = default;
 };
 
 /// Pairs of particles up to a distance.
 struct Pairs : PlaceTimes {
   Decimal distance;
   std::uint64_t bins = 0;
-  bool operator==(const Pairs&) const = default;
 };
 
 struct Checkpoint {
   Decimal every_seconds;  // of computing time; 0: none during the run
-  bool operator==(const Checkpoint&) const = default;
 };
 
 /// The value of output.word that names no word.
@@ -243,7 +224,6 @@ struct Output {
   /// Whether a histogram is of the state at times: of gaps or of clusters.
   bool has_histogram_of_states() const { return has_histogram("gap") || has_histogram("cluster"); }
   bool observes_collisions() const;
-  bool operator==(const Output&) const = default;
 };
 
 /// What `cradle sweep` varies, unless the command line says otherwise.
@@ -252,7 +232,6 @@ struct Sweep {
   bool cuts = false;                // one key at a time, the others as in the scene, instead of all combinations
   std::vector<std::string> points;  // or points one by one: KEY=VALUE KEY=VALUE ...
   std::uint64_t replicas = 0;       // of each point
-  bool operator==(const Sweep&) const = default;
 };
 
 struct Scene {
@@ -281,7 +260,7 @@ bool unequal_masses(const Scene& scene);
 /// The longest lag of the correlations, in samples.
 std::uint64_t longest_lag(const Scene& scene);
 
-/// Whether the scenes are equal, wherever they were read from (names are not compared).
+/// Whether the scenes have equal values of all keys, wherever they were read from.
 bool operator==(const Scene& a, const Scene& b);
 
 /// The whole scene with every default and the listed particles, without keys that cannot change a result. Equal scenes

@@ -18,7 +18,7 @@ bool is_default(const Field& field, const Scene& scene) {
   if (field.fallback.empty()) return !value_text(field, scene);
   Scene other = scene;
   store_default(field, other);
-  return other == scene;
+  return same_value(field, other, scene);
 }
 
 }  // namespace

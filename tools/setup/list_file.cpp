@@ -15,7 +15,6 @@
 #include <fmt/ranges.h>
 
 #include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/scene/number_range.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
@@ -350,6 +349,13 @@ void read_list(const std::filesystem::path& path, Scene& scene) {
   scene.initial.x = std::move(particles.x);
   scene.initial.v = std::move(particles.v);
   scene.initial.m = std::move(particles.m);
+}
+
+void check_particles(const Scene& scene) {
+  if (scene.run.precision == Precision::double_)
+    initial_particles<double>(scene);
+  else
+    initial_particles<long double>(scene);
 }
 
 }  // namespace cradle::tools

@@ -35,4 +35,8 @@ ListedParticles parse_list(std::istream& csv, const std::string& file_name, cons
 /// cannot be read.
 void read_list(const std::filesystem::path& file, Scene& scene);
 
+/// Throws Error if the particles of a scene cannot be set up, in double or in any wider type. Here, not in a command:
+/// the particles of all initial states take seconds to compile.
+void check_particles(const Scene& scene);
+
 }  // namespace cradle::tools

@@ -1,6 +1,6 @@
-// Reads a scene: text to entries (tools/scene/source.hpp), entries of the command line (overrides.hpp), entries to the
-// struct by the table of fields (fields.hpp), checks that involve several keys (checks.hpp), particles of a list
-// (list_file.hpp) or of a word (word_start.hpp).
+// Reads a scene: text to entries (tools/scene/source.hpp), which the command line changes, entries to the struct by the
+// table of fields (fields.hpp), checks that involve several keys (checks.hpp), particles of a list (list_file.hpp) or
+// of a word (word_start.hpp).
 #pragma once
 
 #include <string>
@@ -21,7 +21,8 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
 Scene parse_scene(std::string_view text, const std::string& source_name,
                   const std::vector<std::string>& overrides = {});
 
-/// That line for the scene that read_scene reads, with a line break. Throws Error as read_scene does.
+/// A line for the user if a new run.start or run.until leaves out times of the scene that read_scene reads, else
+/// nothing. Throws Error as read_scene does.
 std::string times_left_out(const std::string& path_or_name, const std::vector<std::string>& overrides);
 
 }  // namespace cradle::tools

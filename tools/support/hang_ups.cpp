@@ -3,7 +3,7 @@
 // yet.
 #include <csignal>
 
-#include "cradle/tools/support/hang_ups.hpp"
+#include "cradle/tools/support/interrupt.hpp"
 
 #ifdef __linux__
 #include <sys/syscall.h>

@@ -6,8 +6,6 @@
 #include <csignal>
 #include <string_view>
 
-#include "cradle/tools/support/hang_ups.hpp"
-
 namespace cradle::tools {
 
 namespace {

@@ -24,6 +24,9 @@ class Interrupt {
   std::atomic<bool> heeded_ = false;
 };
 
+/// Whether the program was started under nohup, as hang_ups.cpp, a part of the program alone, reads it before main().
+inline bool hang_ups_ignored = false;
+
 /// The exit status of a program that this signal has interrupted.
 Exit status_of_signal(int signal);
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "cradle/core/engine/collapse.hpp"
@@ -70,28 +70,14 @@ double particles_at_end(const Scene& scene) {
 struct Share {
   double s, share;
 };
-constexpr std::array<Share, 17> counted{{{0, 1},
-                                         {.125, .921},
-                                         {.25, .862},
-                                         {.375, .811},
-                                         {.5, .768},
-                                         {.75, .700},
-                                         {1, .650},
-                                         {1.25, .612},
-                                         {1.5, .583},
-                                         {1.75, .562},
-                                         {2, .586},
-                                         {2.25, .644},
-                                         {2.5, .716},
-                                         {2.75, .795},
-                                         {3, .897},
-                                         {3.127, 1.054},
-                                         {3.252, 1.642}}};
+constexpr Share counted[] = {{0, 1},      {.125, .921}, {.25, .862}, {.375, .811},   {.5, .768},    {.75, .700},
+                             {1, .650},   {1.25, .612}, {1.5, .583}, {1.75, .562},   {2, .586},     {2.25, .644},
+                             {2.5, .716}, {2.75, .795}, {3, .897},   {3.127, 1.054}, {3.252, 1.642}};
+constexpr const Share& last_counted = *std::rbegin(counted);
 
 double share_of_elastic(double s) {
-  if (s >= counted.back().s) return counted.back().share;
-  const auto* above =
-      std::upper_bound(counted.begin(), counted.end(), s, [](double x, const Share& c) { return x < c.s; });
+  if (s >= last_counted.s) return last_counted.share;
+  const auto* above = std::ranges::upper_bound(counted, s, {}, &Share::s);
   const auto* below = above - 1;
   return below->share + (above->share - below->share) * (s - below->s) / (above->s - below->s);
 }
@@ -166,8 +152,8 @@ void bouncing_rows(const Scene& scene, Cost& cost) {
   double met = layers(scene, span(scene));
   const auto onset = theory::collapse_onset_particles(eps);
   const bool may_collapse = onset && particles >= *onset;
-  if (may_collapse && met * kappa > counted.back().s) {
-    met = counted.back().s / kappa;
+  if (may_collapse && met * kappa > last_counted.s) {
+    met = last_counted.s / kappa;
     cost.collapse = scene.run.start.value + span(scene) * met / layers(scene, span(scene));
   }
   cost.collisions = met * (met + 1) / 2 * share_of_elastic(met * kappa);

@@ -1,7 +1,10 @@
 #include "cradle/tools/theory/laws.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "cradle/tools/theory/cost.hpp"
 
@@ -32,6 +35,26 @@ const LawTheory& law_theory(const Scene& scene) {
   static constexpr LawTheory none{};
   const auto* const row = std::ranges::find(laws, scene.law.type, &LawTheory::type);
   return row == std::end(laws) ? none : *row;
+}
+
+std::vector<Prediction> predictions(const Scene& scene) {
+  Predictions table;
+  if (scene.walls.any() || scene.gravity.acts()) return {};  // the paper has none
+  if (const auto predict = law_theory(scene).predict) predict(scene, table);
+  if (scene.initial.type == InitialType::ring && !unequal_masses(scene)) predict_cooling(scene, table);
+  return std::move(table).take();
+}
+
+std::string misprints(const Scene& scene) { return std::string(law_theory(scene).misprints); }
+
+std::string predictions_csv(const std::vector<Prediction>& table) {
+  std::string csv = "quantity,equation,form,t,value\n";
+  for (const auto& p : table) {
+    const auto quoted = [](const std::string& s) { return s.find(',') == std::string::npos ? s : '"' + s + '"'; };
+    csv += fmt::format("{},{},{},{},{}\n", p.quantity, quoted(p.equation), p.form, p.t ? fmt::format("{}", *p.t) : "",
+                       p.value);
+  }
+  return csv;
 }
 
 }  // namespace cradle::tools

@@ -15,29 +15,9 @@ namespace {
 
 constexpr long most_digits = 5000;
 
-// mantissa times 10^exponent
-struct Scaled {
-  Whole mantissa;
-  long exponent = 0;
-};
-
-Scaled scaled(const Decimal& number) {
-  std::string text = number.text;
-  Scaled parts;
-  if (const auto e = text.find_first_of("eE"); e != text.npos) {
-    parts.exponent = std::stol(text.substr(e + 1));
-    text.resize(e);
-  }
-  const bool negative = text.starts_with('-');
-  if (negative) text.erase(0, 1);
-  if (const auto point = text.find('.'); point != text.npos) {
-    parts.exponent -= static_cast<long>(text.size() - point - 1);
-    text.erase(point, 1);
-  }
-  text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
-  parts.mantissa = Whole(text);
-  if (negative) parts.mantissa = -parts.mantissa;
-  if (std::abs(parts.exponent) > most_digits)
+Scaled within_limits(const Decimal& number) {
+  Scaled parts = scaled(number.text);
+  if (std::abs(parts.power) > most_digits)
     throw Error({"", 0, "--vary"}, "a number of too many digits", number.text,
                 fmt::format("give ends between 1e-{0} and 1e{0}", most_digits));
   return parts;
@@ -45,41 +25,31 @@ Scaled scaled(const Decimal& number) {
 
 // The largest power of ten that is not above a number, which is not 0.
 long magnitude(const Scaled& number) {
-  return static_cast<long>(Whole(abs(number.mantissa)).str().size()) - 1 + number.exponent;
+  return static_cast<long>(Whole(abs(number.integer)).str().size()) - 1 + number.power;
 }
 
 // number/10^unit, rounded down
 Whole floor_in(const Scaled& number, long unit) {
-  if (number.exponent >= unit) return number.mantissa * power_of_ten(number.exponent - unit);
-  const Whole divisor = power_of_ten(unit - number.exponent);
-  Whole quotient = number.mantissa / divisor;
-  if (quotient * divisor > number.mantissa) --quotient;
+  if (number.power >= unit) return number.integer * power_of_ten(number.power - unit);
+  const Whole divisor = power_of_ten(unit - number.power);
+  Whole quotient = number.integer / divisor;
+  if (quotient * divisor > number.integer) --quotient;
   return quotient;
 }
 
 Decimal decimal(const Whole& multiple, long unit) {
-  std::string digits = Whole(abs(multiple)).str();
-  if (multiple == 0) return Decimal("0");
-  while (digits.size() > 1 && digits.back() == '0') digits.pop_back(), ++unit;
-  constexpr long most_zeros = 30;
-  const auto size = static_cast<long>(digits.size());
-  if (unit > most_zeros || unit + size < -most_zeros) {
-    digits += "e" + std::to_string(unit);
-  } else if (unit >= 0) {
-    digits.append(static_cast<std::size_t>(unit), '0');
-  } else {
-    if (size <= -unit) digits.insert(0, static_cast<std::size_t>(1 - unit - size), '0');
-    digits.insert(digits.size() - static_cast<std::size_t>(-unit), 1, '.');
-  }
-  return Decimal((multiple < 0 ? "-" : "") + digits);
+  constexpr auto many_zeros = [](std::int64_t power, std::int64_t digits) {
+    return power > 30 || power + digits < -30;
+  };
+  return Decimal(decimal_text({multiple, unit}, many_zeros));
 }
 
 }  // namespace
 
 Bracket::Bracket(Decimal low, Decimal high, unsigned digits, bool whole)
     : low_(std::move(low)), high_(std::move(high)) {
-  const Scaled a = scaled(low_), b = scaled(high_);
-  unit_ = std::max(a.mantissa == 0 ? b.exponent : magnitude(a), b.mantissa == 0 ? a.exponent : magnitude(b));
+  const Scaled a = within_limits(low_), b = within_limits(high_);
+  unit_ = std::max(a.integer == 0 ? b.power : magnitude(a), b.integer == 0 ? a.power : magnitude(b));
   last_ = unit_ + 1 - static_cast<long>(digits);
   if (whole) last_ = 0;
   unit_ = std::max(unit_, last_);
@@ -92,9 +62,9 @@ void Bracket::narrow(bool as_at_low) {
 }
 
 void Bracket::find_next() {
-  const Scaled a = scaled(low_), b = scaled(high_);
+  const Scaled a = within_limits(low_), b = within_limits(high_);
   for (;; --unit_) {
-    const Whole first = floor_in(a, unit_) + 1, last = -floor_in({-b.mantissa, b.exponent}, unit_) - 1;
+    const Whole first = floor_in(a, unit_) + 1, last = -floor_in({-b.integer, b.power}, unit_) - 1;
     next_.reset();
     if (first <= last) next_ = decimal((first + last) / 2, unit_);
     if (next_ || unit_ <= last_) return;

@@ -1,5 +1,5 @@
-#include "cradle/tools/threshold/question.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/threshold/threshold.hpp"
 
 #include <fmt/format.h>
 

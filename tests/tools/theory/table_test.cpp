@@ -1,7 +1,7 @@
 // Predictions of `cradle theory` for the wet and the sticky gas: numbers of the validation table, curves that meet in
 // their known points, and the misprints for each law.
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/theory/table.hpp"
+#include "cradle/tools/theory/laws.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -68,16 +68,15 @@ template <Real T, class Masses, class Field> void GapChain<T, Masses, Field>::fi
 }
 
 template <Real T, class Masses, class Field> bool GapChain<T, Masses, Field>::open(Slot s, const T& time) const {
-  if constexpr (Line::watched) {
+  const T gap = gap_at(s, time), speed = closing_at(s, time);
+  // Around a ring the rounding of closing speeds stays; on a line they are soon those of other particles.
+  const T epsilon = std::numeric_limits<T>::epsilon();
+  const T slow = epsilon * fastest_ * (closed() ? clock().elapsed(time) : magnitude(line_.gaps.flown(s, time)));
+  if (!falls && speed == T(0) && !(epsilon * slow < gap)) return false;  // they touch, at rest
+  if constexpr (Line::watched)
     return line_.certainty.open(line_.gaps, line_.motion(field_), s, time, off_by(time));
-  } else {
-    const T gap = gap_at(s, time), speed = closing_at(s, time);
-    // Around a ring the rounding of closing speeds stays; on a line they are soon those of other particles.
-    const T epsilon = std::numeric_limits<T>::epsilon();
-    const T slow = epsilon * fastest_ * (closed() ? clock().elapsed(time) : magnitude(line_.gaps.flown(s, time)));
-    if (speed == T(0) && !(epsilon * slow < gap)) return false;  // they touch, at rest
+  else
     return gap < T(certain_by) * (magnitude(speed) * off_by(time) + slow);
-  }
 }
 
 template <Real T, class Masses, class Field>

@@ -1,4 +1,4 @@
-// The processes that share the replicas of ensembles: this process alone, or the ranks of an MPI job (mpi_crew.hpp).
+// The processes that share the replicas of ensembles: this process alone, or the ranks of an MPI job (mpi_crew.cpp).
 // Rank 0 knows the work, distributes it and collects the results.
 #pragma once
 

@@ -68,7 +68,7 @@ std::string quote_wide_literals(std::string_view text) {
     std::size_t end = skip_comment_or_string(text, i);
     if (end > i) {
       result += text.substr(i, end - i);
-      before = '"';
+      if (text[i] != '#') before = '"';
       i = end;
       continue;
     }

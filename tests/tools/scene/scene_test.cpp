@@ -105,10 +105,12 @@ TEST(Scene, LiteralsAreKeptExactly) {
   // Other characters of several bytes before a literal on its line.
   const Scene list =
       parse("title = 'é 1e-999, 1e-999'\nlaw = { type = 'sticky' }\nrun = { until = 1, precision = 'float128' }\n"
-            "initial = { 'type' = 'list', x = [-1e-500, 0, 1.5], v = [ 1 , '1e-7' , 0x10 ] }");
+            "initial = { 'type' = 'list', x = [-1e-500, 0, 1.5], v = [ 1 , '1e-7' , 0x10 ], m = [1, # heavy\n"
+            "123456789012345678901, 1] }");
   EXPECT_EQ(list.title, "é 1e-999, 1e-999");
   EXPECT_EQ(texts(list.initial.x), (Strings{"-1e-500", "0", "1.5"}));
   EXPECT_EQ(texts(list.initial.v), (Strings{"1", "1e-7", "16"}));
+  EXPECT_EQ(texts(list.initial.m), (Strings{"1", "123456789012345678901", "1"}));
 }
 
 // A number above 0 in the scene is above 0 in the run. A wall beside a particle by less than any binary number of a

@@ -1,6 +1,6 @@
 #pragma once
 // Bounds on what rounding has done to the gaps and closing speeds of a few particles, from the history of their
-// collisions (README.md, "Collapse").
+// collisions (README.md, Bounds on rounding).
 //
 // As lines in time, G(t) = g - w t, gaps obey linear maps: a collision at i turns G_i into -r G_i and adds c G_i to the
 // line of each neighbour, whenever it comes. Errors obey exactly the same maps, and their bounds obey the maps with the

@@ -12,8 +12,7 @@
 //
 // Inelastic law (paper, section II and III): w' = -eps w, energy lost mu w^2 (1 - eps^2)/2; below the velocity cut-off
 // delta the collision is elastic. The closing speed given to the neighbours, w - w', is computed such that the sum of
-// all closing speeds is kept. For eps >= 1/2 the impulse comes first and w' = w - (its effect) is exact; below, w' =
-// -eps w comes first, because there the difference would cancel.
+// all closing speeds is kept: for eps >= 1/2 the impulse comes first, below it w' does (README.md says why).
 
 #include <cmath>
 #include <concepts>

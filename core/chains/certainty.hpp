@@ -32,7 +32,7 @@ template <Real T, class Gaps> class Certainty {
   };
 
   // Computes the deviations after the next collision, which is at the gap s between p and n and closes at the speed w.
-  // Called before the gaps change.
+  // It is called before the gaps change.
   template <class Motion, class Masses>
   void collision(Gaps& gaps, const Motion& motion, Slot p, Slot s, Slot n, ParticleIndex particle, const T& time,
                  const T& speed, const Outcome<T>& outcome, const Masses& masses, bool exact_sums,

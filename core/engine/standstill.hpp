@@ -34,9 +34,9 @@ template <Real T> struct Standstill {
     return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
-  // Called at a review with local time, time since the start, collisions made, active particles. `shrinks`: the last
-  // collision was with a floor, and the run stops when a rebound from it is small enough; absolute times do not resolve
-  // rebounds, but their heights are known.
+  // Called at a review with local time, time since the start, collisions made and active particles. `shrinks` says that
+  // the last collision was with a floor, and that the run stops when a rebound from it is small enough: absolute times
+  // do not resolve rebounds, but their heights are known.
   bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active, bool shrinks = false) {
     if (now > time) collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;

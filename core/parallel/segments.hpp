@@ -78,8 +78,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   };
   const Statistics& statistics() const { return statistics_; }
 
-  // Collisions to be made in the plain loop before the next time slab, where about so many are to come before the run
-  // stops or the epoch ends; none are if there are to be no time slabs.
+  // The number of collisions to be made in the plain loop before the next time slab, if about so many are to come
+  // before the run stops or the epoch ends; 0 if there are to be no time slabs.
   std::uint64_t plain_collisions(const Chain& chain, double ahead) {
     const std::size_t held = chain.last() + 1 - chain.first();
     if (!(ahead > 0)) return 64;
@@ -185,8 +185,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
       weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.collisions});
   }
 
-  // How many segments so many gaps make: as many for each thread. A ring has no cut or two at least; 0: it is too small
-  // for them.
+  // How many segments are made of so many gaps: as many for each thread. A ring has no cut or at least two; 0 says that
+  // it is too small for them.
   std::size_t segments(const Chain& chain, std::size_t held) const {
     const std::size_t threads =
         how_.anywhere ? workers_.count : std::max<std::size_t>(1, std::min(workers_.count, held / gaps_per_thread));

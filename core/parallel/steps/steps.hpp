@@ -71,10 +71,10 @@ struct StepResult {
   double lost = 0, rest = 0;       // for Ledger::add_sums
 };
 
-// How a segment is computed: the length of a step (0: unknown), chosen such that it takes about so many passes; the
-// number of steps between undo copies; and of steps since the last failure. After time slabs in which steps failed, the
-// next ones are left to the event loop: `rest` is how many still are, `next_rest` how many will be after the next
-// failure.
+// How a segment is computed: the length of a step (0: unknown), which is chosen such that it takes about so many
+// passes; the number of steps between undo copies, and that of steps since the last failure. After time slabs in which
+// steps failed, the next ones are left to the event loop: `rest` is how many still are, `next_rest` how many will be
+// after the next failure.
 struct StepPace {
   static constexpr int most = 1 << 20;
   double length = 0, passes = 5;

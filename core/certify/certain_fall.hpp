@@ -17,7 +17,7 @@
 //   w(t) > 0, g(t) > 0      it only shrinks
 //   D < 0                   it has no root: its least value is D/(2 p) > 0
 //
-// Another way through is none: D >= 0 with w > 0 >= w(t) is a collision that is missing, or a touch.
+// There is no other way for the gap to stay open: D >= 0 with w > 0 >= w(t) is a collision that is missing, or a touch.
 
 #include <optional>
 

@@ -94,8 +94,8 @@ template <Real T, class Gaps> class Certainty {
       doubt(gaps, particle, time, Off::largest(here.gap));
   }
 
-  // Checks whether a wall is met, at a gap that has just changed: `meets` gives the time until then of a gap that is so
-  // much smaller and closes so much faster, or nothing.
+  // Checks whether a wall is met, at a gap that has just changed. `meets` gives the time until a gap that is smaller,
+  // and closes faster, by given amounts meets the wall; or nothing, if it does not.
   template <class Meets>
   void meeting(Gaps& gaps, Slot s, ParticleIndex particle, const T& time, const Meets& meets) const {
     if (gaps.account().uncertain > 0) return;
@@ -136,7 +136,7 @@ template <Real T, class Gaps> class Certainty {
   }
 
   // Whether a collision at the gap s may come before or after this time, which is the end of the run and is itself off
-  // by so much.
+  // by `off_by`.
   template <class Motion>
   bool open(const Gaps& gaps, const Motion& motion, Slot s, const T& time, const T& off_by) const {
     const GapMotion<T> now = motion(s, time);

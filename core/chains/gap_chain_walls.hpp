@@ -8,8 +8,8 @@
 // begins a new pile.
 //
 // While a particle is carried from x, v to x', v' in the time t, the wall gives it the momentum m (v' - v - a t) and
-// the energy m (v'^2 - v^2)/2 - m a (x' - x), in no collision. They are entered in the accounts when its gap next
-// changes, and added to them when they are read before.
+// the energy m (v'^2 - v^2)/2 - m a (x' - x), in no collision. Both are entered in the accounts when the particle's gap
+// next changes; where accounts are read before, both are added.
 
 #include "cradle/core/chains/gap_chain.hpp"
 

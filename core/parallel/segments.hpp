@@ -100,8 +100,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   }
 
   using Part = typename Segment<Law, Chain>::Part;
-  // Is given all collisions of a time slab, in the order of the plain loop, before the chain is what they make of it.
-  // What it throws leaves the chain as it was.
+  // An observer is given all collisions of a time slab, in the order of the plain loop, before the chain is what they
+  // make of it. If it throws, the chain stays as it was.
   using Observer = std::function<void(const std::vector<typename Part::Observed>&)>;
 
   // Makes all collisions up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain

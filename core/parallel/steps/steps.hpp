@@ -24,8 +24,8 @@ class StepScalars {
 
   // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order.
   virtual bool collide(std::size_t gap) = 0;
-  // StepLaw::any: what comes of collisions at so many inner gaps; enters them in counts and ledger, and logs them where
-  // they are observed. (StepLaw::of_speed: where numbers are out of the range of vectors.)
+  // StepLaw::any: computes what comes of the collisions at so many inner gaps, enters it in counts and ledger, and logs
+  // it where collisions are observed. (StepLaw::of_speed: the same, where numbers are out of the range of vectors.)
   virtual void outcomes(const std::uint32_t* gaps, std::size_t count) = 0;
   // An undo copy of what all of this has entered anywhere.
   virtual void keep() = 0;

@@ -4,7 +4,7 @@
 //
 //   g(t) = g - w t - p t^2/2 - (s(t) - s(0) - s'(0) t),   w(t) = w + p t + s'(t) - s'(0).
 //
-// The time at which it closes is found so that no collision is passed by:
+// The time at which it closes is found as follows, and no collision is passed by:
 //
 //   sawtooth   on the k-th tooth the gap is that to a wall that never jumps, + 2 k A: a quadratic equation for each
 //              tooth, one after the other

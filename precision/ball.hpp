@@ -128,8 +128,8 @@ template <class M> class Ball {
   Ball& operator*=(const Ball& y) { return *this = *this * y; }
   Ball& operator/=(const Ball& y) { return *this = *this / y; }
 
-  // For a ball that is certainly positive; infinite otherwise. Let s be the computed root of the midpoint x, with any
-  // error: |s - sqrt(y)| = |s^2 - y| / (s + sqrt(y)) <= (|s^2 - x| + |x - y|) / s.
+  // The root of a ball that is certainly positive; it is infinite otherwise. Let s be the computed root of the midpoint
+  // x, with any error: |s - sqrt(y)| = |s^2 - y| / (s + sqrt(y)) <= (|s^2 - x| + |x - y|) / s.
   friend Ball sqrt(const Ball& x) {
     using std::sqrt;
     if (!(x.least_size() > 0) || !is_positive(x.middle_)) return {x.middle_, std::numeric_limits<Radius>::infinity()};

@@ -37,8 +37,8 @@ inline std::string decimal_beside(const Wide& x, int digits, bool below) {
   return text(below ? Wide(x - unit) : Wide(x + unit));
 }
 
-// The same decimal of a sum of doubles, in integers, which takes a fiftieth of the time. None where that would need too
-// many bits, where the sum is a decimal or in the middle between two, and next to a power of ten.
+// The same decimal of a sum of doubles, in integers, which takes a fiftieth of the time. There is none where that would
+// need too many bits, where the sum is a decimal or in the middle between two, and next to a power of ten.
 inline std::optional<std::string> quick_decimal_beside(const std::array<double, 3>& sum, int digits, bool below) {
   namespace mp = boost::multiprecision;
   using Integer = mp::number<mp::cpp_int_backend<640, 640, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;

@@ -51,7 +51,8 @@ endfunction()
 
 foreach(file bin/cradle share/man/man1/cradle.1 share/bash-completion/completions/cradle
              share/zsh/site-functions/_cradle
-             share/fish/vendor_completions.d/cradle.fish share/doc/cradle/core/README.md share/cradle/scenes/fig2.toml
+             share/fish/vendor_completions.d/cradle.fish share/doc/cradle/core/README.md share/doc/cradle/core/laws/README.md
+             share/doc/cradle/precision/README.md share/cradle/scenes/fig2.toml
              share/cradle/python/cradle/__init__.py
              share/cradle/python/cradle/page/page.css share/cradle/python/cradle/cite.bib)
   if(NOT EXISTS ${SCRATCH}/prefix/${file})

@@ -17,7 +17,7 @@
 //   w(t) > 0, g(t) > 0      it only shrinks
 //   D < 0                   it has no root: its least value is D/(2 p) > 0
 //
-// Another way through is none: D >= 0 with w > 0 >= w(t) is a collision that is missing, or a touch.
+// There is no other way for the gap to stay open: D >= 0 with w > 0 >= w(t) is a collision that is missing, or a touch.
 
 #include <optional>
 
@@ -25,8 +25,8 @@
 
 namespace cradle {
 
-// sqrt(x), x > 0 certainly. With the root m of its middle |sqrt(y) - m| = |y - x|/(sqrt(y) + m), and sqrt(y) is at
-// least m (1 - q) if y is at least x (1 - q): half as wide as what a ball's own root allows for.
+// sqrt(x), where x > 0 is certain. With the root m of its middle |sqrt(y) - m| = |y - x|/(sqrt(y) + m), and sqrt(y) is
+// at least m (1 - q) if y is at least x (1 - q): this is half as wide as what a ball's own root allows for.
 template <Enclosing N> N narrow_root(const N& x) {
   using std::sqrt;
   const N root = sqrt(N(x.middle(), 0));
@@ -55,8 +55,9 @@ template <Enclosing N> struct CertainApproach {
     return {speed, (gap + gap) / (closing + speed)};
   }
 
-  // To a ceiling. `before`: how long after the time of these numbers the gap is known to be positive; `until`: until
-  // when it is to be so. Returns nothing if it is, else what is open: of the first two the second should be larger.
+  // Whether the gap to a ceiling stays open. It is known to be positive the time `before` after that of these numbers,
+  // and is to be so until `until`. Returns nothing if it certainly is, else what is open: of the first two the second
+  // should be larger.
   struct Open {
     N first, second;
     bool refuted;

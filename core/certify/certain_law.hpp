@@ -8,8 +8,7 @@
 // particles c = (1 + eps)/2 for both, 1 in an elastic collision; particles that merge meet in c_l = m_r/(m_l + m_r).
 //
 // A restitution r(w) = eps + (1 - eps) exp(-y), y = (w/delta)^sigma, has c = (1 + r(w))/2. The errors of velocities do
-// not grow by c but by the derivative of the impulse, d(c w)/dw = (1 + eps + (1 - eps)(1 - sigma y) exp(-y))/2: at most
-// 1, at least (1 + eps - (1 - eps) sigma exp(-1 - 1/sigma))/2. Where that is not negative they are averaged.
+// not grow by c but by the derivative of the impulse, d(c w)/dw (README.md, How errors grow).
 
 #include <optional>
 #include <utility>

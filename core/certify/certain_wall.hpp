@@ -58,8 +58,8 @@ template <Enclosing N> class CertainWall {
     return true;
   }
 
-  // The speed of the next collision's particle afterwards, relative to the wall; nothing as above. `elastic`: as if it
-  // had the restitution 1, if it reflects.
+  // The speed of the next collision's particle afterwards, relative to the wall; nothing as above. `elastic`: a wall
+  // that reflects acts as if it had the restitution 1.
   std::optional<N> speed_after(const N& w, const N& mass, bool elastic, const CertainAccount<N>& account) const {
     if (!thermal()) return elastic ? w : wall_.restitution * w;
     const std::optional<double> random = random_speed(mass, account.collisions);

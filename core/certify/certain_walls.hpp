@@ -99,8 +99,8 @@ template <Enclosing N> class CertainWalls {
     return std::nullopt;
   }
 
-  // With gravity: that a particle beside a ceiling did not meet it since its last collision, until a time when it meets
-  // something else, the other wall perhaps.
+  // With gravity: checks that a particle beside a ceiling did not meet it since its last collision, until a time when
+  // it meets something else, which may be the other wall.
   [[gnu::noinline]] std::optional<Doubt<N>> stays_open(const Motion<N>& motion, ParticleIndex particle, const N& until,
                                                        std::optional<ParticleIndex> met = {}) const {
     const ParticleIndex ceiling = is_positive(motion.acceleration) ? -1 : motion.lines.count();

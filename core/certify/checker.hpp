@@ -13,45 +13,19 @@
 // point. The time T does not enter. For identical particles c = (1 + eps)/2: the matrix is doubly stochastic, radii are
 // averaged and only roundings add to them. Merging is an average too.
 //
-// Checked at the start: every gap is certainly positive. At each collision of l and r:
+// At the start it is checked that every gap is certainly positive. At each collision of l and r these are checked:
 //   1. they are neighbours;
 //   2. w > 0 certainly;
 //   3. T is certainly later than the last collision of either of them;
-//   4. w is certainly on one side of every threshold of the law.
-// At a time t to which the run is to be proved: every gap is certainly positive then, and the last collision of every
-// particle certainly earlier.
+//   4. w is certainly on one side of every threshold of the law;
+//   5. under gravity, a particle beside the ceiling has not met it since its last collision.
+// At a time t to which the run is to be proved it is checked that every gap is certainly positive then, that the last
+// collision of every particle is certainly earlier, and 5.
 //
 // Theorem. If all of this holds, these world lines are the motion of the exact system up to t, it has made exactly
 // these collisions, and every place and velocity lies in its ball.
 //
-// Proof. By 3 the collisions of each particle are in the order of their true times, so its world line is a continuous,
-// piecewise linear function of time. Impulses push apart (J >= 0, with 2): a collision on the left of particle k makes
-// it faster, one on its right slower. So between two collisions of a gap with itself, the place of the particle on its
-// left is a convex function of time and that of the particle on its right a concave one, and the gap is concave. It is
-// 0 at its own collisions and positive at the start and at t. A concave function that is 0 or positive at both ends of
-// an interval is positive within, unless it is 0 throughout; and that it is not: after a collision it opens at the
-// speed w' > 0. So no gap is ever negative, and each is 0 at its collisions alone: no collision is missing, none
-// invented, each obeyed the law (2, 4). Three particles never meet at one time (3), so the motion is unique. Collisions
-// that share no particle may come in any order. Particles that pass exchange their cells of the line: J <= mu w, so the
-// left cell continues at v_r + J/m_r <= v_l and the right one at v_l - J/m_l >= v_r, slower and faster as after a
-// bounce.
-//
-// Walls (certain_wall.hpp) have world lines as well, which nothing changes. Next to the left one, particle 0 is only
-// hit on its right between two collisions with the wall: its place is concave and that of the wall linear, so the gap
-// is concave and the argument holds. So it does at the right one.
-//
-// Under gravity lines are seen from the frame that falls, where particles fly straight, as above, and the walls are
-// parabolas. To a floor, which comes up, the gap is still concave: the argument holds, given that the line meets the
-// wall at T, closing, which it does at one time only (certain_fall.hpp). To a ceiling the gap is convex on each flight.
-// There it is checked flight by flight:
-//   5. at each collision of a particle beside the ceiling, and at t, it has not met the ceiling since its last one.
-// So the gap is positive at the end of each such flight, and a flight that ends at the ceiling does so where a convex
-// gap that was positive is 0 for the first time: it closes there.
-//
-// With a restitution of 0, w' = 0: particles stay together until one of them is hit, and the next collision fails 2.
-// Particles that merge have no gap any more. Particles that pass change places, and their gap is one of cells in the
-// order of the line, as it is in the engine. On a ring the argument holds for the images. Particles of a row that no
-// collision has reached fly in order, by how they were placed (rows.hpp).
+// README.md has the proof, also for walls, under gravity and for particles that merge or pass.
 
 #include <algorithm>
 #include <memory>

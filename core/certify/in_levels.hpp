@@ -28,8 +28,9 @@ template <SideBySide N> class InLevels<N> {
   InLevels(const typename N::Share& share, const N& cutoff, bool always_elastic)
       : bounces_(share, cutoff, always_elastic) {}
 
-  // At most `most` of them. neighbours(left, right): whether they are, taking in what stands beside them;
-  // collide(left, right): makes one alone. The last one always is, since a run may end with it.
+  // There are at most `most` of them. neighbours(left, right) says whether two are, and takes in what stands beside
+  // them; collide(left, right) makes one collision alone. The last one is always made alone, since a run may end with
+  // it.
   template <class Neighbours, class Collide>
   std::optional<DoubtAt<N>> operator()(std::span<const Pair> pairs, WorldLines<N>& lines, Proved& proved,
                                        Neighbours neighbours, Collide collide) {

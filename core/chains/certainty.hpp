@@ -32,7 +32,7 @@ template <Real T, class Gaps> class Certainty {
   };
 
   // Computes the deviations after the next collision, which is at the gap s between p and n and closes at the speed w.
-  // Called before the gaps change.
+  // It is called before the gaps change.
   template <class Motion, class Masses>
   void collision(Gaps& gaps, const Motion& motion, Slot p, Slot s, Slot n, ParticleIndex particle, const T& time,
                  const T& speed, const Outcome<T>& outcome, const Masses& masses, bool exact_sums,
@@ -94,8 +94,8 @@ template <Real T, class Gaps> class Certainty {
       doubt(gaps, particle, time, Off::largest(here.gap));
   }
 
-  // Checks whether a wall is met, at a gap that has just changed: `meets` gives the time until then of a gap that is so
-  // much smaller and closes so much faster, or nothing.
+  // Checks whether a wall is met, at a gap that has just changed. `meets` gives the time until a gap that is smaller,
+  // and closes faster, by given amounts meets the wall; or nothing, if it does not.
   template <class Meets>
   void meeting(Gaps& gaps, Slot s, ParticleIndex particle, const T& time, const Meets& meets) const {
     if (gaps.account().uncertain > 0) return;
@@ -136,7 +136,7 @@ template <Real T, class Gaps> class Certainty {
   }
 
   // Whether a collision at the gap s may come before or after this time, which is the end of the run and is itself off
-  // by so much.
+  // by `off_by`.
   template <class Motion>
   bool open(const Gaps& gaps, const Motion& motion, Slot s, const T& time, const T& off_by) const {
     const GapMotion<T> now = motion(s, time);

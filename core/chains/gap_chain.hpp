@@ -244,8 +244,9 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   }
 
   template <class Closing> T kinetic_energy(const T& time, const Closing& closing_at) const;
-  // On a ring, or between two walls that are not shaken, closing speeds add up to a number that is known. What they
-  // miss is rounding, of the size of the first of them: a system that has cooled to that is another one.
+  // On a ring, or between two walls that are not shaken, closing speeds add up to a number that is known. What their
+  // sum misses of it is rounding, of the size of that of the first closing speeds: a system that has cooled to that
+  // size is another one.
   bool closed() const { return on_ring() || (!falls && walls_.has(End::left) && walls_.has(End::right)); }
   void find_lost_digits(const T& time);
   static constexpr int certain_by = 64;  // as in Deviation
@@ -265,8 +266,8 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
         return from_wall(time);
     return anchor.flight(*particles_, clock(), time);
   }
-  // Of a particle that rests on a wall, alone or on a pile of all others, or of a single one that may rest there.
-  // (gap_chain_walls.hpp)
+  // The flight of a particle that rests on a wall, alone or on a pile of all others, or of a single one that may rest
+  // there. (gap_chain_walls.hpp)
   Flight<T> from_wall(const T& time) const;
 
   // Predicts the next collisions with walls under gravity, where all others have just been. (gap_chain_walls.hpp)

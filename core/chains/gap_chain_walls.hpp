@@ -2,16 +2,14 @@
 // Collisions at and beside walls under gravity, or where walls are shaken, in a chain in gaps; particles that rest on a
 // wall (laws/wall_approach.hpp): where they are, and what the wall gives them.
 //
-// A pile. A particle that meets one at rest on a wall more slowly than the wall's rest speed stays on it: to it, what
-// rests is the wall, which also takes its impulse. So k particles rest, one on the other, all gaps below the k-th 0
-// and closed, and the gap above them is one to the wall (gravity.hpp). A faster one collides with the topmost by the
-// law; this one then is not at rest, but pushed into those below, which it meets at the same time, and so on down to
-// the wall. All are let go at the same time. The pile is dissolved by the next collision beside it: in gaps nothing
-// happens before. One that sits on the wall again is a new one.
+// Several particles that rest on a wall are a pile (README.md, Piles). All gaps below the topmost one are 0 and closed,
+// and the gap above it is one to the wall (gravity.hpp). All of its particles are let go at the same time, but in gaps
+// nothing happens before the next collision beside the pile, which dissolves it. A particle that sits on the wall again
+// begins a new pile.
 //
 // While a particle is carried from x, v to x', v' in the time t, the wall gives it the momentum m (v' - v - a t) and
-// the energy m (v'^2 - v^2)/2 - m a (x' - x), in no collision. They are entered in the accounts when its gap next
-// changes, and added to them when they are read before.
+// the energy m (v'^2 - v^2)/2 - m a (x' - x), in no collision. Both are entered in the accounts when the particle's gap
+// next changes; where accounts are read before, both are added.
 
 #include "cradle/core/chains/gap_chain.hpp"
 

@@ -181,7 +181,7 @@ template <Real T, class MassesOf> class GapLine {
     if constexpr (Gaps::keys_are_exact) gaps[s].due = time;
     return time;
   }
-  // The effect of a collision at a wall or beside the gap to one, off the hot path. So many particles rest in the pile
+  // The effect of a collision at a wall or beside the gap to one, off the hot path. `resting` particles are in the pile
   // after it; one that comes to rest on others does not move them. `renew` is called while the pile is as it was.
   template <class Field, class Renew>
   CollisionResult<T> strike(Field& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,

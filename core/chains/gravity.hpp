@@ -159,9 +159,9 @@ template <class C> bool falls(const C& chain) {
 }
 
 // Whether a collision with a wall under gravity, or where a wall is shaken, is below the law's cut-off. On an inelastic
-// floor particles collapse without any others; so collisions with walls below the cut-off are elastic too, also if it
-// sets in slowly among particles: as slowly a particle would come to rest on the floor only after exponentially many
-// collisions.
+// floor particles collapse without any others, so collisions with walls below the cut-off are elastic too. This holds
+// also if the cut-off sets in slowly among particles: if it set in as slowly at the floor, a particle would come to
+// rest there only after exponentially many collisions.
 template <Real T, class Law> bool below_cutoff(const Law& law, const T& w) {
   if constexpr (requires { law.below_cutoff(w); })
     return law.below_cutoff(w);

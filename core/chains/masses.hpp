@@ -71,9 +71,10 @@ template <Real T> bool far_apart(const Particles<T>& particles) {
 template <Real T> inline constexpr bool sums_can_be_exact = std::numeric_limits<T>::is_exact || requires {
   requires std::numeric_limits<T>::round_style == std::round_to_nearest;
 };
-// Watching takes about three times the time per collision, so it is used for masses far apart and for few particles: of
-// identical masses, for very few at a wall (shaken, it makes errors grow; at rest, it may stop a particle), or if they
-// were placed one by one: round numbers make particles meet in threes, which rounding may draw apart.
+// Watching takes about three times the time per collision, so it is used for masses far apart and for few particles.
+// Identical masses are watched if there are very few particles, and these are at a wall (a shaken wall makes errors
+// grow, one at rest may stop a particle) or were placed one by one: round numbers make particles meet in threes, which
+// rounding may draw apart.
 template <Real T> bool to_be_watched(const Particles<T>& particles, bool placed_one_by_one) {
   if (particles.identical_masses()) return particles.count() <= 16 && (particles.walled() || placed_one_by_one);
   return particles.count() <= 1000 || far_apart(particles);

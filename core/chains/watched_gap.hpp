@@ -35,7 +35,7 @@
 // A collision is certain if `certain_by` times the larger sample changes neither that it happens (its closing speed
 // stays positive) nor its place in the sequence: the gaps g beside it stay positive at its time, which is itself off by
 // D_s/w, so |D_g - (w_g/w) D_s| < g. At the end of a run every gap must be positive with the same certainty. Then the
-// collisions are those of the exact system (core/README.md, Proofs: the same argument with errors enclosed, not
+// collisions are those of the exact system (core/certify/README.md has the same argument with errors enclosed, not
 // estimated).
 
 #include <algorithm>

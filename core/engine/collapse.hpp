@@ -10,10 +10,10 @@
 // then on the run follows them until the time left is less than the chain's resolution, or a gap is about to underflow,
 // or `most_followed` collisions are made. Without such a proof a run reports no collapse.
 //
-// Collapses of many particles are not of this form. Near the elastic limit particles squeezed between clusters shrink
-// their gaps by 2^60 and more, part and are squeezed again, in 1e8 collisions while time hardly advances, in double as
-// in more digits. So more than `few` particles in gaps stop where a gap beside a collision is below 2^-100 of what the
-// gap of the collision was at the start, unless the collapse there is proved. This is no proof: they may still part.
+// Collapses of many particles are not of this form (README.md, What is not proved). More than `few` particles in gaps
+// stop where a gap beside a collision is below 2^-100 of what the gap of the collision was at the start, unless the
+// collapse there is proved. This is no proof: they may still part. Gaps shrink by 2^60 and more before particles that
+// are squeezed between clusters part.
 
 #include <algorithm>
 #include <cstdint>

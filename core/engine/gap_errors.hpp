@@ -1,6 +1,6 @@
 #pragma once
 // Bounds on what rounding has done to the gaps and closing speeds of a few particles, from the history of their
-// collisions (README.md, "Collapse").
+// collisions (README.md, Bounds on rounding).
 //
 // As lines in time, G(t) = g - w t, gaps obey linear maps: a collision at i turns G_i into -r G_i and adds c G_i to the
 // line of each neighbour, whenever it comes. Errors obey exactly the same maps, and their bounds obey the maps with the
@@ -39,8 +39,8 @@ template <Real T> LawError<T> law_error(const Outcome<T>& at_unit_speed, bool id
   const T rebound = T(-at_unit_speed.closing), &left = at_unit_speed.to_left, &right = at_unit_speed.to_right;
   const Roundoff<T> of;
   const T& unit = of.unit;
-  // r w: the decimal and a product. For r >= 1/2, w - 2 f with f = ((1 + r)/2) w: half of the decimal, a sum, a
-  // product.
+  // The errors of r w are those of the decimal and of a product. For r >= 1/2, w - 2 f with f = ((1 + r)/2) w has those
+  // of half of the decimal, a sum and a product.
   const bool soft = rebound + rebound < T(1);
   const T own = soft ? T(T(2) * unit * rebound) : T(unit * (T(5) * (left + right) / T(2) + rebound));
   // Half of the velocity exchanged: f, or the result of r w and a sum.

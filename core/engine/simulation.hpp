@@ -186,8 +186,9 @@ class Simulation {
     Simulation& run;
   };
 
-  // The local time of a reading. Where particles fall, the rounded time of the last collision is that of the state
-  // which it has left: at another one a particle that has come to rest on a floor would have fallen for a rounding.
+  // The local time of a reading. Where particles fall, the rounded time of the last collision stands for the state
+  // which that collision has left: at any other time a particle that has come to rest on a floor would have fallen for
+  // a rounding.
   T local(const T& time) const {
     if constexpr (FallingChain<Chain>)
       if (time == last_collision_time()) return last_collision_;

@@ -3,7 +3,7 @@
 // elastic. If more collisions follow at the same time, the scalar type cannot distinguish their times, or they never
 // end: the collisions of very inelastic particles continue until their speeds underflow.
 //
-// A law with a threshold ends them (README.md, Collapse), but late: very inelastic particles in touch even out their
+// A law with a threshold ends them (README.md), but late: very inelastic particles in touch even out their
 // speeds, from w to the cut-off delta, in up to n^2 w/(2 delta) collisions, each of which must wait for those on its
 // left.
 //
@@ -34,9 +34,9 @@ template <Real T> struct Standstill {
     return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
-  // Called at a review with local time, time since the start, collisions made, active particles. `shrinks`: the last
-  // collision was with a floor, and the run stops when a rebound from it is small enough; absolute times do not resolve
-  // rebounds, but their heights are known.
+  // Called at a review with local time, time since the start, collisions made and active particles. `shrinks` says that
+  // the last collision was with a floor, and that the run stops when a rebound from it is small enough: absolute times
+  // do not resolve rebounds, but their heights are known.
   bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active, bool shrinks = false) {
     if (now > time) collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;

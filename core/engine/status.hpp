@@ -55,9 +55,10 @@ template <Real T> struct Policy {
 
   // Whether a gap size is given: then a collapse is followed until a gap is smaller.
   bool follows_a_gap() const { return collapse == CollapsePolicy::stop && is_positive(stop_gap); }
-  // The status of the run after a collision that leaves this gap beside it, or this rebound from a floor; `settled`:
-  // its collapse is known, `followed`: for long enough. If a gap leaves the type's range without a settled collapse,
-  // the particles may still separate. The height of a rebound leaves it long before the speed.
+  // The status of the run after a collision that leaves this gap beside it, or this rebound from a floor. `settled`
+  // says that its collapse is known, `followed` that it was followed for long enough. If a gap leaves the type's range
+  // without a settled collapse, the particles may still separate. The height of a rebound leaves it long before the
+  // speed does.
   Status after(const T& gap, const std::optional<Rebound<T>>& back, bool settled, bool followed) const {
     const T underflow{std::numeric_limits<T>::min()};  // 0 in exact arithmetic, which knows none
     const auto below = [&](const T& size) { return is_positive(gap) && gap < size; };

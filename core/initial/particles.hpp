@@ -122,8 +122,8 @@ template <Real T> class Particles {
     const T own = energy - (is_finite(square) ? T(square / twice) : T(p * (p / twice)));
     return own < least ? least : own;
   }
-  // The largest kinetic energy until a time since the start, E = mechanical_energy() at most if there is a floor: the
-  // potential energy is least with all particles there. Without one, particles fall for the time t, and
+  // The largest kinetic energy until a time since the start. It is at most E = mechanical_energy() if there is a floor,
+  // since the potential energy is least with all particles there. Without one, particles fall for the time t, and
   // (sqrt(E) + sqrt(M/2) a t)^2 <= 2 E + M a^2 t^2.
   T most_kinetic_energy(const T& elapsed) const {
     const T energy = driven() ? T(kinetic_energy() + energy_to_lose()) : T(kinetic_energy() + energy_of_fall());

@@ -37,7 +37,7 @@ template <Real T> T splitter() {
   while (power * power * epsilon < T(2)) power += power;
   return power + T(1);
 }
-// a b without error, if neither the product nor its rest leaves the range of the type (Dekker, Numer. Math. 18, 224,
+// The product a b without error, if neither it nor its rest leaves the range of the type (Dekker, Numer. Math. 18, 224,
 // 1971, doi 10.1007/BF01397083).
 template <RoundsToNearest T> Pair<T> exact_product(const T& a, const T& b, const T& splitter) {
   const auto halves = [&](const T& x) {

@@ -12,8 +12,7 @@
 //
 // Inelastic law (paper, section II and III): w' = -eps w, energy lost mu w^2 (1 - eps^2)/2; below the velocity cut-off
 // delta the collision is elastic. The closing speed given to the neighbours, w - w', is computed such that the sum of
-// all closing speeds is kept. For eps >= 1/2 the impulse comes first and w' = w - (its effect) is exact; below, w' =
-// -eps w comes first, because there the difference would cancel.
+// all closing speeds is kept: for eps >= 1/2 the impulse comes first, below it w' does (README.md says why).
 
 #include <cmath>
 #include <concepts>
@@ -191,8 +190,8 @@ template <Real T> class SpeedDependent {
   ExponentialRise<T> rise_;
 };
 
-// The inelastic law with a duration of collisions (TC model: Luding and McNamara 1998, doi 10.1007/s100350050017): also
-// elastic if one of the particles has had another collision within that duration.
+// The inelastic law with a duration of collisions (TC model: Luding and McNamara 1998, doi 10.1007/s100350050017). A
+// collision is also elastic if one of the particles has had another one within that duration.
 template <Real T> class ContactTime {
  public:
   static constexpr bool bounces_only = true;
@@ -244,9 +243,9 @@ template <Real T> struct Sticky {
 };
 
 // Wet law (paper, section II): a collision costs E_loss, and the particles pass through each other; if their relative
-// kinetic energy mu w^2/2 does not exceed E_loss, they merge. With w_c = sqrt(2 E_loss/mu): w' = sqrt((w - w_c)(w +
-// w_c)), since w^2 - w_c^2 loses half the digits at the threshold, and J = 2 E_loss/(w + w'), never mu (w - w'). If w
-// is not near w_c, this is decided without the root, so that the processor predicts the branch.
+// kinetic energy mu w^2/2 does not exceed E_loss, they merge. With w_c = sqrt(2 E_loss/mu) it is w' = -sqrt((w - w_c)(w
+// + w_c)), since w^2 - w_c^2 loses half of the digits at the threshold, and J = 2 E_loss/(w - w'), never mu (w + w').
+// If w is not near w_c, the outcome is decided without the root, so that the processor predicts the branch.
 template <Real T> class Wet {
  public:
   static constexpr bool bounces_only = false;

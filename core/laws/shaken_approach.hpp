@@ -4,7 +4,7 @@
 //
 //   g(t) = g - w t - p t^2/2 - (s(t) - s(0) - s'(0) t),   w(t) = w + p t + s'(t) - s'(0).
 //
-// When it closes is found without passing a collision by:
+// The time at which it closes is found as follows, and no collision is passed by:
 //
 //   sawtooth   on the k-th tooth the gap is that to a wall that never jumps, + 2 k A: a quadratic equation for each
 //              tooth, one after the other
@@ -79,7 +79,7 @@ template <Real T> class ShakenApproach {
   Pair<T> time_at(const T& wait) const { return since_ + wait; }
   static T whole_below(const T& x) { return nearest_whole(T(x - T(1) / T(2))); }
 
-  // With the wall anywhere on its path, for long times; the distance from its place, which the particle approaches at
+  // For long times: the wall may be anywhere on its path. The distance from its place, which the particle approaches at
   // the speed w - s'(0), does not lose digits.
   State at_phase(const T& time, const T& y) const {
     const Approach<T> to_place = straight(T(gap_ + (place_ - motion_.place(y))), T(closing_ - speed_), pull_);

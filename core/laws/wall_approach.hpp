@@ -39,8 +39,8 @@ template <Real T> class WallApproach {
       let_go(*wall.release, pull, splitter, since);
   }
 
-  // The gap above particles that a wall holds: until they are let go, so long after `since` (nothing: never), that to a
-  // wall with this motion (null: unshaken) and pull; then it has the pull `later`.
+  // The gap above particles that a wall holds. Until they are let go, the time `held` after `since` (nothing: never),
+  // it is the gap to a wall with this motion (null: unshaken) and this pull; from then on its pull is `later`.
   WallApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>* motion,
                const Pair<T>& since, const std::optional<T>& held, const T& later)
       : straight_(gap, closing, pull, splitter), motion_(motion), rests_(false) {

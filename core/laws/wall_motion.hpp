@@ -79,8 +79,9 @@ template <Real T> class WallMotion {
     return is_negative(y) ? curving_ : T(-curving_);
   }
   // The phase from -1/4 to 1/2 at which it ceases to press a particle of this pull, or drops from under it; nothing if
-  // it never does. Of the sine, where sin(2 pi y) = pull/(A omega^2), by bisection, to the last bit: for a small ratio
-  // s between s/8 and s/4, since halving towards 0 from afar would take as many steps as the type has exponents.
+  // it never does. On the sine this is where sin(2 pi y) = pull/(A omega^2). It is found by bisection, to the last bit:
+  // for a small ratio s between s/8 and s/4, since halving towards 0 from afar would take as many steps as the type has
+  // exponents.
   std::optional<T> release(const T& pull) const {
     if (shape_ == Shape::sawtooth) return T(1) / T(2);
     if (!(pull < curving_)) return {};

@@ -28,8 +28,8 @@ namespace cradle {
 
 // Displacements since the start and velocities of every k-th particle, among particles that stay in order.
 //
-// On a ring they are not folded: particles are in the order of their numbers, so where each is follows, up to turns
-// that all have in common, and the centre of mass, whose flight is known, gives these.
+// On a ring they are not folded. Particles are in the order of their numbers, so the place of each is known but for
+// turns that all have in common; the centre of mass, whose flight is known, gives these turns.
 template <Real T> class TaggedParticles {
  public:
   TaggedParticles(const Particles<T>& particles, ParticleIndex every)

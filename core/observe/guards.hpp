@@ -41,10 +41,9 @@
 // is a sum of roundings that walks at random, so d and the energy grow as C^(3/2): faster than delta. Therefore
 // 2 (2 E/L) |d| is added, d as it is found. (Twice that: while E falls, d may have been larger before.)
 //
-// Moving and thermal walls add energy: with them E is the
-// energy for which the ledger of losses is made (Walled::energy_to_lose). Under gravity energies are sums of kinetic
-// and potential ones, E is the largest kinetic one (Particles::most_kinetic_energy), and an error dx of all places adds
-// |a| M dx to that of the energy.
+// Moving and thermal walls add energy: with them E is the energy for which the ledger of losses is made
+// (Walled::energy_to_lose). Under gravity energies are sums of kinetic and potential ones, E is the largest kinetic one
+// (Particles::most_kinetic_energy), and an error dx of all places adds |a| M dx to that of the energy.
 //
 // An error of 1e-6 of E, or of sqrt(2 E M), is found as long as delta is smaller: for 5e8 collisions if velocities are
 // the particles' own, for 5e8 sqrt(E/(M U^2/2)) if they are sums. An error in a position is found if it exceeds delta U

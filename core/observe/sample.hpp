@@ -38,8 +38,8 @@ template <class Run, Real T = typename Run::Scalar> WallTallies<T> wall_tallies(
   else
     return {};
 }
-// Kinetic energy of all particles of the scene, after the collisions made until now; of particles that fall at the
-// given time, by a sum, since the ledger has potential energy too.
+// Kinetic energy of all particles of the scene, after the collisions made until now. That of particles that fall is a
+// sum over them at the given time, since the ledger has potential energy too.
 template <class Run, Real T = typename Run::Scalar>
 T energy_now(const Run& run, const T& initial_energy, const T& time) {
   if (run.falls()) return run.kinetic_energy(time);

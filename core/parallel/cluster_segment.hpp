@@ -171,8 +171,8 @@ template <Real T> class ClusterSegment {
     return {cell.velocity, cell.mass, cell.particle};
   }
 
-  // A collision that may be at a cut or the seam, or beyond; whether it is the segment's own. Follows the cuts and the
-  // seam where particles merge.
+  // Handles a collision that may be at a cut or the seam, or beyond, and says whether it is the segment's own. Follows
+  // the cuts and the seam where particles merge.
   [[gnu::noinline]] bool at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
     const Slot n = right(s);
     const bool merge = outcome.event == Event::merge;

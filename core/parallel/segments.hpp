@@ -78,8 +78,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   };
   const Statistics& statistics() const { return statistics_; }
 
-  // Collisions to be made in the plain loop before the next time slab, where about so many are to come before the run
-  // stops or the epoch ends; none are if there are to be no time slabs.
+  // The number of collisions to be made in the plain loop before the next time slab, if about so many are to come
+  // before the run stops or the epoch ends; 0 if there are to be no time slabs.
   std::uint64_t plain_collisions(const Chain& chain, double ahead) {
     const std::size_t held = chain.last() + 1 - chain.first();
     if (!(ahead > 0)) return 64;
@@ -100,8 +100,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   }
 
   using Part = typename Segment<Law, Chain>::Part;
-  // Is given all collisions of a time slab, in the order of the plain loop, before the chain is what they make of it.
-  // What it throws leaves the chain as it was.
+  // An observer is given all collisions of a time slab, in the order of the plain loop, before the chain is what they
+  // make of it. If it throws, the chain stays as it was.
   using Observer = std::function<void(const std::vector<typename Part::Observed>&)>;
 
   // Makes all collisions up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain
@@ -185,8 +185,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
       weights_.push_back({chain.place(own_[k].first), own_[k].gaps, reports_[k].counts.collisions});
   }
 
-  // How many segments so many gaps make: as many for each thread. A ring has no cut or two at least; 0: it is too small
-  // for them.
+  // How many segments are made of so many gaps: as many for each thread. A ring has no cut or at least two; 0 says that
+  // it is too small for them.
   std::size_t segments(const Chain& chain, std::size_t held) const {
     const std::size_t threads =
         how_.anywhere ? workers_.count : std::max<std::size_t>(1, std::min(workers_.count, held / gaps_per_thread));

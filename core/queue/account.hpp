@@ -27,7 +27,7 @@ template <Real T> struct Account {
   std::uint64_t unresolved = 0;
   Incident<T> first_unresolved;
   // In watched chains (watched_gap.hpp) and closed systems: 1 from the first collision on that rounding may have
-  // decided; `gap` is the possible error of that collision's gap.
+  // decided. `gap` is the possible error of that collision's gap.
   std::uint64_t uncertain = 0;
   Incident<T> first_uncertain;
 

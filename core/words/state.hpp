@@ -100,8 +100,8 @@ template <Real T> std::vector<T> all_gaps(std::vector<T> open, const Word& word)
   return open;
 }
 
-// A word with its particles, in one type. With a half whose mirror image is the other one, eigenpairs are those of the
-// half: squared, two of its eigenvalues can be equal, though they are not.
+// A word with its particles, in one type. If the period has a half whose mirror image is the other half, eigenpairs are
+// those of the half: two of its eigenvalues can be equal when squared, though they are not.
 template <Real T> struct System {
   Word word;
   Shares<T> shares;
@@ -148,8 +148,8 @@ template <Real T> void negate(std::vector<T>& x) {
   for (T& component : x) component = -component;
 }
 
-// All pairs of eigenvalues, lambda in (0, 1) and growth above 1, at one restitution; approximations, with the signs for
-// which the first collision and the period are forward. `keep` chooses among closing speeds.
+// All pairs of eigenvalues, lambda in (0, 1) and growth above 1, at one restitution. They are approximations, with the
+// signs for which the first collision and the period are forward. `keep` chooses among closing speeds.
 template <Real T, class Keep> std::vector<Pairs<T>> all_pairs(const System<T>& system, const T& r, Keep keep) {
   std::vector<Pairs<T>> all;
   const Matrix<T> v = system.velocities(r);

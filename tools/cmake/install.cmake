@@ -24,6 +24,12 @@ foreach(_document README.md .github/CHANGELOG.md .github/CONTRIBUTING.md bench/R
 endforeach()
 install(DIRECTORY bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench FILES_MATCHING PATTERN "*.md")
 install(DIRECTORY tools/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools/python)
+# The pages of the folders.
+file(GLOB _pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS core/*/README.md precision/README.md)
+foreach(_page IN LISTS _pages)
+  get_filename_component(_folder ${_page} DIRECTORY)
+  install(FILES ${_page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${_folder})
+endforeach()
 
 if(CRADLE_TOOLS)
   install(DIRECTORY tools/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/cradle)

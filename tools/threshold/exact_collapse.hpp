@@ -1,5 +1,5 @@
-// Whether three particles collapse, decided in rational numbers from the scene's decimals: collision by collision until
-// the condition of the theorem in core/README.md, *Collapse*, holds or fails. Nothing is rounded, so the answer is one
+// Decides whether three particles collapse, in rational numbers from the scene's decimals: collision by collision until
+// the condition of the theorem in core/engine/README.md holds or fails. Nothing is rounded, so there is one answer
 // however near to a threshold; a run would need more collisions the nearer it is.
 #pragma once
 

@@ -121,8 +121,8 @@ HWY_INLINE void fill_up(StepLine& line, const Local& l, bool with_outcomes) {
   }
 }
 
-// Makes four collisions of a pass from number k on; the last ones may be one and the same. So far apart, they touch
-// different gaps, and all gaps are read before any is written.
+// Makes four collisions of a pass from number k on; the last ones may be one and the same. They are so far apart that
+// they touch different gaps, and all gaps are read before any is written.
 template <StepLaw law, bool unequal>
 HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t k, double end, Made& made) {
   const Places4 places(l, l.first + k);

@@ -72,8 +72,8 @@ template <StepLaw law, bool unequal> struct Pairs {
 
   HWY_INLINE void make(StepLine& line, Local& l, const StepTask& task, StepScalars&, double end) {
     outcomes(line, l, task);
-    // In two loops: each operation waits for the one before, and the shorter a turn, the more of them are in the
-    // processor at once.
+    // There are two loops, since each operation waits for the one before: the shorter a turn is, the more of them are
+    // in the processor at once.
     for (std::size_t k = 0; k < l.firsts; k += 2) fly(line, l, k);
     for (std::size_t k = 0; k < l.firsts; k += 2) foresee(line, l, end, k);
   }

@@ -2,7 +2,8 @@
 // Collisions without a queue, in steps of time and as vectors: the plain interface of a compiled unit. It takes a line
 // of gaps (line.hpp), a law and a time, and makes all collisions up to it, or says that it could not: then the event
 // loop makes them (segment.hpp). Without the unit, or if it was built without Highway, there are no steps and the event
-// loop does everything. core/README.md, Steps, has the argument why the result is the same.
+// loop does everything. core/parallel/README.md has the proof that the result is the
+// same.
 
 #include <algorithm>
 #include <cstddef>
@@ -23,8 +24,8 @@ class StepScalars {
 
   // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order.
   virtual bool collide(std::size_t gap) = 0;
-  // StepLaw::any: what comes of collisions at so many inner gaps; enters them in counts and ledger, and logs them where
-  // they are observed. (StepLaw::of_speed: where numbers are out of the range of vectors.)
+  // StepLaw::any: computes what comes of the collisions at so many inner gaps, enters it in counts and ledger, and logs
+  // it where collisions are observed. (StepLaw::of_speed: the same, where numbers are out of the range of vectors.)
   virtual void outcomes(const std::uint32_t* gaps, std::size_t count) = 0;
   // An undo copy of what all of this has entered anywhere.
   virtual void keep() = 0;
@@ -70,10 +71,10 @@ struct StepResult {
   double lost = 0, rest = 0;       // for Ledger::add_sums
 };
 
-// How a segment is computed: the length of a step (0: unknown), chosen such that it takes about so many passes; the
-// number of steps between undo copies; and of steps since the last failure. After time slabs in which steps failed, the
-// next ones are left to the event loop: `rest` is how many still are, `next_rest` how many will be after the next
-// failure.
+// How a segment is computed: the length of a step (0: unknown), which is chosen such that it takes about so many
+// passes; the number of steps between undo copies, and that of steps since the last failure. After time slabs in which
+// steps failed, the next ones are left to the event loop: `rest` is how many still are, `next_rest` how many will be
+// after the next failure.
 struct StepPace {
   static constexpr int most = 1 << 20;
   double length = 0, passes = 5;

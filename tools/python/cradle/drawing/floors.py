@@ -1,6 +1,6 @@
 """A shaken floor: the height of one ball once a period against the amplitude, with the place of the first period
 doubling; the height of a column of beads against X = N (1 - r), beside that of nearly elastic ones. Formulas:
-core/README.md, Shaken walls."""
+core/laws/README.md."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, shades, subplots

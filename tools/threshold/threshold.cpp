@@ -84,10 +84,11 @@ class Search {
 
   void take_journal(const JournalHeader& wanted) {
     const auto there = journal_header(part_);
-    if (!there) return journal_.emplace(part_, wanted), void();
-    if (there->kind != kind || there->identity != wanted.identity)
+    const bool of_this = there && there->kind == kind && there->identity == wanted.identity;
+    if (there && !of_this && options_.force == Force::no)
       throw Error({part_, 0, ""}, "unfinished work of something else", there->kind,
-                  "let its own command finish it, or remove it, or give another -o FILE");
+                  "let its own command finish it, or give another -o FILE, or --force to replace it");
+    if (!of_this) return journal_.emplace(part_, wanted), void();
     JournalReader reader(part_);
     while (const auto run = reader.next<RunAt>()) known_[run->value] = *run;
     journal_.emplace(part_, reader.whole_bytes());

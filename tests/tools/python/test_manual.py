@@ -28,7 +28,7 @@ from cradle import simulation
 HERE = os.path.dirname(os.path.abspath(__file__))
 PAGES = os.path.join(HERE, "..", "..", "..", "tools", "manual")
 MOST_NOT_RUN = 12  # of some hundred blocks
-SECONDS = os.environ.get("CRADLE_MANUAL_SECONDS")  # set: says how long each block takes
+SHOWN = os.environ.get("CRADLE_MANUAL_SHOWN")  # set: shows what each block prints, and how long it takes
 
 BLOCK = re.compile(r"(?:^<!-- (?P<mark>not run|status): (?P<said>.+?) -->\n)?"
                    r"^```(?P<language>\w+)(?: title=\"(?P<title>[^\"]+)\")?\n(?P<text>.*?)^```$", re.M | re.S)
@@ -122,8 +122,8 @@ class Manual(unittest.TestCase):
             with self.subTest(text):
                 output = self.commands(block) if block.language == "sh" else self.python(block)
             end = block.end
-            if SECONDS:
-                print(f"{time.monotonic() - began:6.1f} s  {text.splitlines()[0]}", file=sys.stderr)
+            if SHOWN:
+                print(f"\n== {time.monotonic() - began:.1f} s\n{text}--\n{output}", file=sys.stderr)
 
     def test_blocks_that_are_not_run_are_few_and_say_why(self):
         marked = [block for page in pages() for block in blocks(page)[0] if block.mark == "not run"]

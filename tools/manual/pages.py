@@ -16,6 +16,7 @@ SECTION = "How it works"
 OTHERS = ("README.md", "tools/README.md", "tests/README.md", ".github/CONTRIBUTING.md", ".github/CHANGELOG.md",
           "bench/README.md")
 PICTURES = (".png", ".svg")
+ITEM = re.compile(r"([-*]|\d+\.) ")
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s#:]+)(#[^)]*)?\)")
 PLACES = {"README.md": "cradle.html", ".github/CONTRIBUTING.md": "contributing.html",
           ".github/CHANGELOG.md": "changes.html", "tools/manual/README.md": "index.html"}
@@ -84,7 +85,8 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_):
-    """Links to folders, and the empty line before a list, which GitHub does not need."""
+    """What GitHub reads and Python-Markdown does not: links to folders, a list without an empty line before it, and what
+    belongs to an item of a list and is indented by less than four."""
     here = page.file.src_uri
 
     def led(match):
@@ -94,12 +96,17 @@ def on_page_markdown(markdown, page, **_):
             return match[0]
         return f"[{words}]({posixpath.join(link, 'README.md')})" if f"{folder}/README.md" in pages() else words
 
-    lines, before = [], ""
+    lines, before, within_list = [], "", False
     for line, text in outside_code(markdown):
         if text:
             line = LINK.sub(led, line)
-            if re.match(r"([-*]|\d+\.) ", line) and before and not re.match(r"([-*]|\d+\.) |\s", before):
+            item = ITEM.match(line)
+            if item and before and not ITEM.match(before) and not before.startswith(" "):
                 lines.append("")
+            if line.strip():
+                within_list = bool(item) or (within_list and line.startswith(" "))
+            if within_list:
+                line = re.sub(r"^ {2,3}(?=\S)", "    ", line)
         lines.append(line)
         before = line
     return "\n".join(lines)
@@ -110,3 +117,11 @@ def on_post_build(config, **_):
     folder = Path(config["site_dir"]) / "search"
     index = (folder / "search_index.json").read_text(encoding="utf-8")
     (folder / "search_index.js").write_text(f"var __search = {{index: Promise.resolve({index})}};\n", encoding="utf-8")
+
+
+def on_page_content(html, **_):
+    """In the documentation of the Python package, arguments begin a line: `name: what it is`."""
+    if 'class="doc doc-contents' not in html:
+        return html
+    return re.sub(r"(<p>|\n)((?:\w+, )*\w+): ", lambda found: (found[1] if found[1] == "<p>" else "<br>\n")
+                  + f"<code>{found[2]}</code>: ", html)

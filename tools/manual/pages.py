@@ -101,7 +101,7 @@ def on_page_markdown(markdown, page, **_):
         if text:
             line = LINK.sub(led, line)
             item = ITEM.match(line)
-            if item and before and not ITEM.match(before) and not before.startswith(" "):
+            if item and before and not ITEM.match(before):
                 lines.append("")
             if line.strip():
                 within_list = bool(item) or (within_list and line.startswith(" "))

@@ -3,8 +3,8 @@ own, and prints what the page says it prints.
 
     ```sh, ```python             is run; after `<!-- status: 3 -->` commands have to end with that status
     ```LANGUAGE title="NAME"     is written to the file NAME
-    ```text                      right behind one that was run: its lines are in the output, in this order; `...` stands
-                                 for anything
+    ```text                      the next block after one that was run, in the same section: its lines are in the output,
+                                 in this order; `...` stands for anything
     <!-- not run: REASON -->     the block below is left alone
 """
 import contextlib
@@ -107,7 +107,7 @@ class Manual(unittest.TestCase):
             if block.title:
                 with open(block.title, "w", encoding="utf-8") as file:
                     file.write(block.text)
-            if block.language == "text" and output is not None and not whole[end:block.begin].strip():
+            if block.language == "text" and output is not None and "\n#" not in whole[end:block.begin]:
                 with self.subTest(said=block.text):
                     self.assertIsNone(missing(block.text, output), f"is not printed; this is:\n{output}")
             output = None

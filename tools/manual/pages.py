@@ -8,6 +8,7 @@ import posixpath
 import re
 from pathlib import Path
 
+from mkdocs.structure import files as structure
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -60,6 +61,8 @@ def file_of(path, config):
     file = File(path, str(ROOT), config["site_dir"], False)
     file.dest_uri = file.url = place(path)
     file.abs_dest_path = posixpath.join(config["site_dir"], file.dest_uri)
+    if hasattr(structure, "InclusionLevel"):  # MkDocs from 1.5 on leaves out what is in hidden folders
+        file.inclusion = structure.InclusionLevel.INCLUDED
     return file
 
 

@@ -88,8 +88,8 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_):
-    """What GitHub reads and Python-Markdown does not: links to folders, a list without an empty line before it, and what
-    belongs to an item of a list and is indented by less than four."""
+    """What GitHub reads and Python-Markdown does not: links to folders, a list without an empty line before it, and
+    what belongs to an item of a list and is indented by less than four."""
     here = page.file.src_uri
 
     def led(match):
@@ -119,7 +119,9 @@ def on_post_build(config, **_):
     """The index of the search once more, as a script, for pages that are opened from a disk."""
     folder = Path(config["site_dir"]) / "search"
     index = (folder / "search_index.json").read_text(encoding="utf-8")
-    (folder / "search_index.js").write_text(f"var __search = {{index: Promise.resolve({index})}};\n", encoding="utf-8")
+    # Version 9 of the theme takes it from __index, earlier ones from __search.
+    script = f"var __index = {index};\nvar __search = {{index: Promise.resolve(__index)}};\n"
+    (folder / "search_index.js").write_text(script, encoding="utf-8")
 
 
 def on_page_content(html, **_):

@@ -3,8 +3,8 @@ own, and prints what the page says it prints.
 
     ```sh, ```python             is run; after `<!-- status: 3 -->` commands have to end with that status
     ```LANGUAGE title="NAME"     is written to the file NAME
-    ```text                      the next block after one that was run, in the same section: its lines are in the output,
-                                 in this order; `...` stands for anything
+    ```text                      the next block after one that was run, in the same section: its lines are in the
+                                 output, in this order; `...` stands for anything
     <!-- not run: REASON -->     the block below is left alone
 """
 import contextlib

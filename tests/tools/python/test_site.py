@@ -13,6 +13,7 @@ import browser
 
 SETTINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "tools", "manual", "mkdocs.yml")
 SHOTS = os.environ.get("CRADLE_SHOTS")  # a folder: screenshots stay there
+PACKAGES = "Debian: mkdocs-material mkdocstrings-python-handlers"
 LACKING = ("Unrecognised theme", "Unrecognized theme", "plugin is not installed")
 OUTSIDE = re.compile("https?:|mailto:|data:|//")
 
@@ -57,13 +58,13 @@ class Page(HTMLParser):
 def built(folder):
     """Builds the site; the reason where that is impossible here."""
     if not shutil.which("mkdocs"):
-        return "no MkDocs (Debian: mkdocs-material mkdocstrings mkdocstrings-python-handlers)"
+        return f"no MkDocs ({PACKAGES})"
     run = subprocess.run(["mkdocs", "build", "--strict", "-f", SETTINGS, "-d", folder], text=True, check=False,
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if run.returncode == 0:
         return ""
     if any(text in run.stdout for text in LACKING):
-        return "MkDocs without its theme or a plugin (Debian: mkdocs-material mkdocstrings mkdocstrings-python-handlers)"
+        return f"MkDocs without its theme or a plugin ({PACKAGES})"
     raise AssertionError(run.stdout)
 
 

@@ -74,13 +74,16 @@ class Site(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = os.path.join(folder.name, "site")
-        if reason := built(cls.folder):
-            raise unittest.SkipTest(reason)
+        cls.reason = built(cls.folder)
         files = [os.path.relpath(os.path.join(top, name), cls.folder)
                  for top, _, names in os.walk(cls.folder) for name in names]
         cls.pages = {name: Page(os.path.join(cls.folder, name))
                      for name in files if name.endswith(".html") and name != "404.html"}
         cls.sheets = [name for name in files if name.endswith(".css")]
+
+    def setUp(self):
+        if self.reason:
+            self.skipTest(self.reason)
 
     def test_has_the_pages(self):
         self.assertGreater(len(self.pages), 30)

@@ -35,7 +35,7 @@ set(usr ${SCRATCH}/root/usr)
 set(files bin/cradle include/cradle/core/engine/simulation.hpp share/man/man1/cradle.1 share/cradle/scenes/fig2.toml
     share/bash-completion/completions/cradle share/zsh/vendor-completions/_cradle
     share/fish/vendor_completions.d/cradle.fish share/doc/cradle/README.md share/doc/cradle/core/README.md
-    share/doc/cradle/tools/KEYS.md lib/python3/dist-packages/cradle/py.typed)
+    share/doc/cradle/tools/manual/keys.md lib/python3/dist-packages/cradle/py.typed)
 foreach(file IN LISTS files)
   if(NOT EXISTS ${usr}/${file})
     message(FATAL_ERROR "${file} is not in the package: see tools/cmake/install.cmake")

@@ -2,9 +2,9 @@
 # Shared by quickstart.sh and test.sh, which source it. `set_up program|tests` makes sure that everything needed to
 # build the program (and its tests) is installed: it installs what is missing with apt, as root or through sudo. If it
 # cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no network, root or apt. MPI,
-# Highway and pybind11 are optional, and so is Chromium, in which tests inspect reports: they are installed if that
-# needs no password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on
-# bare Debian 12 and Debian 13.
+# Highway and pybind11 are optional, and so are Chromium, in which tests inspect reports, and MkDocs, which makes a site
+# of the manual: they are installed if that needs no password, else left out. `step` runs a command; if it fails, `step`
+# stops and says what to do. Tested on bare Debian 12 and Debian 13.
 
 preset=release
 build=build/$preset
@@ -43,6 +43,8 @@ look    | pip                   | python pip                   | python3-pip
 look    | setuptools            | python setuptools            | python3-setuptools
 look    | wheel                 | python wheel                 | python3-wheel
 look    | venv                  | python ensurepip             | python3-venv
+look    | MkDocs Material       | mkdocs-theme material        | mkdocs-material
+look    | mkdocstrings          | python mkdocstrings_handlers.python | mkdocstrings-python-handlers
 TABLE
 }
 
@@ -110,6 +112,17 @@ has_python_header() {
 sys.exit(not os.path.isfile(os.path.join(sysconfig.get_path('include'), 'Python.h')))"
 }
 
+# The theme of the manual's site; MkDocs finds it by its name.
+has_mkdocs_theme() {
+  local python
+  command -v mkdocs >/dev/null || return 1
+  for python in python3 /usr/bin/python3; do
+    if "$python" -c "import sys; from mkdocs.utils import get_theme_names
+sys.exit('$1' not in get_theme_names())" >/dev/null 2>&1; then return 0; fi
+  done
+  return 1
+}
+
 has() {
   case $1 in
     compiler) has_compiler ;;
@@ -118,6 +131,7 @@ has() {
     header) has_header "$2" ;;
     command) command -v "$2" >/dev/null ;;
     python) has_python_module "$2" ;;
+    mkdocs-theme) has_mkdocs_theme "$2" ;;
     plotting) plotting_python "import $2" ;;
     python-header) has_python_header ;;
   esac
@@ -179,7 +193,7 @@ install_optional() {
   fi
   echo "== not found, left out: ${optional[*]} (Debian's names; without Highway runs
 take longer, without MPI ensembles run in one process, without pybind11-dev and python3-dev Python has no
-cradle.Simulation, without Chromium tests do not inspect reports)"
+cradle.Simulation, without Chromium tests do not inspect reports, without MkDocs they do not build the manual's site)"
 }
 
 # set_up program|tests

@@ -1,4 +1,4 @@
-// The manual, tools/README.md, describes this program: its quotations are what the program prints, it has every command
+// The manual, tools/manual/, describes this program: its quotations are what the program prints, it has every command
 // and every option, and it names every group, dataset and attribute of result files.
 
 #include <algorithm>
@@ -14,14 +14,15 @@ using Names = std::set<std::string>;
 
 class Manual : public ProgramTest {
  protected:
-  // From a headline to the next one.
+  // From a headline of the page of commands to the next one.
   std::string section(const std::string& headline) const {
-    const auto begin = page.find("\n### " + headline + "\n");
-    if (begin == page.npos) return {};
-    return page.substr(begin + 1, page.find("\n#", begin + 1) - begin);
+    const auto begin = commands_page.find("\n## " + headline + "\n");
+    if (begin == commands_page.npos) return {};
+    return commands_page.substr(begin + 1, commands_page.find("\n#", begin + 1) - begin);
   }
 
-  const std::string page = contents(test::source_folder + "/tools/README.md");
+  const std::string commands_page = contents(test::source_folder + "/tools/manual/commands.md");
+  const std::string files_page = contents(test::source_folder + "/tools/manual/files.md");
 };
 
 TEST_F(Manual, QuotesWhatTheProgramPrints) {
@@ -37,13 +38,13 @@ TEST_F(Manual, HasEveryCommandAndItsOptions) {
   const Names common = matches(section("Options of every command that reads a SCENE"), option);
   for (const std::string& command : commands) {
     const std::string written = section("cradle " + command);
-    EXPECT_NE(written, "") << "tools/README.md has no section on cradle " << command << ": write it";
+    EXPECT_NE(written, "") << "tools/manual/commands.md has no section on cradle " << command << ": write it";
     const Printed help = shell("cradle " + command + " --help", 0);
     Names has, documented = matches(written, option);
     for (const std::string& line : matches(help.out, option_lines)) has.merge(matches(line, option));
     has.erase("--help");
     if (has.contains("--set")) documented.insert(common.begin(), common.end());
-    EXPECT_EQ(has, documented) << "options of cradle " << command << ", and those that tools/README.md documents";
+    EXPECT_EQ(has, documented) << "options of cradle " << command << ", and those that tools/manual/commands.md has";
   }
 }
 
@@ -71,10 +72,10 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
   }
   shell("cradle run collapse3 -o collapse.h5 --quiet --set output.word=ab", 3);
 
-  const Names documented = matches(page, "`/?([A-Za-z_0-9/.]+)`");
+  const Names documented = matches(files_page, "`/?([A-Za-z_0-9/.]+)`");
   const auto expect = [&](const std::string& name, const std::string& file) {
     EXPECT_TRUE(documented.contains(name))
-        << file << " holds " << name << ", tools/README.md does not name it: add it there";
+        << file << " holds " << name << ", tools/manual/files.md does not name it: add it there";
   };
   std::size_t groups = 0;
   for (const char* file :

@@ -18,10 +18,12 @@ install(FILES ${PROJECT_BINARY_DIR}/cradle-config.cmake ${PROJECT_BINARY_DIR}/cr
 
 # In the folders of the tree, so that links from one to the other work.
 foreach(_document README.md .github/CHANGELOG.md .github/CONTRIBUTING.md bench/README.md bench/pictures/fig2.png
-                  core/README.md tests/README.md tools/KEYS.md tools/README.md)
+                  core/README.md tests/README.md tools/README.md)
   get_filename_component(_folder ${_document} DIRECTORY)
   install(FILES ${_document} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${_folder})
 endforeach()
+install(DIRECTORY tools/manual DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools FILES_MATCHING PATTERN "*.md"
+        PATTERN site EXCLUDE PATTERN theme EXCLUDE)
 install(DIRECTORY bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench FILES_MATCHING PATTERN "*.md")
 install(DIRECTORY tools/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools/python)
 # The pages of the folders.

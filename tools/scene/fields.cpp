@@ -277,7 +277,8 @@ const Field fields_before_walls[] = {
      "variance of the velocities, one for all masses: of equal masses the temperature is mass times variance, and a "
      "mixture starts out of equilibrium"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
-     "CSV file of the particles, relative to the scene: a line x,v, x,v,m or gap,v (tools/README.md), then decimals; "
+     "CSV file of the particles, relative to the scene: a line x,v, x,v,m or gap,v (tools/manual/scenes.md), then "
+     "decimals; "
      "or a result, the last snapshot of which is taken if it has all particles; results hold the particles themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
     {"initial.gap", initial_of<&Initial::gap>, "l", "", "[0, inf)", &list,

@@ -1,0 +1,148 @@
+"""The manual's pages, as they stand: every command and every example is run, page by page, each page in a folder of its
+own, and prints what the page says it prints.
+
+    ```sh, ```python             is run; after `<!-- status: 3 -->` commands have to end with that status
+    ```LANGUAGE title="NAME"     is written to the file NAME
+    ```text                      the next block after one that was run, in the same section: its lines are in the
+                                 output, in this order; `...` stands for anything
+    <!-- not run: REASON -->     the block below is left alone
+"""
+import contextlib
+import glob
+import importlib.util
+import io
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from typing import NamedTuple
+
+import matplotlib.pyplot as plt
+
+import cradle
+from cradle import simulation
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PAGES = os.path.join(HERE, "..", "..", "..", "tools", "manual")
+MOST_NOT_RUN = 12  # of some hundred blocks
+SHOWN = os.environ.get("CRADLE_MANUAL_SHOWN")  # set: shows what each block prints, and how long it takes
+
+BLOCK = re.compile(r"(?:^<!-- (?P<mark>not run|status): (?P<said>.+?) -->\n)?"
+                   r"^```(?P<language>\w+)(?: title=\"(?P<title>[^\"]+)\")?\n(?P<text>.*?)^```$", re.M | re.S)
+
+
+class Block(NamedTuple):
+    language: str
+    title: str
+    text: str
+    mark: str
+    said: str
+    begin: int
+    end: int
+
+
+def blocks(page):
+    """The blocks of a page, and the page."""
+    with open(page, encoding="utf-8") as file:
+        whole = file.read()
+    return [Block(found["language"], found["title"] or "", found["text"], found["mark"] or "", found["said"] or "",
+                  found.start(), found.end()) for found in BLOCK.finditer(whole)], whole
+
+
+def pages():
+    return sorted(glob.glob(os.path.join(PAGES, "*.md")))
+
+
+def missing(expected, output):
+    """The first line of a page that the output does not have where it should; None if it has all."""
+    left = iter(line.rstrip() for line in output.splitlines())
+    for line in filter(None, map(str.rstrip, expected.splitlines())):
+        pattern = ".*".join(map(re.escape, line.split("...")))
+        if not any(re.fullmatch(pattern, found) for found in left):
+            return line
+    return None
+
+
+def live():
+    """Whether the module for live simulations is built."""
+    try:
+        return bool(simulation.module())
+    except cradle.Error:
+        return False
+
+
+class Manual(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        self.addCleanup(plt.close, "all")
+        os.chdir(folder.name)
+        programs = os.path.join(folder.name, ".programs")
+        os.mkdir(programs)
+        os.symlink(sys.executable, os.path.join(programs, "python3"))
+        os.symlink(os.environ["CRADLE_PROGRAM"], os.path.join(programs, "cradle"))
+        self.environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}", "CRADLE_PYTHON": sys.executable}
+
+    def commands(self, block):
+        status = int(block.said) if block.mark == "status" else 0
+        run = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], env=self.environment, text=True,
+                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        self.assertEqual(run.returncode, status, run.stdout)
+        return run.stdout
+
+    def python(self, block):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(block.text, "manual", "exec"), {"__name__": "__main__"})
+        return printed.getvalue()
+
+    def page(self, page):
+        found, whole = blocks(page)
+        output, end = None, 0
+        for block in found:
+            if block.title:
+                with open(block.title, "w", encoding="utf-8") as file:
+                    file.write(block.text)
+            if block.language == "text" and output is not None and "\n#" not in whole[end:block.begin]:
+                with self.subTest(said=block.text):
+                    self.assertIsNone(missing(block.text, output), f"is not printed; this is:\n{output}")
+            output = None
+            if block.title or block.language not in ("sh", "python") or block.mark == "not run":
+                continue
+            if "cradle.Simulation" in block.text and not live():
+                continue
+            text = block.text
+            if not importlib.util.find_spec("pandas"):
+                block = block._replace(text=re.sub(".*to_pandas.*\n", "", text))
+            began = time.monotonic()
+            with self.subTest(text):
+                output = self.commands(block) if block.language == "sh" else self.python(block)
+            end = block.end
+            if SHOWN:
+                print(f"\n== {time.monotonic() - began:.1f} s\n{text}--\n{output}", file=sys.stderr)
+
+    def test_blocks_that_are_not_run_are_few_and_say_why(self):
+        marked = [block for page in pages() for block in blocks(page)[0] if block.mark == "not run"]
+        self.assertLessEqual(len(marked), MOST_NOT_RUN)
+        for block in marked:
+            self.assertGreater(len(block.said.split()), 2, block.text)
+
+    def test_every_block_is_read(self):
+        for page in pages():
+            found, whole = blocks(page)
+            self.assertEqual(len(re.findall("^```", whole, re.M)), 2 * len(found), page)
+            self.assertEqual({block.language for block in found} - {"sh", "python", "toml", "text", "cpp", "csv"},
+                             set(), page)
+
+
+def runs(page):
+    return lambda self: self.page(page)
+
+
+for path in pages():
+    name = os.path.basename(path)[:-3].replace("-", "_").lower()
+    setattr(Manual, f"test_page_{name}", runs(path))

@@ -1,0 +1,145 @@
+"""The manual as a site: it is built without a warning, its links lead somewhere, it asks no network for anything, and
+a reader who opens it from a disk finds words with its search, on a telephone too. Skipped without MkDocs."""
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+from html.parser import HTMLParser
+
+import browser
+
+SETTINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "tools", "manual", "mkdocs.yml")
+SHOTS = os.environ.get("CRADLE_SHOTS")  # a folder: screenshots stay there
+PACKAGES = "Debian: mkdocs-material mkdocstrings-python-handlers"
+LACKING = ("Unrecognised theme", "Unrecognized theme", "plugin is not installed")
+OUTSIDE = re.compile("https?:|mailto:|data:|//")
+
+# Goes to the search field, types a word once the search is ready, and says what it has found so far.
+SEARCH = """(() => {
+  const field = document.querySelector('input[name=query]'), open = document.querySelector('[data-md-toggle=search]');
+  if (!open.checked) open.click();
+  field.focus();
+  if (/^Initiali/.test(document.querySelector('.md-search-result__meta').textContent.trim())) return [];
+  field.value = '%s';
+  for (const event of ['input', 'keyup']) field.dispatchEvent(new Event(event, {bubbles: true}));
+  return Array.from(document.querySelectorAll('.md-search-result__link'), link => link.getAttribute('href'));
+})()"""
+WIDTH = """(() => {
+  const still = document.createElement('style');
+  still.textContent = '* { transition: none !important }';
+  document.head.append(still);
+  return document.documentElement.scrollWidth;
+})()"""
+
+
+class Page(HTMLParser):
+    """What a page has to be linked to, what it links to, and what is loaded with it."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.names, self.links, self.loads = set(), [], []
+        with open(path, encoding="utf-8") as file:
+            self.feed(file.read())
+
+    def handle_starttag(self, tag, attrs):
+        has = dict(attrs)
+        self.names.add(has.get("id"))
+        if tag == "a" and has.get("href"):
+            self.links.append(has["href"])
+        elif tag == "link":
+            self.loads.append(has.get("href") or "")
+        if has.get("src"):
+            self.loads.append(has["src"])
+
+
+def built(folder):
+    """Builds the site; the reason where that is impossible here."""
+    if not shutil.which("mkdocs"):
+        return f"no MkDocs ({PACKAGES})"
+    run = subprocess.run(["mkdocs", "build", "--strict", "-f", SETTINGS, "-d", folder], text=True, check=False,
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if run.returncode == 0:
+        return ""
+    if any(text in run.stdout for text in LACKING):
+        return f"MkDocs without its theme or a plugin ({PACKAGES})"
+    raise AssertionError(run.stdout)
+
+
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = os.path.join(folder.name, "site")
+        cls.reason = built(cls.folder)
+        files = [os.path.relpath(os.path.join(top, name), cls.folder)
+                 for top, _, names in os.walk(cls.folder) for name in names]
+        cls.pages = {name: Page(os.path.join(cls.folder, name))
+                     for name in files if name.endswith(".html") and name != "404.html"}
+        cls.sheets = [name for name in files if name.endswith(".css")]
+
+    def setUp(self):
+        if self.reason:
+            self.skipTest(self.reason)
+
+    def test_has_the_pages(self):
+        self.assertGreater(len(self.pages), 30)
+        for name in ("index.html", "cradle.html", "how-to-trust.html", "core/index.html", "bench/results/speed.html"):
+            self.assertIn(name, self.pages)
+
+    def test_links_lead_somewhere(self):
+        for name, page in self.pages.items():
+            for link in filter(lambda link: not OUTSIDE.match(link), page.links + page.loads):
+                path, _, part = link.partition("#")
+                there = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name
+                with self.subTest(page=name, link=link):
+                    self.assertTrue(os.path.isfile(os.path.join(self.folder, there)))
+                    if part and there in self.pages:
+                        self.assertIn(part, self.pages[there].names)
+
+    def test_nothing_is_loaded_from_elsewhere(self):
+        for name, page in self.pages.items():
+            self.assertEqual([load for load in page.loads if OUTSIDE.match(load) and not load.startswith("data:")], [],
+                             name)
+        for name in self.sheets:
+            with open(os.path.join(self.folder, name), encoding="utf-8") as file:
+                self.assertNotRegex(file.read(), r"url\(['\"]?(https?:)?//|@import", name)
+
+    def test_the_package_is_documented(self):
+        names = self.pages["python-functions.html"].names
+        for name in ("cradle.run", "cradle.open", "cradle.Simulation", "cradle.resume"):
+            self.assertIn(name, names)
+
+    @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
+    def test_reader_finds_words_from_a_disk(self):
+        with browser.Browser() as reader:
+            for width, scheme in ((1200, "light"), (390, "dark")):
+                reader.resize(width)
+                reader.emulate(scheme)
+                for word, page in (("gap", "core/"), ("resume", "how-to-run"), ("collapse", "how-to-trust"),
+                                   ("digits", "how-to-trust")):
+                    reader.load(os.path.join(self.folder, "index.html"))
+                    until = time.monotonic() + 60
+                    while not (found := reader.evaluate(SEARCH % word)) and time.monotonic() < until:
+                        time.sleep(0.2)
+                    self.assertTrue(any(page in link for link in found), f"{word}: {found}")
+                    if SHOTS:
+                        reader.photograph(os.path.join(SHOTS, f"search-{word}-{width}-{scheme}.png"), 900)
+            self.assertEqual(reader.complaints, [])
+            self.assertEqual([url for url in reader.requests if OUTSIDE.match(url) and not url.startswith("data:")], [])
+
+    @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
+    def test_no_page_is_wider_than_the_window_or_a_telephone(self):
+        with browser.Browser() as reader:
+            for name in self.pages:
+                reader.load(os.path.join(self.folder, name))
+                for width in (1200, 390):
+                    reader.resize(width)
+                    with self.subTest(page=name, width=width):
+                        self.assertLessEqual(reader.evaluate(WIDTH), width)
+                    if SHOTS:
+                        reader.photograph(os.path.join(SHOTS, f"{name.replace('/', '-')}-{width}.png"), 2000)
+            self.assertEqual(reader.complaints, [])

@@ -1,0 +1,44 @@
+// A page that is opened from a disk may neither fetch the index of the search nor start a worker. There the index comes
+// as a script (written by pages.py), and the worker's script runs in a hidden frame, from the time on when the reader
+// goes to the search field: it takes the browser a moment to prepare the index.
+if (location.protocol === "file:") {
+  const index = new URL("search/search_index.js", document.currentScript.src);
+  document.write(`<script src="${index}"><\/script>`);
+
+  window.Worker = class extends EventTarget {
+    constructor(url) {
+      super();
+      this.url = url;
+      this.waiting = [];
+      const isField = element => element !== null && element.name === "query";
+      document.addEventListener("focusin", event => isField(event.target) && this.start());
+      if (isField(document.activeElement) || location.search) this.start();
+    }
+
+    start() {
+      if (this.frame) return;
+      this.frame = document.createElement("iframe");
+      this.frame.hidden = true;
+      document.body.append(this.frame);
+      const inside = this.frame.contentWindow;
+      inside.postMessage = data => this.dispatchEvent(new MessageEvent("message", {data}));
+      const script = inside.document.createElement("script");
+      script.src = this.url;
+      script.onload = () => {
+        const waiting = this.waiting;
+        this.waiting = null;
+        waiting.forEach(data => this.postMessage(data));
+      };
+      inside.document.body.append(script);
+    }
+
+    postMessage(data) {
+      if (this.waiting) this.waiting.push(data);
+      else this.frame.contentWindow.dispatchEvent(new MessageEvent("message", {data}));
+    }
+
+    terminate() {
+      if (this.frame) this.frame.remove();
+    }
+  };
+}

@@ -39,7 +39,8 @@ for name in free_flight pair_flight closing_speed dissipative_closing_speed coll
   line "histogram of $name"         --set "output.histograms=['$name']"
 done
 line 'histogram of gap, every 1'    --set "output.histograms=['gap']" --set 'output.counting={every=1}'
-line 'histogram of cluster, every 1' --set "output.histograms=['cluster']" --set 'output.counting={every=1,cluster_gap=0.1}'
+line 'histogram of cluster, every 1' --set "output.histograms=['cluster']" \
+  --set 'output.counting={every=1,cluster_gap=0.1}'
 line 'correlations, every 0.25'     --set 'output.correlations={every=0.25,longest=20}'
 line 'structure, every 1'           --set 'output.structure={every=1}'
 line 'pair distribution, every 1'   --set 'output.pair_distribution={every=1,distance=10}'

@@ -140,8 +140,8 @@ def main():
     wrong += [f"in no row: {missing}" for missing in uncovered(program, [row for *_, row in rows.values()])]
     if wrong:
         print("\n".join(wrong))
-        print(f"{len(wrong)} mistakes. Bits that should have stayed: --against OTHER, a program that has them, says what "
-              "differs. Bits that change on purpose: --write, and the commit says which and why.")
+        print(f"{len(wrong)} mistakes. Bits that should have stayed: --against OTHER, a program that has them, says "
+              "what differs. Bits that change on purpose: --write, and the commit says which and why.")
     return bool(wrong)
 
 

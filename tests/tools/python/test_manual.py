@@ -23,7 +23,7 @@ from typing import NamedTuple
 import matplotlib.pyplot as plt
 
 import cradle
-from cradle import simulation
+import small
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PAGES = os.path.join(HERE, "..", "..", "..", "tools", "manual")
@@ -66,14 +66,6 @@ def missing(expected, output):
     return None
 
 
-def live():
-    """Whether the module for live simulations is built."""
-    try:
-        return bool(simulation.module())
-    except cradle.Error:
-        return False
-
-
 class Manual(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -113,7 +105,7 @@ class Manual(unittest.TestCase):
             output = None
             if block.title or block.language not in ("sh", "python") or block.mark == "not run":
                 continue
-            if "cradle.Simulation" in block.text and not live():
+            if "cradle.Simulation" in block.text and small.live():
                 continue
             text = block.text
             if not importlib.util.find_spec("pandas"):

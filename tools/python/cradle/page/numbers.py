@@ -150,8 +150,8 @@ def scenario(result: Result) -> list[tuple[str, str, str]]:
 def certificate(result: Result) -> str:
     about = result.certificate.attributes
     if about.get("verdict") == "proved":
-        message = (f"<p class=proved><b>Proved</b>: each of the {count_of(about['collisions'], 'collision')} is that of "
-                   "the exact system, the one with the scene's decimals as they are written, and none is missing. ")
+        message = (f"<p class=proved><b>Proved</b>: each of the {count_of(about['collisions'], 'collision')} is that "
+                   "of the exact system, the one with the scene's decimals as they are written, and none is missing. ")
     else:
         message = (f"<p class=open><b>Undecided</b> after {count_of(about.get('collisions', 0), 'collision')}: "
                    f"{text(about.get('undecided', ''))}. ")

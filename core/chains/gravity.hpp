@@ -3,7 +3,7 @@
 // else (laws/wall_approach.hpp). Whether there is either is a type, chosen once: without it a chain has none of this.
 //
 // Several particles that rest on a wall are a pile: the gaps in it are 0 and closed, the gap above it is as one to the
-// wall. Which gap that is follows from how many there are, in particles from the wall (gap_chain_walls.hpp).
+// wall. Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp).
 
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall_approach.hpp"

@@ -136,12 +136,11 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
                right = slot(line_.right_of(i));
     const T time = Numbers::due(line_, i);
     const std::array<Slot, 3> touched{left, s, right};
-    std::array<T, 3> lags{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      lags[k] = cells.gaps.lag(touched[k]);
-      if (!is_held(touched[k])) continue;
-      Numbers::give(line_, touched[k] - Part::first(), cells, touched[k]);
-      if (!is_positive(cells.gaps.flown(touched[k], time))) return false;
+    const std::array<T, 3> lags{cells.gaps.lag(left), cells.gaps.lag(s), cells.gaps.lag(right)};
+    for (const Slot each : touched) {
+      if (!is_held(each)) continue;
+      Numbers::give(line_, each - Part::first(), cells, each);
+      if (!(cells.gaps[each].time < time)) return false;
     }
     const Outcome<T> outcome = part_->outcome_at_edge(*law_, s, cells.closing(s));
     const auto edge = part_->at_edge(s, time, cells.closing(s), outcome, *report_);

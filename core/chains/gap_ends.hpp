@@ -40,14 +40,8 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
     line_.gaps.swap_gaps(after);
     if (on_ring()) return;
     range_.reach(to_left.reached, to_right.reached);
-    while (first() >= range_.front_left() && range_.beyond_left(first()) == HeldRange::Beyond::row) {
-      range_.take_in_left();
-      line_.load_mass(first(), *particles_);
-    }
-    while (last() <= range_.front_right() && range_.beyond_right(last()) == HeldRange::Beyond::row) {
-      range_.take_in_right(particles_->count());
-      line_.load_mass(last() + 1, *particles_);
-    }
+    while (first() >= range_.front_left() && range_.beyond_left(first()) == HeldRange::Beyond::row) take_in(End::left);
+    while (last() <= range_.front_right() && range_.beyond_right(last()) == HeldRange::Beyond::row) take_in(End::right);
     walls_.continue_with(to_left.wall, to_right.wall);
     const ParticleIndex left = particle(range_.front_left()), right = particle(range_.front_right()) + 1;
     const GapRange all = particles_->gaps();
@@ -105,34 +99,9 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
   // last one.
   Notice widen(Slot s, const T& time, const Outcome<T>& outcome) {
     range_.reach(s, s);
-    if (s == range_.front_left()) {
-      const HeldRange::Beyond beyond = range_.beyond_left(s);
-      if (beyond == HeldRange::Beyond::row) {
-        range_.take_in_left();
-        line_.load(s - 1, *particles_, time);
-        line_.load_mass(s - 1, *particles_);
-      }
-      if (beyond != HeldRange::Beyond::nothing) {
-        left_.take(particle(s) - 1);
-      } else {
-        follow_end(End::left, particle(s), time, -line_.handed(s, outcome).left);
-        line_.seal(s - 1, time, outcome.to_left);
-      }
-    }
-    if (s == range_.front_right()) {
-      const HeldRange::Beyond beyond = range_.beyond_right(s);
-      if (beyond == HeldRange::Beyond::row) {
-        range_.take_in_right(particles_->count());
-        line_.load(s + 1, *particles_, time);
-        line_.load_mass(s + 2, *particles_);
-      }
-      if (beyond != HeldRange::Beyond::nothing) {
-        right_.take(particle(s) + 2);
-      } else {
-        follow_end(End::right, particle(s) + 1, time, line_.handed(s, outcome).right);
-        line_.seal(s + 1, time, outcome.to_right);
-      }
-    }
+    const auto handed = line_.handed(s, outcome);
+    if (s == range_.front_left()) widen_at(End::left, s, time, -handed.left, outcome.to_left);
+    if (s == range_.front_right()) widen_at(End::right, s, time, handed.right, outcome.to_right);
     return range_.cramped(slots()) ? Notice::needs_slots : Notice::none;
   }
 
@@ -156,6 +125,29 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
   }
 
  private:
+  // The same at one end, of a collision that gives `gain` to the last particle, if it is one, and makes the gap
+  // beyond it close so much faster.
+  template <class Gain> void widen_at(End end, Slot s, const T& time, const Gain& gain, const T& faster) {
+    const bool left = end == End::left;
+    const Slot beside = left ? s - 1 : s + 1;
+    const HeldRange::Beyond beyond = left ? range_.beyond_left(s) : range_.beyond_right(s);
+    if (beyond == HeldRange::Beyond::row) {
+      take_in(end);
+      line_.load(beside, *particles_, time);
+    }
+    if (beyond == HeldRange::Beyond::nothing) {
+      follow_end(end, particle(left ? s : s + 1), time, gain);
+      line_.seal(beside, time, faster);
+    } else {
+      (left ? left_ : right_).take(particle(left ? beside : beside + 1));
+    }
+  }
+  // Takes in the next particle of a row.
+  void take_in(End end) {
+    const bool left = end == End::left;
+    left ? range_.take_in_left() : range_.take_in_right(particles_->count());
+    line_.load_mass(left ? first() : last() + 1, *particles_);
+  }
   // The last particle of a line, or the wall there, has had a collision in which it gained velocity.
   template <class Gain> void follow_end(End end, ParticleIndex outermost, const T& time, const Gain& gain) {
     Anchor<T>& anchor = end == End::left ? left_ : right_;

@@ -10,6 +10,9 @@
 // Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions
 // at them or beside them are made off the hot path; all others are as without it.
 //
+// Here are the collisions. The class stands on three others, each on the one before: the gaps held (held_gaps.hpp),
+// their positions and velocities (gap_places.hpp), and the ends of the active zone (gap_ends.hpp).
+//
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
 // positions come from the centre of mass, velocities from the total momentum.

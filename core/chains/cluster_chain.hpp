@@ -20,12 +20,8 @@
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/chains/anchor.hpp"
-#include "cradle/core/chains/cluster_line.hpp"
+#include "cradle/core/chains/cluster_places.hpp"
 #include "cradle/core/chains/collision_result.hpp"
-#include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/chains/held_range.hpp"
-#include "cradle/core/queue/relative_motion.hpp"
 
 namespace cradle {
 
@@ -35,40 +31,19 @@ struct CellsInARow {
   std::size_t count;
 };
 
-template <Real T> class ClusterChain {
+template <Real T> class ClusterChain : public ClusterPlaces<T> {
+  using Places = ClusterPlaces<T>;
+
  public:
-  using Scalar = T;
-  using Line = ClusterLine<T>;
-  static constexpr bool may_collapse = false;
-  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
+  using Places::closing;
+  using Places::slots, Places::first, Places::last, Places::left, Places::right, Places::particle, Places::on_ring;
+  using typename Places::Line;
 
   // Holds the particles at the gaps in motion and streams the others in as fronts reach them; `hold_all`: holds all.
   ClusterChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
       : ClusterChain(particles, start,
                      hold_all || particles->on_ring() ? GapRange{0, particles->count() - 2}
                                                       : particles->gaps_in_motion()) {}
-
-  // ---- times: local ones are offsets from an origin that moves
-  const Clock<T>& clock() const { return line_.gaps.clock(); }
-  const T& start() const { return clock().start(); }
-  T local_time(const T& time) const { return clock().offset(time); }
-  Pair<T> stamp(const T& local) const { return clock().stamp(local); }
-  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
-
-  // ---- slots: held cells are first() to last(), with vacant ones among them; the last cell has no gap
-  std::size_t slots() const { return line_.gaps.slots(); }
-  Slot first() const { return range_.first(); }
-  Slot last() const { return range_.last(); }
-  Slot left(Slot s) const { return line_.left(s); }
-  Slot right(Slot s) const { return line_.right(s); }
-  ParticleIndex particle(Slot s) const { return line_.gaps[s].particle; }
-  ParticleIndex count() const { return particles_->count(); }
-  ParticleIndex collided_particles() const { return active_; }
-  bool on_ring() const { return range_.on_ring(); }
-
-  T due(Slot s) const { return line_.due(s); }
-  double queue_due(Slot s) const { return line_.queue_due(s); }
-  T closing(Slot s) const { return line_.closing(s); }
 
   // ---- events (inlined by force, see gap_chain.hpp)
   template <class Law>
@@ -116,26 +91,6 @@ template <Real T> class ClusterChain {
             on_right = !on_ring() && n >= last() ? far : line_.gaps[n].gap;
     return on_left < on_right ? on_left : on_right;
   }
-  const Account<T>& account() const { return line_.gaps.account(); }
-  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
-  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
-  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
-
-  // ---- reading, at a local time not before the last collision
-  T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
-  // Positions of the outermost particles that have collided; there must be some.
-  T front_left(const T& time) const {
-    if (first() == range_.front_left()) return configuration(time).x.front();
-    const Slot beside = left(range_.front_left());
-    return (undisturbed_place(beside, time) + gap_at(beside, time)).value();
-  }
-  T front_right(const T& time) const {
-    const Slot front = range_.front_right();
-    if (last() == front) return configuration(time).x.back();
-    return (undisturbed_place(right(front), time) - gap_at(front, time)).value();
-  }
-  // Of all particles of the scene, now; reads all held cells. (cluster_chain_configuration.hpp)
-  T kinetic_energy(const T& time) const;
 
   static auto state(auto& self) {
     return std::tie(self.line_, self.range_, self.vacated_, self.active_, self.beyond_, self.centre_, self.carried_);
@@ -165,9 +120,6 @@ template <Real T> class ClusterChain {
   }
 
   // ---- for segments (segments.hpp), of a ring
-  const Line& line() const { return line_; }
-  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
-  ParticleIndex place(Slot s) const { return static_cast<ParticleIndex>(s); }
   bool cramped(std::size_t) const { return sparse(); }
   bool fronts_are_within(Slot, Slot) const { return on_ring(); }
   // Replaces the cells by those of a held range, and enters the mass that crossed the seam, collision by collision.
@@ -186,18 +138,12 @@ template <Real T> class ClusterChain {
     for (const T& mass : carried) carried_.add(mass);
   }
 
-  // The particles that have collided and the next one on each side, see cluster_chain_configuration.hpp.
-  Configuration<T> configuration(const T& time) const;
-
  private:
+  using Places::frame_, Places::centre_, Places::carried_;
+  using Places::line_, Places::range_, Places::particles_, Places::vacated_, Places::active_, Places::beyond_;
+
   ClusterChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
-      : particles_(std::move(particles)),
-        // No speed exceeds 1 + 2E/m >= sqrt(2E/m).
-        line_(start, particles_->energy_to_lose(), T(T(2) + T(4) * particles_->energy_over_least_mass())),
-        range_(particles_->on_ring(), held.first, particles_->count() - 2 - held.last, 3),
-        frame_(particles_->momentum() / particles_->total_mass()) {
-    require_particles(*particles_, start);
-    require_no_gravity(*particles_, "particles that merge have none");
+      : Places(std::move(particles), start, held) {
     lay_out({}, static_cast<std::size_t>(held.last - held.first + 2));
     for (Slot s = first(); s <= last(); ++s)
       line_.gaps.put(s, load(held.first + static_cast<ParticleIndex>(s - first()), T(0), s < last() || on_ring()));
@@ -207,11 +153,6 @@ template <Real T> class ClusterChain {
 
   // Vacant cells make the queue's tree deep, and put neighbours into different branches of it.
   bool sparse() const { return 2 * vacated_ > last() - first() + 24; }
-
-  // Position of a particle that has not collided.
-  Pair<T> undisturbed_place(Slot s, const T& time) const {
-    return undisturbed(*particles_, particle(s), clock().elapsed(time)).x;
-  }
 
   // A cell as at the start. The gap right of the last held particle is not computed: it would draw random numbers in
   // vain.
@@ -223,8 +164,8 @@ template <Real T> class ClusterChain {
   // Changes to enough slots for the zone to grow by half on either side, with the cells at `kept`.
   void lay_out(const std::vector<Slot>& kept, std::size_t held) {
     const auto growth = static_cast<ParticleIndex>(std::max<std::size_t>(held / 2, 24));
-    const std::size_t slots = range_.lay_out(held, growth, kept);
-    line_.gaps.lay_out(slots, first(), kept);
+    const std::size_t needed = range_.lay_out(held, growth, kept);
+    line_.gaps.lay_out(needed, first(), kept);
     vacated_ = 0;
   }
   // Links the held cells in order; the others are vacant, linked to themselves.
@@ -287,18 +228,6 @@ template <Real T> class ClusterChain {
     ++vacated_;
     return sparse() ? Notice::needs_slots : Notice::none;
   }
-
-  std::shared_ptr<const Particles<T>> particles_;
-  Line line_;
-  HeldRange range_;
-  std::size_t vacated_ = 0;   // since the last layout
-  ParticleIndex active_ = 0;  // particles from one front to the other, both included
-  Slot beyond_ = 0;          // the cell with the gap right of the last collision: of both particles if they have merged
-  T frame_;                  // velocity of the centre of mass
-  std::optional<T> centre_;  // of mass at the start, on a line without other known positions
-  CompensatedSum<T> carried_;  // mass across the seam of a ring, see cross_seam
 };
 
 }  // namespace cradle
-
-#include "cradle/core/chains/cluster_chain_configuration.hpp"

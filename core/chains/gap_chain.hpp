@@ -10,109 +10,56 @@
 // Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions
 // at them or beside them are made off the hot path; all others are as without it.
 //
+// Here are the collisions. The class stands on three others, each on the one before: the gaps held (held_gaps.hpp),
+// their positions and velocities (gap_places.hpp), and the ends of the active zone (gap_ends.hpp).
+//
 // Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
 // positions come from the centre of mass, velocities from the total momentum.
+//
+// A pile. A particle that meets one at rest on a wall more slowly than the wall's rest speed stays on it: to it, what
+// rests is the wall, which also takes its impulse. So k particles rest, one on the other, all gaps below the k-th 0
+// and closed, and the gap above them is one to the wall (gravity.hpp). A faster one collides with the topmost by the
+// law; this one then is not at rest, but pushed into those below, which it meets at the same time, and so on down to
+// the wall. All are let go at the same time. The pile is dissolved by the next collision beside it: in gaps nothing
+// happens before. One that sits on the wall again is a new one.
 
 #include <algorithm>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/chains/anchor.hpp"
-#include "cradle/core/chains/collision_memory.hpp"
 #include "cradle/core/chains/collision_result.hpp"
-#include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/chains/gap_line.hpp"
-#include "cradle/core/chains/held_range.hpp"
+#include "cradle/core/chains/gap_ends.hpp"
+#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/laws/one_of.hpp"
-#include "cradle/core/queue/account.hpp"
-#include "cradle/core/queue/relative_motion.hpp"
 
 namespace cradle {
 
-// How the front at one end of a line has moved in a held range (segments.hpp): the outermost slot with a collision, and
-// the collisions at the last gap of the line, with the velocity that each gave to the last particle.
-template <Real T> struct FrontMove {
-  struct AtEnd {
-    T time, handed;
-  };
-  Slot reached = 0;
-  std::vector<AtEnd> at_end;
-  WallTally<T> wall;  // of the wall at this end
-};
+template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
+class GapChain : public GapEnds<T, Masses, Field> {
+  using Ends = GapEnds<T, Masses, Field>;
 
-template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>> class GapChain {
  public:
-  using Scalar = T;
-  using Line = GapLine<T, Masses>;
-  static constexpr bool falls = Field::acts;
-  static constexpr bool may_collapse = true;
-  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
+  using Ends::closing_when_due, Ends::rebound;
+  using Ends::falls, Ends::keys_are_exact, Ends::clock, Ends::local_time, Ends::slots, Ends::first;
+  using Ends::last, Ends::left, Ends::right, Ends::on_ring, Ends::particle, Ends::closing;
+  using typename Ends::Line;
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
   // start. Throws std::invalid_argument for masses that differ if the chain is for identical ones.
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
       : GapChain(particles, start, hold_all ? particles->gaps() : particles->gaps_in_motion()) {}
 
-  // ---- times: local ones are offsets from an origin that moves
-  const Clock<T>& clock() const { return line_.gaps.clock(); }
-  const T& start() const { return clock().start(); }
-  T local_time(const T& time) const { return clock().offset(time); }
-  Pair<T> stamp(const T& local) const { return clock().stamp(local); }
-  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
-
-  // ---- slots: the gaps held are first() to last()
-  std::size_t slots() const { return line_.gaps.slots(); }
-  Slot first() const { return range_.first(); }
-  Slot last() const { return range_.last(); }
-  Slot left(Slot s) const { return on_ring() && s == first() ? last() : s - 1; }
-  Slot right(Slot s) const { return on_ring() && s == last() ? first() : s + 1; }
-  bool on_ring() const { return range_.on_ring(); }
-  ParticleIndex particle(Slot s) const { return line_.particle(s); }
-  ParticleIndex count() const { return particles_->count(); }
-  ParticleIndex collided_particles() const {
-    if (on_ring()) return particles_->count();
-    return range_.has_fronts() ? front_particle(End::right) - front_particle(End::left) + 1 : 0;
-  }
-
-  // Local time of the next collision of a gap that is closing.
-  T due(Slot s) const {
-    if constexpr (falls && !keys_are_exact)
-      if (field_.pulls(particle(s))) return line_.due(field_, s).value_or(far_away<T>());
-    return line_.due(s);
-  }
-  double queue_due(Slot s) const {
-    if constexpr (falls && !keys_are_exact)
-      if (field_.pulls(particle(s))) return line_.queue_due(field_, s);
-    return line_.queue_due(s);
-  }
-  // At the gap's local time; at another time; at its next collision.
-  const T& closing(Slot s) const { return line_.closing(s); }
-  T closing_at(Slot s, const T& time) const {
-    if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.closing_at(field_, s, time);
-    return closing(s);
-  }
-  T closing_when_due(Slot s) const {
-    if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.approach(field_, s).meeting_speed().value_or(T(0));
-    return closing(s);
-  }
-
   // ---- events (inlined by force, see gap_line.hpp)
   template <class Law>
   [[gnu::always_inline]] CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
-    if constexpr (falls) {  // beside the gap to a wall, or in or above a pile, too
-      if (!inner_.has(s)) [[unlikely]]
-        return collide_at_end(law, s, time);
-    } else {
-      if (!range_.inside(s, s)) [[unlikely]]
-        return collide_at_end(law, s, time);
-    }
+    if (!is_inner(s)) [[unlikely]]
+      return collide_at_end(law, s, time);
     return line_.strike(s - 1, s, s + 1, time, outcome(law, s, time, closing(s)), Notice::none);
   }
 
@@ -136,60 +83,6 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     lay_out(kept, static_cast<ParticleIndex>(kept.size()));
   }
 
-  // Collisions after which a neighbouring gap is below `floor` are noticed (gap_below_floor).
-  void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
-  // The smaller gap next to a collision, at its local time; beyond an end of the line it is far away.
-  T nearest_gap(Slot s) const {
-    const T far = far_away<T>();
-    const T on_left = on_ring() || s > first() ? line_.gaps[left(s)].gap : far,
-            on_right = on_ring() || s < last() ? line_.gaps[right(s)].gap : far;
-    return on_left < on_right ? on_left : on_right;
-  }
-  // After a collision at s, if it was with a floor (gravity.hpp).
-  std::optional<Rebound<T>> rebound(Slot s) const requires(falls) {
-    return field_.rebound(particle(s), closing(s), line_.gaps.since_start(s));
-  }
-  const Account<T>& account() const { return line_.gaps.account(); }
-  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
-  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
-  // The smallest difference between two collision times that is resolved, as a time since the start.
-  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
-
-  // The left particle of a gap for which rounding may decide whether it closes up to a local time, which must not be
-  // before the last collision. Where deviations are not watched, they are taken for a few roundings of the largest
-  // speed at the start.
-  std::optional<ParticleIndex> uncertain_at(const T& time) const {
-    for (Slot s = first(); s <= last(); ++s)
-      if (open(s, time)) return particle(s);
-    return {};
-  }
-  // About how far rounding has moved the kinetic energy by this time, from the larger sample.
-  T energy_deviation(const T& time) const requires(Line::watched);
-  // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.
-  template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
-    if (walls_.beside(particle(s)))
-      return walls_.at_unit_speed(particle(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
-    return law(T(1), line_.masses.of_pair(s));
-  }
-
-  // ---- reading, at a local time not before the last collision
-  T gap_at(Slot s, const T& time) const {
-    if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.gap_at(field_, s, time);
-    return line_.gaps.gap_at(s, closing(s), time);
-  }
-  // Positions of the outermost particles that have collided; there must be some.
-  T front_left(const T& time) const;
-  T front_right(const T& time) const;
-  const Walls<T>& walls() const { return walls_; }
-  // The accounts of the walls until a local time, with what they have given to particles that rest on one since.
-  // (gap_chain_walls.hpp)
-  Walls<T> walls_at(const T& time) const requires(falls);
-  // Of all particles of the scene; reads all held gaps. (gap_chain_configuration.hpp)
-  T kinetic_energy(const T& time) const {
-    return kinetic_energy(time, [&](Slot s) { return closing_at(s, time); });
-  }
-
   static auto state(auto& self) {
     const auto all = std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_);
     if constexpr (falls)
@@ -197,37 +90,47 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     else
       return all;
   }
-  void loaded();  // checks what was loaded (gap_chain_state.hpp)
 
-  // ---- for segments (segments.hpp)
-  const Particles<T>& particles() const { return *particles_; }
-  const Line& line() const { return line_; }
-  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
-  ParticleIndex place(Slot s) const { return particle(s); }  // in the order of the line, for any numbering of slots
-  // Slots free for particles that the fronts reach.
-  std::size_t within_reach_left() const { return range_.free_left(); }
-  std::size_t within_reach_right() const { return range_.free_right(slots()); }
-  bool cramped(std::size_t particles) const { return range_.cramped(slots(), static_cast<ParticleIndex>(particles)); }
-  bool fronts_are_within(Slot left, Slot right) const {
-    return on_ring() || (range_.has_fronts() && range_.front_left() <= left && range_.front_right() >= right);
+  // Checks what was loaded: whether its parts fit together and its numbers are some that gaps can have.
+  void loaded() {
+    find_inner();
+    const ParticleIndex count = particles_->count();
+    const GapRange all = particles_->gaps();
+    require_state(range_.fits(slots(), count) && range_.on_ring() == particles_->on_ring(), "slots");
+    const ParticleIndex first_held = all.first + range_.unheld_left();
+    require_state(line_.particle_of_slot_0 == first_held - static_cast<ParticleIndex>(first()), "particles");
+    require_state(on_ring() ? particle(first()) == 0 && particle(last()) + 1 == count
+                            : particle(last()) == all.last - range_.unheld_right(),
+                  "particles");
+    require_state(line_.masses.fits(slots()) && (memory_.slots() == 0 || memory_.slots() == slots()), "lists");
+    require_state(!on_ring() || (range_.front_left() == first() && range_.front_right() == last()), "seam");
+    // No speed exceeds 1 + 2E/m >= sqrt(2E/m). Slots beyond the held gaps are filled again before use.
+    const T fastest = particles_->walled() ? far_away<T>() : T(T(2) + T(4) * particles_->energy_over_least_mass());
+    for (Slot s = first(); s <= last(); ++s) {
+      const T& w = closing(s);
+      require_state(fits(s) && is_finite(line_.gaps.lag(s)) && !(fastest < magnitude(w)) &&
+                        line_.has_mass(s, *particles_),
+                    "gaps");
+    }
+    for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
+    if constexpr (falls) {
+      const auto pile = static_cast<std::size_t>(field_.resting()), held = last() + 1 - first();
+      require_state(pile < held || (pile == held && !field_.pulls(particle(slot_in_pile(field_.resting())))), "pile");
+      for (ParticleIndex h = 0; h < field_.resting(); ++h)
+        require_state(line_.gaps[slot_in_pile(h)].gap == T(0) && closing(slot_in_pile(h)) == T(0), "pile");
+    }
+    require_state(line_.has_mass(last() + 1, *particles_), "masses");
+    for (const Anchor<T>* anchor : {&left_, &right_})
+      require_state(on_ring() || (anchor->particle() >= all.first && anchor->particle() <= all.last + 1), "anchors");
   }
-  Slot front_slot_left() const { return range_.front_left(); }
-  Slot front_slot_right() const { return range_.front_right(); }
-  // Replaces the gaps by those of a held range, in the same slots and in those that the fronts have reached.
-  // (gap_chain_ends.hpp)
-  void continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left, const FrontMove<T>& to_right);
-
-  // The particles that have collided and the next one on each side; before the first collision all held ones. On a ring
-  // all particles, from the first one right of x = 0. (gap_chain_configuration.hpp)
-  Configuration<T> configuration(const T& time) const;
 
  private:
+  using Ends::find_inner, Ends::is_inner, Ends::foresee_walls, Ends::widen, Ends::enter_carried, Ends::find_lost_digits;
+  using Ends::line_, Ends::range_, Ends::particles_, Ends::memory_, Ends::walls_, Ends::field_, Ends::left_;
+  using Ends::right_, Ends::centre_, Ends::fastest_, Ends::shaken, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
+
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
-      : particles_(std::move(particles)), line_(*particles_, start),
-        range_(particles_->on_ring(), held.first - particles_->gaps().first, particles_->gaps().last - held.last, 2),
-        walls_(particles_->walls()), field_(*particles_) {
-    require_particles(*particles_, start);
-    if (!falls) require_no_gravity(*particles_, "use GapChain<T, Masses, Gravity<T>>");
+      : Ends(std::move(particles), start, held) {
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
     foresee_walls();
@@ -243,75 +146,20 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     centre_ = particles_->centre_of_mass();
   }
 
-  template <class Closing> T kinetic_energy(const T& time, const Closing& closing_at) const;
-  // On a ring, or between two walls that are not shaken, closing speeds add up to a number that is known. What their
-  // sum misses of it is rounding, of the size of that of the first closing speeds: a system that has cooled to that
-  // size is another one.
-  bool closed() const { return on_ring() || (!falls && walls_.has(End::left) && walls_.has(End::right)); }
-  void find_lost_digits(const T& time);
-  static constexpr int certain_by = 64;  // as in Deviation
-  // How much the rounding of the first and of this time leaves open of the time between them, which decimals give.
-  T off_by(const T& time) const {
-    return T(std::numeric_limits<T>::epsilon()) * (magnitude(start()) + magnitude(clock().time(time)));
-  }
-  // Whether a collision at this gap may come before or after the end of the run.
-  bool open(Slot s, const T& time) const;
-
-  Configuration<T> line_configuration(const T& time) const;
-  Configuration<T> ring_configuration(const T& time) const;
-  Flight<T> flight(const Anchor<T>& anchor, const T& time) const {
+  // Whether a loaded gap has numbers that a gap can have.
+  bool fits(Slot s) const {
+    const auto& gap = line_.gaps[s];
+    const auto has_due = [&] {
+      if constexpr (keys_are_exact)
+        return gap.due == gap.due;
+      else
+        return true;
+    };
     if constexpr (falls)
-      if ((field_.resting() == count() || (count() == 1 && particles_->holding() != nullptr)) &&
-          particles_->wall_at(anchor.particle()) == nullptr)
-        return from_wall(time);
-    return anchor.flight(*particles_, clock(), time);
+      if (field_.pulls(particle(s)))  // it may be due while it opens
+        return is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing) && has_due();
+    return gap.fits(gap.closing);
   }
-  // The flight of a particle that rests on a wall, alone or on a pile of all others, or of a single one that may rest
-  // there. (gap_chain_walls.hpp)
-  Flight<T> from_wall(const T& time) const;
-
-  // Predicts the next collisions with walls under gravity, where all others have just been. (gap_chain_walls.hpp)
-  void foresee_walls();
-  // Whether a loaded gap has numbers that a gap can have. (gap_chain_state.hpp)
-  bool fits(Slot s) const;
-
-  // Under gravity, the slots in which a collision concerns no end, wall or pile, nor a gap beside one.
-  struct Inner {
-    Slot after = 0, before = 0;
-    bool has(Slot s) const { return (s > after) & (s < before); }
-  };
-  void find_inner() {
-    if constexpr (falls) {
-      const auto pile = static_cast<Slot>(field_.resting());
-      const bool left = field_.pile_end() == End::left;
-      const Slot front = range_.front_right(), margin = left ? 1 : 1 + pile;
-      inner_ = {range_.front_left() + (left ? 1 + pile : 1), front > margin ? front - margin : 0};
-    }
-  }
-  // So many particles from the wall.
-  Slot slot_in_pile(ParticleIndex height) const {
-    const auto h = static_cast<Slot>(height);
-    return field_.pile_end() == End::left ? first() + h : last() - h;
-  }
-
-  Slot slot(ParticleIndex particle) const {
-    return static_cast<Slot>(particle - line_.particle_of_slot_0);
-  }  // of the gap right of it
-  // The outermost particle that has collided; walls are not counted.
-  ParticleIndex front_particle(End end) const {
-    return end == End::left ? std::max<ParticleIndex>(particle(range_.front_left()), 0)
-                            : std::min(particle(range_.front_right()) + 1, particles_->count() - 1);
-  }
-
-  // The last particle of a line, or the wall there, has had a collision in which it gained velocity.
-  template <class Gain> void follow_end(End end, ParticleIndex particle, const T& time, const Gain& gain) {
-    Anchor<T>& anchor = end == End::left ? left_ : right_;
-    anchor.take(particle);
-    if (!walls_.has(end)) anchor.follow(flight(anchor, time), time, gain);
-  }
-
-  // Changes to enough slots for the zone to grow by half on either side, with the gaps at `kept`. (gap_chain_ends.hpp)
-  void lay_out(const std::vector<Slot>& kept, ParticleIndex held);
 
   template <LawChoice Law>
   [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time, const T& w) {
@@ -321,7 +169,7 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
     if constexpr (Line::watched && requires { law.cutoff(); })
       line_.certainty.threshold(line_.gaps, line_.motion(field_), s, particle(s), time, w, law.cutoff());
     if constexpr (LawWithMemory<Law, T>)
-      if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(start()), slots()))
+      if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots()))
         return law.elastic(w, line_.masses.of_pair(s));
     const Outcome<T> outcome = law(w, line_.masses.of_pair(s));
     if constexpr (Line::watched && !requires { law.cutoff(); })
@@ -331,7 +179,32 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
   template <LawChoice Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
     return law.visit([&](const auto& own) { return outcome_at_wall(own, s, time); });
   }
-  template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time);
+  template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
+    bool rested = true;
+    if constexpr (LawWithMemory<Law, T>)
+      rested =
+          memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots());
+    if constexpr (falls) {
+      const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
+      const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
+      const Pair<T> elapsed = clock().since_start(time);
+      if constexpr (Line::watched) {
+        const auto at = [&](const T& speed) {
+          line_.certainty.threshold(line_.gaps, line_.motion(field_), s, particle(s), time, w, speed);
+        };
+        at(field_.rest_speed(particle(s)));
+        if constexpr (requires { law.cutoff(); }) at(law.cutoff());
+      }
+      const bool stays = field_.holds(particle(s), w, elapsed), elastic = !stays && (!rested || below_cutoff(law, w));
+      const T restitution = stays ? T(0) : elastic ? T(1) : walls_.wall(wall).restitution;
+      Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));
+      outcome.below_cutoff = elastic && walls_.wall(wall).reflects();
+      return outcome;
+    } else {
+      return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+    }
+  }
+
   // A collision at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
     if constexpr (falls) {
@@ -343,48 +216,57 @@ template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
       return line_.strike(left(s), s, right(s), time, of_law, notice);
     }
   }
-  // The same under gravity or between shaken walls, also beside the gap to one and at a pile. (gap_chain_walls.hpp)
-  template <class Law> CollisionResult<T> collide_falling(const Law& law, Slot s, const T& time);
+  // The same under gravity or between shaken walls, also beside the gap to one and at a pile.
+  template <class Law> CollisionResult<T> collide_falling(const Law& law, Slot s, const T& time) {
+    const ParticleIndex resting = field_.resting(), height = field_.piles() ? field_.height(particle(s)) : 0;
+    const bool beside_pile = field_.piles() && height <= resting + 1;
+    bool let_go = false;
+    if (beside_pile && resting > 0) {
+      const std::optional<T> at = line_.pile_let_go(field_, s);
+      let_go = height < resting || (at && *at < time);
+    }
+    const bool on_pile = !let_go && beside_pile && resting > 0 && height == resting && stays(s, time);
+    const bool at_wall = walls_.beside(particle(s)) || on_pile;
+    const Outcome<T> of_law = at_wall ? outcome_at_wall(law, s, time) : outcome(law, s, time, closing_when_due(s));
+    const bool on_wall = beside_pile && height == 0 && of_law.closing == T(0) &&  // slow, or of a restitution 0
+                         field_.wall_presses(clock().since_start(time));
+    const ParticleIndex after = let_go                                            ? ParticleIndex{on_wall}
+                                : on_pile || on_wall                              ? resting + 1
+                                : beside_pile && height == resting && resting > 0 ? resting - 1
+                                                                                  : resting;
+    for (const Slot beside : {s - 1, s, s + 1})
+      if (field_.at_wall(particle(beside)) && !(on_pile && resting == 1)) enter_carried(beside, time);
+    if (let_go)
+      for (ParticleIndex h = height > 1 ? 0 : 1; h < resting; ++h) enter_carried(slot_in_pile(h), time);
+    else if (after < resting && resting > 1)
+      enter_carried(slot_in_pile(resting - 1), time);
+    const End far = field_.pile_end() == End::left ? End::right : End::left;
+    if (resting == particles_->count() && after < resting &&
+        !walls_.has(far)) {  // the flight of the last one is its own again
+      Anchor<T>& last_one = far == End::left ? left_ : right_;
+      last_one.follow(flight(last_one, time), time, T(0));
+    }
+    const Notice notice = widen(s, time, of_law);
+    // Of a pile that is let go, the gaps above it and below it that are not beside the collision are brought to its
+    // time.
+    const auto renew = [&] {
+      Notice more = Notice::none;
+      if (let_go)
+        for (const ParticleIndex h : {resting, ParticleIndex{0}})
+          if ((h + 1 < height || h > height + 1) && field_.pulls(particle(slot_in_pile(h))))
+            more |= line_.renew(field_, slot_in_pile(h), time) | Notice::origin_must_move;  // which predicts them
+      return more;
+    };
+    CollisionResult<T> made = line_.strike(field_, s - 1, s, s + 1, time, of_law, notice, after, renew);
+    if (const auto back = rebound(s); back && back->height < line_.gaps.floor()) made.notice |= Notice::gap_below_floor;
+    find_inner();
+    return made;
+  }
+
   // Whether the next particle at the wall or the pile there comes to rest on it.
   bool stays(Slot s, const T& time) const {
     return field_.holds(particle(s), closing_when_due(s), clock().since_start(time));
   }
-
-  bool shaken() const {
-    if constexpr (falls)
-      return field_.shaken();
-    else
-      return false;
-  }
-
-  // What a wall has given, until a local time, to a particle that rests on it, at this gap or with this gap below it in
-  // a pile. (gap_chain_walls.hpp)
-  struct Carried {
-    End end;
-    T energy{0}, momentum{0};
-  };
-  Carried carried(Slot s, const T& time) const;
-  void enter_carried(Slot s, const T& time);
-
-  // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the
-  // last one.
-  Notice widen(Slot s, const T& time, const Outcome<T>& outcome);
-
-  std::shared_ptr<const Particles<T>> particles_;
-  Line line_;
-  HeldRange range_;
-  CollisionMemory<T> memory_;
-  T centre_{0};   // on a ring: centre of mass at the start
-  T fastest_{0};  // closing speed at the start
-  Anchor<T> left_, right_;
-  Walls<T> walls_;
-  [[no_unique_address]] Field field_;
-  [[no_unique_address]] std::conditional_t<falls, Inner, NothingMore> inner_;
 };
 
 }  // namespace cradle
-
-#include "cradle/core/chains/gap_chain_configuration.hpp"
-#include "cradle/core/chains/gap_chain_ends.hpp"
-#include "cradle/core/chains/gap_chain_state.hpp"
-#include "cradle/core/chains/gap_chain_walls.hpp"

@@ -3,7 +3,7 @@
 // else (laws/wall_approach.hpp). Whether there is either is a type, chosen once: without it a chain has none of this.
 //
 // Several particles that rest on a wall are a pile: the gaps in it are 0 and closed, the gap above it is as one to the
-// wall. Which gap that is follows from how many there are, in particles from the wall (gap_chain_walls.hpp).
+// wall. Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp).
 
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall_approach.hpp"
@@ -37,18 +37,12 @@ template <Real T> class Gravity {
   // Whether a wall is shaken, and whether a particle may miss the wall at a gap, or one of its jumps.
   bool shaken() const { return left_.wall.motion != nullptr || right_.wall.motion != nullptr; }
   bool may_miss(ParticleIndex gap) const {
-    return shaken() ||
-           !is_positive(pull(gap == above_pile_ ? pile_end_
-                             : gap == left_.gap ? End::left
-                                                : End::right)) ||
-           gap == other_wall_;
+    return shaken() || !is_positive(pull(end_below(gap))) || gap == other_wall_;
   }
   // The speed below which particles stay at the wall of a gap, or on the pile there; 0 if none do.
   T rest_speed(ParticleIndex gap) const {
-    const AtEnd& at = gap == above_pile_ ? (pile_end_ == End::left ? left_ : right_)
-                      : gap == left_.gap ? left_
-                                         : right_;
-    return at.wall.holds ? at.rest_speed : T(0);
+    const AtEnd& end = at(end_below(gap));
+    return end.wall.holds ? end.rest_speed : T(0);
   }
 
   // Whether several particles can rest, at which end, and how many do; a gap there, counted from the wall.
@@ -68,16 +62,16 @@ template <Real T> class Gravity {
   // Of the gap above the pile, which is held for so long; see WallApproach.
   WallApproach<T> approach_pile(const T& size, const T& closing, const Pair<T>& since,
                                 const std::optional<T>& held) const {
-    const bool left = pile_end_ == End::left;
-    const WallMotion<T>*motion = (left ? left_ : right_).wall.motion, *other = (left ? right_ : left_).wall.motion;
+    const WallMotion<T>*motion = at(pile_end_).wall.motion,
+          *other = at(pile_end_ == End::left ? End::right : End::left).wall.motion;
     if (above_pile_ != other_wall_) return {size, closing, pull(pile_end_), splitter_, motion, since, held, T(0)};
     // Between the pile and the other wall; only one of the two is shaken.
     return {size, closing, T(0), splitter_, motion != nullptr ? motion : other, since, held, T(-pull(pile_end_))};
   }
   // Of a gap that it pulls, at a time since the start.
   WallApproach<T> approach(ParticleIndex gap, const T& size, const T& closing, const Pair<T>& since) const {
-    const End end = gap == left_.gap ? End::left : End::right;
-    const HoldingWall<T>& wall = (end == End::left ? left_ : right_).wall;
+    const End end = end_at(gap);
+    const HoldingWall<T>& wall = at(end).wall;
     if (!piles_ || resting_ > 0) return {size, closing, pull(end), splitter_, wall, since};
     return {size, closing, pull(end), splitter_, {wall.motion, false, std::nullopt},
             since};  // it comes to rest in a collision only
@@ -85,26 +79,24 @@ template <Real T> class Gravity {
   // Whether a particle that meets the wall, or the pile on it, at this speed stays there.
   bool holds(ParticleIndex gap, const T& speed, const Pair<T>& elapsed) const {
     const bool on_pile = gap == above_pile_ && gap != other_wall_;
-    const End end = on_pile ? pile_end_ : gap == left_.gap ? End::left : End::right;
-    const AtEnd& at = end == End::left ? left_ : right_;
-    return (on_pile || at.gap == gap) && at.wall.holds && speed < at.rest_speed && at.wall.presses(pull(end), elapsed);
+    const End end = on_pile ? pile_end_ : end_at(gap);
+    const auto& [own_gap, wall, rest_speed] = at(end);
+    return (on_pile || own_gap == gap) && wall.holds && speed < rest_speed && wall.presses(pull(end), elapsed);
   }
   // Whether the wall at the end of the pile holds what has come to rest there.
-  bool wall_presses(const Pair<T>& elapsed) const {
-    return (pile_end_ == End::left ? left_ : right_).wall.presses(pull(pile_end_), elapsed);
-  }
+  bool wall_presses(const Pair<T>& elapsed) const { return at(pile_end_).wall.presses(pull(pile_end_), elapsed); }
   // What follows a collision at a wall, if the wall presses the particle and does not hold it.
   std::optional<Rebound<T>> rebound(ParticleIndex gap, const T& closing, const Pair<T>& elapsed) const {
     if (!at_wall(gap)) return {};
-    const HoldingWall<T>& wall = (gap == left_.gap ? left_ : right_).wall;
-    const T press = wall.pressure(pull(gap == left_.gap ? End::left : End::right), elapsed);
+    const HoldingWall<T>& wall = at(end_at(gap)).wall;
+    const T press = wall.pressure(pull(end_at(gap)), elapsed);
     if (!is_positive(press) || (wall.holds && closing == T(0))) return {};
     return Rebound<T>{magnitude(closing), T(closing * closing / (press + press))};
   }
   // The speed towards the particles at which the wall at a gap is shaken.
   T shaken_at(ParticleIndex gap, const Pair<T>& elapsed) const {
     if (!at_wall(gap)) return T(0);
-    const WallMotion<T>* motion = (gap == left_.gap ? left_ : right_).wall.motion;
+    const WallMotion<T>* motion = at(end_at(gap)).wall.motion;
     return motion != nullptr ? motion->speed(motion->at(elapsed).rest) : T(0);
   }
 
@@ -131,6 +123,10 @@ template <Real T> class Gravity {
             wall->rest_speed};
   }
 
+  const AtEnd& at(End end) const { return end == End::left ? left_ : right_; }
+  // The end at which a gap to a wall is, and the one on whose wall particles rest at this gap, also on a pile.
+  End end_at(ParticleIndex gap) const { return gap == left_.gap ? End::left : End::right; }
+  End end_below(ParticleIndex gap) const { return gap == above_pile_ ? pile_end_ : end_at(gap); }
   T pull(End end) const { return end == End::left ? T(-acceleration_) : acceleration_; }
 
   T acceleration_, splitter_;

@@ -26,7 +26,7 @@
 
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/collision_result.hpp"
-#include "cradle/core/chains/timed_gap.hpp"
+#include "cradle/core/chains/timed_cells.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/clock.hpp"
 #include "cradle/core/queue/event_queue.hpp"
@@ -35,39 +35,17 @@
 namespace cradle {
 
 // `may_collapse`: gaps and times may shrink without limit, beyond the range of double if the type's range is wider.
-template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class TimedGaps {
+template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class TimedGaps : public TimedCells<T, Cell> {
+  using Cells = TimedCells<T, Cell>;
+
  public:
+  using Cells::resize, Cells::flown, Cells::collision_time;
   static constexpr bool keys_are_exact = std::same_as<T, double>;
   static constexpr bool beyond_double = may_collapse && WiderRange<T>;
 
   TimedGaps(const T& start, const T& energy) : clock_(start), lost_(energy) {}
 
-  // ---- slots
-  std::size_t slots() const { return cells_.size(); }
-  Cell& operator[](Slot s) { return cells_[s]; }
-  const Cell& operator[](Slot s) const { return cells_[s]; }
-  // Changes to so many slots. Those from `first` on get the contents of `kept`, in that order.
-  void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept);
-  void put(Slot s, Cell&& cell) {
-    cells_[s] = std::move(cell);
-    lag_[s] = T(0);
-  }
-  // Starts a gap that was not needed before.
-  void start(Slot s, const T& gap, const T& now) {
-    cells_[s].gap = gap;
-    cells_[s].time = now;
-    lag_[s] = T(0);
-  }
-  // Moves a gap to another slot.
-  void carry(Slot from, Slot to) {
-    cells_[to].gap = cells_[from].gap;
-    cells_[to].time = cells_[from].time;
-    lag_[to] = lag_[from];
-    if constexpr (!Ledger<T>::in_any_order) cells_[to].lost += std::exchange(cells_[from].lost, T(0));
-  }
-
-  // ---- copies of a part (segments.hpp). Changes to so many slots, and copies everything from `other` that belongs to
-  // no slot.
+  // Changes to so many slots, and copies everything from `other` that belongs to no slot.
   void resemble(const TimedGaps& other, std::size_t slots) {
     resize(slots);
     clock_ = other.clock_;
@@ -76,24 +54,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
     lost_ = other.lost_;
     lost_.clear();
   }
-  void copy(const TimedGaps& other, Slot from, Slot to, std::size_t gaps) {
-    std::copy_n(&other.cells_[from], gaps, &cells_[to]);
-    std::copy_n(&other.lag_[from], gaps, &lag_[to]);
-  }
-  // Local times have changed; those that are not negative any more have no lag.
-  void drop_lags(Slot first, std::size_t gaps) {
-    for (Slot s = first; s < first + gaps; ++s) lag_[s] = is_negative(cells_[s].time) ? lag_[s] : T(0);
-  }
-  void set_lag(Slot s, const T& lag) { lag_[s] = lag; }
   void set_ledger(const Ledger<T>& ledger) { lost_ = ledger; }
-  void resize(std::size_t slots) {  // gaps are then put into so many slots
-    cells_.resize(slots);
-    lag_.resize(slots);
-  }
-  void swap_gaps(TimedGaps& other) {
-    cells_.swap(other.cells_);
-    lag_.swap(other.lag_);
-  }
 
   static auto state(auto& self) {
     return std::tie(self.cells_, self.lag_, self.clock_, self.floor_, self.blur_, self.shift_, self.account_,
@@ -115,15 +76,6 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       return to_double(local);
     }
   }
-  const T& lag(Slot s) const { return lag_[s]; }
-  // The time since the gap's local time.
-  [[gnu::always_inline]] T flown(Slot s, const T& now) const {
-    const T& then = cells_[s].time;
-    T way = now - then;
-    if (is_negative(then)) [[unlikely]]
-      way -= lag_[s];
-    return way;
-  }
   // The local time of a gap, as a time since the start.
   Pair<T> since_start(Slot s) const { return clock_.since_start(cells_[s].time) + lag_[s]; }
   // Local time of the next collision of a gap that is closing.
@@ -132,11 +84,6 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
       return cells_[s].due;
     else
       return collision_time(s, closing);
-  }
-  // The time when a gap has aged by `wait` since its local time.
-  T after(Slot s, const T& wait) const {
-    const T time = cells_[s].time + wait;
-    return is_negative(cells_[s].time) ? T(time + lag_[s]) : time;
   }
   double queue_due(Slot s, const T& closing) const {
     if constexpr (keys_are_exact)
@@ -147,32 +94,6 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   // The smallest difference between two collision times that is resolved, as a time since the start.
   T time_resolution(const T& time) const {
     return T(std::numeric_limits<T>::epsilon()) * magnitude(clock_.elapsed(time));
-  }
-  // The gap at a time not before its local time.
-  T gap_at(Slot s, const T& closing, const T& time) const { return cells_[s].gap - closing * flown(s, time); }
-
-  // ---- events. A collision at `time` beside the gap adds gain() to its closing speed. Returns the time since the
-  // local time, which is negative if the collision is late.
-  template <class Gain> [[gnu::always_inline]] T kick(Slot s, const T& closing, const Gain& gain, const T& time) {
-    Cell& cell = cells_[s];
-    const T since = flown(s, time);
-    if (is_negative(since)) [[unlikely]]
-      cell.gap += gain() * since;
-    else {
-      cell.gap -= closing * since;
-      renew(s, time);
-    }
-    return since;
-  }
-  // A collision at the gap itself, after which it closes at a speed <= 0; `since` as above.
-  [[gnu::always_inline]] void close(Slot s, const T& closing, const T& since, const T& time) {
-    Cell& cell = cells_[s];
-    if (is_negative(since)) [[unlikely]]
-      cell.gap = closing * since;
-    else {
-      cell.gap = T(0);
-      renew(s, time);
-    }
   }
   // Predicts the next collision of a gap that has just changed, as a queue time. In wide types it is rounded; the queue
   // allows for that.
@@ -214,8 +135,19 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
   // Moves the origin of time. `each_held` calls its argument with every held gap and its closing speed.
-  // (timed_gaps_origin.hpp)
-  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held);
+  template <class EachHeld> void move_origin(const T& by, const EachHeld& each_held) {
+    clock_.move_origin(by);
+    if (magnitude(by) > blur_) blur_ = rounding_of(magnitude(by));
+    each_held([&](Slot s, const T& closing) {
+      const Pair<T> moved = two_sum(cells_[s].time, T(-by));
+      const T lag = lag_[s] + moved.low;
+      const bool past = is_negative(moved.high);  // false after a late collision, which has left it ahead of the origin
+      cells_[s].time = past ? moved.high : T(moved.high + lag);
+      lag_[s] = past ? lag : T(0);
+      foresee(s, closing);
+    });
+    if constexpr (beyond_double) choose_shift(each_held);
+  }
 
   // ---- gaps to inspect: those that a neighbouring collision leaves below the floor
   void set_floor(const T& floor) { floor_ = floor; }
@@ -244,12 +176,6 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
   void lose(const Ledger<T>& elsewhere) { lost_.add(elsewhere); }
   const Ledger<T>& ledger() const { return lost_; }
-  T lost(Slot s) const {
-    if constexpr (Ledger<T>::in_any_order)
-      return T(0);
-    else
-      return cells_[s].lost;
-  }
   T energy_lost(Slot first, Slot last) const {
     if constexpr (Ledger<T>::in_any_order) return lost_.value();
     T sum(0);
@@ -259,6 +185,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
 
  private:
+  using Cells::cells_, Cells::lag_;
+
   // The largest negative gap that rounding explains, see `note`. Times are rounded in units of the offset, times due
   // before the last move of the origin in units of the offset at that move (`blur_`), and distances in units of the
   // distance. Each error acts on the gap at its speed before or after the collision. A negative gap stays negative and
@@ -280,25 +208,19 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   [[gnu::always_inline]] double in_range(double rounded, Slot s, const T& closing) const {
     return std::isfinite(rounded) ? rounded : queue_due(s, closing);
   }
-  T collision_time(Slot s, const T& closing) const {
-    const Cell& cell = cells_[s];
-    T time = cell.time + cell.gap / closing;
-    if (is_negative(cell.time)) [[unlikely]]
-      time += lag_[s];
-    return time;
-  }
-  [[gnu::always_inline]] void renew(Slot s, const T& now) {
-    T& then = cells_[s].time;
-    if (is_negative(then)) [[unlikely]]
-      lag_[s] = T(0);
-    then = now;
-  }
 
   // Queue times are local times in units of 2^-shift, with the next collision within the range of double.
-  template <class EachHeld> void choose_shift(const EachHeld& each_held);
+  template <class EachHeld> void choose_shift(const EachHeld& each_held) {
+    long least = std::numeric_limits<long>::max();
+    each_held([&](Slot s, const T& closing) {
+      if (!is_positive(closing)) return;
+      const T next = collision_time(s, closing);
+      long exponent = 0;
+      if (split(next, exponent) > 0) least = std::min(least, exponent);
+    });
+    shift_ = least < -500 || (least > 500 && least < std::numeric_limits<long>::max()) ? -least : 0;
+  }
 
-  std::vector<Cell> cells_;
-  std::vector<T> lag_;
   Clock<T> clock_;
   T floor_{0};
   T blur_{0};       // rounding of times at the last move of the origin: collisions due then may be late by it
@@ -308,5 +230,3 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
 };
 
 }  // namespace cradle
-
-#include "cradle/core/chains/timed_gaps_origin.hpp"

@@ -84,15 +84,18 @@ HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy
   return hot;
 }
 
-template <Real T> class Cold final : public Particles<T> {
+template <Real T> class Cold final : public PatternedParticles<T> {
+  using PatternedParticles<T>::count_;
+
  public:
   // `falls`: the exponent b of the density, below 1. Throws std::invalid_argument if there are no particles, no hot
   // particles or more hot ones than particles, if the spacing or a velocity is not finite or the spacing is not
   // positive, or if particles are not apart.
   Cold(ParticleIndex count, const T& spacing, HotPlace place, HotParticles<T> hot, Displacement displacement,
        MassPattern<T> masses = {}, double falls = 0)
-      : count_(count), left_(place == HotPlace::left), hot_(std::move(hot)), displacement_(std::move(displacement)),
-        masses_(std::move(masses)), unit_(spacing / T(displacement_unit)), spacing_(spacing), falls_(falls) {
+      : PatternedParticles<T>(count, std::move(masses)), left_(place == HotPlace::left), hot_(std::move(hot)),
+        displacement_(std::move(displacement)), unit_(spacing / T(displacement_unit)), spacing_(spacing),
+        falls_(falls) {
     if (hot_.count() < 1 || hot_.first < 0 || hot_.end() > count)
       throw std::invalid_argument("hot particles " + std::to_string(hot_.first) + " to " +
                                   std::to_string(hot_.end() - 1) + " of " + std::to_string(count) +
@@ -109,20 +112,12 @@ template <Real T> class Cold final : public Particles<T> {
         require_finite(position(end), "position of particle " + std::to_string(end));
       if (count > 1) gap(0), gap(count - 2);
     }
-    CompensatedSum<T> twice, momentum;
-    for (ParticleIndex particle = hot_.first; particle < hot_.end(); ++particle) {
-      const T v = hot_.velocity(particle);
-      require_finite(v, "velocity of particle " + std::to_string(particle));
-      twice.add(mass(particle) * v * v);
-      momentum.add(mass(particle) * v);
-    }
-    energy_ = twice.value() / T(2);
-    momentum_ = hot_.count() > 1 ? T(0) : momentum.value();
+    for (ParticleIndex particle = hot_.first; particle < hot_.end(); ++particle)
+      require_finite(hot_.velocity(particle), "velocity of particle " + std::to_string(particle));
+    this->add_up(hot_.first, hot_.end());
+    if (hot_.count() > 1) this->momentum_ = T(0);
   }
 
-  ParticleIndex count() const override { return count_; }
-  T mass(ParticleIndex particle) const override { return masses_.of(particle); }
-  bool identical_masses() const override { return masses_.identical(); }
   T velocity(ParticleIndex particle) const override { return hot_.velocity(particle); }
   T position(ParticleIndex particle) const override {
     if (power_) return exactly<T>(spacings(particle)) * spacing_;
@@ -140,13 +135,6 @@ template <Real T> class Cold final : public Particles<T> {
   GapRange gaps_in_motion() const override {
     return {std::max<ParticleIndex>(hot_.first - 1, 0), std::min(hot_.end() - 1, count_ - 2)};
   }
-
-  T kinetic_energy() const override { return energy_; }
-  T momentum() const override { return momentum_; }
-  T total_mass() const override { return masses_.total(0, count_); }
-  T mass_between(ParticleIndex from, ParticleIndex to) const override { return masses_.total(from, to); }
-  T least_mass() const override { return masses_.least(); }
-  T greatest_mass() const override { return masses_.greatest(); }
 
  private:
   // Half spacings from the origin, in an even gas.
@@ -169,12 +157,10 @@ template <Real T> class Cold final : public Particles<T> {
                                 "density nearer to 0");
   }
 
-  ParticleIndex count_;
   bool left_;
   HotParticles<T> hot_;
   Displacement displacement_;
-  MassPattern<T> masses_;
-  T unit_, spacing_, energy_{0}, momentum_{0};
+  T unit_, spacing_;
   double falls_;
   std::shared_ptr<const Power<double>> power_;  // null in an even gas
 };

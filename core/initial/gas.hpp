@@ -15,14 +15,16 @@
 
 namespace cradle {
 
-template <Real T> class Gas final : public Particles<T> {
+template <Real T> class Gas final : public PatternedParticles<T> {
+  using PatternedParticles<T>::count_;
+
  public:
   // From `left` on over `length`. `deviation`: standard deviation of the velocities. Throws std::invalid_argument for
   // no particles, 2^31 or more of them, or a length or deviation that is not positive and finite.
   Gas(ParticleIndex count, T left, T length, T deviation, VelocityDraw velocity, Displacement displacement,
       MassPattern<T> masses = {})
-      : count_(count), left_(std::move(left)), velocity_(std::move(velocity)), displacement_(std::move(displacement)),
-        masses_(std::move(masses)), unit_(length / (T(count) * T(displacement_unit))),
+      : PatternedParticles<T>(count, std::move(masses)), left_(std::move(left)), velocity_(std::move(velocity)),
+        displacement_(std::move(displacement)), unit_(length / (T(count) * T(displacement_unit))),
         velocity_unit_(deviation / T(displacement_unit)) {
     if (count < 1 || count >= std::int64_t{1} << 31)
       throw std::invalid_argument("a gas of " + std::to_string(count) + " particles: give it from 1 to 2147483647");
@@ -32,19 +34,9 @@ template <Real T> class Gas final : public Particles<T> {
     if (!(length > T(0) && deviation > T(0)))
       throw std::invalid_argument("length or variance of the gas is not positive (length " + in_message(length) +
                                   ", standard deviation " + in_message(deviation) + "): give positive numbers");
-    CompensatedSum<T> twice, momentum;
-    for (ParticleIndex particle = 0; particle < count; ++particle) {
-      const T v = this->velocity(particle), m = mass(particle);
-      twice.add(m * v * v);
-      momentum.add(m * v);
-    }
-    energy_ = twice.value() / T(2);
-    momentum_ = momentum.value();
+    this->add_up(0, count);
   }
 
-  ParticleIndex count() const override { return count_; }
-  T mass(ParticleIndex particle) const override { return masses_.of(particle); }
-  bool identical_masses() const override { return masses_.identical(); }
   T velocity(ParticleIndex particle) const override { return T(velocity_(particle)) * velocity_unit_; }
   T position(ParticleIndex particle) const override {
     return left_ + T((2 * particle + 1) * (displacement_unit / 2) + displacement_(particle)) * unit_;
@@ -61,20 +53,11 @@ template <Real T> class Gas final : public Particles<T> {
     return T(velocity_(particle) - velocity_(particle + 1)) * velocity_unit_;
   }
 
-  T kinetic_energy() const override { return energy_; }
-  T momentum() const override { return momentum_; }
-  T total_mass() const override { return masses_.total(0, count_); }
-  T mass_between(ParticleIndex from, ParticleIndex to) const override { return masses_.total(from, to); }
-  T least_mass() const override { return masses_.least(); }
-  T greatest_mass() const override { return masses_.greatest(); }
-
  private:
-  ParticleIndex count_;
   T left_;
   VelocityDraw velocity_;
   Displacement displacement_;
-  MassPattern<T> masses_;
-  T unit_, velocity_unit_, energy_{0}, momentum_{0};
+  T unit_, velocity_unit_;
 };
 
 }  // namespace cradle

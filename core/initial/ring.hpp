@@ -58,16 +58,18 @@ inline VelocityDraw uniform_velocity(std::uint64_t seed, std::uint64_t replica) 
       [=](ParticleIndex particle) { return uniform_integer(detail::velocity_bits(seed, replica, particle, 0), bound); };
 }
 
-template <Real T> class Ring final : public Particles<T> {
+template <Real T> class Ring final : public PatternedParticles<T> {
+  using PatternedParticles<T>::count_, PatternedParticles<T>::masses_;
+
  public:
   // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no particles, 2^31 or more of
   // them, a length or deviation that is not positive and finite, or a pattern of masses that does not divide the ring.
   // Draws every velocity once.
   Ring(ParticleIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement,
        MassPattern<T> masses = {})
-      : count_(count), length_(std::move(length)), velocity_(std::move(velocity)),
-        displacement_(std::move(displacement)), masses_(std::move(masses)),
-        unit_(length_ / (T(count) * T(displacement_unit))), velocity_unit_(deviation / T(displacement_unit)) {
+      : PatternedParticles<T>(count, std::move(masses)), length_(std::move(length)), velocity_(std::move(velocity)),
+        displacement_(std::move(displacement)), unit_(length_ / (T(count) * T(displacement_unit))),
+        velocity_unit_(deviation / T(displacement_unit)) {
     if (count < 1 || count >= std::int64_t{1} << 31)
       throw std::invalid_argument("a ring of " + std::to_string(count) + " particles: give it from 1 to 2147483647");
     require_finite(length_, "length of the ring");
@@ -83,18 +85,11 @@ template <Real T> class Ring final : public Particles<T> {
       take_off_mean();
     else
       take_off_drift();
-    CompensatedSum<T> twice;
-    for (ParticleIndex particle = 0; particle < count; ++particle) {
-      const T v = this->velocity(particle);
-      twice.add(mass(particle) * v * v);
-    }
-    energy_ = twice.value() / T(2);
+    this->add_up(0, count);
+    this->momentum_ = T(0);
   }
 
-  ParticleIndex count() const override { return count_; }
   T circumference() const override { return length_; }
-  T mass(ParticleIndex particle) const override { return masses_.of(particle); }
-  bool identical_masses() const override { return masses_.identical(); }
   T velocity(ParticleIndex particle) const override {
     return (masses_.identical() ? T(pace(particle)) : T(T(pace(particle)) - drift_)) * velocity_unit_;
   }
@@ -108,13 +103,6 @@ template <Real T> class Ring final : public Particles<T> {
     return T(pace(particle) - pace(next(particle))) * velocity_unit_;
   }
   GapRange gaps_in_motion() const override { return {0, count_ - 1}; }
-
-  T kinetic_energy() const override { return energy_; }
-  T momentum() const override { return T(0); }
-  T total_mass() const override { return masses_.total(0, count_); }
-  T mass_between(ParticleIndex from, ParticleIndex to) const override { return masses_.total(from, to); }
-  T least_mass() const override { return masses_.least(); }
-  T greatest_mass() const override { return masses_.greatest(); }
 
  private:
   ParticleIndex next(ParticleIndex particle) const { return particle + 1 < count_ ? particle + 1 : 0; }
@@ -136,18 +124,15 @@ template <Real T> class Ring final : public Particles<T> {
     CompensatedSum<T> momentum;
     for (ParticleIndex entry = 0; entry < masses_.period(); ++entry)
       momentum.add(masses_.of(entry) * T(sums[static_cast<std::size_t>(entry)]));
-    drift_ = momentum.value() / total_mass();
+    drift_ = momentum.value() / this->total_mass();
   }
 
-  ParticleIndex count_;
   T length_;
   VelocityDraw velocity_;
   Displacement displacement_;
-  MassPattern<T> masses_;
   T unit_, velocity_unit_;
   std::int64_t shift_ = 0, shifted_more_ = 0;
   T drift_{0};  // of the centre of mass, in units of velocities
-  T energy_{0};
 };
 
 }  // namespace cradle

@@ -37,7 +37,6 @@
 #include "cradle/core/parallel/cluster_segment.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
 #include "cradle/core/parallel/steps/stepped.hpp"
-#include "cradle/core/parallel/steps/stepped_pairs.hpp"
 #include "cradle/core/parallel/workers.hpp"
 
 namespace cradle {

@@ -3,8 +3,7 @@
 // cuts, fronts and walls to it, and those beside the seam of a whole ring. If steps fail, the segment takes its copy
 // anew and goes through its event loop.
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -14,67 +13,78 @@
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
+#include "cradle/core/parallel/steps/step_numbers.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
 #include "cradle/core/queue/ledger.hpp"
 
 namespace cradle {
 
-// Uses private members of the segment's part. Law: any that bounces.
-template <class Law, class Masses>
-requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<double, Masses>> final
+// Uses private members of the segment's part.
+template <class Law, class T, class Masses>
+requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Stepped<Law, GapSegment<T, Masses>> final
     : private StepScalars {
+  using Numbers = StepNumbers<T>;
+
  public:
-  static constexpr bool possible = true, on_rings = true;
-  using Part = GapSegment<double, Masses>;
+  static constexpr bool possible = true, on_rings = !Numbers::pairs;
+  using Part = GapSegment<T, Masses>;
   using Report = typename Part::Report;
 
   // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
-  bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
+  bool run(const Steps& steps, Part& part, const Law& law, const T& stop, std::uint64_t most, Report& report) {
+    if (Numbers::pairs && report.observe) return false;  // the event loop logs what is observed
     if (report.pace.rest > 0) return --report.pace.rest, false;
     part_ = &part, law_ = &law, report_ = &report;
     const StepTask task = task_of(stop, most);
     if (!(task.rounder > 0)) return false;  // a plain sum
-    fill();
     made_ = {};
-    ledger_ = part.line_.gaps.ledger();
     StepResult inner;
     StepPace& pace = report.pace;
-    const bool done = steps.run(line_, task, *this, pace, inner);
+    const bool done = fill() && steps.run(line_, task, *this, pace, inner) && Numbers::all_made(line_, stop);
     pace.made(done);
     if (!done) return false;
     report.counts = made_.counts;
     report.counts.collisions += inner.collisions;
     report.counts.below_cutoff += inner.below_cutoff;
-    report.last_collision = std::max(made_.last, inner.last);
+    const T last = Numbers::of(inner.last, inner.low_last);
+    report.last_collision = made_.last < last ? last : made_.last;
     if (report.counts.collisions >= most) return false;
-    ledger_.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
-    part.line_.gaps.set_ledger(ledger_);
+    for (std::size_t i = 0; Numbers::pairs && i < line_.gaps(); ++i) Numbers::give(line_, i, part.line_, slot(i));
+    if constexpr (Ledger<T>::in_any_order) {
+      Ledger<T> ledger = part.line_.gaps.ledger();
+      ledger.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
+      part.line_.gaps.set_ledger(ledger);
+    }
     part.line_.gaps.drop_lags(Part::first(), line_.gaps());
     return true;
   }
 
  private:
-  static constexpr bool equal = std::same_as<Masses, IdenticalMasses<double>>;
+  static constexpr bool equal = std::same_as<Masses, IdenticalMasses<T>>;
 
   struct Made {
     Counts counts;
-    double last = -StepLine::never;
+    T last = Numbers::of(-StepLine::never, 0);
   };
 
-  StepTask task_of(double stop, std::uint64_t most) const {
+  static Slot slot(std::size_t i) { return Part::first() + i; }
+
+  StepTask task_of(const T& stop, std::uint64_t most) const {
     const auto& gaps = part_->line_.gaps;
     StepTask task;
+    task.pairs = Numbers::pairs;
+    T lost(0);
     if (!report_->observe) {  // else `outcomes` is to log every collision
-      if (const auto* law = law_as<Inelastic<double>>(*law_)) {
+      if (const auto* law = law_as<Inelastic<T>>(*law_)) {
         task.law = law->soft() ? StepLaw::soft : StepLaw::hard;
-        task.restitution = law->restitution();
-        task.half_sum = law->half_sum();
-        task.cutoff = law->cutoff();
-        task.lost = law->lost_share();
+        Numbers::put(law->restitution(), task.restitution, task.low.restitution);
+        Numbers::put(law->half_sum(), task.half_sum, task.low.half_sum);
+        Numbers::put(law->cutoff(), task.cutoff, task.low.cutoff);
+        lost = law->lost_share();
       } else if (const auto* of_speed = law_as<SpeedDependent<double>>(*law_)) {
         task.law = StepLaw::of_speed;
         task.cutoff = of_speed->delta();
-        task.lost = 1;
+        lost = T(1);
         const auto &power = of_speed->power(), &rise = of_speed->rise();
         task.of_speed = {of_speed->missing(),
                          power.exponent(),
@@ -86,100 +96,95 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
                          power.odd().size(),
                          rise.reciprocals().size()};
       }
-      if constexpr (equal) task.lost *= part_->line_.masses.reduced_mass;
+      if constexpr (equal) lost = lost * part_->line_.masses.reduced_mass;
+      Numbers::put(lost, task.lost, task.low.lost);
       task.unequal = !equal;
     }
-    task.floor = gaps.floor();
-    task.rounder = gaps.ledger().rounder();
-    task.per_fine = gaps.ledger().per_fine();
-    task.stop = stop;
+    task.floor = to_double(gaps.floor());
+    task.rounder = StepLine::never;  // where there is no ledger
+    if constexpr (Ledger<T>::in_any_order)
+      task.rounder = gaps.ledger().rounder(), task.per_fine = gaps.ledger().per_fine();
+    task.stop = Numbers::last(stop);
     task.most = most;
     return task;
   }
 
-  void fill() {
-    auto& gaps = part_->line_.gaps;
-    constexpr Slot first = Part::first();
-    line_.take(&gaps[first], &gaps.lag(first), part_->last() + 1 - first);
+  bool fill() {
+    const bool all = Numbers::take_all(line_, part_->line_, Part::first(), part_->last() + 1 - Part::first());
     if constexpr (!equal)
       for (std::size_t i = 0; i < line_.gaps(); ++i) {
-        const TwoMasses<double> masses = part_->line_.masses.of_pair(first + i);
+        const TwoMasses<T> masses = part_->line_.masses.of_pair(slot(i));
         const bool left_lighter = masses.left < masses.right;
-        const double fraction = (left_lighter ? masses.left : masses.right) / (masses.left + masses.right);
-        line_.fraction[i] = left_lighter ? -fraction : fraction;
-        line_.reduced[i] = masses.reduced();
+        const T fraction = (left_lighter ? masses.left : masses.right) / (masses.left + masses.right);
+        Numbers::enter(left_lighter ? T(-fraction) : fraction, line_.fraction, line_.low.fraction, i);
+        Numbers::enter(masses.reduced(), line_.reduced, line_.low.reduced, i);
       }
     line_.ring = part_->is_ring();
     set_inner();
+    return all;
   }
   void set_inner() {
     line_.inner_first = static_cast<std::uint32_t>(part_->inner_first_ - Part::first());
     line_.inner = static_cast<std::uint32_t>(part_->inner_);
   }
 
-  // ---- the plain loop's collision (GapLine::strike), where all that is not plain is refused
+  // The event loop's collision, on the cells, where all that is not plain is refused. Lags stay as they are, and are
+  // dropped when all is done.
   bool collide(std::size_t i) override {
-    Gap<double>& cell = line_.cells[i];
-    const double time = cell.due, closing = cell.closing, since = flown(i, time);
-    if (since <= time * 0x1p-40 || is_negative(since)) return false;
-    const Slot s = Part::first() + i;
-    const Outcome<double> outcome = part_->outcome_at_edge(*law_, s, closing);
-    const auto edge = part_->at_edge(s, time, closing, outcome, *report_);
+    auto& cells = part_->line_;
+    const Slot s = slot(i), left = i == 0 && !line_.ring ? s - 1 : slot(line_.left_of(i)),
+               right = slot(line_.right_of(i));
+    const T time = Numbers::due(line_, i);
+    const std::array<Slot, 3> touched{left, s, right};
+    const std::array<T, 3> lags{cells.gaps.lag(left), cells.gaps.lag(s), cells.gaps.lag(right)};
+    for (const Slot each : touched) {
+      if (!is_held(each)) continue;
+      Numbers::give(line_, each - Part::first(), cells, each);
+      if (!(cells.gaps[each].time < time)) return false;
+    }
+    const Outcome<T> outcome = part_->outcome_at_edge(*law_, s, cells.closing(s));
+    const auto edge = part_->at_edge(s, time, cells.closing(s), outcome, *report_);
     set_inner();
     if (edge.notice != Notice::none) return false;
-    if (edge.own) log(i, outcome.below_cutoff);
-    cell.gap = 0;
-    cell.closing = outcome.closing;
-    cell.time = time;
-    cell.due = line_.due[i] = StepLine::never;
-    const std::size_t left = line_.left_of(i), right = line_.right_of(i);
-    if (left != i && !kick(left, outcome.to_left, time)) return false;
-    if (right < line_.gaps() && !kick(right, outcome.to_right, time)) return false;
+    if (edge.own) log(s, time, outcome.below_cutoff);
+    const Notice notice = cells.strike(left, s, right, time, outcome, Notice::none).notice;
+    if (includes(notice, Notice::origin_must_move) || includes(notice, Notice::gap_below_floor)) return false;
+    if (edge.own || !Ledger<T>::in_any_order) part_->lose(s, outcome.energy_lost);
+    for (std::size_t k = 0; k < 3; ++k) {
+      cells.gaps.set_lag(touched[k], lags[k]);
+      if (is_held(touched[k]) && !Numbers::take(line_, touched[k] - Part::first(), cells, touched[k])) return false;
+    }
     if (!edge.own) return true;
-    ledger_.add(outcome.energy_lost);
     ++made_.counts.collisions;
     made_.counts.below_cutoff += outcome.below_cutoff;
-    made_.last = std::max(made_.last, time);
+    if (made_.last < time) made_.last = time;
     return true;
   }
-  bool kick(std::size_t i, double gain, double time) {
-    Gap<double>& cell = line_.cells[i];
-    const double since = flown(i, time);
-    if (!(since > 0)) return false;
-    cell.gap -= cell.closing * since;
-    cell.time = time;
-    cell.closing += gain;
-    if (cell.gap < part_->line_.gaps.floor()) return false;
-    cell.due = line_.due[i] = cell.closing > 0 ? time + cell.gap / cell.closing : StepLine::never;
-    return true;
-  }
-  double flown(std::size_t i, double time) const {
-    const double then = line_.cells[i].time, since = time - then;
-    return is_negative(then) ? since - line_.lag[i] : since;
-  }
+  bool is_held(Slot s) const { return s - Part::first() < line_.gaps(); }  // not beyond an end
 
   // Logs a collision before it is made, if it is observed.
-  void log(std::size_t i, bool below_cutoff) {
+  void log(Slot s, const T& time, bool below_cutoff) {
     if (!report_->observe) return;
-    auto observed = part_->observed(Part::first() + i, line_.cells[i].due);
+    auto observed = part_->observed(s, time);
     observed.below_cutoff = below_cutoff;
     report_->observed.push_back(observed);
   }
 
   void outcomes(const std::uint32_t* gaps, std::size_t count) override {
-    for (std::size_t k = 0; k < count; ++k) {
-      const Outcome<double> outcome =
-          (*law_)(line_.cells[gaps[k]].closing, part_->line_.masses.of_pair(Part::first() + gaps[k]));
-      line_.after[k] = outcome.closing, line_.to_left[k] = outcome.to_left, line_.to_right[k] = outcome.to_right;
-      ledger_.add(outcome.energy_lost);
-      made_.counts.below_cutoff += outcome.below_cutoff;
-      log(gaps[k], outcome.below_cutoff);
-    }
+    if constexpr (!Numbers::pairs)
+      for (std::size_t k = 0; k < count; ++k) {
+        const Slot s = slot(gaps[k]);
+        const Outcome<T> outcome = (*law_)(line_.cells[gaps[k]].closing, part_->line_.masses.of_pair(s));
+        line_.after[k] = outcome.closing, line_.to_left[k] = outcome.to_left, line_.to_right[k] = outcome.to_right;
+        part_->lose(s, outcome.energy_lost);
+        made_.counts.below_cutoff += outcome.below_cutoff;
+        log(s, line_.cells[gaps[k]].due, outcome.below_cutoff);
+      }
   }
 
   void keep() override {
     kept_ = {made_,
-             ledger_,
+             part_->line_.gaps.ledger(),
              part_->edges(),
              report_->left.size(),
              report_->right.size(),
@@ -188,9 +193,10 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
              report_->observed.size()};
   }
   void restore() override {
-    made_ = kept_.made, ledger_ = kept_.ledger;
+    made_ = kept_.made;
+    part_->line_.gaps.set_ledger(kept_.ledger);
     part_->set_edges(kept_.edges);
-    report_->left.resize(kept_.left), report_->right.resize(kept_.right);
+    report_->left.resize(kept_.left, {false, T(0), T(0)}), report_->right.resize(kept_.right, {false, T(0), T(0)});
     report_->to_left.at_end.resize(kept_.at_left), report_->to_right.at_end.resize(kept_.at_right);
     report_->observed.resize(kept_.observed);
     set_inner();
@@ -198,7 +204,7 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
 
   struct Kept {
     Made made;
-    Ledger<double> ledger;
+    Ledger<T> ledger;
     typename Part::Edges edges;
     std::size_t left, right, at_left, at_right, observed;  // lengths of logs
   };
@@ -208,7 +214,6 @@ requires(Law::bounces_only && !Watched<Masses>) struct Stepped<Law, GapSegment<d
   const Law* law_ = nullptr;
   Report* report_ = nullptr;
   Made made_;  // at edges; by other laws all that is below the cut-off
-  Ledger<double> ledger_;
   Kept kept_;
 };
 

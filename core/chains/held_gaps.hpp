@@ -1,0 +1,161 @@
+#pragma once
+// The gaps that a chain in gaps and closing speeds holds (gap_chain.hpp), with the masses between them, the walls, and
+// the two anchors that end the active zone: times, slots, and what each gap is at a time.
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "cradle/core/chains/anchor.hpp"
+#include "cradle/core/chains/collision_memory.hpp"
+#include "cradle/core/chains/gap_line.hpp"
+#include "cradle/core/chains/gravity.hpp"
+#include "cradle/core/chains/held_range.hpp"
+#include "cradle/core/queue/account.hpp"
+
+namespace cradle {
+
+template <Real T, class Masses, class Field> class HeldGaps {
+ public:
+  using Scalar = T;
+  using Line = GapLine<T, Masses>;
+  static constexpr bool falls = Field::acts;
+  static constexpr bool may_collapse = true;
+  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
+
+  // ---- times: local ones are offsets from an origin that moves
+  const Clock<T>& clock() const { return line_.gaps.clock(); }
+  const T& start() const { return clock().start(); }
+  T local_time(const T& time) const { return clock().offset(time); }
+  Pair<T> stamp(const T& local) const { return clock().stamp(local); }
+  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
+
+  // ---- slots: the gaps held are first() to last()
+  std::size_t slots() const { return line_.gaps.slots(); }
+  Slot first() const { return range_.first(); }
+  Slot last() const { return range_.last(); }
+  Slot left(Slot s) const { return on_ring() && s == first() ? last() : s - 1; }
+  Slot right(Slot s) const { return on_ring() && s == last() ? first() : s + 1; }
+  bool on_ring() const { return range_.on_ring(); }
+  ParticleIndex particle(Slot s) const { return line_.particle(s); }
+  ParticleIndex count() const { return particles_->count(); }
+  ParticleIndex collided_particles() const {
+    if (on_ring()) return particles_->count();
+    return range_.has_fronts() ? front_particle(End::right) - front_particle(End::left) + 1 : 0;
+  }
+
+  // Local time of the next collision of a gap that is closing.
+  T due(Slot s) const {
+    if constexpr (falls && !keys_are_exact)
+      if (field_.pulls(particle(s))) return line_.due(field_, s).value_or(far_away<T>());
+    return line_.due(s);
+  }
+  double queue_due(Slot s) const {
+    if constexpr (falls && !keys_are_exact)
+      if (field_.pulls(particle(s))) return line_.queue_due(field_, s);
+    return line_.queue_due(s);
+  }
+  // At the gap's local time; at another time; at its next collision.
+  const T& closing(Slot s) const { return line_.closing(s); }
+  T closing_at(Slot s, const T& time) const {
+    if constexpr (falls)
+      if (field_.pulls(particle(s))) return line_.closing_at(field_, s, time);
+    return closing(s);
+  }
+  T closing_when_due(Slot s) const {
+    if constexpr (falls)
+      if (field_.pulls(particle(s))) return line_.approach(field_, s).meeting_speed().value_or(T(0));
+    return closing(s);
+  }
+
+  // Collisions after which a neighbouring gap is below `floor` are noticed (gap_below_floor).
+  void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
+  // The smaller gap next to a collision, at its local time; beyond an end of the line it is far away.
+  T nearest_gap(Slot s) const {
+    const T far = far_away<T>();
+    const T on_left = on_ring() || s > first() ? line_.gaps[left(s)].gap : far,
+            on_right = on_ring() || s < last() ? line_.gaps[right(s)].gap : far;
+    return on_left < on_right ? on_left : on_right;
+  }
+  // After a collision at s, if it was with a floor (gravity.hpp).
+  std::optional<Rebound<T>> rebound(Slot s) const requires(falls) {
+    return field_.rebound(particle(s), closing(s), line_.gaps.since_start(s));
+  }
+  const Account<T>& account() const { return line_.gaps.account(); }
+  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
+  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
+  // The smallest difference between two collision times that is resolved, as a time since the start.
+  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
+
+  // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.
+  template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
+    if (walls_.beside(particle(s)))
+      return walls_.at_unit_speed(particle(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+    return law(T(1), line_.masses.of_pair(s));
+  }
+
+  // ---- reading, at a local time not before the last collision
+  T gap_at(Slot s, const T& time) const {
+    if constexpr (falls)
+      if (field_.pulls(particle(s))) return line_.gap_at(field_, s, time);
+    return line_.gaps.gap_at(s, closing(s), time);
+  }
+  const Walls<T>& walls() const { return walls_; }
+
+  // ---- for segments (segments.hpp)
+  const Particles<T>& particles() const { return *particles_; }
+  const Line& line() const { return line_; }
+  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
+  ParticleIndex place(Slot s) const { return particle(s); }  // in the order of the line, for any numbering of slots
+  // Slots free for particles that the fronts reach.
+  std::size_t within_reach_left() const { return range_.free_left(); }
+  std::size_t within_reach_right() const { return range_.free_right(slots()); }
+  bool cramped(std::size_t particles) const { return range_.cramped(slots(), static_cast<ParticleIndex>(particles)); }
+  bool fronts_are_within(Slot left, Slot right) const {
+    return on_ring() || (range_.has_fronts() && range_.front_left() <= left && range_.front_right() >= right);
+  }
+  Slot front_slot_left() const { return range_.front_left(); }
+  Slot front_slot_right() const { return range_.front_right(); }
+
+ protected:
+  HeldGaps(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
+      : particles_(std::move(particles)), line_(*particles_, start),
+        range_(particles_->on_ring(), held.first - particles_->gaps().first, particles_->gaps().last - held.last, 2),
+        walls_(particles_->walls()), field_(*particles_) {
+    require_particles(*particles_, start);
+    if (!falls) require_no_gravity(*particles_, "use GapChain<T, Masses, Gravity<T>>");
+  }
+
+  // Of the gap right of a particle.
+  Slot slot(ParticleIndex particle) const { return static_cast<Slot>(particle - line_.particle_of_slot_0); }
+  // The outermost particle that has collided; walls are not counted.
+  ParticleIndex front_particle(End end) const {
+    return end == End::left ? std::max<ParticleIndex>(particle(range_.front_left()), 0)
+                            : std::min(particle(range_.front_right()) + 1, particles_->count() - 1);
+  }
+  // So many particles from the wall.
+  Slot slot_in_pile(ParticleIndex height) const {
+    const auto h = static_cast<Slot>(height);
+    return field_.pile_end() == End::left ? first() + h : last() - h;
+  }
+
+  bool shaken() const {
+    if constexpr (falls)
+      return field_.shaken();
+    else
+      return false;
+  }
+
+  std::shared_ptr<const Particles<T>> particles_;
+  Line line_;
+  HeldRange range_;
+  CollisionMemory<T> memory_;
+  T centre_{0};   // on a ring: centre of mass at the start
+  T fastest_{0};  // closing speed at the start
+  Anchor<T> left_, right_;
+  Walls<T> walls_;
+  [[no_unique_address]] Field field_;
+};
+
+}  // namespace cradle

@@ -15,8 +15,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "cradle/precision/read_number.hpp"
-
 namespace cradle {
 
 template <class T> struct Text;
@@ -62,7 +60,7 @@ template <class T> struct StandardText {
     T value{};
     const std::string text = checked_literal(literal);
     const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
-    const auto error = read_number(digits.data(), digits.data() + digits.size(), value).ec;
+    const auto error = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
     if (error == std::errc::result_out_of_range) {
       // Too large, too small, or (long double in libstdc++) merely subnormal: a stream distinguishes these.
       std::istringstream stream(text);

@@ -1,4 +1,5 @@
-#include "cradle/precision/read_number.hpp"
+#include <charconv>
+
 #include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
@@ -21,7 +22,7 @@ SpreadRequest spread(const std::string& text) {
   if (equals == text.npos || colon == text.npos || second == text.npos) throw wrong();
   const auto number = [&](std::size_t from, std::size_t to) {
     double value = 0;
-    const auto [end, error] = read_number(text.data() + from, text.data() + to, value);
+    const auto [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
     if (error != std::errc() || end != text.data() + to || !std::isfinite(value)) throw wrong();
     return value;
   };

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
-
-#include "cradle/precision/read_number.hpp"
 
 namespace cradle::tools {
 
@@ -86,7 +85,7 @@ void check_count(const std::vector<Varied>& keys, bool cuts, double most) {
 
 std::optional<double> to_number(const std::string& text) {
   double value = 0;
-  const auto [end, error] = read_number(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include "cradle/precision/read_number.hpp"
 #include "cradle/tools/scene/rational.hpp"
 
 namespace cradle::tools {
@@ -140,7 +139,7 @@ Decimal::Decimal(std::string_view literal) {
   auto canonical = canonical_decimal(literal);
   if (!canonical) throw std::invalid_argument("not a decimal number: " + std::string(literal));
   text = std::move(*canonical);
-  const auto [end, error] = read_number(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc::result_out_of_range) {
     const Parts parts = parts_of(text);
     value = parts.exponent < 0 ? 0 : std::numeric_limits<double>::infinity();

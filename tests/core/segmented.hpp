@@ -179,7 +179,9 @@ SlabsMade expect_same_in_segments(const Scene<std::type_identity_t<T>>& scene, c
     // Time slabs that are observed end elsewhere, and steps may give up one where the other run has none to give up.
     // Pairs make none of them in steps.
     if (watched.in_steps > 0) made += watched;
-    if (ways[k].how.steps == nullptr) EXPECT_EQ(watched.given_up > 0, by_itself.given_up > 0);
+    if (ways[k].how.steps == nullptr) {
+      EXPECT_EQ(watched.given_up > 0, by_itself.given_up > 0);
+    }
   }
   return made;
 }

@@ -2,6 +2,7 @@
 #include "cradle/tools/scene/fields.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <deque>
 #include <iterator>
@@ -16,21 +17,24 @@ template <auto... Path> constexpr auto member = +[](Scene& scene) -> auto& { ret
 
 constexpr When always{"", "", "", [](const Scene&) { return true; }};
 
-template <LawType... Of> constexpr auto of_law = +[](const Scene& s) { return ((s.law.type == Of) || ...); };
-template <InitialType... Of> constexpr auto begins_as = +[](const Scene& s) { return ((s.initial.type == Of) || ...); };
+template <LawType Of> constexpr auto of_law = +[](const Scene& s) { return s.law.type == Of; };
+template <InitialType Of> constexpr auto begins_as = +[](const Scene& s) { return s.initial.type == Of; };
 template <scene::CollapsePolicy P> constexpr auto at_collapse = +[](const Scene& s) { return s.run.collapse == P; };
 
 constexpr std::string_view other_law = "key of another law";
 constexpr When inelastic{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
 constexpr When wet{other_law, "law.type", "law.type = \"wet\"", of_law<LawType::wet>};
-// `law.type = "wet" or "sticky"`: the laws whose particles merge, or bounce.
-std::string laws_that(bool merge) {
-  std::string names;
-  for (const LawRow& row : law_rows)
-    if (row.merges == merge) names.append(names.empty() ? "law.type = \"" : "\" or \"").append(row.name);
-  return names + '"';
+// `law.type = "wet" or "sticky"`: the key, and the names of the rows in which this member has this value.
+template <class Row> std::string those_that(std::string_view key, const auto& rows, bool Row::*member, bool value) {
+  std::vector<std::string> names;
+  for (const Row& row : rows)
+    if (row.*member == value) names.push_back(fmt::format("\"{}\"", row.name));
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} = {}{}{}", key, fmt::join(names, ", "), names.empty() ? "" : " or ", last);
 }
-const std::string that_merge = laws_that(true), that_bounce = laws_that(false);
+const std::string that_merge = those_that("law.type", law_rows, &LawRow::merges, true),
+                  that_bounce = those_that("law.type", law_rows, &LawRow::merges, false);
 const When merging{other_law, "law.type", that_merge, [](const Scene& s) { return law_row(s).merges; }};
 constexpr When wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
                            return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
@@ -44,16 +48,19 @@ constexpr When plain_rows{
 constexpr When general_rows{
     other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
-constexpr auto is_in_order = begins_as<InitialType::rows, InitialType::ring, InitialType::cold, InitialType::gas>;
-constexpr When in_order{other_state, "initial.type", "initial.type = \"rows\", \"ring\", \"cold\" or \"gas\"",
-                        is_in_order};
-constexpr When on_lattice{other_state, "initial.positions",
-                          "initial.positions = \"lattice\" on rows, a ring, in a cold gas or a gas",
-                          [](const Scene& s) { return is_in_order(s) && s.initial.positions == Positions::lattice; }};
-constexpr When on_line{other_state, "initial.type", "initial.type = \"rows\", \"list\" or \"cold\"",
-                       begins_as<InitialType::rows, InitialType::list, InitialType::cold>};
-constexpr When thermal_gas{other_state, "initial.type", "initial.type = \"ring\" or \"gas\"",
-                           begins_as<InitialType::ring, InitialType::gas>};
+template <bool InitialRow::*Member> std::string states_that_are() {
+  return those_that("initial.type", initial_rows, Member, true);
+}
+template <bool InitialRow::*Member> constexpr auto state_is = +[](const Scene& s) { return initial_row(s).*Member; };
+const std::string states_in_order = states_that_are<&InitialRow::in_order>(),
+                  states_on_line = states_that_are<&InitialRow::on_line>(),
+                  thermal_states = states_that_are<&InitialRow::thermal>();
+const When in_order{other_state, "initial.type", states_in_order, state_is<&InitialRow::in_order>};
+constexpr When on_lattice{
+    other_state, "initial.positions", "initial.positions = \"lattice\" on rows, a ring, in a cold gas or a gas",
+    [](const Scene& s) { return initial_row(s).in_order && s.initial.positions == Positions::lattice; }};
+const When on_line{other_state, "initial.type", states_on_line, state_is<&InitialRow::on_line>};
+const When thermal_gas{other_state, "initial.type", thermal_states, state_is<&InitialRow::thermal>};
 constexpr When gas{other_state, "initial.type", "initial.type = \"gas\"", begins_as<InitialType::gas>};
 constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"", begins_as<InitialType::ring>};
 constexpr When list{other_state, "initial.type", "initial.type = \"list\"", begins_as<InitialType::list>};
@@ -149,7 +156,8 @@ std::string names_of(const auto& rows) {
   for (const auto& row : rows) names.append(names.empty() ? "" : " | ").append(row.name);
   return names;
 }
-const std::string scalar_names = names_of(scalar_rows), law_names = names_of(law_rows);
+const std::string scalar_names = names_of(scalar_rows), law_names = names_of(law_rows),
+                  state_names = names_of(initial_rows);
 
 constexpr std::string_view any = "(-inf, inf)";
 constexpr std::string_view within_run = "[run.start, run.until]";
@@ -217,8 +225,7 @@ const Field fields_before_walls[] = {
     {"law.loss", law_of<&scene::Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
      "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge"},
 
-    {"initial.type", initial_type, "", "required", "rows | ring | list | clusters | cold | gas", &always,
-     "which particles there are at the start"},
+    {"initial.type", initial_type, "", "required", state_names, &always, "which particles there are at the start"},
     {"initial.left.particles", initial_of<&Initial::left, &scene::Row::particles>, "", "required", "[1, 1e15]",
      &general_rows, "particles of the left row"},
     {"initial.left.speed", initial_of<&Initial::left, &scene::Row::speed>, "l/t", "required", any, &general_rows,

@@ -4,11 +4,11 @@
 // predicts for it, and what it costs, is a row in tools/theory/laws.cpp.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string_view>
 
 #include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/scene/table.hpp"
 
 namespace cradle::tools {
 
@@ -44,13 +44,7 @@ inline constexpr LawRow law_rows[] = {
     {.type = LawType::wet, .name = "wet", .merges = true, .provable = true},
     {.type = LawType::sticky, .name = "sticky", .merges = true, .needs_events = false, .provable = true},
 };
-
-constexpr bool law_rows_in_order() {
-  for (const LawRow& row : law_rows)
-    if (&law_rows[static_cast<std::size_t>(row.type)] != &row) return false;
-  return true;
-}
-static_assert(law_rows_in_order());
+static_assert(rows_in_order(law_rows));
 
 /// The row of the scene's law.
 const LawRow& law_row(const Scene& scene);

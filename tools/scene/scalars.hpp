@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "cradle/tools/scene/table.hpp"
+
 namespace cradle::tools {
 
 enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
@@ -39,14 +41,8 @@ inline constexpr ScalarRow scalar_rows[] = {
     {Precision::cpp_bin_float, "cpp_bin_float", 100, {41}, {104}, {64}, "1e323228496", "1e-323228496"},
     {Precision::mpfr, "mpfr", 0, {6.3, 0.112}, {22, 0.4}, {48, 1 / 2.4}, "", ""},
 };
+static_assert(rows_in_order(scalar_rows));
 
 constexpr const ScalarRow& scalar_row(Precision type) { return scalar_rows[static_cast<std::size_t>(type)]; }
-
-constexpr bool scalar_rows_in_order() {
-  for (const ScalarRow& row : scalar_rows)
-    if (&scalar_row(row.type) != &row) return false;
-  return true;
-}
-static_assert(scalar_rows_in_order());
 
 }  // namespace cradle::tools

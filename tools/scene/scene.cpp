@@ -18,6 +18,8 @@ bool Output::observes_collisions() const {
 
 const LawRow& law_row(const Scene& scene) { return law_rows[static_cast<std::size_t>(scene.law.type)]; }
 
+const InitialRow& initial_row(const Scene& scene) { return initial_rows[static_cast<std::size_t>(scene.initial.type)]; }
+
 bool particles_merge(const Scene& scene) {
   return law_row(scene).merges || scene.run.collapse == scene::CollapsePolicy::merge;
 }

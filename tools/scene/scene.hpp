@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cradle/tools/scene/decimal.hpp"
+#include "cradle/tools/scene/initial.hpp"
 #include "cradle/tools/scene/laws.hpp"
 #include "cradle/tools/scene/scalars.hpp"
 #include "cradle/tools/support/errors.hpp"
@@ -23,68 +24,16 @@
 namespace cradle::tools {
 
 // The enumerators are in the order of the names in the table of fields.
-enum class InitialType { rows, ring, list, clusters, cold, gas };
-enum class Velocities { gaussian, uniform };
-enum class Positions { lattice, poisson };
 enum class Coordinates { gaps, absolute };
 enum class Spacing { linear, log };
 
 // Scene types whose names the engine uses too.
 namespace scene {
 
-enum class HotPlace { middle, left };
 enum class Motion { none, sawtooth, parabola, sine };
 enum class CollapsePolicy { cutoff, contact_time, merge, stop };
-enum class Meeting { energy, pass, stick };
-
-/// One side of a general Riemann problem: particles at distance 1/density.
-struct Row {
-  std::uint64_t particles = 0;
-  Decimal speed;  // velocity of the row: positive to the right
-  Decimal density;
-};
 
 }  // namespace scene
-
-/// The particle between two general rows, at x = 0; mass 0: none.
-struct Centre {
-  Decimal mass;
-  Decimal speed;
-};
-
-struct Initial {
-  InitialType type = InitialType::rows;
-  std::uint64_t particles = 0;  // rows (both together), ring, cold, gas
-  Decimal speed;    // rows: left row +speed, right row -speed; clusters: of the rows that feed them; cold: of one hot
-                    // particle
-  Decimal spacing;  // rows, clusters, cold
-  scene::Row left, right;  // rows given as tables: see general_rows()
-  Centre centre;
-  Positions positions = Positions::lattice;  // rows, ring, cold, gas
-  Decimal perturbation;                      // rows, ring, cold, gas: uniform in plus/minus this times the spacing
-  Decimal length;                            // ring; list: 0 on a line
-  std::optional<Decimal> density;            // gas: says where the right wall is
-  Decimal density_exponent;                  // cold: the density falls with this power of the distance
-  Velocities velocities = Velocities::gaussian;
-  Decimal variance;                                 // ring, gas
-  std::vector<Decimal> masses;                      // rows, ring, cold, gas: repeated from particle 0 on; empty: all 1
-  std::vector<Decimal> random_masses;               // or uniform between these two
-  std::uint64_t hot = 0;                            // cold: particles that move at the start
-  scene::HotPlace place = scene::HotPlace::middle;  // cold: where these are
-  Decimal energy;                                   // cold: of several hot particles together
-  std::optional<std::string>
-      file;                     // list: the file with the particles, or a result; a scene that was read has them here:
-  DecimalColumn x, v, m;        // list; m empty: all 1. clusters: two x, two v
-  DecimalColumn gap;            // list: instead of all x but the first; a scene that was read has them in x
-  std::vector<Decimal> growth;  // clusters: share of the incoming mass that each takes up
-  scene::Meeting meeting = scene::Meeting::energy;
-  std::uint64_t seed = 0;
-  std::uint64_t replica = 0;
-
-  /// Rows given by [initial.left] and [initial.right] instead of particles, speed and spacing.
-  bool general_rows() const { return left.particles > 0; }
-  bool on_ring() const { return type == InitialType::ring || (type == InitialType::list && length > Decimal("0")); }
-};
 
 /// A wall at one end of the line; without a position there is none.
 struct WallAt {

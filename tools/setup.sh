@@ -38,6 +38,7 @@ option  | Python headers        | python-header                | python3-dev
 look    | Chromium              | command chromium             | chromium
 look    | pandas                | plotting pandas              | python3-pandas
 look    | xarray                | plotting xarray              | python3-xarray
+look    | qemu-x86_64    | command qemu-x86_64         | qemu-user
 look    | dpkg-shlibdeps        | command dpkg-shlibdeps       | dpkg-dev
 look    | pip                   | python pip                   | python3-pip
 look    | setuptools            | python setuptools            | python3-setuptools

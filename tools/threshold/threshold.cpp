@@ -42,8 +42,9 @@ class Search {
     if (low.outcome == high.outcome) {
       ::unlink(part_.c_str());
       throw Error({"", 0, "--vary"}, "the same outcome at both ends",
-                  fmt::format("{} at {} and at {}", low.outcome, low.value, high.value),
-                  "give ends between which it changes, or compare another outcome (--outcome)");
+                  fmt::format("{} at {} in {} and at {} in {}", low.outcome, low.value, low.how, high.value, high.how),
+                  "give ends between which it changes, a type of more digits (--set run.precision), or another outcome "
+                  "(--outcome)");
     }
     while (bracket_->next()) {
       const RunAt run = at(*bracket_->next());

@@ -15,6 +15,7 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -144,13 +145,17 @@ template <> class std::numeric_limits<cradle::double_double> {
 template <> inline constexpr std::string_view cradle::scalar_name<cradle::double_double> = "double-double";
 
 template <> struct cradle::Text<cradle::double_double> {
-  static double_double from(std::string_view literal) { return rounded(Exact(checked_literal(literal))); }
+  static double_double from(std::string_view literal) {
+    const std::string text = checked_literal(literal);
+    const auto quick = by_near(text);
+    return quick ? *quick : rounded(Exact(text));
+  }
 
   static std::string to(const double_double& x) {
     // High and low may differ greatly in size: add digits until the text is exact.
     for (int digits = 32;; digits += 8) {
       std::string text = near(x) ? written<Near>(x, digits) : written<Exact>(x, digits);
-      if (digits > 700 || reads(text, x)) return text;
+      if (digits > 700 || from(text) == x) return text;
     }
   }
 
@@ -171,11 +176,11 @@ template <> struct cradle::Text<cradle::double_double> {
     return Number(Number(x.high()) + x.low()).str(digits);
   }
   static bool near(const double_double& x) { return x.low() == 0 || std::ilogb(x.high()) - std::ilogb(x.low()) < 150; }
-  // Whether from(text) is x. Rounding is monotonic: if both ends of the error interval of Near round to one number, so
-  // does the decimal between them.
-  static bool reads(const std::string& text, const double_double& x) {
+  // The number of a decimal, if Near decides it. Rounding is monotonic: if both ends of the error interval of Near
+  // round to one number, so does the decimal between them.
+  static std::optional<double_double> by_near(const std::string& text) {
     const Near middle(text), off = ldexp(Near(abs(middle)), -240);
     const double_double one_end = rounded(Near(middle - off)), other = rounded(Near(middle + off));
-    return (one_end == other ? one_end : from(text)) == x;
+    return one_end == other ? std::optional(one_end) : std::nullopt;
   }
 };

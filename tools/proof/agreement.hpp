@@ -41,6 +41,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -99,32 +100,52 @@ template <Enclosing N> class Agreement {
   const RunErrors& errors() const { return errors_; }
   const std::optional<Disagreement>& broken() const { return broken_; }
 
-  void count(const std::string& quantity, std::uint64_t of_run, std::uint64_t of_proof) {
+  /// `quantity`: its name, or a function that makes it, which is called for a disagreement only.
+  void count(const auto& quantity, std::uint64_t of_run, std::uint64_t of_proof) {
     if (of_run != of_proof) report(quantity, fmt::format("{}", of_run), fmt::format("{}", of_proof), 0);
   }
   /// `of_run`: a decimal of the run's type, with all its digits; empty: it has none.
-  void number(const std::string& quantity, const std::string& of_run, const std::optional<N>& of_proof,
-              long double bound) {
-    if (of_run.empty() || !of_proof) {
-      if (of_run.empty() == of_proof.has_value())
-        report(quantity, of_run.empty() ? "none" : of_run, of_proof ? to_text(of_proof->middle()) : "none", bound);
-      return;
-    }
-    if (!is_finite(*of_proof)) return;
-    const auto radius = static_cast<long double>(of_proof->radius());
-    const long double most = bound + errors_.of_radius * radius;
-    if (is_number(of_run) && !(static_cast<long double>(off(of_run, *of_proof).least_size()) > most)) return;
-    report(quantity, of_run, to_text(of_proof->middle()), most + radius);
+  void number(const auto& quantity, const std::string& of_run, const std::optional<N>& of_proof, long double bound) {
+    const bool finite = !of_run.empty() && of_run.find('n') == of_run.npos;  // neither nan nor inf
+    compare(quantity, of_run, finite ? std::optional(from_text<N>(of_run)) : std::nullopt, of_proof, bound);
+  }
+  /// The same of a double of the run; NaN: it has none.
+  void number(const auto& quantity, double of_run, const std::optional<N>& of_proof, long double bound) {
+    if (std::isfinite(of_run))
+      compare(quantity, of_run, exactly<N>(of_run), of_proof, bound);
+    else
+      number(quantity, std::isnan(of_run) ? "" : fmt::format("{}", of_run), of_proof, bound);
   }
   void place(const std::string& quantity, const std::string& of_run, const std::optional<N>& of_proof) {
     number(quantity, of_run, of_proof, errors_.place);
   }
 
  private:
-  static bool is_number(const std::string& text) { return text.find('n') == text.npos; }  // neither nan nor inf
-  static N off(const std::string& of_run, const N& of_proof) { return from_text<N>(of_run) - of_proof; }
-  void report(const std::string& quantity, const std::string& of_run, const std::string& of_proof, long double bound) {
-    if (!broken_) broken_ = Disagreement{quantity, of_run, of_proof, bound};
+  // `exact`: what the run has, if that is finite.
+  template <class Number>
+  void compare(const auto& quantity, const Number& of_run, const std::optional<N>& exact,
+               const std::optional<N>& of_proof, long double bound) {
+    const std::string none = "none";
+    bool has_none = false;
+    if constexpr (std::same_as<Number, std::string>) has_none = of_run.empty();
+    if (has_none || !of_proof) {
+      if (has_none == of_proof.has_value())
+        report(quantity, has_none ? none : fmt::format("{}", of_run), of_proof ? to_text(of_proof->middle()) : none,
+               bound);
+      return;
+    }
+    if (!is_finite(*of_proof)) return;
+    const auto radius = static_cast<long double>(of_proof->radius());
+    const long double most = bound + errors_.of_radius * radius;
+    if (exact && !(static_cast<long double>((*exact - *of_proof).least_size()) > most)) return;
+    report(quantity, fmt::format("{}", of_run), to_text(of_proof->middle()), most + radius);
+  }
+  void report(const auto& quantity, const std::string& of_run, const std::string& of_proof, long double bound) {
+    if (broken_) return;
+    if constexpr (std::invocable<decltype(quantity)>)
+      broken_ = Disagreement{quantity(), of_run, of_proof, bound};
+    else
+      broken_ = Disagreement{quantity, of_run, of_proof, bound};
   }
 
   RunErrors errors_;
@@ -188,20 +209,20 @@ template <Enclosing N> class ProvedTables {
   static void compare(const std::string& path, const Column& column, const std::vector<Row>& rows,
                       Agreement<N>& agreement) {
     for (const Row& row : rows) {
-      const auto compare = [&](const std::string& of_run, long double rounding) {
-        agreement.number(fmt::format("row {} of /{}", row.number, path), of_run, row.proved, row.bound + rounding);
+      const auto compare = [&](const auto& of_run, long double rounding) {
+        const auto quantity = [&] { return fmt::format("row {} of /{}", row.number, path); };
+        agreement.number(quantity, of_run, row.proved, row.bound + rounding);
       };
       if (row.number >= column.rows()) return agreement.count("rows of /" + path, column.rows(), row.number + 1);
       if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
         const std::string& text = (*texts)[row.number];
-        compare(text == "nan" ? "" : text, 0);
+        compare(text == "nan" ? std::string() : text, 0);
       } else if (const auto* counts = std::get_if<std::vector<std::uint64_t>>(&column.values)) {
         compare(fmt::format("{}", (*counts)[row.number]), 0);
       } else {
         const double number = std::get<std::vector<double>>(column.values)[row.number];
-        compare(std::isnan(number) ? "" : fmt::format("{}", number),
-                std::abs(number) * static_cast<long double>(std::numeric_limits<double>::epsilon()) +
-                    static_cast<long double>(std::numeric_limits<double>::denorm_min()));
+        compare(number, std::abs(number) * static_cast<long double>(std::numeric_limits<double>::epsilon()) +
+                            static_cast<long double>(std::numeric_limits<double>::denorm_min()));
       }
     }
   }

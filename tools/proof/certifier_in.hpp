@@ -253,8 +253,8 @@ template <class M> class CertifierIn final : public Certifier {
       if (!there && (particle < particles.from || particle > particles.to)) return;
       const auto number = [&](const char* what, const std::vector<std::string>& all, const N& of_proof,
                               long double bound) {
-        run.number(fmt::format("{} of particle {} in the snapshot", what, particle), there ? all[found->second] : "",
-                   of_proof, bound);
+        const auto quantity = [&] { return fmt::format("{} of particle {} in the snapshot", what, particle); };
+        run.number(quantity, there ? all[found->second] : std::string(), of_proof, bound);
       };
       const N place = there ? nearest_image(x, particles.x[found->second]) : x;
       number("m", particles.m, m, run.errors().mass);

@@ -154,20 +154,33 @@ Scaled scaled(std::string_view decimal) {
   return {parts.negative ? Whole(-digits) : digits, parts.exponent - static_cast<std::int64_t>(parts.digits.size())};
 }
 
-std::string decimal_text(Scaled number, bool (*with_power)(std::int64_t power, std::int64_t digits)) {
-  auto& [integer, power] = number;
-  if (integer == 0) return "0";
-  std::string digits = Whole(abs(integer)).str();
+namespace {
+
+using WithPower = bool (*)(std::int64_t power, std::int64_t digits);
+
+// The digits, which may begin with zeros, times a power of ten; see rational.hpp.
+std::string decimal_text(bool negative, std::string digits, std::int64_t power, WithPower with_power) {
+  digits.erase(0, digits.find_first_not_of('0'));
+  if (digits.empty()) return "0";
   const std::size_t last = digits.find_last_not_of('0') + 1;
   power += static_cast<std::int64_t>(digits.size() - last);
   digits.resize(last);
-  const std::string sign = integer < 0 ? "-" : "";
-  if (with_power(power, static_cast<std::int64_t>(last)))
-    return sign + digits + (power == 0 ? "" : "e" + std::to_string(power));
-  if (power >= 0) return sign + digits + std::string(static_cast<std::size_t>(power), '0');
-  const auto places = static_cast<std::size_t>(-power);
-  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
-  return sign + digits.insert(digits.size() - places, ".");
+  if (with_power(power, static_cast<std::int64_t>(last))) {
+    if (power != 0) digits += "e" + std::to_string(power);
+  } else if (power >= 0) {
+    digits.append(static_cast<std::size_t>(power), '0');
+  } else {
+    const auto places = static_cast<std::size_t>(-power);
+    if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
+    digits.insert(digits.size() - places, ".");
+  }
+  return negative ? "-" + digits : digits;
+}
+
+}  // namespace
+
+std::string decimal_text(Scaled number, WithPower with_power) {
+  return decimal_text(number.integer < 0, Whole(abs(number.integer)).str(), number.power, with_power);
 }
 
 namespace {
@@ -195,25 +208,63 @@ void align(std::initializer_list<Exact*> numbers) {
   }
 }
 
+bool is_very_long(std::int64_t of_last, std::int64_t) { return of_last > 64 || of_last < -64; }
+
 // Without a power of ten unless it is very long.
 std::string text_of(const Integer& integer, std::int64_t power) {
-  return decimal_text({integer, power},
-                      [](std::int64_t of_last, std::int64_t) { return of_last > 64 || of_last < -64; });
+  return decimal_text(Scaled{integer, power}, is_very_long);
 }
 
-// integer 10^power/parts; see decimals_by_parts.
+// A number in the middle of two binary ones is a fraction too: between two fractions is room for one unit of the
+// product of their denominators.
+std::int64_t digits_of_quotient(std::size_t digits, std::size_t of_integer, std::size_t of_parts, std::int64_t power) {
+  return static_cast<std::int64_t>(digits + of_integer + of_parts) + (power < 0 ? -power : power);
+}
+
+// integer 10^power/parts in lowest terms; see decimals_by_parts.
 std::string quotient_text(Integer integer, std::int64_t power, Integer parts, std::size_t digits) {
-  const Integer common = gcd(integer, parts);
-  integer /= common, parts /= common;
   while (parts % 10 == 0) parts /= 10, --power;
   while (parts % 5 == 0) parts /= 5, integer *= 2, --power;
   while (parts % 2 == 0) parts /= 2, integer *= 5, --power;
   if (parts == 1) return text_of(integer, power);
-  // A number in the middle of two binary ones is a fraction too: between two fractions is room for one unit of the
-  // product of their denominators.
-  const auto more =
-      static_cast<std::int64_t>(digits + integer.str().size() + parts.str().size()) + (power < 0 ? -power : power);
+  const std::int64_t more = digits_of_quotient(digits, integer.str().size(), parts.str().size(), power);
   return text_of(integer * power_of_ten(more) / parts, power - more);
+}
+
+// The same, twenty times faster, of integers of 64 bits that are not negative, if the remainders fit.
+std::optional<std::string> quotient_text(std::int64_t integer, std::int64_t power, std::int64_t parts,
+                                         std::size_t digits) {
+  constexpr int places = 9;
+  constexpr std::int64_t shift = 1'000'000'000;
+  const auto without = [&](std::int64_t factor, std::int64_t by) {
+    bool fits = true;
+    for (; fits && parts % factor == 0; parts /= factor, --power) fits = !__builtin_mul_overflow(integer, by, &integer);
+    return fits;
+  };
+  if (parts > std::numeric_limits<std::int64_t>::max() / shift || !without(10, 1) || !without(5, 2) || !without(2, 5))
+    return {};
+  std::string text = std::to_string(integer / parts);
+  if (parts == 1) return decimal_text(false, std::move(text), power, is_very_long);
+  std::int64_t more = digits_of_quotient(digits, std::to_string(integer).size(), std::to_string(parts).size(), power);
+  power -= more;
+  for (std::int64_t rest = integer % parts; more > 0; more -= places) {
+    rest *= shift;
+    const std::string next = std::to_string(shift + rest / parts);  // with a 1 before the zeros
+    text.append(next, 1, static_cast<std::size_t>(std::min<std::int64_t>(more, places)));
+    rest %= parts;
+  }
+  return decimal_text(false, std::move(text), power, is_very_long);
+}
+
+// integer 10^power/parts.
+std::string divided(const Integer& integer, std::int64_t power, const Integer& parts, std::size_t digits) {
+  if (parts == 1) return text_of(integer, power);
+  const Integer common = gcd(integer, parts), least = integer / common, of = parts / common;
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  if (least >= 0 && least <= most && of <= most)
+    if (auto text = quotient_text(static_cast<std::int64_t>(least), power, static_cast<std::int64_t>(of), digits))
+      return std::move(*text);
+  return quotient_text(least, power, of, digits);
 }
 
 // from + k step/parts up to `until`, of one power of ten.
@@ -222,7 +273,7 @@ DecimalColumn spaced(const Exact& from, const Exact& step, const Integer& parts,
   DecimalColumn all;
   const Integer end = until.integer * parts;
   for (Integer at = from.integer * parts; at <= end; at += step.integer)
-    all.push_back(parts == 1 ? text_of(at, from.power) : quotient_text(at, from.power, parts, digits));
+    all.push_back(divided(at, from.power, parts, digits));
   return all;
 }
 

@@ -2,9 +2,12 @@
 #include "cradle/tools/scene/decimal.hpp"
 
 #include <limits>
+#include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+
+#include "cradle/tools/scene/rational.hpp"
 
 namespace cradle::tools::decimal_test {
 
@@ -99,6 +102,29 @@ TEST(Decimal, Parts) {
   EXPECT_EQ(Decimal(near[0]).value, 1);
   EXPECT_EQ(Decimal(near[1]).value, 1 + 0x1p-52);
   EXPECT_EQ(decimal_between(Decimal("1"), Decimal("3"), Decimal("1e-3")), Decimal("1.002"));
+}
+
+// Against rationals: exact where the quotient is a finite decimal, else below it by less than 17 digits show.
+TEST(Decimal, RandomParts) {
+  std::mt19937_64 random(5);
+  for (int k = 0; k < 2000; ++k) {
+    const std::uint64_t count = 1 + random() % (k % 2 == 0 ? 1'000 : 10'000'000);
+    const std::string to =
+        std::to_string(1 + random() % 100'000) + "e" + std::to_string(static_cast<int>(random() % 40) - 20);
+    const Rational step = *rational(to) / count;
+    // Up to the third part at most, or all would be made.
+    const Texts all =
+        texts(decimals_by_parts(Decimal("0"), Decimal(to), count, Decimal(decimal_text(3 * step, 30)), 17));
+    ASSERT_GE(all.size(), 3u);
+    for (std::size_t n = 0; n < 3; ++n) {
+      const Rational exact = n * step, off = exact - *rational(all[n]);
+      Whole rest = denominator(exact);
+      while (rest % 2 == 0) rest /= 2;
+      while (rest % 5 == 0) rest /= 5;
+      EXPECT_EQ(off == 0, rest == 1) << all[n];
+      EXPECT_TRUE(off >= 0 && off * power_of_ten(17) <= exact) << all[n];
+    }
+  }
 }
 
 TEST(Decimal, NearestDouble) {

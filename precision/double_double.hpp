@@ -37,7 +37,7 @@ class double_double {
   // The sum of two doubles of any sizes.
   static constexpr double_double sum(double a, double b) { return two_sum(a, b); }
 
-  // The same of what high() and low() have been.
+  // The number with these doubles, which must come from high() and low().
   static constexpr double_double of(double high, double low) { return {high, low}; }
 
   constexpr double high() const { return high_; }

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <tuple>
 
 namespace cradle {
@@ -46,6 +47,16 @@ template <Real T> bool is_finite(const T& x) { return x - x == T(0); }
 template <Real T> T far_away() {
   const T largest = std::numeric_limits<T>::max();
   return is_positive(largest) ? largest : T(std::numeric_limits<std::int64_t>::max());
+}
+
+// Types of exact numbers have no square roots: gravity, shaken walls and wet particles are not for them.
+template <Real T> T square_root(const T& x) {
+  if constexpr (std::numeric_limits<T>::is_exact) {
+    throw std::logic_error("a square root in exact numbers: use another scalar type");
+  } else {
+    using std::sqrt;
+    return sqrt(x);
+  }
 }
 
 // The double, exactly; a scalar type may have no constructor from double.

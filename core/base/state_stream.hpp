@@ -1,6 +1,6 @@
+#pragma once
 // Where states (state.hpp) are saved to and loaded from when they are too large for memory: streams of bytes with a
 // buffer. What is behind the buffer, a file with its checksum for instance, is the business of who derives from them.
-#pragma once
 
 #include <cstddef>
 #include <cstdint>

@@ -24,13 +24,13 @@ template <SideBySide N> class InLevels<N> {
   using Pair = std::pair<ParticleIndex, ParticleIndex>;
   static constexpr std::size_t most = 2048;  // so that lists stay in the nearest caches
 
-  // As Bounces.
+  // The arguments are those of Bounces (side_by_side.hpp).
   InLevels(const typename N::Share& share, const N& cutoff, bool always_elastic)
       : bounces_(share, cutoff, always_elastic) {}
 
-  // There are at most `most` of them. neighbours(left, right) says whether two are, and takes in what stands beside
-  // them; collide(left, right) makes one collision alone. The last one is always made alone, since a run may end with
-  // it.
+  // Checks `pairs`, at most `most` collisions in the order of the run. neighbours(left, right) says whether two
+  // particles are neighbours, and takes in those beside them; collide(left, right) makes one collision alone. The last
+  // one is always made alone, since a run may end with it.
   template <class Neighbours, class Collide>
   std::optional<DoubtAt<N>> operator()(std::span<const Pair> pairs, WorldLines<N>& lines, Proved& proved,
                                        Neighbours neighbours, Collide collide) {

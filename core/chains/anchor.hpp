@@ -40,7 +40,7 @@ template <Real T> T undisturbed_way(const Particles<T>& particles, ParticleIndex
   return particles.velocity(particle) * elapsed + Fall<T>(particles, elapsed).way;
 }
 
-// The flight of a wall.
+// The place and velocity of a wall after a time since the start; there must be a wall with this number (-1 or count).
 template <Real T> Flight<T> at_wall(const Particles<T>& particles, ParticleIndex particle, const Pair<T>& elapsed) {
   const Wall<T>& wall = *particles.wall_at(particle);
   const Flight<T> straight{two_sum(wall.position, T(wall.speed * elapsed.value())), {wall.speed, T(0)}};

@@ -236,9 +236,9 @@ template <Real T, class Gaps> class Certainty {
 
   using Delays = typename Off::Samples;
   Roundings<N> roundings_;
-  Delays last_{N(0), N(0)},
-      delay_{N(0), N(0)};  // error of the time of the last collision since deviations are counted; of all times before
-  N slope_{0};             // 0: w'/w
+  // Errors of the time of the last collision, since deviations were counted anew, and the sum of those before.
+  Delays last_{N(0), N(0)}, delay_{N(0), N(0)};
+  N slope_{0};  // 0: w'/w
 };
 
 }  // namespace cradle

@@ -8,7 +8,6 @@
 //
 // For cells and their collisions see cluster_line.hpp. Rows are streamed (held_range.hpp).
 //
-// Positions come from a particle at an end that has not collided, else from the centre of mass, which moves uniformly.
 // On a ring the cells are linked in a circle. Positions are counted once round from the first cell; a particle that
 // moves from the first cell to the last one, across the seam, appears one circumference L further right. The mass that
 // has crossed is recorded, since each crossing moves the centre of mass of these positions by L times its share.
@@ -45,7 +44,7 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
                      hold_all || particles->on_ring() ? GapRange{0, particles->count() - 2}
                                                       : particles->gaps_in_motion()) {}
 
-  // ---- events (inlined by force, see gap_chain.hpp)
+  // ---- events (inlined by force, see gap_line.hpp)
   template <class Law>
   [[gnu::always_inline]] CollisionResult<T> collide(const Law& law, Slot s,
                                                     const T& time) requires(!LawWithMemory<Law, T>) {

@@ -8,7 +8,8 @@
 // against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
 //
 // Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions
-// at them or beside them are made off the hot path; all others are as without it.
+// at them or beside them are made off the hot path; all others are as without it. Whether there is any of this is
+// asked only there.
 //
 // Here are the collisions. The class stands on three others, each on the one before: the gaps held (held_gaps.hpp),
 // their positions and velocities (gap_places.hpp), and the ends of the active zone (gap_ends.hpp).
@@ -40,9 +41,8 @@
 
 namespace cradle {
 
-template <Real T, class Masses = IdenticalMasses<T>, class Field = NoGravity<T>>
-class GapChain : public GapEnds<T, Masses, Field> {
-  using Ends = GapEnds<T, Masses, Field>;
+template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public GapEnds<T, Masses> {
+  using Ends = GapEnds<T, Masses>;
 
  public:
   using Ends::closing_when_due, Ends::rebound;
@@ -66,7 +66,9 @@ class GapChain : public GapEnds<T, Masses, Field> {
   // Moves the origin of time to the given local time and returns its new local time. Gaps do not change.
   T move_origin(const T& local) {
     if constexpr (Line::watched)
-      if (!shaken()) line_.certainty.begin_anew(line_.gaps, line_.motion(field_), first(), last());
+      if (!field_.shaken())
+        line_.with_motion(field_,
+                          [&](const auto& motion) { line_.certainty.begin_anew(line_.gaps, motion, first(), last()); });
     find_lost_digits(local);
     line_.gaps.move_origin(local, [this](auto&& each) {
       for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
@@ -77,6 +79,7 @@ class GapChain : public GapEnds<T, Masses, Field> {
     return T(0);
   }
 
+  // Lays the held gaps out anew, with free slots at either end; slots are renumbered (StreamingChain).
   void make_room() {
     std::vector<Slot> kept(last() + 1 - first());
     std::iota(kept.begin(), kept.end(), first());
@@ -84,11 +87,7 @@ class GapChain : public GapEnds<T, Masses, Field> {
   }
 
   static auto state(auto& self) {
-    const auto all = std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_);
-    if constexpr (falls)
-      return std::tuple_cat(all, std::tie(self.field_));
-    else
-      return all;
+    return std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_, self.field_);
   }
 
   // Checks what was loaded: whether its parts fit together and its numbers are some that gaps can have.
@@ -113,7 +112,7 @@ class GapChain : public GapEnds<T, Masses, Field> {
                     "gaps");
     }
     for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
-    if constexpr (falls) {
+    if (falls()) {
       const auto pile = static_cast<std::size_t>(field_.resting()), held = last() + 1 - first();
       require_state(pile < held || (pile == held && !field_.pulls(particle(slot_in_pile(field_.resting())))), "pile");
       for (ParticleIndex h = 0; h < field_.resting(); ++h)
@@ -127,23 +126,24 @@ class GapChain : public GapEnds<T, Masses, Field> {
  private:
   using Ends::find_inner, Ends::is_inner, Ends::foresee_walls, Ends::widen, Ends::enter_carried, Ends::find_lost_digits;
   using Ends::line_, Ends::range_, Ends::particles_, Ends::memory_, Ends::walls_, Ends::field_, Ends::left_;
-  using Ends::right_, Ends::centre_, Ends::fastest_, Ends::shaken, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
+  using Ends::right_, Ends::centre_, Ends::fastest_, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
 
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
       : Ends(std::move(particles), start, held) {
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
     foresee_walls();
-    if constexpr (Line::watched && falls)
+    if constexpr (Line::watched)
       for (Slot s = first(); s <= last(); ++s)
         if (field_.pulls(particle(s))) line_.watch_meeting(field_, s, T(0));
-    find_inner();
     left_.take(particle(first()));
     right_.take(particle(last()) + 1);
     for (Slot s = first(); s <= last(); ++s) fastest_ = std::max(fastest_, magnitude(closing(s)));
-    if (!on_ring()) return;
-    range_.place_seam();
-    centre_ = particles_->centre_of_mass();
+    if (on_ring()) {
+      range_.place_seam();
+      centre_ = particles_->centre_of_mass();
+    }
+    find_inner();
   }
 
   // Whether a loaded gap has numbers that a gap can have.
@@ -155,9 +155,8 @@ class GapChain : public GapEnds<T, Masses, Field> {
       else
         return true;
     };
-    if constexpr (falls)
-      if (field_.pulls(particle(s)))  // it may be due while it opens
-        return is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing) && has_due();
+    if (field_.pulls(particle(s)))  // it may be due while it opens
+      return is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing) && has_due();
     return gap.fits(gap.closing);
   }
 
@@ -166,8 +165,7 @@ class GapChain : public GapEnds<T, Masses, Field> {
     return law.visit([&](const auto& own) { return outcome(own, s, time, w); });
   }
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time, const T& w) {
-    if constexpr (Line::watched && requires { law.cutoff(); })
-      line_.certainty.threshold(line_.gaps, line_.motion(field_), s, particle(s), time, w, law.cutoff());
+    if constexpr (Line::watched && requires { law.cutoff(); }) watch_threshold(s, time, w, law.cutoff());
     if constexpr (LawWithMemory<Law, T>)
       if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots()))
         return law.elastic(w, line_.masses.of_pair(s));
@@ -184,39 +182,39 @@ class GapChain : public GapEnds<T, Masses, Field> {
     if constexpr (LawWithMemory<Law, T>)
       rested =
           memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots());
-    if constexpr (falls) {
+    if (falls()) {
       const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
       const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
       const Pair<T> elapsed = clock().since_start(time);
       if constexpr (Line::watched) {
-        const auto at = [&](const T& speed) {
-          line_.certainty.threshold(line_.gaps, line_.motion(field_), s, particle(s), time, w, speed);
-        };
-        at(field_.rest_speed(particle(s)));
-        if constexpr (requires { law.cutoff(); }) at(law.cutoff());
+        watch_threshold(s, time, w, field_.rest_speed(particle(s)));
+        if constexpr (requires { law.cutoff(); }) watch_threshold(s, time, w, law.cutoff());
       }
       const bool stays = field_.holds(particle(s), w, elapsed), elastic = !stays && (!rested || below_cutoff(law, w));
       const T restitution = stays ? T(0) : elastic ? T(1) : walls_.wall(wall).restitution;
       Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));
       outcome.below_cutoff = elastic && walls_.wall(wall).reflects();
       return outcome;
-    } else {
-      return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
     }
+    return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+  }
+  // Whether rounding decides if a collision at the speed w is slower than a speed.
+  void watch_threshold(Slot s, const T& time, const T& w, const T& speed) requires(Line::watched) {
+    line_.with_motion(field_, [&](const auto& motion) {
+      line_.certainty.threshold(line_.gaps, motion, s, particle(s), time, w, speed);
+    });
   }
 
   // A collision at an end of the active zone, at the seam of a ring or at a wall.
   template <class Law> [[gnu::noinline]] CollisionResult<T> collide_at_end(const Law& law, Slot s, const T& time) {
-    if constexpr (falls) {
-      return collide_falling(law, s, time);
-    } else {
-      const Outcome<T> of_law =
-          walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time, closing(s));
-      const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
-      return line_.strike(left(s), s, right(s), time, of_law, notice);
-    }
+    if (falls()) return collide_falling(law, s, time);
+    const Outcome<T> of_law =
+        walls_.beside(particle(s)) ? outcome_at_wall(law, s, time) : outcome(law, s, time, closing(s));
+    const Notice notice = on_ring() ? Notice::none : widen(s, time, of_law);
+    return line_.strike(left(s), s, right(s), time, of_law, notice);
   }
-  // The same under gravity or between shaken walls, also beside the gap to one and at a pile.
+  // `collide_at_end` under gravity or between shaken walls; also for collisions beside the gap to a wall, and at a
+  // pile.
   template <class Law> CollisionResult<T> collide_falling(const Law& law, Slot s, const T& time) {
     const ParticleIndex resting = field_.resting(), height = field_.piles() ? field_.height(particle(s)) : 0;
     const bool beside_pile = field_.piles() && height <= resting + 1;

@@ -1,7 +1,7 @@
 #pragma once
-// The ends of the active zone of a chain in gaps and closing speeds. How it takes in the particles that its fronts
-// reach, collision by collision or, after a held range (segments.hpp), all at once, and the slots for them; and what
-// walls give to particles that rest on them.
+// The ends of the active zone of a chain in gaps and closing speeds: how the chain takes in the particles that its
+// fronts reach, collision by collision or, after a held range (segments.hpp), all at once; how it makes slots for them;
+// and what walls give to particles that rest on them.
 //
 // While a particle is carried from x, v to x', v' in the time t, the wall gives it the momentum m (v' - v - a t) and
 // the energy m (v'^2 - v^2)/2 - m a (x' - x), in no collision. They are entered in the accounts when its gap next
@@ -27,8 +27,8 @@ template <Real T> struct FrontMove {
   WallTally<T> wall;  // of the wall at this end
 };
 
-template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T, Masses, Field> {
-  using Places = GapPlaces<T, Masses, Field>;
+template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
+  using Places = GapPlaces<T, Masses>;
 
  public:
   using Places::count, Places::closing;
@@ -42,6 +42,7 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
     range_.reach(to_left.reached, to_right.reached);
     while (first() >= range_.front_left() && range_.beyond_left(first()) == HeldRange::Beyond::row) take_in(End::left);
     while (last() <= range_.front_right() && range_.beyond_right(last()) == HeldRange::Beyond::row) take_in(End::right);
+    find_inner();
     walls_.continue_with(to_left.wall, to_right.wall);
     const ParticleIndex left = particle(range_.front_left()), right = particle(range_.front_right()) + 1;
     const GapRange all = particles_->gaps();
@@ -52,7 +53,7 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
   }
 
   // The accounts of the walls until a local time, with what they have given to particles that rest on one since.
-  Walls<T> walls_at(const T& time) const requires(falls) {
+  Walls<T> walls_at(const T& time) const {
     Walls<T> all = walls_;
     const auto carry = [&](Slot s) {
       const Carried more = carried(s, time);
@@ -80,19 +81,14 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
   }
 
   // Whether a collision concerns no end; under gravity, also no wall or pile, nor a gap beside one.
-  bool is_inner(Slot s) const {
-    if constexpr (falls)
-      return (s > inner_.after) & (s < inner_.before);
-    else
-      return range_.inside(s, s);
-  }
+  bool is_inner(Slot s) const { return (s > inner_.after) & (s < inner_.before); }
   void find_inner() {
-    if constexpr (falls) {
-      const auto pile = static_cast<Slot>(field_.resting());
-      const bool left = field_.pile_end() == End::left;
-      const Slot front = range_.front_right(), margin = left ? 1 : 1 + pile;
-      inner_ = {range_.front_left() + (left ? 1 + pile : 1), front > margin ? front - margin : 0};
-    }
+    inner_ = {range_.front_left(), range_.front_right()};
+    if (!falls()) return;
+    const auto pile = static_cast<Slot>(field_.resting());
+    const bool left = field_.pile_end() == End::left;
+    const Slot margin = left ? 1 : 1 + pile;
+    inner_ = {inner_.after + (left ? 1 + pile : 1), inner_.before > margin ? inner_.before - margin : 0};
   }
 
   // A collision at an end of the active zone: takes in the next particle there or, at an end of the line, follows the
@@ -102,18 +98,17 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
     const auto handed = line_.handed(s, outcome);
     if (s == range_.front_left()) widen_at(End::left, s, time, -handed.left, outcome.to_left);
     if (s == range_.front_right()) widen_at(End::right, s, time, handed.right, outcome.to_right);
+    find_inner();
     return range_.cramped(slots()) ? Notice::needs_slots : Notice::none;
   }
 
   // Predicts the next collisions with walls under gravity, where all others have just been.
   void foresee_walls() {
-    if constexpr (falls) {
-      for (const Slot s : {first(), last()})
-        if (field_.at_wall(particle(s))) line_.foresee(field_, s);
-      if (field_.resting() > 0)
-        if (const Slot above = slot_in_pile(field_.resting()); field_.above_pile(particle(above)))
-          line_.foresee(field_, above);
-    }
+    for (const Slot s : {first(), last()})
+      if (field_.at_wall(particle(s))) line_.foresee(field_, s);
+    if (field_.resting() > 0)
+      if (const Slot above = slot_in_pile(field_.resting()); field_.above_pile(particle(above)))
+        line_.foresee(field_, above);
   }
 
   // Enters in the accounts what a wall has given until now (see `carried`).
@@ -125,8 +120,8 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
   }
 
  private:
-  // The same at one end, of a collision that gives `gain` to the last particle, if it is one, and makes the gap
-  // beyond it close so much faster.
+  // `widen` at one end. The collision gives `gain` to the last particle, if it is one of these two, and makes the gap
+  // beyond it close faster by `faster`.
   template <class Gain> void widen_at(End end, Slot s, const T& time, const Gain& gain, const T& faster) {
     const bool left = end == End::left;
     const Slot beside = left ? s - 1 : s + 1;
@@ -184,10 +179,10 @@ template <Real T, class Masses, class Field> class GapEnds : public GapPlaces<T,
             T(mass * (gained - a * rested))};
   }
 
-  struct Inner {  // of the slots between
+  struct Inner {  // collisions at the slots between these two are inner ones
     Slot after = 0, before = 0;
   };
-  [[no_unique_address]] std::conditional_t<falls, Inner, NothingMore> inner_;
+  Inner inner_;
 };
 
 }  // namespace cradle

@@ -115,11 +115,11 @@ template <Real T, class MassesOf> class GapLine {
       return {since, T(gaps[s].gap - gaps[s].closing * since), gaps[s].closing};
     }
   };
-  // The same with those that are pulled.
-  template <class Field> struct Curved {
+  // How gaps move where some of them are pulled.
+  struct Curved {
     static constexpr bool curved = true;
     const GapLine& line;
-    const Field& field;
+    const Gravity<T>& field;
     GapMotion<T> operator()(Slot s, const T& time) const {
       if (!field.pulls(line.particle(s))) return Straight{line.gaps}(s, time);
       const WallApproach<T> open = line.approach(field, s);
@@ -133,19 +133,17 @@ template <Real T, class MassesOf> class GapLine {
       return {T(0), own.gap, own.closing, line.approach(field, s).acceleration_after(T(0), line.gaps.since_start(s))};
     }
   };
-  template <class Field> auto motion(const Field& field) const {
-    if constexpr (Field::acts)
-      return Curved<Field>{*this, field};
-    else
-      return Straight{gaps};
+  // Calls f with the motion of gaps where the field may pull some, or not.
+  template <class F> decltype(auto) with_motion(const Gravity<T>& field, F f) const {
+    return field.anywhere() ? f(Curved{*this, field}) : f(Straight{gaps});
   }
 
   // ---- under gravity, or to shaken walls: the gaps to walls, and that above a pile
-  template <class Field> WallApproach<T> approach(const Field& field, Slot s) const {
+  WallApproach<T> approach(const Gravity<T>& field, Slot s) const {
     return approach(field, s, gaps[s].gap, closing(s));
   }
-  // If it had this size and this closing speed.
-  template <class Field> WallApproach<T> approach(const Field& field, Slot s, const T& gap, const T& closing) const {
+  // The approach that the gap would have with this size and this closing speed.
+  WallApproach<T> approach(const Gravity<T>& field, Slot s, const T& gap, const T& closing) const {
     if (field.above_pile(particle(s))) {
       const std::optional<T> free = pile_let_go(field, s);
       return field.approach_pile(gap, closing, gaps.since_start(s),
@@ -154,37 +152,37 @@ template <Real T, class MassesOf> class GapLine {
     return field.approach(particle(s), gap, closing, gaps.since_start(s));
   }
   // The local time at which the wall lets go of a pile, which has the gap s above it or in it; nothing: never.
-  template <class Field> std::optional<T> pile_let_go(const Field& field, Slot s) const {
+  std::optional<T> pile_let_go(const Gravity<T>& field, Slot s) const {
     const auto height = static_cast<Slot>(field.height(particle(s)));
     const Slot at_wall = field.pile_end() == End::left ? s - height : s + height;
     const std::optional<T> wait = approach(field, at_wall).let_go_in();
     return wait ? std::optional<T>(gaps.after(at_wall, *wait)) : std::nullopt;
   }
-  template <class Field> T gap_at(const Field& field, Slot s, const T& time) const {
+  T gap_at(const Gravity<T>& field, Slot s, const T& time) const {
     return approach(field, s).gap_after(gaps.flown(s, time), gaps.clock().since_start(time));
   }
-  template <class Field> T closing_at(const Field& field, Slot s, const T& time) const {
+  T closing_at(const Gravity<T>& field, Slot s, const T& time) const {
     return approach(field, s).closing_after(gaps.flown(s, time), gaps.clock().since_start(time));
   }
   // The next collision there, a local time; nothing if there is none.
-  template <class Field> std::optional<T> due(const Field& field, Slot s) const {
+  std::optional<T> due(const Gravity<T>& field, Slot s) const {
     const std::optional<T> wait = approach(field, s).meeting_in();
     return wait ? std::optional<T>(gaps.after(s, *wait)) : std::nullopt;
   }
-  template <class Field> double queue_due(const Field& field, Slot s) const {
+  double queue_due(const Gravity<T>& field, Slot s) const {
     const std::optional<T> time = due(field, s);
     return time ? gaps.queue_time(*time) : EventQueue::never;
   }
   // The same, and enters it where keys are stored.
-  template <class Field> double foresee(const Field& field, Slot s) {
+  double foresee(const Gravity<T>& field, Slot s) {
     const double time = queue_due(field, s);
     if constexpr (Gaps::keys_are_exact) gaps[s].due = time;
     return time;
   }
   // The effect of a collision at a wall or beside the gap to one, off the hot path. `resting` particles are in the pile
   // after it; one that comes to rest on others does not move them. `renew` is called while the pile is as it was.
-  template <class Field, class Renew>
-  CollisionResult<T> strike(Field& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
+  template <class Renew>
+  CollisionResult<T> strike(Gravity<T>& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
                             Notice notice, ParticleIndex resting, const Renew& renew) {
     const T since = gaps.flown(s, time);
     notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
@@ -192,7 +190,7 @@ template <Real T, class MassesOf> class GapLine {
     const bool to_left = !lands || field.pile_end() == End::right, to_right = !lands || field.pile_end() == End::left;
     if constexpr (watched) {
       const T w = field.pulls(particle(s)) ? approach(field, s).meeting_speed().value_or(closing(s)) : closing(s);
-      certainty.collision(gaps, motion(field), p, s, n, particle(s), time, w, outcome, masses.of_pair(s), exact_,
+      certainty.collision(gaps, Curved{*this, field}, p, s, n, particle(s), time, w, outcome, masses.of_pair(s), exact_,
                           {to_left, to_right});
     }
     if (to_left) notice |= kick(field, p, outcome.to_left, since, time);
@@ -218,8 +216,8 @@ template <Real T, class MassesOf> class GapLine {
   }
 
   // Brings a gap that is pulled to a time at which nothing happens to it.
-  template <class Field> Notice renew(const Field& field, Slot s, const T& time) {
-    if constexpr (watched) certainty.renew(gaps, motion(field), s, time);
+  Notice renew(const Gravity<T>& field, Slot s, const T& time) {
+    if constexpr (watched) certainty.renew(gaps, Curved{*this, field}, s, time);
     return kick(field, s, T(0), T(0), time);
   }
 
@@ -251,7 +249,7 @@ template <Real T, class MassesOf> class GapLine {
   }
 
   // Whether rounding decides that a pulled gap meets its wall, or at which of two times. A floor at rest is always met.
-  template <class Field> void watch_meeting(const Field& field, Slot s, const T& time) {
+  void watch_meeting(const Gravity<T>& field, Slot s, const T& time) {
     if (!field.may_miss(particle(s))) return;
     struct Meeting {
       T in, speed;
@@ -301,8 +299,8 @@ template <Real T, class MassesOf> class GapLine {
     return Notice::none;
   }
 
-  // The same under gravity.
-  template <class Field> Notice kick(const Field& field, Slot s, const T& gain, const T& struck, const T& time) {
+  // `kick` under gravity, or between shaken walls.
+  Notice kick(const Gravity<T>& field, Slot s, const T& gain, const T& struck, const T& time) {
     if (!field.pulls(particle(s))) {
       if constexpr (watched)
         return kick(s, Pair<T>{gain, T(0)}, struck, time);

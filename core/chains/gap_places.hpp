@@ -16,8 +16,8 @@
 
 namespace cradle {
 
-template <Real T, class Masses, class Field> class GapPlaces : public HeldGaps<T, Masses, Field> {
-  using Held = HeldGaps<T, Masses, Field>;
+template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
+  using Held = HeldGaps<T, Masses>;
 
  public:
   using Held::closing, Held::closing_at, Held::gap_at;
@@ -38,15 +38,18 @@ template <Real T, class Masses, class Field> class GapPlaces : public HeldGaps<T
     T largest = magnitude(T(kinetic_energy(T(time + off_by(time))) - energy));
     for (std::size_t sample = 0; sample < 2; ++sample) {
       const T off = kinetic_energy(time, [&](Slot s) {
-        return T(closing_at(s, time) + line_.certainty.closing_off(line_.gaps, line_.motion(field_), s, time, sample));
+        return line_.with_motion(field_, [&](const auto& motion) {
+          return T(closing_at(s, time) + line_.certainty.closing_off(line_.gaps, motion, s, time, sample));
+        });
       });
       largest = std::max(largest, magnitude(T(off - energy)));
     }
     return largest;
   }
 
-  // ---- reading, at a local time not before the last collision. Positions of the outermost particles that have
-  // collided; there must be some.
+  // ---- reading, at a local time not before the last collision
+
+  // Positions of the outermost particles that have collided; there must be some.
   T front_left(const T& time) const {
     const Pair<T> x = flight(left_, time).x;
     const ParticleIndex outermost = front_particle(End::left);  // next to the anchor, if not the anchor
@@ -73,10 +76,10 @@ template <Real T, class Masses, class Field> class GapPlaces : public HeldGaps<T
   using Held::slot, Held::front_particle, Held::centre_, Held::fastest_;
 
   Flight<T> flight(const Anchor<T>& anchor, const T& time) const {
-    if constexpr (falls)
-      if ((field_.resting() == particles_->count() || (particles_->count() == 1 && particles_->holding() != nullptr)) &&
-          particles_->wall_at(anchor.particle()) == nullptr)
-        return from_wall(time);
+    if (falls() &&
+        (field_.resting() == particles_->count() || (particles_->count() == 1 && particles_->holding() != nullptr)) &&
+        particles_->wall_at(anchor.particle()) == nullptr)
+      return from_wall(time);
     return anchor.flight(*particles_, clock(), time);
   }
   // Enters it in the account if closing speeds have lost their digits (see `closed`).
@@ -109,14 +112,14 @@ template <Real T, class Masses, class Field> class GapPlaces : public HeldGaps<T
   template <class Closing> T kinetic_energy(const T& time, const Closing& speed_of) const {
     const T total = particles_->total_mass();
     T drift = particles_->conserved_momentum() / total;
-    if constexpr (falls) drift += field_.acceleration() * clock().elapsed(time);
+    if (falls()) drift += field_.acceleration() * clock().elapsed(time);
     const ParticleIndex count = particles_->count();
     const bool from_wall = particle(first()) < 0, to_wall = !on_ring() && particle(last()) + 1 == count;
     const T left = from_wall ? T(0) : particles_->mass_between(0, particle(first()) + 1);
     const T right = to_wall ? T(0) : particles_->mass_between(on_ring() ? count - 1 : particle(last()) + 1, count);
     const Slot end = on_ring() ? last() : last() + 1;
     const T known = on_ring() || walls_.any() ? T(0)
-                    : falls                   ? T(flight(left_, time).v.value() - drift)
+                    : falls()                 ? T(flight(left_, time).v.value() - drift)
                                               : T(left_.velocity(*particles_) - drift);
     T at_end(0);  // the last one's x, with c = 0
     const auto moving = relative_motion(total, known, [&](const T& c, const auto& add) {
@@ -138,7 +141,7 @@ template <Real T, class Masses, class Field> class GapPlaces : public HeldGaps<T
   // On a ring, or between two walls that are not shaken, closing speeds add up to a number that is known. What their
   // sum misses of it is rounding, of the size of that of the first closing speeds: a system that has cooled to that
   // size is another one.
-  bool closed() const { return on_ring() || (!falls && walls_.has(End::left) && walls_.has(End::right)); }
+  bool closed() const { return on_ring() || (!falls() && walls_.has(End::left) && walls_.has(End::right)); }
   static constexpr int certain_by = 64;  // as in Deviation
   // How much the rounding of the first and of this time leaves open of the time between them, which decimals give.
   T off_by(const T& time) const {
@@ -150,10 +153,11 @@ template <Real T, class Masses, class Field> class GapPlaces : public HeldGaps<T
     // Around a ring the rounding of closing speeds stays; on a line they are soon those of other particles.
     const T epsilon = std::numeric_limits<T>::epsilon();
     const T slow = epsilon * fastest_ * (closed() ? clock().elapsed(time) : magnitude(line_.gaps.flown(s, time)));
-    const bool may_be_pulled = falls && Line::watched;
+    const bool may_be_pulled = Line::watched && falls();
     if (!may_be_pulled && speed == T(0) && !(epsilon * slow < gap)) return false;  // they touch, at rest
     if constexpr (Line::watched)
-      return line_.certainty.open(line_.gaps, line_.motion(field_), s, time, off_by(time));
+      return line_.with_motion(
+          field_, [&](const auto& motion) { return line_.certainty.open(line_.gaps, motion, s, time, off_by(time)); });
     else
       return gap < T(certain_by) * (magnitude(speed) * off_by(time) + slow);
   }
@@ -223,7 +227,7 @@ template <Real T, class Masses, class Field> class GapPlaces : public HeldGaps<T
       c.gap.push_back(gap_at(s, time));
       c.closing_speed.push_back(closing_at(s, time));
       way.add(c.gap.back());
-      if constexpr (falls)
+      if (falls())
         slowing.add(c.closing_speed.back());
       else
         line_.add_closing(s, slowing);

@@ -1,6 +1,6 @@
 #pragma once
 // Gravity and shaken walls as a chain sees them: a pull on the gaps to walls, or a motion of these walls, and nothing
-// else (laws/wall_approach.hpp). Whether there is either is a type, chosen once: without it a chain has none of this.
+// else (laws/wall_approach.hpp). Without either no gap is pulled.
 //
 // Several particles that rest on a wall are a pile: the gaps in it are 0 and closed, the gap above it is as one to the
 // wall. Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp).
@@ -17,23 +17,21 @@ template <Real T> struct Rebound { T speed, height; };
 
 template <Real T> class Gravity {
  public:
-  static constexpr bool acts = true;
-
   explicit Gravity(const Particles<T>& particles)
       : acceleration_(particles.acceleration()), splitter_(splitter<T>()), left_(end(particles, End::left)),
         right_(end(particles, End::right)), piles_(particles.count() > 1 && particles.holding() != nullptr),
         pile_end_(piles_ && particles.holding() == particles.wall(End::right) ? End::right : End::left),
-        gaps_(particles.gaps()), count_(particles.count()) {
+        anywhere_(acceleration_ != T(0) || shaken()), gaps_(particles.gaps()), count_(particles.count()) {
     const bool left = pile_end_ == End::left;
     if (particles.wall(left ? End::right : End::left) != nullptr) other_wall_ = left ? gaps_.last : gaps_.first;
   }
 
   const T& acceleration() const { return acceleration_; }
   // Whether this is a gap to a wall, or above a pile, that does not close uniformly.
-  bool pulls(ParticleIndex gap) const { return at_wall(gap) || gap == above_pile_; }
+  bool pulls(ParticleIndex gap) const { return anywhere_ && (at_wall(gap) || gap == above_pile_); }
   bool at_wall(ParticleIndex gap) const { return gap == left_.gap || gap == right_.gap; }
 
-  bool anywhere() const { return acceleration_ != T(0) || shaken(); }
+  bool anywhere() const { return anywhere_; }
   // Whether a wall is shaken, and whether a particle may miss the wall at a gap, or one of its jumps.
   bool shaken() const { return left_.wall.motion != nullptr || right_.wall.motion != nullptr; }
   bool may_miss(ParticleIndex gap) const {
@@ -59,7 +57,7 @@ template <Real T> class Gravity {
     above_pile_ = particles > 0 && gaps_.first <= gap && gap <= gaps_.last ? gap : none;
   }
   bool above_pile(ParticleIndex gap) const { return gap == above_pile_; }
-  // Of the gap above the pile, which is held for so long; see WallApproach.
+  // The approach of the gap above the pile, which the wall holds for the time `held` (nothing: for ever).
   WallApproach<T> approach_pile(const T& size, const T& closing, const Pair<T>& since,
                                 const std::optional<T>& held) const {
     const WallMotion<T>*motion = at(pile_end_).wall.motion,
@@ -68,7 +66,7 @@ template <Real T> class Gravity {
     // Between the pile and the other wall; only one of the two is shaken.
     return {size, closing, T(0), splitter_, motion != nullptr ? motion : other, since, held, T(-pull(pile_end_))};
   }
-  // Of a gap that it pulls, at a time since the start.
+  // The approach of a gap that it pulls; `since` is a time since the start.
   WallApproach<T> approach(ParticleIndex gap, const T& size, const T& closing, const Pair<T>& since) const {
     const End end = end_at(gap);
     const HoldingWall<T>& wall = at(end).wall;
@@ -133,25 +131,17 @@ template <Real T> class Gravity {
   AtEnd left_, right_;
   bool piles_;
   End pile_end_;
+  bool anywhere_;
   GapRange gaps_;
   ParticleIndex count_, other_wall_ = none, resting_ = 0, above_pile_ = none;
 };
 
-template <Real T> class NoGravity {
- public:
-  static constexpr bool acts = false;
-  explicit NoGravity(const Particles<T>&) {}
-};
-
-// A chain with gravity or shaken walls. In it closing speeds of gaps to walls change between collisions.
-template <class C>
-concept FallingChain = requires {
-  requires C::falls;
-};
-// Whether anything falls or is shaken in it; chains in positions of that type are used where nothing does, too.
+// Whether anything falls or is shaken in a chain: closing speeds of gaps to walls then change between collisions.
 template <class C> bool falls(const C& chain) {
-  if constexpr (requires { chain.falling(); }) return chain.falling();
-  return FallingChain<C>;
+  if constexpr (requires { chain.falls(); })
+    return chain.falls();
+  else
+    return false;
 }
 
 // Whether a collision with a wall under gravity, or where a wall is shaken, is below the law's cut-off. On an inelastic

@@ -16,11 +16,10 @@
 
 namespace cradle {
 
-template <Real T, class Masses, class Field> class HeldGaps {
+template <Real T, class Masses> class HeldGaps {
  public:
   using Scalar = T;
   using Line = GapLine<T, Masses>;
-  static constexpr bool falls = Field::acts;
   static constexpr bool may_collapse = true;
   static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
 
@@ -47,25 +46,25 @@ template <Real T, class Masses, class Field> class HeldGaps {
 
   // Local time of the next collision of a gap that is closing.
   T due(Slot s) const {
-    if constexpr (falls && !keys_are_exact)
+    if constexpr (!keys_are_exact)
       if (field_.pulls(particle(s))) return line_.due(field_, s).value_or(far_away<T>());
     return line_.due(s);
   }
   double queue_due(Slot s) const {
-    if constexpr (falls && !keys_are_exact)
+    if constexpr (!keys_are_exact)
       if (field_.pulls(particle(s))) return line_.queue_due(field_, s);
     return line_.queue_due(s);
   }
-  // At the gap's local time; at another time; at its next collision.
+  // The closing speed at the gap's local time.
   const T& closing(Slot s) const { return line_.closing(s); }
+  // The closing speed at another time.
   T closing_at(Slot s, const T& time) const {
-    if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.closing_at(field_, s, time);
+    if (field_.pulls(particle(s))) return line_.closing_at(field_, s, time);
     return closing(s);
   }
+  // The closing speed at the next collision.
   T closing_when_due(Slot s) const {
-    if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.approach(field_, s).meeting_speed().value_or(T(0));
+    if (field_.pulls(particle(s))) return line_.approach(field_, s).meeting_speed().value_or(T(0));
     return closing(s);
   }
 
@@ -78,8 +77,10 @@ template <Real T, class Masses, class Field> class HeldGaps {
             on_right = on_ring() || s < last() ? line_.gaps[right(s)].gap : far;
     return on_left < on_right ? on_left : on_right;
   }
+  // Whether anything falls or is shaken.
+  bool falls() const { return field_.anywhere(); }
   // After a collision at s, if it was with a floor (gravity.hpp).
-  std::optional<Rebound<T>> rebound(Slot s) const requires(falls) {
+  std::optional<Rebound<T>> rebound(Slot s) const {
     return field_.rebound(particle(s), closing(s), line_.gaps.since_start(s));
   }
   const Account<T>& account() const { return line_.gaps.account(); }
@@ -97,8 +98,7 @@ template <Real T, class Masses, class Field> class HeldGaps {
 
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const {
-    if constexpr (falls)
-      if (field_.pulls(particle(s))) return line_.gap_at(field_, s, time);
+    if (field_.pulls(particle(s))) return line_.gap_at(field_, s, time);
     return line_.gaps.gap_at(s, closing(s), time);
   }
   const Walls<T>& walls() const { return walls_; }
@@ -124,27 +124,20 @@ template <Real T, class Masses, class Field> class HeldGaps {
         range_(particles_->on_ring(), held.first - particles_->gaps().first, particles_->gaps().last - held.last, 2),
         walls_(particles_->walls()), field_(*particles_) {
     require_particles(*particles_, start);
-    if (!falls) require_no_gravity(*particles_, "use GapChain<T, Masses, Gravity<T>>");
+    if (std::numeric_limits<T>::is_exact) require_no_gravity(*particles_, "use a type that has square roots");
   }
 
-  // Of the gap right of a particle.
+  // The slot of the gap right of a particle.
   Slot slot(ParticleIndex particle) const { return static_cast<Slot>(particle - line_.particle_of_slot_0); }
   // The outermost particle that has collided; walls are not counted.
   ParticleIndex front_particle(End end) const {
     return end == End::left ? std::max<ParticleIndex>(particle(range_.front_left()), 0)
                             : std::min(particle(range_.front_right()) + 1, particles_->count() - 1);
   }
-  // So many particles from the wall.
+  // The slot of the gap that has so many particles between itself and the wall of the pile.
   Slot slot_in_pile(ParticleIndex height) const {
     const auto h = static_cast<Slot>(height);
     return field_.pile_end() == End::left ? first() + h : last() - h;
-  }
-
-  bool shaken() const {
-    if constexpr (falls)
-      return field_.shaken();
-    else
-      return false;
   }
 
   std::shared_ptr<const Particles<T>> particles_;
@@ -155,7 +148,7 @@ template <Real T, class Masses, class Field> class HeldGaps {
   T fastest_{0};  // closing speed at the start
   Anchor<T> left_, right_;
   Walls<T> walls_;
-  [[no_unique_address]] Field field_;
+  Gravity<T> field_;
 };
 
 }  // namespace cradle

@@ -22,10 +22,9 @@
 
 namespace cradle {
 
-template <Real T, class Field = NoGravity<T>> class PositionChain {
+template <Real T> class PositionChain {
  public:
   using Scalar = T;
-  static constexpr bool falls = Field::acts;
   static constexpr bool keys_are_exact = false;
   static constexpr bool may_collapse = true;
 
@@ -36,7 +35,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
         first_particle_(particles->gaps().first), walls_(particles->walls()), of_walls_(particles), field_(*particles),
         lost_(particles->energy_to_lose()) {
     require_particles(*particles, start);
-    if (!falls) require_no_gravity(*particles, "use PositionChain<T, Gravity<T>>");
+    if (std::numeric_limits<T>::is_exact) require_no_gravity(*particles, "use a type that has square roots");
     if (particles->on_ring())
       throw std::invalid_argument("a ring in absolute positions (circumference " +
                                   in_message(particles->circumference()) + "): use a chain in gaps");
@@ -50,8 +49,8 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     if (const Wall<T>* wall = particles->holding())
       throw std::invalid_argument("a particle that rests on a wall in absolute positions (rest speed " +
                                   in_message(wall->rest_speed) + "): use a chain in gaps");
-    if constexpr (falls) fall_.assign(particles_.size(), T(0));
-    if constexpr (falls)
+    fall_.assign(particles_.size(), T(0));
+    if (falls())
       for (ParticleIndex b = 0; b < count(); ++b) fall_[slot_of(b) - 2] = field_.acceleration();
     due_.assign(slots(), T(0));
     closing_.assign(slots(), T(0));
@@ -81,8 +80,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   const T& due(Slot s) const { return due_[s]; }
   // A particle at rest on a floor meets it at once, at the speed 0.
   double queue_due(Slot s) const {
-    bool meets = closing_[s] > T(0);
-    if constexpr (falls) meets = meets || (closing_[s] == T(0) && field_.pulls(particle(s)));
+    const bool meets = closing_[s] > T(0) || (closing_[s] == T(0) && field_.pulls(particle(s)));
     return meets ? queue_time(due_[s]) : EventQueue::never;
   }
 
@@ -101,8 +99,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     walls_.right_of(particle(s)) ? left.x = right.x : right.x = left.x;
     left.v -= outcome.to_left;
     right.v += outcome.to_right;
-    if constexpr (falls)
-      if (at_wall && falling()) leave_wall(s, outcome.closing);
+    if (at_wall && falls()) leave_wall(s, outcome.closing);
     front_left_ = std::min(front_left_, s);
     front_right_ = std::max(front_right_, s);
 
@@ -110,8 +107,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     predict(s, time);
     if (s > first()) notice |= resolve(s - 1, time);
     if (s < last()) notice |= resolve(s + 1, time);
-    if constexpr (falls)
-      if (const auto back = rebound(s); back && back->height < floor_) notice |= Notice::gap_below_floor;
+    if (const auto back = rebound(s); back && back->height < floor_) notice |= Notice::gap_below_floor;
     return {outcome, queue_due(s - 1), queue_due(s), queue_due(s + 1), notice, s - 1, s + 1};
   }
 
@@ -125,11 +121,11 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
     return on_left < on_right ? on_left : on_right;
   }
   // After a collision at s, if it was with a floor (gravity.hpp).
-  std::optional<Rebound<T>> rebound(Slot s) const requires(falls) {
+  std::optional<Rebound<T>> rebound(Slot s) const {
     const T& time = at(s).time;
     return field_.rebound(particle(s), T(velocity(s, time) - velocity(s + 1, time)), since_start(time));
   }
-  bool falling() const requires(falls) { return field_.anywhere(); }
+  bool falls() const { return field_.anywhere(); }
   const Account<T>& account() const { return account_; }
   void lose(Slot, const T& energy) { lost_.add(energy); }
   T energy_lost() const { return lost_.value(); }
@@ -175,7 +171,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   T kinetic_energy(const T& time) const {
     const T total = of_walls_->total_mass();
     T drift = of_walls_->conserved_momentum() / total;
-    if constexpr (falls) drift += field_.acceleration() * (time - start_);
+    if (falls()) drift += field_.acceleration() * (time - start_);
     const auto moving = relative_motion(total, walls_.any() ? T(0) : drift, [&](const T& c, const auto& add) {
       for (Slot s = slot_of(0); s < slot_of(count()); ++s) add(at(s).m, T(velocity(s, time) - c));
     });
@@ -220,18 +216,17 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   }
   template <class Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {
     const Particle& struck = at(walls_.left_of(particle(s)) ? s + 1 : s);
-    if constexpr (falls)
-      if (falling()) {
-        bool rested = true;
-        if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
-        const T& w = closing_[s];
-        const Wall<T>& wall = walls_.wall(particle(s));
-        const bool elastic = !rested || below_cutoff(law, w);
-        Outcome<T> outcome = walls_.strike(particle(s), w, struck.m, elastic ? T(1) : wall.restitution,
-                                           field_.shaken_at(particle(s), since_start(time)));
-        outcome.below_cutoff = elastic && wall.reflects();
-        return outcome;
-      }
+    if (falls()) {
+      bool rested = true;
+      if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
+      const T& w = closing_[s];
+      const Wall<T>& wall = walls_.wall(particle(s));
+      const bool elastic = !rested || below_cutoff(law, w);
+      Outcome<T> outcome = walls_.strike(particle(s), w, struck.m, elastic ? T(1) : wall.restitution,
+                                         field_.shaken_at(particle(s), since_start(time)));
+      outcome.below_cutoff = elastic && wall.reflects();
+      return outcome;
+    }
     return walls_.strike(particle(s), closing_[s], struck.m);
   }
   template <LawChoice Law, class Masses>
@@ -260,20 +255,12 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   T place(Slot s, const T& time) const {
     const Particle& p = at(s);
     const T flown = time - p.time;
-    if constexpr (falls)
-      if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).x.value();
-    if constexpr (falls)
-      return p.x + (p.v + fall_[s - 2] * flown / T(2)) * flown;
-    else
-      return p.x + p.v * flown;
+    if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).x.value();
+    return p.x + (p.v + fall_[s - 2] * flown / T(2)) * flown;
   }
   T velocity(Slot s, const T& time) const {
-    if constexpr (falls)
-      if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).v.value();
-    if constexpr (falls)
-      return at(s).v + fall_[s - 2] * (time - at(s).time);
-    else
-      return at(s).v;
+    if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).v.value();
+    return at(s).v + fall_[s - 2] * (time - at(s).time);
   }
   void advance(Slot s, const T& time) {
     Particle& p = at(s);
@@ -292,14 +279,13 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
 
   void predict(Slot s, const T& now) {
     closing_[s] = velocity(s, now) - velocity(s + 1, now);
-    if constexpr (falls)
-      if (field_.pulls(particle(s))) {
-        const WallApproach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s], since_start(now));
-        const auto wait = approach.meeting_in();
-        closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(-1);
-        due_[s] = wait ? T(now + *wait) : T(0);
-        return;
-      }
+    if (field_.pulls(particle(s))) {
+      const WallApproach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s], since_start(now));
+      const auto wait = approach.meeting_in();
+      closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(-1);
+      due_[s] = wait ? T(now + *wait) : T(0);
+      return;
+    }
     due_[s] = closing_[s] > T(0) ? T(now + gap_at(s, now) / closing_[s]) : T(0);
   }
 
@@ -328,7 +314,7 @@ template <Real T, class Field = NoGravity<T>> class PositionChain {
   std::shared_ptr<const Particles<T>> of_walls_;
   Slot front_left_ = std::numeric_limits<Slot>::max(), front_right_ = 0;
   Account<T> account_;
-  [[no_unique_address]] Field field_;
+  Gravity<T> field_;
   Ledger<T> lost_;
 };
 

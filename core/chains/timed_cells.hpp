@@ -100,8 +100,10 @@ template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {
       return cells_[s].lost;
   }
 
-  // ---- events. A collision at `time` beside the gap adds gain() to its closing speed. Returns the time since the
-  // local time, which is negative if the collision is late.
+  // ---- events
+
+  // A collision at `time` beside the gap adds gain() to its closing speed. Returns the time since the local time, which
+  // is negative if the collision is late.
   template <class Gain> [[gnu::always_inline]] T kick(Slot s, const T& closing, const Gain& gain, const T& time) {
     Cell& cell = cells_[s];
     const T since = flown(s, time);

@@ -45,7 +45,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
 
   TimedGaps(const T& start, const T& energy) : clock_(start), lost_(energy) {}
 
-  // Changes to so many slots, and copies everything from `other` that belongs to no slot.
+  // Changes to so many slots, and copies the clock, the floor, the unit of queue times and the grid of the ledger from
+  // `other`. The ledger is empty; rounding is not accounted for here.
   void resemble(const TimedGaps& other, std::size_t slots) {
     resize(slots);
     clock_ = other.clock_;

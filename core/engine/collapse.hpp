@@ -8,7 +8,7 @@
 // A collapse is settled if two neighbouring gaps are proved to collapse: by the closed form of their collisions
 // (two_gaps.hpp), with bounds on rounding errors, and with all other particles too far away to arrive in time. From
 // then on the run follows them until the time left is less than the chain's resolution, or a gap is about to underflow,
-// or `most_followed` collisions are made. Without such a proof a run reports no collapse.
+// or `most_followed` collisions are made. Without such a proof no collapse time is reported.
 //
 // Collapses of many particles are not of this form (README.md, What is not proved). More than `few` particles in gaps
 // stop where a gap beside a collision is below 2^-100 of what the gap of the collision was at the start, unless the
@@ -84,6 +84,7 @@ template <Real T> struct CollapseWatch {
   // are.
   template <class Chain> T begin(const Chain& chain, const T& least) {
     if constexpr (provable<Chain>) {
+      if (in_gaps<Chain> && falls(chain)) return least / T(64);
       using std::sqrt;
       greatest_approach = sqrt(chain.particles().greatest_approach_squared());
       if (chain.particles().count() <= few) {
@@ -131,7 +132,7 @@ template <Real T> struct CollapseWatch {
   // collapse is proved there.
   template <class Chain> bool ends_unproved(const Chain& chain, Slot s, const T& gap) const {
     if constexpr (in_gaps<Chain>)
-      return !report.settled && chain.particles().count() > few && is_positive(gap) &&
+      return !falls(chain) && !report.settled && chain.particles().count() > few && is_positive(gap) &&
              gap < chain.particles().gap(chain.particle(s)) / T(std::int64_t{1} << 50) / T(std::int64_t{1} << 50);
     else
       return false;
@@ -147,7 +148,6 @@ template <Real T> struct CollapseWatch {
   // does not hold for gaps to walls.
   template <class Chain>
   static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
-    requires !FallingChain<Chain> || requires { chain.falling(); };
     chain.particles();
   };
 

@@ -9,8 +9,8 @@
 // In a large zone time is divided into epochs: the time of the next move of the origin is known since the last move, so
 // that collisions far apart need no common order for it (segments.hpp). An epoch lasts for about 8 collisions per
 // active particle, or 32 if particles merge, estimated from the rate of the previous epoch. It ends early after a
-// collision at which the chain requests that: the flight before it was too short for the time since the origin, or
-// there were four times the expected collisions per particle.
+// collision at which the chain requests that, since the flight before it was too short for the time since the origin;
+// or after four times the expected collisions per particle.
 
 #include <algorithm>
 #include <cstdint>

@@ -141,10 +141,9 @@ class Simulation {
   T energy_lost() const { return chain_.energy_lost(); }
   // At a time between the last collision and the time advanced to, which matters if a wall carries a particle.
   T energy_lost(const T& time) const {
-    if constexpr (FallingChain<Chain>)
-      return chain_.energy_lost() - (given_by(wall_tallies(time)) - given_by(chain_.walls().tallies()));
-    else
-      return chain_.energy_lost();
+    if constexpr (requires { wall_tallies(time); })
+      if (falls()) return chain_.energy_lost() - (given_by(wall_tallies(time)) - given_by(chain_.walls().tallies()));
+    return chain_.energy_lost();
   }
   WallTallies<T> wall_tallies(const T& time) const requires requires(const Chain& c) { c.walls(); }
   {
@@ -190,14 +189,13 @@ class Simulation {
   // which that collision has left: at any other time a particle that has come to rest on a floor would have fallen for
   // a rounding.
   T local(const T& time) const {
-    if constexpr (FallingChain<Chain>)
-      if (time == last_collision_time()) return last_collision_;
+    if (falls() && time == last_collision_time()) return last_collision_;
     return chain_.local_time(time);
   }
   // Whether particles slower than a given speed come to rest on a wall.
   bool can_rest() const {
-    if constexpr (FallingChain<Chain> && requires { chain_.particles(); })
-      return chain_.particles().holding() != nullptr;
+    if constexpr (requires { chain_.particles(); })
+      return falls() && chain_.particles().holding() != nullptr;
     else
       return false;
   }
@@ -207,7 +205,7 @@ class Simulation {
     const T factor = smallest_gap(chain_) / policy_.stop_gap;
     return T(1) < factor ? factor : T(1);
   }
-  bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_); }
+  bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_) || falls(); }
 
   void fill_queue() {
     queue_ = EventQueue(chain_.slots(), Chain::keys_are_exact, least_queue_bits_);
@@ -228,7 +226,7 @@ class Simulation {
     while (step()) continue;
     return status_;
   }
-  // So many; false if the run has come to its target before, or ends.
+  // Makes so many collisions; false if the run has come to its target before, or ends.
   [[gnu::noinline]] bool make(std::uint64_t collisions) {
     for (; collisions > 0; --collisions)
       if (!step()) return false;
@@ -300,7 +298,7 @@ class Simulation {
       observer_(
           {chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_, speed});
     };
-    if constexpr (FallingChain<Chain>)
+    if constexpr (requires { chain_.closing_when_due(s); })
       notify(chain_.closing_when_due(s));
     else
       notify(chain_.closing(s));

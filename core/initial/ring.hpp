@@ -1,5 +1,5 @@
 #pragma once
-// Free cooling: particles on a ring (a periodic line), of mass 1 or with masses that repeat, at equal distances or
+// Free cooling: particles on a ring (a periodic line), of mass 1 or with other masses, at equal distances or
 // displaced at random, with independent velocities of a given variance and zero total momentum. Velocities and
 // displacements are integers, times a unit that every scalar type rounds, so that all types start from the same state;
 // they depend only on seed, replica and particle (counter_rng.hpp).

@@ -86,25 +86,24 @@ template <Real T> class Approach {
 
   // The root of D, 0 if D is negative.
   T speed_there() const {
-    using std::sqrt;
     const T least =
         T(std::numeric_limits<T>::min()) / T(std::numeric_limits<T>::epsilon()) / T(std::numeric_limits<T>::epsilon());
     const T twice = pull_ + pull_, square = closing_ * closing_, fall = twice * gap_;
     if (square < least && magnitude(fall) < least) {  // squares lose digits: compute with roots
-      const T own = magnitude(closing_), of_fall = sqrt(magnitude(twice)) * sqrt(magnitude(gap_));
+      const T own = magnitude(closing_), of_fall = square_root(magnitude(twice)) * square_root(magnitude(gap_));
       if (is_negative(pull_) != is_negative(gap_))
-        return of_fall < own ? T(sqrt(T(own - of_fall)) * sqrt(T(own + of_fall))) : T(0);
+        return of_fall < own ? T(square_root(T(own - of_fall)) * square_root(T(own + of_fall))) : T(0);
       const T &large = own < of_fall ? of_fall : own, &small = own < of_fall ? own : of_fall;
       if (!is_positive(large)) return T(0);
       const T ratio = small / large;
-      return large * sqrt(T(T(1) + ratio * ratio));
+      return large * square_root(T(T(1) + ratio * ratio));
     }
     T all = square + fall;
     if constexpr (RoundsToNearest<T>) {
       const Pair<T> sum = exact_product(closing_, closing_, splitter_) + exact_product(twice, gap_, splitter_);
       if (is_finite(sum.low)) all = sum.value();
     }
-    return is_positive(all) ? T(sqrt(all)) : T(0);
+    return is_positive(all) ? square_root(all) : T(0);
   }
 
   // A Newton step from a time that is right up to a few units. At a touch the speed there is so small that it would

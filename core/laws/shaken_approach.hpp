@@ -219,15 +219,13 @@ template <Real T> class ShakenApproach {
   }
   // How long a gap surely stays open if w grows at most at this rate; nothing: for ever.
   static std::optional<T> open_for(const T& gap, const T& closing, const T& rate) {
-    using std::sqrt;
     if (!is_positive(closing) && !is_positive(rate)) return {};
     const T square = closing * closing + (rate + rate) * gap;
     if (is_negative(square)) return {};
-    const T speed = sqrt(square);
+    const T speed = square_root(square);
     return is_positive(closing) ? T((gap + gap) / (closing + speed)) : T((speed - closing) / rate);
   }
   std::optional<Meeting> on_sine() const {
-    using std::sqrt;
     const T never = last_chance(), square = motion_.frequency() * motion_.frequency();
     const T greatest = pull_ + motion_.curving(), changing = motion_.curving() * motion_.frequency();
     for (T time = open_;;) {
@@ -236,7 +234,7 @@ template <Real T> class ShakenApproach {
       const T rate = pull_ - square * place;
       if (!is_positive(gap) && is_positive(closing)) {  // closed just before, or by rounding
         const T inside = closing * closing + (rate + rate) * gap;
-        const T when = time + (gap + gap) / (closing + (is_positive(inside) ? T(sqrt(inside)) : T(0)));
+        const T when = time + (gap + gap) / (closing + (is_positive(inside) ? T(square_root(inside)) : T(0)));
         const T there = on_sine(when, time_at(when)).state.closing;
         return Meeting{when, is_positive(there) ? there : closing};
       }

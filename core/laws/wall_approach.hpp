@@ -27,7 +27,7 @@ template <Real T> struct HoldingWall {
 
 template <Real T> class WallApproach {
  public:
-  // As an Approach; `since` the start is the time at which it has this gap.
+  // Arguments as for Approach (approach.hpp); `since` is the time since the start at which the gap has this size.
   WallApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const HoldingWall<T>& wall,
                const Pair<T>& since)
       : straight_(gap, closing, pull, splitter), motion_(wall.motion),

@@ -1,7 +1,7 @@
 #pragma once
 // One segment of a run (segments.hpp): the event loop over a copy of what the segment owns and of some ghosts on either
-// side, through a time slab, as if there were nothing beyond. What the copy is, what its cuts log and what goes
-// back is that of its chain: gap_segment.hpp, cluster_segment.hpp.
+// side, through a time slab, as if there were nothing beyond. The chain's own header says what is copied, what cuts log
+// and what goes back: gap_segment.hpp, cluster_segment.hpp.
 //
 // Ties are not looked for at every collision. Of two collisions whose keys may belong to the same time, either the
 // second one is at the queue's root next, or it is beside the first one. If so, the segment begins its time slab again,

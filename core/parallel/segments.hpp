@@ -11,7 +11,7 @@
 //
 //   If both logs of every cut are the same, the owned gaps of all segments together are those of the plain loop.
 //
-// For let both sides make their collisions in increasing order of (exact time, position), as is made sure of below, and
+// Let both sides make their collisions in increasing order of (exact time, position), as is made sure of below, and
 // let the plain loop have made some collisions like them. It takes the first of those pending, at a gap that one side
 // owns, A say. There all gaps that A owns and the first one behind its cut have had the same collisions, so the
 // collision is pending in A as well, and is the next that A makes at a gap it owns, unless A makes one behind the cut

@@ -16,8 +16,8 @@
 
 namespace cradle::test {
 
-using FallingGaps = GapChain<double, IndividualMasses<double>, Gravity<double>>;
-using FallingPositions = PositionChain<double, Gravity<double>>;
+using FallingGaps = GapChain<double, IndividualMasses<double>>;
+using FallingPositions = PositionChain<double>;
 using Shaking = std::shared_ptr<const WallMotion<double>>;
 
 template <class T>

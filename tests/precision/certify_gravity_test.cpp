@@ -47,7 +47,7 @@ TEST(CertifyGravity, AnElasticColumnIsKnownUpToTheRoundingOfSums) {
                                        T(-2));
   };
   const Collisions collisions = made_by(
-      Simulation(Inelastic<double>(1), GapChain<double, IndividualMasses<double>, Gravity<double>>(particles(0.), 0.)),
+      Simulation(Inelastic<double>(1), GapChain<double, IndividualMasses<double>>(particles(0.), 0.)),
       1000);
   ASSERT_GT(collisions.size(), 1000U);
   Checker<B> checker(particles(B(0)), elastic());

@@ -295,8 +295,6 @@ inline Collisions made(const Drawn& d) {
   if (d.sticky) return in_clusters(InelasticMerging<double>(Inelastic<double>(0.), std::numeric_limits<double>::max()));
   const double restitution = std::stod(d.restitution), cutoff = d.cutoff / 64.;
   const auto in_gaps = [&](const auto& law) {
-    if (d.acceleration != 0)
-      return made_by(Simulation(law, GapChain<double, IndividualMasses<double>, Gravity<double>>(particles, 0.)));
     return made_by(Simulation(law, GapChain<double, IndividualMasses<double>>(particles, 0.)));
   };
   if (d.exponent) return in_gaps(SpeedDependent<double>(restitution, cutoff, std::stod(d.exponent)));

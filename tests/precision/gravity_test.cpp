@@ -14,7 +14,7 @@ namespace gravity_in_types_test {
 using namespace cradle;
 using namespace cradle::test;
 
-template <class T> using Falling = GapChain<T, IndividualMasses<T>, Gravity<T>>;
+template <class T> using Falling = GapChain<T, IndividualMasses<T>>;
 template <class T> using FallingRun = Simulation<T, Inelastic<T>, Falling<T>>;
 
 template <class T> Scene<T> under(const T& acceleration, const Scene<T>& particles, const Wall<T>& floor) {

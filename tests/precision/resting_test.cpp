@@ -164,7 +164,7 @@ template <class T> std::vector<Brute::Event> events_of(const Setup& setup) {
         std::make_shared<WallMotion<T>>(*setup.shape, exactly<T>(setup.amplitude), exactly<T>(frequency), T(0));
   const std::shared_ptr<const Particles<T>> particles = std::make_shared<Walled<T>>(
       list(numbers<T>(places), numbers<T>(velocities), numbers<T>(masses)), floor, std::nullopt, T(-1));
-  using Chain = GapChain<T, IndividualMasses<T>, Gravity<T>>;
+  using Chain = GapChain<T, IndividualMasses<T>>;
   Simulation<T, Inelastic<T>, Chain> run(Inelastic<T>(exactly<T>(setup.restitution)), Chain(particles, T(0)));
   std::vector<Brute::Event> events;
   EXPECT_EQ(run.advance(T(static_cast<int>(until)),

@@ -110,7 +110,7 @@ TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
       return found;
     };
     const auto in_gaps = []<class S>(const std::shared_ptr<const Walled<S>>& particles) {
-      using Chain = GapChain<S, IndividualMasses<S>, Gravity<S>>;
+      using Chain = GapChain<S, IndividualMasses<S>>;
       return Simulation<S, Inelastic<S>, Chain>(Inelastic<S>(S(1)), Chain(particles, S(0)));
     };
     const std::shared_ptr<const Walled<T>> particles = column(std::type_identity<T>{});
@@ -129,7 +129,7 @@ TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
     EXPECT_LE(magnitude(off), T(64 * static_cast<std::int64_t>(run.counts().collisions)) *
                                   T(std::numeric_limits<T>::epsilon()) * scale);
     if (shape) continue;
-    using Positions = PositionChain<T, Gravity<T>>;
+    using Positions = PositionChain<T>;
     Simulation<T, Inelastic<T>, Positions> places(Inelastic<T>(T(1)), Positions(particles, T(0)));
     EXPECT_EQ(found, sequence(places, until));
     const auto d = configuration_at(twin, 6.);

@@ -57,28 +57,15 @@ template <Real T> bool watched(const Scene& scene, const cradle::Particles<T>& p
   return to_be_watched(particles, scene.initial.type == InitialType::list);
 }
 
-// Of particles under gravity or at shaken walls. Throws Error for masses that gaps cannot hold.
-template <Real T>
-std::unique_ptr<Engine<T>>
-falling_engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
-                  const Policy<T>& policy, const Workers& workers, const BouncingLaw<T>& law) {
-  const T start = number<T>(scene.run.start);
-  const auto in = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& own) {
-    return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, own, Chain(particles, start), policy);
-  };
-  // Closing speeds alone lose the digits of heavy particles' velocities, and sums are not exact under gravity.
-  if (far_apart(*particles) && sums_can_be_exact<T>)
-    throw Error(scene.place(scene.gravity.acts() ? "gravity.acceleration" : "walls"),
-                "masses too far apart for gaps under gravity or between shaken walls",
-                fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles->least_mass()),
-                            to_double(particles->greatest_mass())),
-                "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
-  if (watched<T>(scene, *particles)) return in(std::type_identity<GapChain<T, WatchedMasses<T>, Gravity<T>>>{}, law);
-  // As without gravity (engine_of): the most used law, identical masses; the bits are the same.
-  if constexpr (chooses_at_a_cost<T>)
-    if (const auto* inelastic = law.template as<Inelastic<T>>(); inelastic != nullptr && particles->identical_masses())
-      return in(std::type_identity<GapChain<T, IdenticalMasses<T>, Gravity<T>>>{}, *inelastic);
-  return in(std::type_identity<GapChain<T, IndividualMasses<T>, Gravity<T>>>{}, law);
+/// Throws Error for masses that gaps under gravity or at shaken walls cannot hold: closing speeds alone lose the digits
+/// of heavy particles' velocities, and sums are not exact there.
+template <Real T> void require_masses_that_fall(const Scene& scene, const cradle::Particles<T>& particles) {
+  if (!(scene.gravity.acts() || scene.walls.shaken()) || !far_apart(particles) || !sums_can_be_exact<T>) return;
+  throw Error(scene.place(scene.gravity.acts() ? "gravity.acceleration" : "walls"),
+              "masses too far apart for gaps under gravity or between shaken walls",
+              fmt::format("{:g} to {:g}, more than a factor of 10000", to_double(particles.least_mass()),
+                          to_double(particles.greatest_mass())),
+              "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
 }
 
 /// Throws Error for a run so short, at times so large, that it ends at its start.
@@ -103,9 +90,8 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   };
   if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
   const BouncingLaw<T> law = bouncing_law<T>(scene);
-  if (scene.run.coordinates == Coordinates::absolute)
-    return on(std::type_identity<PositionChain<T, Gravity<T>>>{}, law);
-  if (scene.gravity.acts() || scene.walls.shaken()) return falling_engine_of<T>(scene, particles, policy, workers, law);
+  if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
+  require_masses_that_fall<T>(scene, *particles);
   if (watched<T>(scene, *particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
   // Only the most used law has engines of its own, one for identical masses and one for others; the bits are the same.
   const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};

@@ -2,8 +2,7 @@
 // Collisions without a queue, in steps of time and as vectors: the plain interface of a compiled unit. It takes a line
 // of gaps (line.hpp), a law and a time, and makes all collisions up to it, or says that it could not: then the event
 // loop makes them (segment.hpp). Without the unit, or if it was built without Highway, there are no steps and the event
-// loop does everything. core/parallel/README.md has the proof that the result is the
-// same.
+// loop does everything. core/parallel/README.md has the proof that the result is the same.
 
 #include <algorithm>
 #include <cstddef>

@@ -80,8 +80,8 @@ TEST(Gravity, AStopGapIsComparedWithTheReboundFromAFloor) {
       EXPECT_EQ(run.kinetic_energy(run.last_collision_time()), std::ldexp(1, 1 - 2 * k));
     }
   };
-  check(GapChain<double, IdenticalMasses<double>, Gravity<double>>(particles, 0.));
-  check(PositionChain<double, Gravity<double>>(particles, 0.));
+  check(GapChain<double>(particles, 0.));
+  check(PositionChain<double>(particles, 0.));
 }
 
 // Below the cut-off collisions with the floor are elastic too.

@@ -195,7 +195,7 @@ TEST(TaggedParticles, OfRowsAreThoseThatNoFrontHasReachedToo) {
 TEST(TaggedParticles, FallWhetherAFrontHasReachedThemOrNot) {
   const auto particles = std::make_shared<Walled<double>>(list<double>({100, 101, 300, 400, 500}, {0.5, 0, 0, 0, 0}),
                                                           Wall<double>{0.}, std::nullopt, -1.);
-  Simulation run(Inelastic<double>(1), GapChain<double, IdenticalMasses<double>, Gravity<double>>(particles, 0.));
+  Simulation run(Inelastic<double>(1), GapChain<double>(particles, 0.));
   TaggedParticles<double> tagged(*particles, 1);
   Correlator correlator(tagged.size(), 10);
   double ways = 0, speeds = 0;

@@ -9,11 +9,9 @@ from .style import BLUE, GREY, ORANGE, stacked
 
 def pictures(result, _theory, _units):
     initial = result.scene.get("initial", {})
-    if initial.get("type") != "cold" or initial.get("place") != "left" or len(initial.get("masses", ())) != 2:
-        return []
-    if not len(result.events.get("time", ())) or order(result) == 0:
-        return []
-    return [("domino", lambda axes=None: draw(result, axes))]
+    if (initial.get("type") == "cold" and initial.get("place") == "left" and len(initial.get("masses", ())) == 2
+            and len(result.events.get("time", ())) and order(result) != 0):
+        yield "domino", draw, result
 
 
 def order(result):
@@ -40,7 +38,7 @@ def first_hits(result):
     return right[first], np.array([float(x) for x in late])
 
 
-def draw(result, axes=None):
+def draw(result, axes):
     particle, late = first_hits(result)
     figure, (top, below) = stacked(axes, 2, height=2.6)
     events = result.events

@@ -12,7 +12,6 @@ from html.parser import HTMLParser
 import browser
 
 SETTINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "tools", "manual", "mkdocs.yml")
-SHOTS = os.environ.get("CRADLE_SHOTS")  # a folder: screenshots stay there
 PACKAGES = "Debian: mkdocs-material mkdocstrings-python-handlers"
 LACKING = ("Unrecognised theme", "Unrecognized theme", "plugin is not installed")
 OUTSIDE = re.compile("https?:|mailto:|data:|//")
@@ -126,8 +125,7 @@ class Site(unittest.TestCase):
                     while not (found := reader.evaluate(SEARCH % word)) and time.monotonic() < until:
                         time.sleep(0.2)
                     self.assertTrue(any(page in link for link in found), f"{word}: {found}")
-                    if SHOTS:
-                        reader.photograph(os.path.join(SHOTS, f"search-{word}-{width}-{scheme}.png"), 900)
+                    reader.shot(f"search-{word}-{width}-{scheme}", 900)
             self.assertEqual(reader.complaints, [])
             self.assertEqual([url for url in reader.requests if OUTSIDE.match(url) and not url.startswith("data:")], [])
 
@@ -140,6 +138,5 @@ class Site(unittest.TestCase):
                     reader.resize(width)
                     with self.subTest(page=name, width=width):
                         self.assertLessEqual(reader.evaluate(WIDTH), width)
-                    if SHOTS:
-                        reader.photograph(os.path.join(SHOTS, f"{name.replace('/', '-')}-{width}.png"), 2000)
+                    reader.shot(f"{name.replace('/', '-')}-{width}", 2000)
             self.assertEqual(reader.complaints, [])

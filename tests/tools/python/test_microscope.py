@@ -124,11 +124,11 @@ def collapse_result(folder, collisions):
                         "inelastic collapse", time=12 / 7)
 
 
-def crossing_rows(half, restitution="1"):
+def rows_result(folder, half):
     """Collisions of 2 half elastic particles in two rows at speeds 1/2 and -1/2: world lines are exchanged at
     collisions, so that lines i and j of the two rows, straight all along, cross at (x_j - x_i); particle i + j is then
-    on the left."""
-    scene = {"title": "crossing rows", "law": {"type": "inelastic", "restitution": float(restitution), "cutoff": 0},
+    on the left. The result, and time, place and left particle of every collision."""
+    scene = {"title": "crossing rows", "law": {"type": "inelastic", "restitution": 1.0, "cutoff": 0},
              "initial": {"type": "rows", "particles": 2 * half, "speed": 0.5, "spacing": 1, "perturbation": 0.05,
                          "seed": 7, "replica": 0}, "run": {"until": 2.0 * half}}
     shift = np.random.default_rng(7).uniform(-0.05, 0.05, 2 * half)
@@ -138,13 +138,8 @@ def crossing_rows(half, restitution="1"):
     # Of the left row its particle i has i lines of its own row below it, and those of the right row that it has met.
     below = (np.arange(half)[:, None] + np.arange(half)[None, :]).ravel()
     order = np.argsort(moments, kind="stable")
-    start = x, np.repeat([0.5, -0.5], half)
-    return scene, start, moments[order], places[order], below[order]
-
-
-def rows_result(folder, half):
-    scene, start, moments, places, left = crossing_rows(half)
-    result = write_result(folder / f"rows{half}.h5", scene, start, left, left + 1,
+    moments, places, left = moments[order], places[order], below[order]
+    result = write_result(folder / f"rows{half}.h5", scene, (x, np.repeat([0.5, -0.5], half)), left, left + 1,
                           np.diff(moments, prepend=0.0), np.ones(len(moments)))
     return result, moments, places, left
 

@@ -23,9 +23,9 @@ import numpy as np
 import browser
 import cradle
 from cradle import microscope
+from cradle.page import page
 from cradle.scene import scene_text
 
-SOURCES = pathlib.Path(microscope.__file__).parent
 HUNDREDTH = 0.01  # of a pixel
 
 
@@ -41,13 +41,6 @@ class Microscope(browser.Browser):
         self.load(path)
         self.until("Boolean(window.cradleMicroscopeTest)")
         self.run("cradleMicroscopeTest.ready.then(() => 1)")
-
-    def until(self, condition, seconds=500):  # before CTest ends the test
-        end = time.monotonic() + seconds
-        while not self.run(condition):
-            if time.monotonic() > end:
-                raise TimeoutError(f"never came true: {condition}")
-            time.sleep(0.05)
 
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
@@ -152,15 +145,11 @@ def unpack(packed):
 
 
 def write_page(folder, result, name):
-    """The smallest page with a microscope in it; (its path, the data)."""
-    data = microscope.data(result)
-    scripts = "\n".join((SOURCES / script).read_text("utf-8") for script in microscope.SCRIPTS)
-    styles = (SOURCES / "microscope.css").read_text("utf-8")
+    """A page with the microscope of a report alone; (its path, the data)."""
     path = folder / f"{name}.html"
     path.write_text("<!doctype html><meta charset=utf-8><meta name=color-scheme content='light dark'><title>microscope"
-                    f"</title><style>{styles} body{{margin:12px}}</style><div id=here></div><script>{scripts}</script>"
-                    f"<script>cradleMicroscope(document.getElementById('here'), {json.dumps(data)})</script>", "utf-8")
-    return path, data
+                    f"</title><style>body{{margin:12px}}</style>{page.microscope(result)}", "utf-8")
+    return path, microscope.data(result)
 
 
 class Data(unittest.TestCase):
@@ -212,9 +201,7 @@ class InBrowser(unittest.TestCase):
 
     def tearDown(self):
         """No exception, no word on the console, no request but for the page itself."""
-        self.assertEqual(self.browser.complaints, [])
-        for address in self.browser.requests:
-            self.assertTrue(address.startswith(("file:", "about:", "blob:", "data:")), address)
+        self.assertEqual((self.browser.complaints, self.browser.outside()), ([], []))
 
     def opened(self, result, name):
         """Opens a page with this result; the microscope's data of it."""

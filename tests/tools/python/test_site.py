@@ -5,11 +5,10 @@ import re
 import shutil
 import subprocess
 import tempfile
-import time
 import unittest
-from html.parser import HTMLParser
 
 import browser
+import small
 
 SETTINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "tools", "manual", "mkdocs.yml")
 PACKAGES = "Debian: mkdocs-material mkdocstrings-python-handlers"
@@ -34,26 +33,6 @@ WIDTH = """(() => {
 })()"""
 
 
-class Page(HTMLParser):
-    """What a page has to be linked to, what it links to, and what is loaded with it."""
-
-    def __init__(self, path):
-        super().__init__()
-        self.names, self.links, self.loads = set(), [], []
-        with open(path, encoding="utf-8") as file:
-            self.feed(file.read())
-
-    def handle_starttag(self, tag, attrs):
-        has = dict(attrs)
-        self.names.add(has.get("id"))
-        if tag == "a" and has.get("href"):
-            self.links.append(has["href"])
-        elif tag == "link":
-            self.loads.append(has.get("href") or "")
-        if has.get("src"):
-            self.loads.append(has["src"])
-
-
 def built(folder):
     """Builds the site; the reason where that is impossible here."""
     if not shutil.which("mkdocs"):
@@ -76,7 +55,7 @@ class Site(unittest.TestCase):
         cls.reason = built(cls.folder)
         files = [os.path.relpath(os.path.join(top, name), cls.folder)
                  for top, _, names in os.walk(cls.folder) for name in names]
-        cls.pages = {name: Page(os.path.join(cls.folder, name))
+        cls.pages = {name: small.Page(small.read(os.path.join(cls.folder, name)))
                      for name in files if name.endswith(".html") and name != "404.html"}
         cls.sheets = [name for name in files if name.endswith(".css")]
 
@@ -97,18 +76,18 @@ class Site(unittest.TestCase):
                 with self.subTest(page=name, link=link):
                     self.assertTrue(os.path.isfile(os.path.join(self.folder, there)))
                     if part and there in self.pages:
-                        self.assertIn(part, self.pages[there].names)
+                        self.assertIn(part, self.pages[there].ids)
 
     def test_nothing_is_loaded_from_elsewhere(self):
         for name, page in self.pages.items():
             self.assertEqual([load for load in page.loads if OUTSIDE.match(load) and not load.startswith("data:")], [],
                              name)
         for name in self.sheets:
-            with open(os.path.join(self.folder, name), encoding="utf-8") as file:
-                self.assertNotRegex(file.read(), r"url\(['\"]?(https?:)?//|@import", name)
+            sheet = small.read(os.path.join(self.folder, name))
+            self.assertNotRegex(sheet, r"url\(['\"]?(https?:)?//|@import", name)
 
     def test_the_package_is_documented(self):
-        names = self.pages["python-functions.html"].names
+        names = self.pages["python-functions.html"].ids
         for name in ("cradle.run", "cradle.open", "cradle.Simulation", "cradle.resume"):
             self.assertIn(name, names)
 
@@ -121,13 +100,11 @@ class Site(unittest.TestCase):
                 for word, page in (("gap", "core/"), ("resume", "how-to-run"), ("collapse", "how-to-trust"),
                                    ("digits", "how-to-trust")):
                     reader.load(os.path.join(self.folder, "index.html"))
-                    until = time.monotonic() + 60
-                    while not (found := reader.evaluate(SEARCH % word)) and time.monotonic() < until:
-                        time.sleep(0.2)
+                    found = reader.until(SEARCH % word, 60)
                     self.assertTrue(any(page in link for link in found), f"{word}: {found}")
                     reader.shot(f"search-{word}-{width}-{scheme}", 900)
             self.assertEqual(reader.complaints, [])
-            self.assertEqual([url for url in reader.requests if OUTSIDE.match(url) and not url.startswith("data:")], [])
+            self.assertEqual(reader.outside(), [])
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_no_page_is_wider_than_the_window_or_a_telephone(self):

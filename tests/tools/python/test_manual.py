@@ -47,7 +47,8 @@ class Block(NamedTuple):
 def blocks(page):
     """The blocks of a page, and the page."""
     whole = small.read(page)
-    return [Block(**found.groupdict(""), begin=found.start(), end=found.end()) for found in BLOCK.finditer(whole)], whole
+    found = [Block(**block.groupdict(""), begin=block.start(), end=block.end()) for block in BLOCK.finditer(whole)]
+    return found, whole
 
 
 def pages():

@@ -22,7 +22,6 @@ from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 
-import cradle
 import small
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -96,8 +95,7 @@ class Manual(unittest.TestCase):
         output, end = None, 0
         for block in found:
             if block.title:
-                with open(block.title, "w", encoding="utf-8") as file:
-                    file.write(block.text)
+                small.written(block.title, block.text.encode())
             if block.language == "text" and output is not None and "\n#" not in whole[end:block.begin]:
                 with self.subTest(said=block.text):
                     self.assertIsNone(missing(block.text, output), f"is not printed; this is:\n{output}")
@@ -117,7 +115,6 @@ class Manual(unittest.TestCase):
                 print(f"\n== {time.monotonic() - began:.1f} s\n{text}--\n{output}", file=sys.stderr)
 
     def test_python_of_readme(self):
-        cradle.run("fig2").close()
         found = [block for block in blocks(os.path.join(ROOT, "README.md"))[0] if block.language == "python"]
         self.assertTrue(found)
         for block in found:
